@@ -1,0 +1,53 @@
+// The cabinet's micro-controller, read from a file descriptor: a serial line or pty (COBS frames), a
+// hidraw node or socket (64-byte reports), or a recording of either.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "cabinet/calibration.h"
+#include "cabinet/rod_input.h"
+
+namespace cabinet {
+
+enum class DeviceFraming : std::uint8_t { cobs, report };
+
+struct DeviceOptions {
+  std::string name = "cabinet";
+  DeviceFraming framing = DeviceFraming::cobs;
+  Calibration calibration = nominal_calibration();
+  std::int64_t silence_us = 50'000;   // no frame for so long: the rods hold
+  std::int64_t reopen_us = 200'000;   // between attempts to open a device that went away
+};
+
+// Opens the device non-blocking and returns the descriptor, or -1: not there (it is tried again).
+using DeviceOpener = std::function<int()>;
+
+class DeviceSource final : public InputSource {
+ public:
+  DeviceSource(DeviceOptions options, DeviceOpener open);
+  ~DeviceSource() override;
+
+  void poll(std::int64_t now_us) override;
+  const RodInputs& rods() const override;
+  const SourceCounters& counters() const override;
+  const std::string& name() const override;
+  // Open and heard from within silence_us.
+  bool connected() const;
+  // For the latency test: the micro-controller's clock of the last accepted frame [us].
+  std::uint32_t last_frame_time_us() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// "serial:/dev/ttyACM0", "hid:/dev/hidraw0" or "file:recording.bin"; an unknown scheme is an error
+// sentence. A device that is not there yet is not an error.
+tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(const std::string& address,
+                                                                     const Calibration& calibration);
+
+}  // namespace cabinet

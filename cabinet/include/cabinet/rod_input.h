@@ -1,0 +1,47 @@
+// Where rods come from: every device, however different, ends as the latest RodInput of each rod.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace cabinet {
+
+inline constexpr int kRods = 8;
+
+enum class RodStatus : std::uint8_t {
+  absent,  // nobody drives this rod
+  live,    // fresh
+  held,    // its device fell silent or was unplugged: the last position stands, rates are zero
+};
+
+struct RodInput {
+  double slide = 0.0;           // along the rod [m]
+  double angle = 0.0;           // about the rod [rad], unbounded
+  double slide_rate = 0.0;      // [m/s]
+  double angle_rate = 0.0;      // [rad/s]
+  std::int64_t time_us = 0;     // when it was received, on the clock handed to poll()
+  RodStatus status = RodStatus::absent;
+};
+using RodInputs = std::array<RodInput, kRods>;
+
+// Counted, never asserted: bytes from a device are a stranger's.
+struct SourceCounters {
+  std::uint64_t frames = 0;      // accepted
+  std::uint64_t bad = 0;         // wrong length, CRC, version or range
+  std::uint64_t lost = 0;        // gaps in the sequence
+  std::uint64_t stale = 0;       // older than one already accepted
+  std::uint64_t reopened = 0;    // times the device came back
+};
+
+class InputSource {
+ public:
+  virtual ~InputSource() = default;
+  // Takes in all that has arrived. Never blocks. now_us: a monotonic clock [us], handed in.
+  virtual void poll(std::int64_t now_us) = 0;
+  virtual const RodInputs& rods() const = 0;
+  virtual const SourceCounters& counters() const = 0;
+  virtual const std::string& name() const = 0;  // for the log and the screen: "cabinet", "mouse"
+};
+
+}  // namespace cabinet

@@ -1,0 +1,18 @@
+# Options shared by every target. -ffp-contract=off and the absence of fast-math keep the simulation
+# the same to the bit on every compiler and level.
+add_library(sf_options INTERFACE)
+target_compile_options(sf_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+                                            -ffp-contract=off)
+if(SF_WERROR)
+  target_compile_options(sf_options INTERFACE -Werror)
+endif()
+if(SF_SANITIZE)
+  target_compile_options(sf_options INTERFACE -fsanitize=${SF_SANITIZE} -fno-omit-frame-pointer
+                                              -fno-sanitize-recover=all)
+  target_link_options(sf_options INTERFACE -fsanitize=${SF_SANITIZE})
+endif()
+if(SF_FUZZ)
+  target_compile_options(sf_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+                                              -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(sf_options INTERFACE -fsanitize=address,undefined)
+endif()

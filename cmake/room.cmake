@@ -1,0 +1,31 @@
+include(GoogleTest)
+
+# sf_test(NAME SOURCES... LIBS... [LABELS ...]): one GoogleTest program, each of its tests known to ctest.
+# Label "fast" (the default) means: it also runs under the sanitizers.
+function(sf_test name)
+  if(NOT SF_BUILD_TESTS OR SF_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS fast)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  find_package(GTest REQUIRED)
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()
+
+# sf_fuzz(NAME SOURCES... LIBS...): a libFuzzer program; its corpus is fuzz/corpus/NAME beside the source.
+function(sf_fuzz name)
+  if(NOT SF_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS})
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+endfunction()

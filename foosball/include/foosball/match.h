@@ -1,0 +1,135 @@
+// A match as a pure step function of its state and its inputs: no clock, no file, no socket, no
+// randomness but the seed it is handed. The server, the replayer and the tests all link this one.
+//
+// Screens (paper, sections 5 and 5.1) are worked with the rods themselves: push any rod of a team to
+// start, spin it to choose a character, push to confirm. See docs/rules.md.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "foosball/table.h"
+#include "vphysics/error.h"
+#include "vphysics/lie.h"
+
+namespace foosball {
+
+// Where a hand wants a rod. A rod that is not live is held where it is.
+struct RodTarget {
+  double slide = 0.0;       // [m]
+  double angle = 0.0;       // [rad], unbounded: full turns count
+  double slide_rate = 0.0;  // [m/s]
+  double angle_rate = 0.0;  // [rad/s]
+  bool live = false;
+};
+using RodTargets = std::array<RodTarget, kRods>;
+
+// Wishes of a client, applied at the start of a tick if the screen allows them.
+struct Command {
+  enum class Kind : std::uint8_t {
+    push,              // as a rod pushed: starts, confirms, goes on
+    choose_character,  // team, value = character
+    pause,             // value 1 on, 0 off
+    restart,           // back to the logo
+  };
+  Kind kind;
+  std::uint8_t team = 0;
+  std::uint8_t value = 0;
+};
+
+struct TickInput {
+  RodTargets rods;
+  std::span<const Command> commands;
+};
+
+enum class Screen : std::uint8_t { logo, selection, play, ceremony, end };
+inline constexpr int kScreens = 5;
+
+enum class EventKind : std::uint8_t {
+  man_hit,     // value = impulse [N s]
+  wall_hit,    // value = impulse
+  field_hit,   // value = impulse
+  goal,        // team scored
+  serve,
+  dead_ball,   // no man reached the ball in time: served again
+  ball_out,    // left the table
+  screen,      // value = the new Screen
+  match_won,   // team won
+};
+inline constexpr int kEventKinds = 9;
+
+struct Event {
+  EventKind kind;
+  std::uint8_t team = 0;   // of the man or the goal
+  std::uint8_t rod = 0;    // man_hit
+  std::uint8_t man = 0;    // man_hit
+  double value = 0.0;
+  vp::Vec3 point;          // world [m]
+};
+
+struct Rules {
+  int goals_to_win = 5;             // "to 5, last game by two, max 8" (ITSF)
+  int max_goals = 8;
+  double dead_ball_seconds = 6.0;   // without a touch and almost at rest
+  double ceremony_seconds = 2.5;
+  double end_seconds = 6.0;
+};
+
+struct MatchDesc {
+  Layout layout = Layout::tournament;
+  std::uint64_t seed = 1;
+  Rules rules;
+};
+
+struct RodState {
+  double slide, angle, slide_rate, angle_rate;  // as simulated [m, rad, m/s, rad/s]
+};
+
+// All that a renderer or a player may see.
+struct MatchView {
+  std::uint64_t tick = 0;
+  Layout layout{};
+  Screen screen{};
+  bool paused = false;
+  std::array<int, kTeams> score{};
+  std::array<int, kTeams> character{};
+  std::array<bool, kTeams> confirmed{};  // on the selection screen
+  double screen_seconds = 0.0;           // since the screen came up [s]
+  double play_seconds = 0.0;             // match clock [s]
+  int last_scorer = 0;                   // team, on ceremony and end
+  bool ball_in_play = false;
+  vp::Vec3 ball_position, ball_velocity;  // world
+  vp::SE3 ball_pose;
+  vp::Vec3 ball_spin;                    // world [rad/s]
+  std::array<RodState, kRods> rods{};
+};
+
+class Match {
+ public:
+  static vp::Expected<Match> create(const MatchDesc& desc);
+  ~Match();
+  Match(Match&&) noexcept;
+  Match& operator=(Match&&) noexcept;
+
+  void step(const TickInput& input);  // one kTick; targets that are not finite count as not live
+  const MatchView& view() const;
+  std::span<const Event> events() const;  // of the last step
+
+  void snapshot(std::vector<std::byte>& bytes) const;
+  vp::Expected<void> restore(std::span<const std::byte> bytes);
+  std::uint64_t state_hash() const;
+
+ private:
+  struct Impl;
+  explicit Match(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Pose of a man in the world: origin on the rod's axis.
+vp::SE3 man_pose(const TableSpec& table, int rod, int man, const RodState& state);
+
+}  // namespace foosball

@@ -1,0 +1,93 @@
+// The table in true dimensions: one description from which the physics, the rules and the renderer
+// all take their figures.
+//
+// Frame: origin at the centre of the field's surface; x from goal to goal (team 0 defends -x and
+// attacks +x), y along the rods, z up. A rod's slide is along +y. Its angle is a right-handed turn
+// about +y; at 0 the men hang straight down; a positive angle swings the feet towards -x.
+// Source: shared notes on real tables (Leonhart 1200 x 680 mm, Tornado ball), paper section 5.1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vphysics/lie.h"
+#include "vphysics/shapes.h"
+
+namespace foosball {
+
+inline constexpr int kRods = 8;
+inline constexpr int kTeams = 2;
+inline constexpr int kMaxMenOnRod = 5;
+inline constexpr double kTick = 0.001;  // [s]; every process counts in these
+
+enum class Layout : std::uint8_t {
+  paper,       // 4 men on each of the 8 rods
+  tournament,  // 1-2-5-3
+};
+inline constexpr int kLayouts = 2;
+
+// What a rod is for, from a team's own goal outwards.
+enum class Line : std::uint8_t { goalie, defence, midfield, attack };
+
+// A character a team can choose (paper, section 5: tall and thin attacks well, small and fat defends
+// well). The man's body is a set of boxes fixed to the rod.
+struct CharacterSpec {
+  const char* name;
+  double foot_width;      // along the rod [m]
+  double foot_depth;      // fore and aft [m]
+  double torso_width;     // along the rod [m]
+  double torso_depth;     // fore and aft [m]
+  double head_height;     // above the rod's axis [m]
+  double foot_reach;      // rod axis to sole [m]
+  double mass;            // [kg]
+  double foot_friction;
+  double foot_restitution;
+};
+inline constexpr int kCharacters = 3;
+const CharacterSpec& character_spec(int character);  // precondition: 0 <= character < kCharacters
+
+// The boxes of one man in the man's frame: origin on the rod's axis, axes as the table's at angle 0.
+struct ManBox {
+  vp::Vec3 centre;        // [m]
+  vp::Vec3 half_extents;  // [m]
+  enum class Part : std::uint8_t { foot, leg, torso, head } part;
+};
+std::span<const ManBox> man_boxes(int character);
+
+struct RodSpec {
+  int team;
+  Line line;
+  double x;                // of the axis [m]
+  int men;                 // <= kMaxMenOnRod
+  double spacing;          // between neighbours [m]
+  double slide_limit;      // |slide| <= this [m]
+};
+
+struct TableSpec {
+  Layout layout;
+  double length;          // along x, between the goal lines [m]
+  double width;           // along y, between the side walls [m]
+  double wall_height;     // [m]
+  double rod_height;      // axis above the field [m]
+  double goal_width;      // [m]
+  double goal_height;     // [m]
+  double goal_depth;      // [m]
+  double corner_rise;     // height of the raised corners [m]
+  double corner_size;     // their legs along x and y [m]
+  double ball_radius;     // [m]
+  double ball_mass;       // [kg]
+  double rod_mass;        // without men [kg]
+  double rod_radius;      // [m]
+  std::array<RodSpec, kRods> rods;  // from -x to +x
+};
+const TableSpec& table_spec(Layout layout);
+
+// y of a man on its rod at slide 0 [m]; 0 <= man < rod.men.
+double man_offset(const RodSpec& rod, int man);
+
+// The rods of a team, from its goal outwards: index into TableSpec::rods by Line.
+std::array<int, 4> rods_of_team(const TableSpec& table, int team);
+
+}  // namespace foosball

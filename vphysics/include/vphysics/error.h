@@ -1,0 +1,24 @@
+// What a refused call returns. The engine throws nothing, prints nothing, exits never.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace vp {
+
+enum class Errc : std::uint8_t {
+  invalid_argument,  // NaN, infinity, negative size, an id that no longer exists
+  unsupported,       // well formed, but not within what this version can simulate
+  bad_data,          // bytes handed to restore() are not a snapshot of this world's version
+};
+
+struct Error {
+  Errc code;
+  std::string message;  // one sentence: what is wrong and what to do
+};
+
+template <class T>
+using Expected = tl::expected<T, Error>;
+
+}  // namespace vp

@@ -1,0 +1,23 @@
+// Handles to what a world owns: index and generation; zero is null. A handle to something destroyed
+// is recognised as stale and never aliases what took its place.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+namespace vp {
+
+template <class Tag>
+struct Id {
+  std::uint32_t index = 0;       // 1-based; 0 is null
+  std::uint32_t generation = 0;  // bumped each time the slot is reused
+
+  constexpr explicit operator bool() const { return index != 0; }
+  constexpr auto operator<=>(const Id&) const = default;
+};
+
+using BodyId = Id<struct BodyTag>;
+using ColliderId = Id<struct ColliderTag>;
+using ArticulationId = Id<struct ArticulationTag>;
+
+}  // namespace vp

@@ -1,0 +1,15 @@
+// Lie groups for rigid bodies, in the notation of the paper (sections 4.1 to 4.3, appendix B).
+//
+//   Vec3     a vector of R^3
+//   SE3      a pose: rotation R (9 scalars) and position p (3)
+//   se3      a generalized velocity (w, v): angular first
+//   dse3     a generalized force (m, f): moment first
+//   Inertia  a generalized inertia of a rigid body: 10 scalars
+//
+// Everything is a template on the scalar with the suffix T; the short names are in double.
+#pragma once
+
+#include "vphysics/lie/inertia.h"
+#include "vphysics/lie/scalar.h"
+#include "vphysics/lie/se3.h"
+#include "vphysics/lie/vec3.h"

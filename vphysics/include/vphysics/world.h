@@ -1,0 +1,193 @@
+// A world of rigid bodies and articulations, stepped deterministically.
+//
+// Units: SI. Right-handed frames. Generalized velocities V = (w, v) are in the body's own frame,
+// about the body's origin (paper, section 4.2). Everything a call needs to be refused is checked:
+// NaN, infinities, non-positive sizes and stale ids give an Error and change nothing.
+//
+// Threads: a World is used by one thread at a time; different worlds are independent.
+// Determinism: the same sequence of calls gives the same bits on g++ and clang++, at every
+// optimisation level. Nothing in here reads a clock or a global generator.
+//
+// Source: paper, sections 4.1 to 4.5; docs/decisions/ for the contact and impact scheme.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vphysics/error.h"
+#include "vphysics/ids.h"
+#include "vphysics/lie.h"
+#include "vphysics/shapes.h"
+
+namespace vp {
+
+struct WorldDesc {
+  Vec3 gravity{0.0, 0.0, -9.81};        // [m/s^2]
+  double restitution_threshold = 0.05;  // slower approaches than this [m/s] do not bounce
+  double contact_slop = 1e-4;           // penetration left alone [m]; also the contact margin
+  int velocity_iterations = 12;         // of the contact solver, per solve
+  int max_impacts_per_step = 32;        // times of impact resolved within one step
+};
+
+enum class Motion : std::uint8_t {
+  fixed,      // never moves
+  kinematic,  // moves with the velocity it is given; nothing pushes it
+  dynamic,    // moved by forces and contacts
+};
+
+struct BodyDesc {
+  Motion motion = Motion::dynamic;
+  SE3 T_world_body;
+  se3 velocity;                  // body frame [rad/s, m/s]
+  Inertia inertia;               // about the body's origin; dynamic bodies need mass > 0
+  double linear_damping = 0.0;   // [1/s]
+  double angular_damping = 0.0;  // [1/s]
+  bool continuous = false;       // swept against everything it may meet: for small fast bodies
+  std::uint64_t user_data = 0;
+};
+
+// A joint's coordinates q are metres along and radians around its axis, z of the joint frame.
+enum class JointKind : std::uint8_t {
+  fixed,        // no freedom
+  prismatic,    // q = (slide)
+  revolute,     // q = (angle)
+  cylindrical,  // q = (slide, angle) along and around the same axis
+};
+
+constexpr int degrees_of_freedom(JointKind kind) {
+  return kind == JointKind::fixed ? 0 : kind == JointKind::cylindrical ? 2 : 1;
+}
+
+// Hard stops of one coordinate.
+struct JointLimit {
+  double lower = -1e30;
+  double upper = 1e30;
+};
+
+// A motor: force = clamp(stiffness (position - q) + damping (velocity - qdot), +-max_force),
+// integrated implicitly, so that any stiffness is stable. Units N or N m for max_force.
+struct JointDrive {
+  double position = 0.0;
+  double velocity = 0.0;
+  double stiffness = 0.0;
+  double damping = 0.0;
+  double max_force = 0.0;  // 0: no motor
+};
+
+struct LinkDesc {
+  int parent = -1;  // index of an earlier link; -1: the world
+  JointKind joint = JointKind::fixed;
+  SE3 T_parent_joint;  // joint frame at q = 0, in the parent's frame; the link's frame moves with it
+  Inertia inertia;     // about the link's origin; mass > 0
+  double armature[2] = {0.0, 0.0};  // added to the diagonal of the joint-space inertia
+  double joint_damping[2] = {0.0, 0.0};  // viscous, [N s/m] or [N m s/rad]
+  JointLimit limit[2];
+  std::uint64_t user_data = 0;
+};
+
+// A tree of links. This version simulates articulations of one link on the world; a longer tree is
+// refused with Errc::unsupported.
+struct ArticulationDesc {
+  std::vector<LinkDesc> links;
+};
+
+struct ContactEvent {
+  enum class Kind : std::uint8_t { begin, hit, end };
+  Kind kind;
+  bool sensor;            // one of the two is a sensor
+  ColliderId a, b;        // a < b by creation
+  std::uint64_t user_data_a, user_data_b;
+  Vec3 point;             // world frame [m]
+  Vec3 normal;            // world frame, from a to b
+  double approach_speed;  // just before, along the normal [m/s], >= 0
+  double impulse;         // normal impulse [N s]; 0 for sensors
+  double time;            // within the step, [0, dt]
+};
+
+// Set when a step had to degrade; the step is finished all the same.
+struct StepStatus {
+  bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it and
+                              // what it touches were held for the rest of the step
+  bool non_finite = false;    // a body left the range of numbers and was stopped where it was
+  double time_held = 0.0;     // the part of dt lost to impact_limit [s]
+};
+
+struct StepCounters {
+  std::uint32_t pairs = 0;     // collider pairs whose bounds met
+  std::uint32_t contacts = 0;  // contact points solved, summed over the solves of the step
+  std::uint32_t impacts = 0;   // times of impact found
+};
+
+struct RayHit {
+  ColliderId collider;
+  BodyId body;
+  std::uint64_t user_data;
+  double distance;  // along the unit direction [m]
+  Vec3 point, normal;
+};
+
+class World {
+ public:
+  explicit World(const WorldDesc& desc = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  // --- building ---------------------------------------------------------------------------------
+  Expected<BodyId> create_body(const BodyDesc& desc);
+  Expected<void> destroy_body(BodyId body);  // its colliders go with it; refused for links
+  Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
+  Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
+  BodyId link_body(ArticulationId articulation, int link) const;  // null if there is none
+
+  // --- state ------------------------------------------------------------------------------------
+  bool contains(BodyId body) const;
+  SE3 pose(BodyId body) const;      // T_world_body; precondition: contains(body)
+  se3 velocity(BodyId body) const;  // body frame; precondition: contains(body)
+  Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
+  Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
+  Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
+
+  // Joint coordinates of one link; dof < degrees_of_freedom(joint).
+  double joint_position(ArticulationId articulation, int link, int dof) const;
+  double joint_velocity(ArticulationId articulation, int link, int dof) const;
+  Expected<void> set_joint_state(ArticulationId articulation, int link, int dof, double position,
+                                 double velocity);
+  Expected<void> set_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
+
+  // --- time -------------------------------------------------------------------------------------
+  // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.
+  Expected<StepStatus> step(double dt);
+  std::span<const ContactEvent> contact_events() const;  // of the last step, in order of time
+  const StepCounters& counters() const;                  // of the last step
+
+  // --- queries ----------------------------------------------------------------------------------
+  std::optional<RayHit> ray_cast(const Vec3& origin, const Vec3& direction, double max_distance,
+                                 CollisionFilter filter = {}) const;
+  // A sphere of the radius moved along the ray; distance is the travel of its centre.
+  std::optional<RayHit> sphere_cast(const Vec3& origin, double radius, const Vec3& direction,
+                                    double max_distance, CollisionFilter filter = {}) const;
+  // Colliders that a sphere meets, in order of creation, appended to found.
+  void overlap_sphere(const Vec3& centre, double radius, std::vector<ColliderId>& found,
+                      CollisionFilter filter = {}) const;
+
+  // --- rollback ---------------------------------------------------------------------------------
+  // The whole mutable state, warm starts and ids included, appended to bytes. A world made by the
+  // same sequence of calls restores it and then steps to the same bits.
+  void snapshot(std::vector<std::byte>& bytes) const;
+  // Refuses foreign, truncated or corrupt bytes with Errc::bad_data; the world is then unchanged.
+  Expected<void> restore(std::span<const std::byte> bytes);
+  std::uint64_t state_hash() const;  // of the same bytes as snapshot()
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vp

@@ -1,0 +1,96 @@
+// The TCP control messages, both ways. Each is a FlatBuffers table in wire/control.fbs, verified
+// before it is read; these are the plain structs that the processes use.
+//
+// Framing: u32 length (little endian, of what follows), then the FlatBuffers buffer. A length above
+// kMaxControlMessage ends the connection before anything is allocated.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace wire {
+
+inline constexpr std::uint16_t kControlVersion = 1;
+inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
+
+inline constexpr std::uint8_t kWatchOnly = 255;
+
+// Client to server, first message, within 5 s of connecting.
+struct Hello {
+  std::uint16_t version = kControlVersion;
+  std::uint32_t snapshot_layout = 0;  // snapshot_layout_hash()
+  std::string name;                   // at most 64 bytes of UTF-8
+  std::uint16_t udp_port = 0;         // where this client listens for snapshots
+  std::uint8_t team = kWatchOnly;     // 0, 1: wants to drive that team's rods
+};
+
+// Server to client: accepted.
+struct Welcome {
+  std::uint64_t session = 0;      // names this run of the server
+  std::uint64_t token = 0;        // the client's secret for its input datagrams
+  std::uint16_t udp_port = 0;     // where the server takes input datagrams
+  std::uint32_t tick_us = 1000;
+  std::uint8_t layout = 0;        // foosball::Layout
+  std::uint8_t team = kWatchOnly; // granted
+  std::string multicast;          // group address, or empty for unicast to udp_port
+  std::uint16_t multicast_port = 0;
+};
+
+// Server to client: not accepted; the connection closes.
+struct Refusal {
+  enum class Code : std::uint8_t { version, layout, full, bad_message, team_taken };
+  Code code = Code::version;
+  std::string reason;  // one sentence that says what to do
+};
+
+// Client to server: a foosball::Command.
+struct Wish {
+  std::uint8_t kind = 0, team = 0, value = 0;
+};
+
+// Either way; the other answers with the same id.
+struct Ping {
+  std::uint64_t id = 0;
+};
+struct Pong {
+  std::uint64_t id = 0;
+};
+
+// Server to client: something a person should read ("cabinet /dev/ttyACM0 unplugged: its rods hold").
+struct Notice {
+  enum class Level : std::uint8_t { info, warning, cleared };
+  Level level = Level::info;
+  std::uint32_t topic = 0;  // a later notice of the same topic replaces this one
+  std::string text;
+};
+
+// Either way, before closing on purpose.
+struct Bye {
+  std::string reason;
+};
+
+using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye>;
+
+// Appends the framed message.
+void encode_control(const ControlMessage& message, std::vector<std::byte>& out);
+
+// Cuts a byte stream into messages. One instance a connection.
+class ControlReader {
+ public:
+  enum class Status : std::uint8_t { message, need_more, broken };
+  void push(std::span<const std::byte> bytes);  // ignored once broken
+  // The next message; broken is final: bad length, failed verification or a value out of range.
+  Status next(ControlMessage& message);
+
+ private:
+  std::vector<std::byte> buffer_;
+  std::size_t read_ = 0;
+  bool broken_ = false;
+};
+
+}  // namespace wire

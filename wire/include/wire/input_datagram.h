@@ -1,0 +1,30 @@
+// Rod positions from a client (mouse, keys, gamepad) to the server: one UDP datagram per change and
+// at least 20 a second. Absolute positions: a lost one loses nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace wire {
+
+inline constexpr std::size_t kMaxInputDatagram = 160;
+
+struct InputRod {
+  bool driven = false;
+  float slide = 0, angle = 0;            // [m], [rad]
+  float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
+};
+
+struct InputDatagram {
+  std::uint64_t session = 0;   // the server's, from Welcome
+  std::uint64_t token = 0;     // the client's own secret, from Welcome
+  std::uint32_t sequence = 0;  // older ones are dropped
+  std::array<InputRod, 8> rods{};
+};
+
+std::size_t encode_input(const InputDatagram& input, std::span<std::byte> out);
+bool decode_input(std::span<const std::byte> in, InputDatagram& input);
+
+}  // namespace wire
