@@ -1,25 +1,47 @@
 include(GoogleTest)
 
-# sf_test(NAME SOURCES... LIBS... [LABELS ...]): one GoogleTest program, each of its tests known to ctest.
-# Label "fast" (the default) means: it also runs under the sanitizers.
+# Build only what the tests labelled "fast" need; the sanitizer presets build no more than this.
+add_custom_target(fast_tests)
+
+# sf_test(NAME SOURCES... LIBS... [LABELS fast|slow [display]] [TIMEOUT s] [SERIAL]): one GoogleTest
+# program, each of its tests known to ctest. Label "fast" (the default) means: it also runs under the
+# sanitizers. "display": it opens a window. SERIAL: it measures time, nothing else runs beside it.
 function(sf_test name)
   if(NOT SF_BUILD_TESTS OR SF_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS fast)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
+  set(serial FALSE)
+  if(ARG_SERIAL)
+    set(serial TRUE)
+  endif()
   find_package(GTest REQUIRED)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+  if("fast" IN_LIST ARG_LABELS)
+    add_dependencies(fast_tests ${name})
+  endif()
+  # gtest_discover_tests takes a list apart, and with it every property after LABELS; joined by "+"
+  # the labels stay one word, which `ctest -L fast` finds just as well.
+  string(JOIN "+" labels ${ARG_LABELS})
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}" TIMEOUT
+                       ${ARG_TIMEOUT} RUN_SERIAL ${serial})
 endfunction()
 
-# sf_fuzz(NAME SOURCES... LIBS...): a libFuzzer program; its corpus is fuzz/corpus/NAME beside the source.
+# The fuzz targets are known to ./check by this list: one line "NAME CORPUS" each.
+set(SF_FUZZ_LIST ${CMAKE_BINARY_DIR}/fuzz-targets.txt)
+if(SF_FUZZ)
+  file(WRITE ${SF_FUZZ_LIST} "")
+endif()
+
+# sf_fuzz(NAME SOURCES... LIBS...): a libFuzzer program; its kept corpus is corpus/NAME beside the
+# CMakeLists.txt, or fuzz/corpus/NAME.
 function(sf_fuzz name)
   if(NOT SF_FUZZ)
     return()
@@ -28,4 +50,9 @@ function(sf_fuzz name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS})
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  set(corpus ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
+  if(NOT EXISTS ${corpus})
+    set(corpus ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
+  endif()
+  file(APPEND ${SF_FUZZ_LIST} "${name} ${corpus}\n")
 endfunction()

@@ -1,0 +1,136 @@
+#!/bin/bash
+# The Debian packages that this project uses: the one list of them, each with its reason, and how
+# they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
+#   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does).
+
+packages_table() {
+  cat <<'TABLE'
+build  g++                   the C++ compiler
+build  cmake                 configures the build
+build  ninja-build           runs the build
+build  pkg-config            finds libraries that have no CMake package
+build  libasio-dev           sockets and timers of the server and the client
+build  libcli11-dev          command lines
+build  libspdlog-dev         logs
+build  libfmt-dev            formatted text, also inside spdlog
+build  libexpected-dev       tl::expected, how errors are returned
+build  libglfw3-dev          the window, its keys, mice and gamepads
+build  libgles-dev           OpenGL ES headers
+build  libegl-dev            EGL headers, how OpenGL ES is reached
+build  libglm-dev            vectors and matrices of the renderer
+build  libstb-dev            fonts and PNG files
+build  libopenal-dev         sound
+play   libegl1               EGL at run time
+play   libgles2              OpenGL ES at run time
+play   libgl1-mesa-dri       OpenGL drivers, and the software one where there is no GPU
+play   fonts-dejavu-core     the letters on the screen
+play   xvfb                  a display for machines without one
+check  git                   which files a change touches
+check  python3               layer check, document check
+check  clang                 the second compiler, sanitizers and fuzzing
+check  libclang-rt-14-dev    the run-time libraries of clang's sanitizers and libFuzzer
+check  clang-format          formatting
+check  clang-tidy            static checks
+check  shellcheck            static checks of the scripts
+check  libgtest-dev          the tests
+check  libgmock-dev          matchers in the tests
+check  librapidcheck-dev     property tests
+check  gcc-avr               compiles the firmware
+check  binutils-avr          links the firmware
+check  avr-libc              the firmware's C library
+check  libsimavr-dev         runs the firmware against simulated mice
+check  libelf-dev            simavr reads the firmware through it
+TABLE
+}
+
+# packages_missing GROUP...: the names of those not installed, one a line.
+packages_missing() {
+  local wanted installed
+  wanted=$(packages_table | awk -v groups=" $* " 'index(groups, " " $1 " ") { print $2 }' | sort -u)
+  # shellcheck disable=SC2086  # one word per package
+  installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' $wanted 2>/dev/null |
+    awk '$2 == "installed" { print $1 }' | sort -u)
+  comm -23 <(echo "$wanted") <(echo "$installed")
+}
+
+# packages_install LOG GROUP...: installs what is missing. Returns 1, having said why, if it cannot.
+packages_install() {
+  local log=$1 missing as_root=() command
+  shift
+  [[ ${SF_SKIP_PACKAGES:-0} == 1 ]] && return 0
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "This is not a Debian system, so nothing can be installed from here: install the equivalents of" \
+      "'scripts/packages.sh list $*' yourself, then run again with SF_SKIP_PACKAGES=1." >&2
+    return 1
+  fi
+  missing=$(packages_missing "$@")
+  [[ -z $missing ]] && return 0
+
+  echo "To be installed from Debian, and why:"
+  packages_table | awk -v missing=" ${missing//$'\n'/ } " \
+    'index(missing, " " $2 " ") { name = $2; $1 = $2 = ""; printf "  %-20s %s\n", name, $0 }' | sed 's/   */  /2'
+  command="apt-get install --no-install-recommends ${missing//$'\n'/ }"
+  if [[ $EUID -ne 0 ]]; then
+    if ! command -v sudo >/dev/null; then
+      echo "Installing needs root and there is no sudo here. As root: $command" >&2
+      return 1
+    fi
+    if [[ ! -t 0 ]] && ! sudo -n true 2>/dev/null; then
+      echo "Installing needs root, and sudo wants a password but there is no terminal to ask at. Run: sudo $command" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  mkdir -p "$(dirname "$log")"
+  : >"$log"
+  # shellcheck disable=SC2086  # one word per package
+  set -- ${missing}
+  # The lists are fetched only if apt does not know a package, or knows a version that is gone.
+  if ! apt-get install --simulate --no-install-recommends "$@" >>"$log" 2>&1; then
+    packages_update "$log" "${as_root[@]}" || return 1
+  fi
+  packages_apt "$log" "${as_root[@]}" -- "$@" && return 0
+  packages_update "$log" "${as_root[@]}" || return 1
+  packages_apt "$log" "${as_root[@]}" -- "$@" && return 0
+  tail -n 5 "$log" >&2
+  echo "The packages could not be installed; all of apt-get's words are in $log. By hand: $command" >&2
+  return 1
+}
+
+# packages_apt LOG [sudo] -- PACKAGE...
+packages_apt() {
+  local log=$1 as_root=()
+  shift
+  while [[ $1 != -- ]]; do as_root+=("$1") && shift; done
+  shift
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends \
+    -o DPkg::Lock::Timeout=120 "$@" </dev/null >>"$log" 2>&1
+}
+
+# packages_update LOG [sudo]
+packages_update() {
+  local log=$1
+  shift
+  echo "  fetching the package lists"
+  if ! "$@" apt-get update -q -o APT::Update::Error-Mode=any </dev/null >>"$log" 2>&1; then
+    tail -n 3 "$log" >&2
+    echo "The package lists could not be fetched: is this machine on the network? (log: $log)" >&2
+    return 1
+  fi
+}
+
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  set -euo pipefail
+  cd "$(dirname "$0")/.."
+  verb=${1:-list}
+  [[ $# -gt 0 ]] && shift
+  case $verb in
+    list) packages_table | awk -v groups=" ${*:-build play check} " 'index(groups, " " $1 " ")' ;;
+    install) packages_install build/log/packages.log "${@:-build}" ;;
+    *)
+      echo "usage: scripts/packages.sh list|install [build|play|check]..." >&2
+      exit 2
+      ;;
+  esac
+fi
