@@ -1,5 +1,5 @@
+#!/bin/bash
 # Shared by play, check and bench; sourced with the repository's root as working directory.
-# shellcheck shell=bash
 
 die() { # die CODE SENTENCE
   echo "$0: $2" >&2
@@ -90,3 +90,9 @@ stop() {
     wait "$pid" 2>/dev/null || true
   done
 }
+
+# By itself: scripts/common.sh FUNCTION ARGUMENT... runs one of the above, for wrappers such as setarch.
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  set -euo pipefail
+  "$@"
+fi

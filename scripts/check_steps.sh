@@ -1,0 +1,166 @@
+#!/bin/bash
+# The steps of ./check: each a function that fails or not. Run by ./check in a process of its own, its
+# words going to LOGS/STEP.log, with STEP, the step's name, and LOGS, the folder, in the environment.
+set -euo pipefail
+. scripts/packages.sh
+. scripts/common.sh
+
+said() { echo "$*" >"$LOGS/$STEP.said"; } # shown beside the step's time
+
+our_files() { # our_files PATTERN...: tracked and new files, without build outputs
+  git ls-files --cached --others --exclude-standard -- "$@" | while IFS= read -r f; do
+    if [[ -f $f ]]; then echo "$f"; fi
+  done
+}
+
+step_packages() { packages_install "$LOGS/packages-apt.log" build play check; }
+
+step_format() {
+  local files
+  mapfile -t files < <(our_files '*.h' '*.cpp' '*.c')
+  clang-format --dry-run --Werror "${files[@]}"
+  said "${#files[@]} files"
+}
+
+step_layers() {
+  python3 scripts/check_layers.py --self-test
+  python3 scripts/check_layers.py | tee "$LOGS/layers.said"
+}
+
+step_docs() {
+  python3 scripts/check_docs.py
+  python3 scripts/readme_figures.py --check
+}
+
+step_scripts() {
+  local files
+  mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench .ci/run))
+  shellcheck -x "${files[@]}"
+  python3 -m py_compile scripts/*.py
+  said "${#files[@]} scripts"
+}
+
+# whole_build PRESET [-D...]: configures and builds everything, warnings as errors.
+whole_build() {
+  local preset=$1
+  shift
+  configure "$preset" "$LOGS/$preset-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON "$@"
+  build "$preset" "$LOGS/$preset-build.log" all
+}
+
+step_gcc() { whole_build release; }
+step_clang() { whole_build clang; }
+
+# run_tests PRESET [ctest options]: under a virtual display; leaves the numbers for the totals.
+run_tests() {
+  local preset=$1 junit=$PWD/$LOGS/$STEP.xml status=0
+  shift
+  rm -f "$junit"
+  virtual_display
+  trap 'stop "$XVFB_PID"' EXIT
+  LIBGL_ALWAYS_SOFTWARE=1 no_address_randomisation ctest --test-dir "build/$preset" -j "${SF_JOBS:-$(nproc)}" \
+    --no-tests=error --output-on-failure --output-junit "$junit" "$@" || status=$?
+  count_tests "$junit"
+  return "$status"
+}
+
+count_tests() { # count_tests JUNIT
+  local all failures skips
+  [[ -f $1 ]] || return 0
+  all=$(grep -o -m1 '\btests="[0-9]*"' "$1" | tr -dc 0-9)
+  failures=$(grep -o -m1 '\bfailures="[0-9]*"' "$1" | tr -dc 0-9)
+  skips=$(grep -o -m1 '\bskipped="[0-9]*"' "$1" | tr -dc 0-9)
+  echo "$((all - failures - skips)) $failures $skips" >"$LOGS/$STEP.count"
+  said "$((all - failures - skips)) passed, $skips skipped"
+}
+
+# g++ 12's thread sanitizer does not start under the address randomisation of newer kernels.
+no_address_randomisation() {
+  if setarch "$(uname -m)" -R true 2>/dev/null; then setarch "$(uname -m)" -R "$@"; else "$@"; fi
+}
+
+step_tests_gcc() { run_tests release; }
+step_tests_clang() { run_tests clang -L fast; }
+
+sanitized_tests() { # sanitized_tests PRESET
+  configure "$1" "$LOGS/$1-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON
+  no_address_randomisation bash scripts/common.sh build "$1" "$LOGS/$1-build.log" fast_tests
+  run_tests "$1" -L fast
+}
+
+step_asan() {
+  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=print_stacktrace=1
+  sanitized_tests asan-ubsan
+}
+
+step_tsan() {
+  export TSAN_OPTIONS=second_deadlock_stack=1
+  sanitized_tests tsan
+}
+
+step_tidy() { python3 scripts/tidy.py --build build/clang | tee "$LOGS/tidy.all" && tail -n 1 "$LOGS/tidy.all" >"$LOGS/tidy.said"; }
+
+step_fuzz() {
+  local seconds=${SF_FUZZ_SECONDS:-5} status=0
+  configure fuzz "$LOGS/fuzz-configure.log" -DSF_WERROR=ON
+  build fuzz "$LOGS/fuzz-build.log" all
+  rm -rf "$LOGS/fuzz"
+  mkdir -p "$LOGS/fuzz"
+  [[ -s build/fuzz/fuzz-targets.txt ]] || { echo "there is no fuzz target" && return 1; }
+  xargs -a build/fuzz/fuzz-targets.txt -P "${SF_JOBS:-$(nproc)}" -L 1 \
+    bash scripts/fuzz_one.sh "$seconds" "$LOGS/fuzz" || status=1
+  cat "$LOGS"/fuzz/*.result
+  local good all
+  good=$(cat "$LOGS"/fuzz/*.result | grep -c '^passed' || true)
+  all=$(wc -l <build/fuzz/fuzz-targets.txt)
+  echo "$good $((all - good)) 0" >"$LOGS/$STEP.count"
+  said "$all targets, $seconds s each"
+  ((status == 0 && good == all))
+}
+
+# A match of two computer players, recorded by the g++ Release server, goes through four replayers.
+step_replay() {
+  local record=$LOGS/replay.sfr preset hash
+  configure debug "$LOGS/debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
+  configure clang-debug "$LOGS/clang-debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
+  build debug "$LOGS/debug-build.log" foosball-replay
+  build clang-debug "$LOGS/clang-debug-build.log" foosball-replay
+  rm -f "$record"
+  build/release/bin/space-foosball-server --port 0 --team0 computer --team1 computer --seed 7 \
+    --seconds "${SF_REPLAY_SECONDS:-15}" --record "$record"
+  : >"$LOGS/replay.hashes"
+  for preset in release debug clang clang-debug; do
+    replay_hash "$preset" "$record" >>"$LOGS/replay.hashes"
+    replay_hash "$preset" "$record" --restore-at 5000 >>"$LOGS/replay.hashes"
+  done
+  cat "$LOGS/replay.hashes"
+  [[ $(wc -l <"$LOGS/replay.hashes") == 8 ]]
+  hash=$(awk '{ print $NF }' "$LOGS/replay.hashes" | sort -u)
+  [[ $hash =~ ^[0-9a-f]{16}$ ]] || { echo "the replays differ" && return 1; }
+  said "8 replays of one recording, hash $hash"
+}
+
+# replay_hash PRESET FILE [options]: "PRESET options HASH"
+replay_hash() {
+  local preset=$1 words
+  words=$("build/$preset/bin/foosball-replay" "${@:2}")
+  echo "$preset ${*:3} $(grep -oE '\b[0-9a-f]{16}\b' <<<"$words" | tail -n 1)"
+}
+
+step_play() {
+  local out=$LOGS/play
+  rm -rf "$out"
+  ./play --headless --seconds 8 --out "$out" | tee "$LOGS/play.words"
+  local file
+  for file in exhibition.png exhibition.sfr; do
+    [[ -s $out/$file ]] || { echo "./play left no $file" && return 1; }
+  done
+  [[ $(head -c 8 "$out/exhibition.png" | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]]
+  grep -q 'score' "$LOGS/play.words"
+  # What a newcomer may get wrong is answered by one sentence.
+  [[ $(./play --nonsense 2>&1 | wc -l) == 1 ]]
+  said "$(grep -m1 score "$LOGS/play.words")"
+}
+
+"step_${STEP//-/_}"
