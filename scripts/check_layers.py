@@ -22,6 +22,7 @@ LAYERS = {
     'vphysics/include/vphysics/error.h': 'lie',
     'vphysics/include/vphysics/ids.h': 'lie',
     'vphysics/include/vphysics/lie.h': 'lie',
+    'vphysics/include/vphysics/lie/': 'lie',
     'vphysics/src/multibody/': 'multibody',
     'vphysics/src/collide/': 'collide',
     'vphysics/include/vphysics/shapes.h': 'collide',
