@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "cabinet/rod_input.h"
@@ -23,9 +24,13 @@ struct Calibration {
 // Sensors mounted square, at so many counts a millimetre, on rods of the diameter [m].
 Calibration nominal_calibration(double counts_per_mm = 8.0, double rod_diameter = 0.016);
 
-// One sentence: file, what is wrong, what to do. Refused: missing, empty, not JSON, not 8 rods, not
-// finite, a determinant of zero, or a scale more than 100 times off any known sensor.
+// Errors are one sentence: file, what is wrong, what to do. Refused: missing, empty, not JSON, not
+// 8 rods, not finite, rows (all but) parallel, or a scale more than 100 times off any known sensor.
 tl::expected<Calibration, std::string> load_calibration(const std::string& path);
+// The same from text; name stands for the file in the sentence.
+tl::expected<Calibration, std::string> parse_calibration(std::string_view json,
+                                                         const std::string& name);
+// Refuses what load would refuse. The file is replaced whole or not at all.
 tl::expected<void, std::string> save_calibration(const Calibration& calibration,
                                                  const std::string& path);
 

@@ -1,7 +1,8 @@
-// The cabinet's micro-controller, read from a file descriptor: a serial line or pty (COBS frames), a
-// hidraw node or socket (64-byte reports), or a recording of either.
+// The cabinet's micro-controller, read from a file descriptor: a serial line or pty (COBS frames),
+// a hidraw node or socket (64-byte reports), or a recording of either.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,13 +20,22 @@ struct DeviceOptions {
   std::string name = "cabinet";
   DeviceFraming framing = DeviceFraming::cobs;
   Calibration calibration = nominal_calibration();
-  std::int64_t silence_us = 50'000;   // no frame for so long: the rods hold
-  std::int64_t reopen_us = 200'000;   // between attempts to open a device that went away
+  // |slide| never passes it [m]; 0: no limit. Pushing a handle to its stop then takes out any
+  // drift.
+  std::array<double, kRods> slide_limit{};
+  std::int64_t silence_us = 50'000;  // no frame for so long: the rods hold
+  std::int64_t reopen_us = 200'000;  // between attempts to open a device that went away
 };
 
-// Opens the device non-blocking and returns the descriptor, or -1: not there (it is tried again).
+// Opens the device and returns the descriptor, which then belongs to the source, or -1: not there
+// (it is tried again). What it is shows from the descriptor: a tty is set to raw 1 Mbaud, a regular
+// file is a recording (either framing, seen from its bytes), paced by the micro-controller's clock
+// and played once. It is made non-blocking. Called from poll(): it must not wait.
 using DeviceOpener = std::function<int()>;
 
+// A rod is absent until its mouse was first heard; from then on live or held. Positions start at 0
+// and only ever change by the sensors' increments: after a pause, a replug or a restart of the
+// micro-controller they go on from where they were held. One thread at a time.
 class DeviceSource final : public InputSource {
  public:
   DeviceSource(DeviceOptions options, DeviceOpener open);
@@ -46,8 +56,10 @@ class DeviceSource final : public InputSource {
 };
 
 // "serial:/dev/ttyACM0", "hid:/dev/hidraw0" or "file:recording.bin"; an unknown scheme is an error
-// sentence. A device that is not there yet is not an error.
-tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(const std::string& address,
-                                                                     const Calibration& calibration);
+// sentence, and so are a recording that is missing, a path that is no device and one that may not
+// be read. A device that is not there yet is not an error.
+tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
+    const std::string& address, const Calibration& calibration,
+    const std::array<double, kRods>& slide_limit = {});
 
 }  // namespace cabinet

@@ -1,25 +1,36 @@
 // One person at a window: a mouse (slide and spin of the active rod), keys and the wheel (choice of
 // rod), or a gamepad, turned into RodInputs. It knows no window: events are handed in.
+//
+// All four rods of the person are live; only the active one moves by the hand's motion, the others
+// stay where the hand left them.
+// - Mouse: relative, both axes positions.
+// - Keys: slide by a rate that ramps up; spin is a flick: held back it cocks the feet, held forward
+//   it strikes, let go it hangs the men straight down again.
+// - Gamepad: left stick slides by rate (position would let go of the rod with the stick); right
+//   stick up and down is the angle itself, so that pulling back and snapping forward is a shot.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 
+#include "cabinet/rate_filter.h"
 #include "cabinet/rod_input.h"
 
 namespace cabinet {
 
 struct HandOptions {
-  std::array<int, 4> rods{0, 1, 3, 5};        // this person's rods, own goal outwards
-  std::array<double, 4> slide_limit{};        // |slide| <= this [m]
-  double slide_sign = 1.0;                    // mouse to the right / stick up: +slide times this
-  double angle_sign = 1.0;                    // mouse forward swings the feet forward
+  std::array<int, 4> rods{0, 1, 3, 5};  // this person's rods, own goal outwards
+  std::array<double, 4> slide_limit{};  // |slide| <= this [m]
+  double slide_sign = 1.0;              // mouse to the right / stick up: +slide times this
+  double angle_sign = 1.0;              // mouse forward swings the feet forward
   double metres_per_pixel = 0.0006;
   double radians_per_pixel = 0.012;
 };
 
-// State of a gamepad's two sticks and triggers, each -1..1.
+// State of a gamepad's two sticks and shoulder buttons. Axes -1..1, right and up positive (GLFW and
+// Linux give up as negative: turn it round). Either axis of the left stick slides, the larger wins.
+// right_x does nothing.
 struct PadState {
   float left_x = 0, left_y = 0, right_x = 0, right_y = 0;
   bool previous_rod = false, next_rod = false;  // shoulder buttons, as held
@@ -30,14 +41,17 @@ class Hand final : public InputSource {
   explicit Hand(const HandOptions& options);
 
   void mouse_moved(double right_px, double forward_px);
-  void choose(int line);    // 0..3, own goal outwards; others are ignored
-  void cycle(int steps);    // wheel: +1 outwards, wraps at neither end
+  void choose(int line);                     // 0..3, own goal outwards; others are ignored
+  void cycle(int steps);                     // wheel: +1 outwards, wraps at neither end
   void key_axis(double slide, double spin);  // held keys, each -1, 0, 1
   void pad(const PadState& state);
-  // Where the rods really are (from the snapshot): taken over when this hand takes a rod, so that
-  // nothing jumps.
+  // Where the rods really are (from the snapshot; call it with each): taken over once, until this
+  // hand first moves the rod, so that nothing jumps. Later calls are ignored: the rod then follows
+  // the hand, not the hand the rod. release() makes the next ones count again.
   void adopt(int rod, double slide, double angle);
-  // Nearest rod to the ball becomes the active one while automatic choice is on.
+  void release();
+  // Nearest rod to the ball becomes the active one while automatic choice is on. It stays while a
+  // flick is held. A rod chosen by hand stays until the nearest changes.
   void set_automatic(bool on);
   void ball_at(double x, const std::array<double, 8>& rod_x);
 
@@ -46,19 +60,34 @@ class Hand final : public InputSource {
 
   void poll(std::int64_t now_us) override;
   const RodInputs& rods() const override;
-  const SourceCounters& counters() const override;
+  const SourceCounters& counters() const override;  // frames: polls
   const std::string& name() const override;
 
  private:
+  struct Line {
+    double slide = 0, angle = 0;            // where the hand wants it
+    double sent_slide = 0, sent_angle = 0;  // at the last poll
+    bool moved = false;                     // by this hand: adopt() is over
+    bool swinging = false;  // keys or the stick hold the angle, or it returns from that
+    double rest_angle = 0;  // the turn at which the men hang straight down
+    RateFilter rate;
+  };
+  void slide_by(Line& line, double metres, double limit);
+  void drive_slide(double seconds);
+  void drive_swing(int line, double seconds);
+  double swing_wanted() const;
+
   HandOptions options_;
+  std::array<Line, 4> lines_;
   RodInputs rods_{};
   SourceCounters counters_;
   std::string name_ = "hand";
   int line_ = 2;
   bool automatic_ = false;
+  int nearest_line_ = -1;
   double key_slide_ = 0, key_spin_ = 0;
+  double key_rate_ = 0;  // of the ramp [m/s]
   PadState pad_{};
-  std::array<double, kRods> last_slide_{}, last_angle_{};
   std::int64_t last_us_ = 0;
   bool started_ = false;
 };

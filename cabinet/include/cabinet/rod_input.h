@@ -16,22 +16,24 @@ enum class RodStatus : std::uint8_t {
 };
 
 struct RodInput {
-  double slide = 0.0;           // along the rod [m]
-  double angle = 0.0;           // about the rod [rad], unbounded
-  double slide_rate = 0.0;      // [m/s]
-  double angle_rate = 0.0;      // [rad/s]
-  std::int64_t time_us = 0;     // when it was received, on the clock handed to poll()
+  double slide = 0.0;        // along the rod [m]
+  double angle = 0.0;        // about the rod [rad], unbounded
+  double slide_rate = 0.0;   // [m/s]
+  double angle_rate = 0.0;   // [rad/s]
+  std::int64_t time_us = 0;  // when it was received, on the clock handed to poll()
   RodStatus status = RodStatus::absent;
 };
 using RodInputs = std::array<RodInput, kRods>;
 
 // Counted, never asserted: bytes from a device are a stranger's.
 struct SourceCounters {
-  std::uint64_t frames = 0;      // accepted
-  std::uint64_t bad = 0;         // wrong length, CRC, version or range
-  std::uint64_t lost = 0;        // gaps in the sequence
-  std::uint64_t stale = 0;       // older than one already accepted
-  std::uint64_t reopened = 0;    // times the device came back
+  std::uint64_t frames = 0;       // accepted
+  std::uint64_t bad = 0;          // wrong length, CRC, version or range
+  std::uint64_t lost = 0;         // gaps in the sequence
+  std::uint64_t stale = 0;        // older than one already accepted
+  std::uint64_t reopened = 0;     // times the device came back
+  std::uint64_t overflows = 0;    // reports in which a sensor said it had moved too far to tell
+  std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
 };
 
 class InputSource {

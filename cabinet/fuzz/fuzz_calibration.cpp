@@ -1,0 +1,21 @@
+// Any text: refused with a sentence, or a calibration that turns any counts into finite motion.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "cabinet/calibration.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto calibration = cabinet::parse_calibration(text, "fuzz");
+  if (!calibration) {
+    if (calibration.error().empty() || calibration.error().back() != '.') std::abort();
+    return 0;
+  }
+  for (const auto& rod : calibration->rods) {
+    const double determinant = rod.m[0][0] * rod.m[1][1] - rod.m[0][1] * rod.m[1][0];
+    if (!std::isfinite(determinant) || determinant == 0) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,36 @@
+// Byte 0: packing and piece size; the rest: what a device sends.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "frame_reader.h"
+#include "rod_tracker.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  using namespace cabinet;
+  FrameReader reader;
+  reader.reset(static_cast<Packing>(data[0] % 3));
+  const std::size_t piece = 1 + data[0] / 3;
+  RodTracker tracker(nominal_calibration(), {});
+  SourceCounters counters;
+  wire::DeviceFrame frame;
+  std::int64_t now_us = 0;
+  for (std::size_t at = 1; at < size;) {
+    const auto room = reader.room();
+    if (room.empty()) std::abort();
+    const std::size_t bytes = std::min({piece, room.size(), size - at});
+    std::memcpy(room.data(), data + at, bytes);
+    at += bytes;
+    reader.filled(bytes, counters);
+    while (reader.next(frame, counters)) tracker.accept(frame, now_us += 1'000, counters);
+  }
+  tracker.hold();
+  for (const RodInput& rod : tracker.rods()) {
+    if (!std::isfinite(rod.slide) || !std::isfinite(rod.angle)) std::abort();
+    if (rod.slide_rate != 0 || rod.angle_rate != 0 || rod.status == RodStatus::live) std::abort();
+  }
+  if (counters.frames + counters.stale + counters.bad > size) std::abort();
+  return 0;
+}

@@ -1,0 +1,215 @@
+// The calibration file, JSON; its schema is in docs/cabinet.md.
+#include "cabinet/calibration.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace cabinet {
+namespace {
+
+using nlohmann::json;
+using Failure = std::optional<std::string>;  // what is wrong and what to do
+
+constexpr int kVersion = 1;
+// Eight rods are 2 KiB; what is far longer is another file.
+constexpr std::size_t kMostBytes = 64 * 1024;
+// Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
+// of 16 mm a count along the surface turns by 1 / 8 mm. A file may lie 100 times outside.
+constexpr double kLeastMetres = 1e-3 / 472 / 100, kMostMetres = 1e-3 * 100;
+constexpr double kRodRadius = 0.008;
+// Sine of the angle between the two rows (1 for a square sensor): below this slide and spin can not
+// be told apart.
+constexpr double kLeastSine = 0.01;
+
+const char* const kSlideKey = "slide_m_per_count";
+const char* const kAngleKey = "angle_rad_per_count";
+
+Failure check_rod(const RodCalibration& rod) {
+  const double slide = std::hypot(rod.m[0][0], rod.m[0][1]);
+  const double arc = std::hypot(rod.m[1][0], rod.m[1][1]) * kRodRadius;
+  const double determinant = rod.m[0][0] * rod.m[1][1] - rod.m[0][1] * rod.m[1][0];
+  if (!std::isfinite(slide) || !std::isfinite(arc)) {
+    return "has a value that is not a finite number; calibrate it again";
+  }
+  if (slide == 0 || arc == 0 || std::abs(determinant) * kRodRadius < kLeastSine * slide * arc) {
+    return "is singular: slide and angle follow the same counts; check that the sensor sees both "
+           "motions and calibrate it again";
+  }
+  if (slide < kLeastMetres || slide > kMostMetres || arc < kLeastMetres || arc > kMostMetres) {
+    return "has a scale that no sensor has; write metres and radians per count, as in "
+           "cabinet/calibration.example.json";
+  }
+  return {};
+}
+
+Failure check(const Calibration& calibration) {
+  for (int rod = 0; rod < kRods; ++rod) {
+    if (const Failure wrong = check_rod(calibration.rods[rod])) {
+      return "(rod " + std::to_string(rod) + ") " + *wrong;
+    }
+  }
+  return {};
+}
+
+Failure read_row(const json& rod, const char* key, double (&row)[2]) {
+  const auto found = rod.find(key);
+  if (found == rod.end() || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
+      !(*found)[1].is_number()) {
+    return std::string("has no \"") + key +
+           "\" of two numbers; see cabinet/calibration.example.json";
+  }
+  row[0] = (*found)[0].get<double>();
+  row[1] = (*found)[1].get<double>();
+  return {};
+}
+
+Failure read_json(const json& file, Calibration& calibration) {
+  if (!file.is_object()) return "is not a calibration; see cabinet/calibration.example.json";
+  const auto version = file.find("version");
+  if (version == file.end() || *version != kVersion) {
+    return "has no \"version\": 1; write it with this program or see "
+           "cabinet/calibration.example.json";
+  }
+  const auto rods = file.find("rods");
+  const std::size_t count = rods != file.end() && rods->is_array() ? rods->size() : 0;
+  if (count != kRods) {
+    return "has " + std::to_string(count) +
+           " rods instead of 8; list all eight, from team 0's goal";
+  }
+  for (int i = 0; i < kRods; ++i) {
+    const json& rod = (*rods)[static_cast<std::size_t>(i)];
+    Failure wrong;
+    if (!rod.is_object()) wrong = "is not an object; see cabinet/calibration.example.json";
+    if (!wrong) wrong = read_row(rod, kSlideKey, calibration.rods[i].m[0]);
+    if (!wrong) wrong = read_row(rod, kAngleKey, calibration.rods[i].m[1]);
+    if (wrong) return "(rod " + std::to_string(i) + ") " + *wrong;
+  }
+  return check(calibration);
+}
+
+std::string sentence(const std::string& name, const std::string& what) {
+  return "Calibration " + name + " " + what + ".";
+}
+
+std::string system_error() {
+  return std::strerror(errno);
+}
+
+struct File {  // closes its descriptor
+  int fd;
+  ~File() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+tl::expected<std::string, std::string> read_text(const std::string& path) {
+  const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  struct stat about {};
+  if (file.fd < 0 || fstat(file.fd, &about) != 0) {
+    return tl::unexpected(sentence(
+        path, "can not be opened (" + system_error() +
+                  "); give an existing file, or copy cabinet/calibration.example.json there"));
+  }
+  if (!S_ISREG(about.st_mode)) return tl::unexpected(sentence(path, "is not a file; give one"));
+  std::string text(kMostBytes + 1, '\0');
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const ssize_t got = ::read(file.fd, text.data() + size, text.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      return tl::unexpected(sentence(path, "can not be read (" + system_error() + "); try again"));
+    }
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  text.resize(size);
+  return text;
+}
+
+bool write_whole(int fd, const std::string& text) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t put = ::write(fd, text.data() + done, text.size() - done);
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return false;
+    done += static_cast<std::size_t>(put);
+  }
+  return ::fsync(fd) == 0;
+}
+
+}  // namespace
+
+Calibration nominal_calibration(double counts_per_mm, double rod_diameter) {
+  const double metres = 1e-3 / counts_per_mm;
+  Calibration calibration{};
+  for (RodCalibration& rod : calibration.rods) {
+    rod.m[0][0] = metres;
+    rod.m[1][1] = metres / (0.5 * rod_diameter);
+  }
+  return calibration;
+}
+
+tl::expected<Calibration, std::string> parse_calibration(std::string_view text,
+                                                         const std::string& name) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    return tl::unexpected(sentence(
+        name, "is empty; calibrate again, or copy cabinet/calibration.example.json there"));
+  }
+  if (text.size() > kMostBytes) {
+    return tl::unexpected(sentence(name, "is longer than 64 KiB: not a calibration; give another"));
+  }
+  json file;
+  try {
+    file = json::parse(text);
+  } catch (const json::exception& error) {
+    // A number too large for a double ends here too.
+    const auto* const at = dynamic_cast<const json::parse_error*>(&error);
+    return tl::unexpected(sentence(
+        name, "is not JSON" + (at != nullptr ? " at byte " + std::to_string(at->byte) : "") +
+                  ", or has a number out of range; correct it, or calibrate again"));
+  }
+  Calibration calibration{};
+  if (const Failure wrong = read_json(file, calibration)) {
+    return tl::unexpected(sentence(name, *wrong));
+  }
+  return calibration;
+}
+
+tl::expected<Calibration, std::string> load_calibration(const std::string& path) {
+  const auto text = read_text(path);
+  if (!text) return tl::unexpected(text.error());
+  return parse_calibration(*text, path);
+}
+
+tl::expected<void, std::string> save_calibration(const Calibration& calibration,
+                                                 const std::string& path) {
+  if (const Failure wrong = check(calibration)) {
+    return tl::unexpected(sentence(path, "was not written: it " + *wrong));
+  }
+  json file{{"version", kVersion}, {"rods", json::array()}};
+  for (const RodCalibration& rod : calibration.rods) {
+    file["rods"].push_back(
+        json{{kSlideKey, {rod.m[0][0], rod.m[0][1]}}, {kAngleKey, {rod.m[1][0], rod.m[1][1]}}});
+  }
+  const std::string beside = path + ".new";
+  {
+    const File out{::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
+    if (out.fd >= 0 && write_whole(out.fd, file.dump(2) + "\n") &&
+        ::rename(beside.c_str(), path.c_str()) == 0) {
+      return {};
+    }
+  }
+  const std::string why = system_error();
+  ::unlink(beside.c_str());
+  return tl::unexpected(
+      sentence(path, "can not be written (" + why + "); give a folder you may write to"));
+}
+
+}  // namespace cabinet

@@ -1,0 +1,207 @@
+#include "cabinet/device_source.h"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "frame_reader.h"
+#include "rod_tracker.h"
+
+namespace cabinet {
+namespace {
+
+// Bounds the work of one poll: 160 ms of a line at 1 Mbaud. What is left waits for the next poll.
+constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
+constexpr int kMostReadsPerPoll = 512;
+// A recording's pause is played in full up to this; a longer one is a break between two sessions.
+constexpr std::int64_t kLongestPauseUs = 600'000'000;
+
+// Raw bytes at 1 Mbaud; a read of nothing is EAGAIN (VMIN 1), so that 0 only ever means hang-up.
+void make_raw(int fd) {
+  termios line{};
+  if (tcgetattr(fd, &line) != 0) return;
+  cfmakeraw(&line);
+  line.c_cflag |= CLOCAL | CREAD;
+  line.c_cc[VMIN] = 1;
+  line.c_cc[VTIME] = 0;
+  cfsetspeed(&line, B1000000);
+  tcsetattr(fd, TCSANOW, &line);
+}
+
+bool keeps_message_bounds(int fd, const struct stat& about) {
+  if (S_ISSOCK(about.st_mode)) {
+    int type = 0;
+    socklen_t size = sizeof type;
+    return getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) == 0 && type != SOCK_STREAM;
+  }
+  return S_ISCHR(about.st_mode) && isatty(fd) == 0;
+}
+
+Packing packing_of_recording(int fd) {
+  std::uint8_t start[wire::kDeviceReportBytes];
+  wire::DeviceFrame frame;
+  const bool whole = pread(fd, start, sizeof start, 0) == static_cast<ssize_t>(sizeof start);
+  return whole && decode_report(start, frame) ? Packing::report_stream : Packing::cobs;
+}
+
+}  // namespace
+
+struct DeviceSource::Impl {
+  Impl(DeviceOptions with, DeviceOpener opener)
+      : options(std::move(with)),
+        open(std::move(opener)),
+        tracker(options.calibration, options.slide_limit) {}
+  ~Impl() { close_device(); }
+
+  void open_device(std::int64_t now_us);
+  void close_device();
+  void lose_device(std::int64_t now_us);
+  void take_in(std::int64_t now_us);
+  bool take_frames(std::int64_t now_us);
+  std::int64_t due_us(std::int64_t now_us) const;
+  void accept(std::int64_t now_us);
+
+  DeviceOptions options;
+  DeviceOpener open;
+  RodTracker tracker;
+  FrameReader reader;
+  SourceCounters counters;
+  int fd = -1;
+  std::int64_t try_open_us = 0;
+  bool tried = false;
+  bool heard = false;  // since it was opened
+  bool ever_heard = false;
+  bool fresh = false;  // heard from within silence_us
+  std::int64_t heard_us = 0;
+
+  // A recording: one frame is looked at ahead of its time.
+  bool recording = false, played = false;
+  bool pending = false;
+  wire::DeviceFrame frame{};
+  std::int64_t last_due_us = 0;
+};
+
+void DeviceSource::Impl::open_device(std::int64_t now_us) {
+  if (played || (tried && now_us < try_open_us)) return;
+  tried = true;
+  try_open_us = now_us + options.reopen_us;
+  fd = open();
+  if (fd < 0) {
+    fd = -1;
+    return;
+  }
+  struct stat about {};
+  const int flags = fcntl(fd, F_GETFL);
+  if (fstat(fd, &about) != 0 || flags < 0 || fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
+    close_device();
+    return;
+  }
+  recording = S_ISREG(about.st_mode);
+  Packing packing = Packing::cobs;
+  if (recording) {
+    packing = packing_of_recording(fd);
+  } else if (options.framing == DeviceFraming::report) {
+    packing = keeps_message_bounds(fd, about) ? Packing::report_message : Packing::report_stream;
+  }
+  if (isatty(fd) != 0) make_raw(fd);
+  reader.reset(packing);
+  tracker.forget_base();
+  heard = pending = false;
+}
+
+void DeviceSource::Impl::close_device() {
+  if (fd >= 0) ::close(fd);
+  fd = -1;
+}
+
+void DeviceSource::Impl::lose_device(std::int64_t now_us) {
+  close_device();
+  played = recording;
+  try_open_us = now_us + options.reopen_us;
+  fresh = false;
+  tracker.hold();
+}
+
+// When the pending frame of a recording is to be seen: as long after the last one as it was then.
+std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
+  if (!heard) return now_us;
+  const auto elapsed = static_cast<std::int32_t>(frame.time_us - tracker.last_frame_time_us());
+  if (elapsed <= 0 || elapsed > kLongestPauseUs) return now_us;
+  return last_due_us + elapsed;
+}
+
+void DeviceSource::Impl::accept(std::int64_t now_us) {
+  const std::int64_t due = recording ? due_us(now_us) : now_us;
+  if (!tracker.accept(frame, now_us, counters)) return;
+  last_due_us = due;
+  if (!heard && ever_heard) ++counters.reopened;
+  heard = ever_heard = fresh = true;
+  heard_us = now_us;
+}
+
+// False when the next frame of a recording is not due yet.
+bool DeviceSource::Impl::take_frames(std::int64_t now_us) {
+  while (pending || reader.next(frame, counters)) {
+    pending = recording && due_us(now_us) > now_us;
+    if (pending) return false;
+    accept(now_us);
+  }
+  return true;
+}
+
+void DeviceSource::Impl::take_in(std::int64_t now_us) {
+  std::size_t bytes = 0;
+  for (int reads = 0; reads < kMostReadsPerPoll && bytes < kMostBytesPerPoll; ++reads) {
+    if (!take_frames(now_us)) return;
+    const auto room = reader.room();
+    const ssize_t got = ::read(fd, room.data(), room.size());
+    if (got > 0) {
+      bytes += static_cast<std::size_t>(got);
+      reader.filled(static_cast<std::size_t>(got), counters);
+      continue;
+    }
+    if (got < 0 && errno == EINTR) continue;
+    const bool nothing_yet = got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+    if (!nothing_yet) lose_device(now_us);
+    return;
+  }
+  take_frames(now_us);
+}
+
+DeviceSource::DeviceSource(DeviceOptions options, DeviceOpener open)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(open))) {}
+
+DeviceSource::~DeviceSource() = default;
+
+void DeviceSource::poll(std::int64_t now_us) {
+  Impl& in = *impl_;
+  if (in.fd < 0) in.open_device(now_us);
+  if (in.fd >= 0) in.take_in(now_us);
+  if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
+    in.fresh = false;
+    in.tracker.hold();
+  }
+}
+
+const RodInputs& DeviceSource::rods() const {
+  return impl_->tracker.rods();
+}
+const SourceCounters& DeviceSource::counters() const {
+  return impl_->counters;
+}
+const std::string& DeviceSource::name() const {
+  return impl_->options.name;
+}
+bool DeviceSource::connected() const {
+  return impl_->fd >= 0 && impl_->fresh;
+}
+std::uint32_t DeviceSource::last_frame_time_us() const {
+  return impl_->tracker.last_frame_time_us();
+}
+
+}  // namespace cabinet

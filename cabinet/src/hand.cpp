@@ -1,0 +1,190 @@
+#include "cabinet/hand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cabinet {
+namespace {
+
+constexpr double kKeyRate = 1.2;    // [m/s] slide at full ramp: the goal's width in 0.17 s
+constexpr double kKeyRamp = 12.0;   // [m/s^2]: a tap moves a few mm, 0.1 s to full rate
+constexpr double kPadRate = 1.5;    // [m/s] at full deflection
+constexpr float kDeadZone = 0.12f;  // of a worn stick
+constexpr double kSwing = 1.4;      // [rad] feet at full flick, either way: the ball is struck at 0
+constexpr double kKeySwingRate = 60;   // [rad/s]: a foot at 72 mm strikes with 4.3 m/s
+constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a rod
+constexpr double kNearer = 0.03;       // [m] a rod must be nearer by, to be chosen: no flicker
+constexpr double kLongestStep = 0.05;  // [s] a stalled window does not fling the rods
+
+// A mouse reports every 8 ms or faster, a window polls every 16.7 ms or faster.
+constexpr std::int64_t kReportUs = 8'000;
+constexpr std::int64_t kRateHoldUs = 40'000;
+
+double finite(double value) {
+  return std::isfinite(value) ? value : 0;
+}
+
+float axis(float value) {
+  return std::isfinite(value) ? std::clamp(value, -1.0f, 1.0f) : 0;
+}
+
+// 0 inside the dead zone, then from 0 to 1, so that nothing jumps at its rim.
+double outside_dead_zone(float value) {
+  const float beyond = std::max(std::abs(value) - kDeadZone, 0.0f) / (1 - kDeadZone);
+  return std::copysign(beyond, value);
+}
+
+double larger(double a, double b) {
+  return std::abs(a) >= std::abs(b) ? a : b;
+}
+
+double towards(double from, double to, double step) {
+  return from + std::clamp(to - from, -step, step);
+}
+
+}  // namespace
+
+Hand::Hand(const HandOptions& options)
+    : options_(options),
+      lines_{Line{.rate{kReportUs, kRateHoldUs}}, Line{.rate{kReportUs, kRateHoldUs}},
+             Line{.rate{kReportUs, kRateHoldUs}}, Line{.rate{kReportUs, kRateHoldUs}}} {}
+
+void Hand::slide_by(Line& line, double metres, double limit) {
+  line.slide = std::clamp(line.slide + metres, -limit, limit);  // no wind-up beyond the stop
+  line.moved = true;
+}
+
+void Hand::mouse_moved(double right_px, double forward_px) {
+  const double right = finite(right_px), forward = finite(forward_px);
+  if (right == 0 && forward == 0) return;
+  Line& line = lines_[line_];
+  slide_by(line, options_.slide_sign * options_.metres_per_pixel * right,
+           options_.slide_limit[line_]);
+  if (forward == 0) return;
+  line.angle += options_.angle_sign * options_.radians_per_pixel * forward;
+  line.swinging = false;  // the mouse takes the angle from a flick
+}
+
+void Hand::choose(int line) {
+  if (line >= 0 && line < 4) line_ = line;
+}
+
+void Hand::cycle(int steps) {
+  line_ = std::clamp(line_ + std::clamp(steps, -4, 4), 0, 3);
+}
+
+void Hand::key_axis(double slide, double spin) {
+  key_slide_ = std::clamp(finite(slide), -1.0, 1.0);
+  key_spin_ = std::clamp(finite(spin), -1.0, 1.0);
+}
+
+void Hand::pad(const PadState& state) {
+  const bool previous = state.previous_rod && !pad_.previous_rod;
+  const bool next = state.next_rod && !pad_.next_rod;
+  cycle((next ? 1 : 0) - (previous ? 1 : 0));
+  pad_ = {axis(state.left_x),  axis(state.left_y), axis(state.right_x),
+          axis(state.right_y), state.previous_rod, state.next_rod};
+}
+
+void Hand::adopt(int rod, double slide, double angle) {
+  if (!std::isfinite(slide) || !std::isfinite(angle)) return;
+  for (int i = 0; i < 4; ++i) {
+    Line& line = lines_[i];
+    if (options_.rods[i] != rod || line.moved) continue;
+    line.slide = std::clamp(slide, -options_.slide_limit[i], options_.slide_limit[i]);
+    line.angle = angle;
+    line.sent_slide = line.slide;  // not a motion: no rate
+    line.sent_angle = line.angle;
+  }
+}
+
+void Hand::release() {
+  for (Line& line : lines_) line.moved = line.swinging = false;
+}
+
+void Hand::set_automatic(bool on) {
+  if (on != automatic_) nearest_line_ = -1;
+  automatic_ = on;
+}
+
+void Hand::ball_at(double x, const std::array<double, 8>& rod_x) {
+  if (!automatic_ || !std::isfinite(x) || swing_wanted() != 0) return;
+  const auto distance = [&](int line) { return std::abs(rod_x[options_.rods[line]] - x); };
+  int nearest = nearest_line_ < 0 ? line_ : nearest_line_;
+  const int before = nearest;
+  for (int line = 0; line < 4; ++line) {
+    const double margin = nearest == before ? kNearer : 0;
+    if (distance(line) + margin < distance(nearest)) nearest = line;
+  }
+  if (nearest != nearest_line_) line_ = nearest;
+  nearest_line_ = nearest;
+}
+
+int Hand::active_line() const {
+  return line_;
+}
+int Hand::active_rod() const {
+  return options_.rods[line_];
+}
+
+double Hand::swing_wanted() const {
+  return larger(key_spin_, outside_dead_zone(pad_.right_y));
+}
+
+void Hand::drive_slide(double seconds) {
+  // The key's ramp: up with kKeyRamp, to nothing at once when it is let go or turned round.
+  if (key_slide_ == 0 || key_slide_ * key_rate_ < 0) key_rate_ = 0;
+  key_rate_ = towards(key_rate_, key_slide_ * kKeyRate, kKeyRamp * seconds);
+  const double stick = larger(outside_dead_zone(pad_.left_x), outside_dead_zone(pad_.left_y));
+  const double rate = larger(key_rate_, stick * kPadRate);
+  if (rate == 0) return;
+  slide_by(lines_[line_], options_.slide_sign * rate * seconds, options_.slide_limit[line_]);
+}
+
+void Hand::drive_swing(int index, double seconds) {
+  Line& line = lines_[index];
+  const double wanted = index == line_ ? swing_wanted() : 0;
+  if (wanted != 0 && !line.swinging) {
+    constexpr double turn = 2 * std::numbers::pi;
+    line.rest_angle = turn * std::round(line.angle / turn);
+    line.swinging = line.moved = true;
+  }
+  if (!line.swinging) return;
+  const bool by_stick = key_spin_ == 0 && wanted != 0;
+  const double target = line.rest_angle + options_.angle_sign * wanted * kSwing;
+  line.angle = towards(line.angle, target, (by_stick ? kPadSwingRate : kKeySwingRate) * seconds);
+  if (wanted == 0 && line.angle == line.rest_angle) line.swinging = false;
+}
+
+void Hand::poll(std::int64_t now_us) {
+  const double elapsed = started_ ? static_cast<double>(now_us - last_us_) * 1e-6 : 0;
+  const double seconds = std::clamp(elapsed, 0.0, kLongestStep);
+  started_ = true;
+  last_us_ = now_us;
+  ++counters_.frames;
+
+  drive_slide(seconds);
+  for (int i = 0; i < 4; ++i) {
+    drive_swing(i, seconds);
+    Line& line = lines_[i];
+    line.rate.update(line.slide - line.sent_slide, line.angle - line.sent_angle, now_us);
+    line.sent_slide = line.slide;
+    line.sent_angle = line.angle;
+    rods_[options_.rods[i]] = {
+        line.slide, line.angle,     line.rate.slide_rate(), line.rate.angle_rate(),
+        now_us,     RodStatus::live};
+  }
+}
+
+const RodInputs& Hand::rods() const {
+  return rods_;
+}
+const SourceCounters& Hand::counters() const {
+  return counters_;
+}
+const std::string& Hand::name() const {
+  return name_;
+}
+
+}  // namespace cabinet

@@ -1,0 +1,128 @@
+#include "rod_tracker.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace cabinet {
+namespace {
+
+// Longest gap over which counts are trusted. At the fastest rod surface (1.1 m/s) and 8 counts/mm
+// half a wrap of the counts takes 3.7 s; beyond it a difference no longer names one motion.
+constexpr std::int64_t kLongestGapUs = 2'000'000;
+// A restarted micro-controller is believed when it has been up for less than this ...
+constexpr std::uint32_t kBootUs = 10'000'000;
+// ... and so many frames followed each other: fewer could be a late duplicate.
+constexpr int kStraysOfNewRun = 4;
+
+// RateFilter's figures for PS/2 at 200 reports a second: a report spans 5 ms, and seen through 4 ms
+// frames two lie at most 8 ms apart.
+constexpr std::int64_t kReportUs = 5'000;
+constexpr std::int64_t kRateHoldUs = 12'000;
+
+std::int32_t elapsed_us(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
+  return static_cast<std::int32_t>(to.time_us - from.time_us);
+}
+
+int sequence_step(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(to.sequence - from.sequence));
+}
+
+int increment(std::uint16_t from, std::uint16_t to) {
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
+}
+
+bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) {
+  const std::int32_t elapsed = elapsed_us(last, frame);
+  return sequence_step(last, frame) > 0 && elapsed >= 0 && elapsed <= kLongestGapUs;
+}
+
+template <std::size_t... I>
+std::array<RateFilter, kRods> make_filters(std::index_sequence<I...>) {
+  return {((void)I, RateFilter(kReportUs, kRateHoldUs))...};
+}
+
+}  // namespace
+
+RodTracker::RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit)
+    : calibration_(calibration),
+      slide_limit_(slide_limit),
+      rates_(make_filters(std::make_index_sequence<kRods>())) {}
+
+void RodTracker::hold() {
+  for (int rod = 0; rod < kRods; ++rod) {
+    RodInput& input = rods_[rod];
+    rates_[rod].rest();
+    input.slide_rate = input.angle_rate = 0;
+    if (input.status == RodStatus::live) input.status = RodStatus::held;
+  }
+}
+
+// A frame that does not follow the last accepted one is a late duplicate, or the first of another
+// run (a restart, or a gap too long to trust). The latter shows in frames that follow each other.
+bool RodTracker::starts_new_run(const wire::DeviceFrame& frame) {
+  const bool in_row = strays_ > 0 && sequence_step(stray_, frame) == 1 && follows(stray_, frame);
+  strays_ = in_row ? strays_ + 1 : 1;
+  stray_ = frame;
+  const bool later = elapsed_us(last_, frame) > kLongestGapUs;
+  return strays_ >= kStraysOfNewRun && (later || frame.time_us < kBootUs);
+}
+
+bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t now_us,
+                        SourceCounters& counters) {
+  if (have_last_ && !follows(last_, frame)) {
+    if (!starts_new_run(frame)) {
+      ++counters.stale;
+      return false;
+    }
+    have_last_ = false;
+  }
+  if (have_last_) {
+    counters.lost += static_cast<std::uint64_t>(sequence_step(last_, frame) - 1);
+    clock_us_ += elapsed_us(last_, frame);
+  } else {
+    based_.fill(false);
+    clock_us_ += kRateHoldUs + 1;
+  }
+  strays_ = 0;
+  ++counters.frames;
+  counters.overflows += static_cast<std::uint64_t>(std::popcount(frame.overflow));
+  counters.line_errors += frame.quality;
+  for (int rod = 0; rod < kRods; ++rod) advance(rod, frame, now_us);
+  last_ = frame;
+  have_last_ = true;
+  return true;
+}
+
+void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us) {
+  RodInput& input = rods_[rod];
+  if ((frame.present >> rod & 1) == 0) {  // this mouse was unplugged: others go on
+    rates_[rod].rest();
+    input.slide_rate = input.angle_rate = 0;
+    if (input.status == RodStatus::live) input.status = RodStatus::held;
+    based_[rod] = false;
+    return;
+  }
+  double d_slide = 0, d_angle = 0;
+  if (based_[rod]) {
+    const double slide_counts = increment(last_.slide[rod], frame.slide[rod]);
+    const double spin_counts = increment(last_.spin[rod], frame.spin[rod]);
+    const auto& m = calibration_.rods[rod].m;
+    d_slide = m[0][0] * slide_counts + m[0][1] * spin_counts;
+    d_angle = m[1][0] * slide_counts + m[1][1] * spin_counts;
+  }
+  based_[rod] = true;
+
+  rates_[rod].update(d_slide, d_angle, clock_us_);
+  input.slide += d_slide;
+  if (slide_limit_[rod] > 0) {
+    input.slide = std::clamp(input.slide, -slide_limit_[rod], slide_limit_[rod]);
+  }
+  input.angle += d_angle;
+  input.slide_rate = rates_[rod].slide_rate();
+  input.angle_rate = rates_[rod].angle_rate();
+  input.time_us = now_us;
+  input.status = RodStatus::live;
+}
+
+}  // namespace cabinet

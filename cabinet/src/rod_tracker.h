@@ -1,0 +1,49 @@
+// From a device's frames to rods: which frames count, how far each rod moved, how fast.
+//
+// Counts are cumulative and wrap: an increment is the 16-bit difference, so that a lost frame loses
+// nothing as long as a rod moves less than 32767 counts between two accepted frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "cabinet/calibration.h"
+#include "cabinet/rate_filter.h"
+#include "cabinet/rod_input.h"
+#include "wire/device_frame.h"
+
+namespace cabinet {
+
+class RodTracker {
+ public:
+  // slide_limit: |slide| never passes it [m]; 0 means no limit. A handle pushed to its end stop is
+  // thereby brought back to zero error.
+  RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit);
+
+  // False: stale, counted and dropped.
+  bool accept(const wire::DeviceFrame& frame, std::int64_t now_us, SourceCounters& counters);
+  // The device is gone or silent: rods that were live are held, at once and with zero rates.
+  void hold();
+  // The next frame is of another run of the device: it moves nothing.
+  void forget_base() { have_last_ = false; }
+
+  const RodInputs& rods() const { return rods_; }
+  std::uint32_t last_frame_time_us() const { return last_.time_us; }
+
+ private:
+  bool starts_new_run(const wire::DeviceFrame& frame);
+  void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us);
+
+  Calibration calibration_;
+  std::array<double, kRods> slide_limit_;
+  RodInputs rods_{};
+  std::array<RateFilter, kRods> rates_;
+  wire::DeviceFrame last_{};
+  bool have_last_ = false;
+  std::array<bool, kRods> based_{};  // last_ holds counts from which this rod may go on
+  std::int64_t clock_us_ = 0;        // the device's clock without its wraps
+  wire::DeviceFrame stray_{};        // the last frame that did not follow
+  int strays_ = 0;                   // how many in a row followed each other
+};
+
+}  // namespace cabinet

@@ -1,0 +1,164 @@
+#include "cabinet/calibration.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+using namespace cabinet;
+
+namespace {
+
+std::string rod_json(const std::string& slide, const std::string& angle) {
+  return R"({"slide_m_per_count": )" + slide + R"(, "angle_rad_per_count": )" + angle + "}";
+}
+
+const std::string kGoodRod = rod_json("[0.000125, 0]", "[0, 0.015625]");
+
+// Eight good rods but for rod 5.
+std::string file_json(const std::string& rod5 = kGoodRod, int rods = 8) {
+  std::string text = R"({"version": 1, "rods": [)";
+  for (int i = 0; i < rods; ++i) text += (i > 0 ? "," : "") + (i == 5 ? rod5 : kGoodRod);
+  return text + "]}";
+}
+
+std::string complaint(const std::string& json) {
+  const auto calibration = parse_calibration(json, "c.json");
+  return calibration ? std::string() : calibration.error();
+}
+
+struct Folder {
+  std::string path = testing::TempDir() + "cabinet_calibration_" + std::to_string(getpid());
+  Folder() { mkdir(path.c_str(), 0700); }
+  ~Folder() {
+    unlink((path + "/c.json").c_str());
+    rmdir(path.c_str());
+  }
+  std::string file() const { return path + "/c.json"; }
+};
+
+TEST(Calibration, NominalIsEightCountsAMillimetreOnA16MillimetreRod) {
+  const Calibration calibration = nominal_calibration();
+  for (const RodCalibration& rod : calibration.rods) {
+    EXPECT_DOUBLE_EQ(320 * rod.m[0][0], 0.04);                 // 40 mm
+    EXPECT_NEAR(8 * 4 * M_PI * rod.m[1][1], M_PI / 2, 1e-12);  // a quarter of the circumference
+    EXPECT_EQ(rod.m[0][1], 0);
+    EXPECT_EQ(rod.m[1][0], 0);
+  }
+}
+
+TEST(Calibration, SavedAndLoadedIsTheSameToTheBit) {
+  const Folder folder;
+  Calibration calibration = nominal_calibration(39.37, 0.0163);
+  calibration.rods[3].m[0][1] = -1.0 / 3 * 1e-6;
+  calibration.rods[3].m[1][0] = 0.1 * calibration.rods[3].m[1][1];
+  const auto saved = save_calibration(calibration, folder.file());
+  ASSERT_TRUE(saved.has_value()) << saved.error();
+  const auto loaded = load_calibration(folder.file());
+  ASSERT_TRUE(loaded.has_value()) << loaded.error();
+  for (int rod = 0; rod < kRods; ++rod) {
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        EXPECT_EQ(loaded->rods[rod].m[i][j], calibration.rods[rod].m[i][j]);
+      }
+    }
+  }
+}
+
+TEST(Calibration, TheExampleFileIsTheNominalOne) {
+  const auto example = load_calibration(CABINET_DIR "/calibration.example.json");
+  ASSERT_TRUE(example.has_value()) << example.error();
+  EXPECT_EQ(example->rods[0].m[0][0], nominal_calibration().rods[0].m[0][0]);
+  EXPECT_EQ(example->rods[7].m[1][1], nominal_calibration().rods[7].m[1][1]);
+}
+
+TEST(Calibration, AMirroredSensorIsFine) {
+  EXPECT_EQ(complaint(file_json(rod_json("[-0.000125, 0]", "[0, -0.015625]"))), "");
+  EXPECT_EQ(complaint(file_json(rod_json("[0, 0.000125]", "[0.015625, 0]"))), "");
+}
+
+struct BadFile {
+  const char* what;
+  std::string json;
+  const char* sentence;  // part of it
+};
+
+class BadCalibration : public testing::TestWithParam<BadFile> {};
+
+TEST_P(BadCalibration, IsRefusedWithOneSentenceThatSaysWhatToDo) {
+  const std::string sentence = complaint(GetParam().json);
+  EXPECT_NE(sentence.find(GetParam().sentence), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.rfind("Calibration c.json ", 0), 0u) << sentence;
+  EXPECT_EQ(sentence.back(), '.');
+  EXPECT_EQ(sentence.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, BadCalibration,
+    testing::Values(
+        BadFile{"Empty", "", "is empty; calibrate again"},
+        BadFile{"Blank", " \n\t ", "is empty; calibrate again"},
+        BadFile{"Text", "hello", "is not JSON at byte 1"},
+        BadFile{"Truncated", file_json().substr(0, 200), "is not JSON at byte 201"},
+        BadFile{"Nested", std::string(60'000, '['), "is not JSON"},
+        BadFile{"Long", std::string(70'000, ' ') + "{}", "is longer than 64 KiB"},
+        BadFile{"Array", "[1]", "is not a calibration"},
+        BadFile{"NoVersion", R"({"rods": []})", "has no \"version\": 1"},
+        BadFile{"OtherVersion", R"({"version": 2, "rods": []})", "has no \"version\": 1"},
+        BadFile{"NoRods", R"({"version": 1})", "has 0 rods instead of 8"},
+        BadFile{"SevenRods", file_json(kGoodRod, 7), "has 7 rods instead of 8"},
+        BadFile{"NineRods", file_json(kGoodRod, 9), "has 9 rods instead of 8"},
+        BadFile{"RodIsNumber", file_json("3"), "(rod 5) is not an object"},
+        BadFile{"NoAngle", file_json(R"({"slide_m_per_count": [1, 2]})"),
+                "(rod 5) has no \"angle_rad_per_count\" of two numbers"},
+        BadFile{"ThreeNumbers", file_json(rod_json("[1, 2, 3]", "[0, 1]")),
+                "(rod 5) has no \"slide_m_per_count\" of two numbers"},
+        BadFile{"Word", file_json(rod_json("[\"a\", 0]", "[0, 1]")),
+                "(rod 5) has no \"slide_m_per_count\" of two numbers"},
+        BadFile{"NotFinite", file_json(rod_json("[NaN, 0]", "[0, 0.015]")), "is not JSON"},
+        BadFile{"Overflow", file_json(rod_json("[1e999, 0]", "[0, 0.015]")), "out of range"},
+        BadFile{"Singular", file_json(rod_json("[0.000125, 0.000125]", "[0.0156, 0.0156]")),
+                "(rod 5) is singular"},
+        BadFile{"AlmostSingular", file_json(rod_json("[0.000125, 0]", "[0.0156, 0.0001]")),
+                "(rod 5) is singular"},
+        BadFile{"Zero", file_json(rod_json("[0, 0]", "[0, 0]")), "(rod 5) is singular"},
+        BadFile{"MetresForMillimetres", file_json(rod_json("[0.125, 0]", "[0, 0.0156]")),
+                "(rod 5) has a scale that no sensor has"},
+        BadFile{"Tiny", file_json(rod_json("[0.000125, 0]", "[0, 1e-9]")),
+                "(rod 5) has a scale that no sensor has"}),
+    [](const auto& test) { return test.param.what; });
+
+TEST(CalibrationFile, MissingFileAndFolderAreSentences) {
+  const auto missing = load_calibration("/nowhere/c.json");
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_NE(missing.error().find("Calibration /nowhere/c.json can not be opened (No such file or "
+                                 "directory); give an existing file"),
+            std::string::npos)
+      << missing.error();
+  const auto folder = load_calibration("/tmp");
+  ASSERT_FALSE(folder.has_value());
+  EXPECT_NE(folder.error().find("is not a file"), std::string::npos) << folder.error();
+}
+
+TEST(CalibrationFile, AFailedSaveSaysSoAndLeavesTheOldFile) {
+  const auto nowhere = save_calibration(nominal_calibration(), "/nowhere/c.json");
+  ASSERT_FALSE(nowhere.has_value());
+  EXPECT_NE(nowhere.error().find("can not be written"), std::string::npos) << nowhere.error();
+
+  const Folder folder;
+  ASSERT_TRUE(save_calibration(nominal_calibration(), folder.file()).has_value());
+  for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0}) {
+    Calibration broken = nominal_calibration();
+    broken.rods[2].m[0][0] = wrong;
+    const auto refused = save_calibration(broken, folder.file());
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_NE(refused.error().find("(rod 2)"), std::string::npos) << refused.error();
+  }
+  EXPECT_TRUE(load_calibration(folder.file()).has_value());
+  EXPECT_NE(access((folder.file() + ".new").c_str(), F_OK), 0);
+}
+
+}  // namespace

@@ -1,0 +1,270 @@
+#include "cabinet/hand.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using namespace cabinet;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr std::array<double, 8> kRodX{-0.525, -0.375, -0.225, -0.075, 0.075, 0.225, 0.375, 0.525};
+
+struct Player {
+  static HandOptions options() {
+    HandOptions o;
+    o.slide_limit = {0.2, 0.18, 0.1, 0.15};
+    return o;
+  }
+  Hand hand{options()};
+  std::int64_t now_us = 1'000'000;
+
+  Player() { hand.poll(now_us); }
+  void frames(int count, std::int64_t period_us = 16'667) {
+    for (int i = 0; i < count; ++i) hand.poll(now_us += period_us);
+  }
+  const RodInput& rod(int index) const { return hand.rods()[index]; }
+  const RodInput& active() const { return rod(hand.active_rod()); }
+};
+
+TEST(Hand, DrivesItsFourRodsAndNoOther) {
+  Player p;
+  for (int rod = 0; rod < kRods; ++rod) {
+    const bool mine = rod == 0 || rod == 1 || rod == 3 || rod == 5;
+    EXPECT_EQ(p.rod(rod).status, mine ? RodStatus::live : RodStatus::absent) << rod;
+  }
+}
+
+TEST(Hand, TheMouseMovesTheActiveRodOnly) {
+  Player p;
+  ASSERT_EQ(p.hand.active_rod(), 3);
+  p.hand.mouse_moved(100, 50);
+  p.frames(1);
+  EXPECT_NEAR(p.rod(3).slide, 0.06, 1e-12);
+  EXPECT_NEAR(p.rod(3).angle, 0.6, 1e-12);
+  for (const int other : {0, 1, 5}) {
+    EXPECT_EQ(p.rod(other).slide, 0);
+    EXPECT_EQ(p.rod(other).angle, 0);
+  }
+  p.hand.choose(0);
+  p.hand.mouse_moved(-10, 0);
+  p.frames(1);
+  EXPECT_NEAR(p.rod(0).slide, -0.006, 1e-12);
+  EXPECT_NEAR(p.rod(3).slide, 0.06, 1e-12);  // holds where the hand left it
+  EXPECT_EQ(p.rod(3).status, RodStatus::live);
+}
+
+TEST(Hand, SignsTurnTheMotionRound) {
+  HandOptions options = Player::options();
+  options.slide_sign = options.angle_sign = -1;
+  Hand hand(options);
+  hand.mouse_moved(10, 10);
+  hand.poll(0);
+  EXPECT_LT(hand.rods()[3].slide, 0);
+  EXPECT_LT(hand.rods()[3].angle, 0);
+}
+
+TEST(Hand, SlideStopsAtItsLimitWithoutWindUpAndTheAngleTurnsOn) {
+  Player p;
+  p.hand.mouse_moved(10'000, 10'000);
+  p.frames(1);
+  EXPECT_EQ(p.active().slide, 0.1);
+  EXPECT_NEAR(p.active().angle, 120, 1e-9);  // 19 turns
+  p.hand.mouse_moved(-10, 0);
+  p.frames(1);
+  EXPECT_NEAR(p.active().slide, 0.1 - 0.006, 1e-12);  // back at once
+}
+
+TEST(Hand, RatesAreThoseOfTheMotionAndFallToZero) {
+  Player p;
+  for (int i = 0; i < 8; ++i) {
+    p.hand.mouse_moved(10, -20);
+    p.frames(1, 10'000);  // 6 mm and -0.24 rad in 10 ms
+  }
+  EXPECT_NEAR(p.active().slide_rate, 0.6, 1e-6);
+  EXPECT_NEAR(p.active().angle_rate, -24, 1e-4);
+  p.frames(5, 10'000);
+  EXPECT_EQ(p.active().slide_rate, 0);
+  EXPECT_EQ(p.active().angle_rate, 0);
+}
+
+TEST(Hand, WheelAndKeysChooseARodAndStopAtTheEnds) {
+  Player p;
+  p.hand.cycle(1);
+  EXPECT_EQ(p.hand.active_line(), 3);
+  p.hand.cycle(1);
+  EXPECT_EQ(p.hand.active_line(), 3);
+  p.hand.cycle(-2'000'000'000);
+  EXPECT_EQ(p.hand.active_line(), 0);
+  for (const int ignored : {-1, 4, 99}) p.hand.choose(ignored);
+  EXPECT_EQ(p.hand.active_line(), 0);
+  p.hand.choose(1);
+  EXPECT_EQ(p.hand.active_rod(), 1);
+}
+
+TEST(Hand, AdoptedPositionsAreTakenUntilTheHandMovesTheRod) {
+  Player p;
+  p.hand.adopt(3, 0.05, 1.5);
+  p.hand.adopt(5, -0.08, 7.0);
+  p.hand.adopt(2, 0.05, 1.0);  // not one of its rods
+  p.frames(1);
+  EXPECT_EQ(p.rod(3).slide, 0.05);
+  EXPECT_EQ(p.rod(3).slide_rate, 0);  // taken over, not moved
+  EXPECT_EQ(p.rod(5).angle, 7.0);
+  EXPECT_EQ(p.rod(2).status, RodStatus::absent);
+
+  p.hand.mouse_moved(10, 0);
+  p.hand.adopt(3, -0.02, 0);  // an old snapshot does not drag the hand back
+  p.frames(1);
+  EXPECT_NEAR(p.rod(3).slide, 0.056, 1e-12);
+  EXPECT_EQ(p.rod(3).angle, 1.5);
+
+  p.hand.release();
+  p.hand.adopt(3, -0.02, 0);
+  p.frames(1);
+  EXPECT_EQ(p.rod(3).slide, -0.02);
+}
+
+TEST(Hand, AHeldKeyRampsUpAndStopsWhenLetGo) {
+  Player p;
+  p.hand.choose(0);
+  p.hand.key_axis(1, 0);
+  p.frames(1, 10'000);
+  const double first = p.active().slide;
+  EXPECT_GT(first, 0);
+  EXPECT_LT(first, 0.002);  // a tap is a nudge
+  p.frames(12, 10'000);
+  EXPECT_NEAR(p.active().slide_rate, 1.2, 0.01);
+  p.hand.key_axis(0, 0);
+  const double stopped = p.active().slide;
+  p.frames(10, 10'000);
+  EXPECT_EQ(p.active().slide, stopped);
+  EXPECT_EQ(p.active().slide_rate, 0);
+}
+
+TEST(Hand, ASpinKeyFlicksAndReturnsToTheNearestHangingAngle) {
+  Player p;
+  p.hand.adopt(3, 0, kTurn + 0.3);
+  p.hand.key_axis(0, -1);
+  p.frames(10);
+  EXPECT_NEAR(p.active().angle, kTurn - 1.4, 1e-9);
+  p.hand.key_axis(0, 1);
+  p.frames(1, 10'000);
+  EXPECT_NEAR(p.active().angle, kTurn - 0.8, 1e-9);  // 60 rad/s
+  p.frames(10);
+  EXPECT_NEAR(p.active().angle, kTurn + 1.4, 1e-9);
+  p.hand.key_axis(0, 0);
+  p.frames(10);
+  EXPECT_EQ(p.active().angle, kTurn);
+}
+
+TEST(Hand, ARodLeftInAFlickReturnsByItself) {
+  Player p;
+  p.hand.key_axis(0, 1);
+  p.frames(5);
+  p.hand.choose(0);
+  p.frames(10);
+  EXPECT_EQ(p.rod(3).angle, 0);
+  EXPECT_NEAR(p.rod(0).angle, 1.4, 1e-9);
+}
+
+TEST(Hand, TheLeftStickSlidesByRateOutsideItsDeadZone) {
+  Player p;
+  p.hand.choose(0);
+  p.hand.pad({.left_x = 0.1f});
+  p.frames(10);
+  EXPECT_EQ(p.active().slide, 0);
+  p.hand.pad({.left_y = 1.0f});
+  p.frames(10, 10'000);
+  EXPECT_NEAR(p.active().slide, 0.15, 1e-9);
+  p.hand.pad({});
+  p.frames(10);
+  EXPECT_NEAR(p.active().slide, 0.15, 1e-9);
+}
+
+TEST(Hand, TheRightStickIsTheAngle) {
+  Player p;
+  p.hand.pad({.right_y = -1.0f});
+  p.frames(5);
+  EXPECT_NEAR(p.active().angle, -1.4, 1e-6);
+  p.hand.pad({.right_y = 1.0f});
+  p.frames(2, 10'000);
+  EXPECT_NEAR(p.active().angle, 1.4, 1e-6);  // 2.8 rad in 20 ms: a shot
+  p.hand.pad({.right_y = 0.56f});
+  p.frames(1);
+  EXPECT_NEAR(p.active().angle, 0.7, 1e-6);
+  p.hand.pad({});
+  p.frames(1);
+  EXPECT_EQ(p.active().angle, 0);
+}
+
+TEST(Hand, AShoulderButtonChangesTheRodOncePerPress) {
+  Player p;
+  for (int i = 0; i < 5; ++i) p.hand.pad({.previous_rod = true});
+  EXPECT_EQ(p.hand.active_line(), 1);
+  p.hand.pad({});
+  p.hand.pad({.next_rod = true});
+  EXPECT_EQ(p.hand.active_line(), 2);
+}
+
+TEST(Hand, NearestRodIsChosenWithHysteresis) {
+  Player p;
+  p.hand.ball_at(0.3, kRodX);
+  EXPECT_EQ(p.hand.active_line(), 2);  // off until asked for
+  p.hand.set_automatic(true);
+  p.hand.ball_at(0.3, kRodX);
+  EXPECT_EQ(p.hand.active_rod(), 5);
+  const double middle = 0.5 * (kRodX[3] + kRodX[5]);
+  for (int i = 0; i < 20; ++i) {  // a ball that trembles between two rods
+    p.hand.ball_at(middle + (i % 2 == 0 ? 0.01 : -0.01), kRodX);
+    EXPECT_EQ(p.hand.active_rod(), 5);
+  }
+  p.hand.ball_at(middle - 0.02, kRodX);
+  EXPECT_EQ(p.hand.active_rod(), 3);
+}
+
+TEST(Hand, ARodChosenByHandStaysUntilTheNearestChanges) {
+  Player p;
+  p.hand.set_automatic(true);
+  p.hand.ball_at(0.2, kRodX);
+  p.hand.choose(0);
+  p.hand.ball_at(0.21, kRodX);
+  EXPECT_EQ(p.hand.active_line(), 0);
+  p.hand.ball_at(-0.4, kRodX);
+  EXPECT_EQ(p.hand.active_line(), 1);
+}
+
+TEST(Hand, AutomaticChoiceWaitsForAFlick) {
+  Player p;
+  p.hand.set_automatic(true);
+  p.hand.ball_at(0.2, kRodX);
+  p.hand.key_axis(0, -1);
+  p.hand.ball_at(-0.5, kRodX);
+  EXPECT_EQ(p.hand.active_rod(), 5);
+  p.hand.key_axis(0, 0);
+  p.hand.ball_at(-0.5, kRodX);
+  EXPECT_EQ(p.hand.active_rod(), 0);
+}
+
+TEST(Hand, NothingNotFiniteComesOut) {
+  Player p;
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  p.hand.mouse_moved(nan, infinite);
+  p.hand.key_axis(infinite, nan);
+  p.hand.pad({.left_x = bad, .left_y = bad, .right_x = bad, .right_y = bad});
+  p.hand.adopt(3, nan, infinite);
+  p.hand.set_automatic(true);
+  p.hand.ball_at(nan, kRodX);
+  p.frames(10);
+  p.hand.poll(p.now_us - 1'000'000'000);  // a clock that falls
+  for (const RodInput& rod : p.hand.rods()) {
+    EXPECT_TRUE(std::isfinite(rod.slide) && std::isfinite(rod.angle));
+    EXPECT_TRUE(std::isfinite(rod.slide_rate) && std::isfinite(rod.angle_rate));
+  }
+}
+
+}  // namespace

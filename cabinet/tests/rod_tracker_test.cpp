@@ -1,0 +1,288 @@
+#include "rod_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "simulated_device.h"
+
+using namespace cabinet;
+using cabinet_test::SimulatedDevice;
+
+namespace {
+
+constexpr double kMetresPerCount = 1e-3 / 8;
+constexpr double kRadiansPerCount = kMetresPerCount / 0.008;
+constexpr std::int64_t kFrameUs = 4'000;
+
+struct Tracked {
+  SimulatedDevice device;
+  RodTracker tracker{nominal_calibration(), {}};
+  SourceCounters counters;
+  std::int64_t now_us = 0;
+
+  bool take(const wire::DeviceFrame& frame) {
+    now_us += kFrameUs;
+    return tracker.accept(frame, now_us, counters);
+  }
+  const RodInput& rod(int index) const { return tracker.rods()[index]; }
+};
+
+TEST(RodTracker, FollowsAllRodsExactlyThroughWrapsBothWays) {
+  Tracked t;
+  t.take(t.device.frame());
+  for (int i = 0; i < 20'000; ++i) {  // rod r: +-(40 + 5 r) counts a frame, up to 24 wraps
+    for (int rod = 0; rod < kRods; ++rod) {
+      const int sign = rod % 2 == 0 ? 1 : -1;
+      t.device.slide[rod] += sign * (40 + 5 * rod);
+      t.device.spin[rod] -= sign * (60 + 3 * rod);
+    }
+    ASSERT_TRUE(t.take(t.device.frame()));
+  }
+  for (int rod = 0; rod < kRods; ++rod) {
+    const double slide = static_cast<double>(t.device.slide[rod]) * kMetresPerCount;
+    const double angle = static_cast<double>(t.device.spin[rod]) * kRadiansPerCount;
+    EXPECT_NEAR(t.rod(rod).slide, slide, 1e-9) << rod;  // of 200 m
+    EXPECT_NEAR(t.rod(rod).angle, angle, 1e-7) << rod;  // of 20,000 rad
+    EXPECT_EQ(t.rod(rod).status, RodStatus::live);
+  }
+  EXPECT_EQ(t.counters.frames, 20'001u);
+  EXPECT_EQ(t.counters.lost + t.counters.stale + t.counters.bad, 0u);
+}
+
+TEST(RodTracker, LosesNothingWithLostFramesAndCountsThem) {
+  Tracked t;
+  t.take(t.device.frame());
+  std::uint64_t dropped = 0;
+  for (int i = 1; i <= 1'000; ++i) {
+    t.device.slide[3] += 31;
+    t.device.spin[3] -= 17;
+    const auto frame = t.device.frame();
+    if (i % 10 != 0) {
+      ++dropped;
+      continue;
+    }
+    t.take(frame);
+  }
+  EXPECT_NEAR(t.rod(3).slide, 31'000 * kMetresPerCount, 1e-9);
+  EXPECT_NEAR(t.rod(3).angle, -17'000 * kRadiansPerCount, 1e-9);
+  EXPECT_EQ(t.counters.lost, dropped);
+}
+
+TEST(RodTracker, DropsStaleAndDuplicateFrames) {
+  Tracked t;
+  const auto first = t.device.frame();
+  t.take(first);
+  t.device.slide[0] = 100;
+  const auto second = t.device.frame();
+  t.device.slide[0] = 200;
+  const auto third = t.device.frame();
+  EXPECT_TRUE(t.take(third));
+  EXPECT_FALSE(t.take(second));
+  EXPECT_FALSE(t.take(third));
+  EXPECT_FALSE(t.take(first));
+  EXPECT_EQ(t.counters.stale, 3u);
+  EXPECT_DOUBLE_EQ(t.rod(0).slide, 200 * kMetresPerCount);
+  t.device.slide[0] = 300;
+  EXPECT_TRUE(t.take(t.device.frame()));
+  EXPECT_DOUBLE_EQ(t.rod(0).slide, 300 * kMetresPerCount);
+}
+
+TEST(RodTracker, ABlockSentTwiceMovesNothingTwice) {
+  Tracked t;
+  t.device.time_us = 60'000'000;
+  std::vector<wire::DeviceFrame> block;
+  for (int i = 0; i < 50; ++i) {
+    t.device.slide[0] += 10;
+    block.push_back(t.device.frame());
+  }
+  for (int again = 0; again < 2; ++again) {
+    for (const auto& frame : block) t.take(frame);
+  }
+  t.device.slide[0] += 10;
+  EXPECT_TRUE(t.take(t.device.frame()));
+  EXPECT_NEAR(t.rod(0).slide, 500 * kMetresPerCount, 1e-12);
+  EXPECT_EQ(t.counters.stale, 50u);
+}
+
+TEST(RodTracker, FollowsSequenceAndClockAcrossTheirWraps) {
+  Tracked t;
+  t.device.sequence = 65'530;
+  t.device.time_us = 0xFFFF'FFFF - 20'000;
+  t.take(t.device.frame());
+  for (int i = 0; i < 20; ++i) {
+    t.device.slide[7] -= 5;
+    ASSERT_TRUE(t.take(t.device.frame()));
+  }
+  EXPECT_NEAR(t.rod(7).slide, -100 * kMetresPerCount, 1e-12);
+  EXPECT_EQ(t.counters.lost + t.counters.stale, 0u);
+}
+
+// Uptimes before the restart: short, long, and past half the clock's range, where the fall back to
+// 0 looks like a step forward.
+class Restart : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(Restart, ContinuesWithoutAJump) {
+  Tracked t;
+  t.device.time_us = GetParam();
+  t.device.sequence = static_cast<std::uint16_t>(GetParam() / 4'000);
+  t.take(t.device.frame());
+  t.device.slide[2] = 4'000;
+  t.device.spin[2] = -900;
+  t.take(t.device.frame());
+  const RodInput before = t.rod(2);
+  ASSERT_NEAR(before.slide, 0.5, 1e-12);
+
+  t.device = SimulatedDevice{};
+  t.device.time_us = 400'000;
+  for (int i = 0; i < 10; ++i) {
+    t.take(t.device.frame());
+    ASSERT_EQ(t.rod(2).slide, before.slide);
+    ASSERT_EQ(t.rod(2).angle, before.angle);
+  }
+  EXPECT_EQ(t.rod(2).status, RodStatus::live);
+  t.device.slide[2] += 80;
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(2).slide, 0.51, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(AfterUptime, Restart,
+                         testing::Values(2'000'000u, 600'000'000u, 2'600'000'000u, 4'200'000'000u));
+
+TEST(RodTracker, AGapTooLongToTrustMovesNothing) {
+  Tracked t;
+  t.take(t.device.frame());
+  t.device.slide[0] = 30'000;
+  for (int i = 0; i < 10; ++i) t.take(t.device.frame(i == 0 ? 30'000'000 : 4'000));
+  EXPECT_EQ(t.rod(0).slide, 0.0);
+  t.device.slide[0] += 8;
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(0).slide, 0.001, 1e-12);
+}
+
+TEST(RodTracker, UndoesATiltedSensor) {
+  const double tilt = 0.07;  // [rad] 4 degrees
+  Calibration calibration = nominal_calibration();
+  auto& m = calibration.rods[4].m;
+  m[0][0] = kMetresPerCount * std::cos(tilt);
+  m[0][1] = -kMetresPerCount * std::sin(tilt);
+  m[1][0] = kRadiansPerCount * std::sin(tilt);
+  m[1][1] = kRadiansPerCount * std::cos(tilt);
+  Tracked t;
+  t.tracker = RodTracker(calibration, {});
+  t.take(t.device.frame());
+  // 40 mm along and nothing around, as the tilted sensor counts it.
+  t.device.slide[4] = std::lround(0.04 * std::cos(tilt) / kMetresPerCount);
+  t.device.spin[4] = std::lround(-0.04 * std::sin(tilt) / kMetresPerCount);
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(4).slide, 0.04, 1e-4);
+  EXPECT_NEAR(t.rod(4).angle, 0.0, 0.015);  // a count
+}
+
+TEST(RodTracker, TheEndStopTakesOutDrift) {
+  Tracked t;
+  std::array<double, kRods> limit{};
+  limit[1] = 0.1;
+  t.tracker = RodTracker(nominal_calibration(), limit);
+  t.take(t.device.frame());
+  t.device.slide[1] = 1'000;  // 125 mm: 25 of them are drift
+  t.take(t.device.frame());
+  EXPECT_DOUBLE_EQ(t.rod(1).slide, 0.1);
+  t.device.slide[1] -= 800;
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(1).slide, 0.0, 1e-12);
+}
+
+TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
+  Tracked t;
+  t.take(t.device.frame());
+  t.device.slide[5] = t.device.slide[6] = 80;
+  t.take(t.device.frame());
+  t.device.present = static_cast<std::uint8_t>(~(1 << 5));
+  t.device.slide[5] = 40'000;  // whatever its counter says now
+  t.device.slide[6] = 160;
+  t.take(t.device.frame());
+  EXPECT_EQ(t.rod(5).status, RodStatus::held);
+  EXPECT_EQ(t.rod(5).slide_rate, 0.0);
+  EXPECT_NEAR(t.rod(5).slide, 0.01, 1e-12);
+  EXPECT_EQ(t.rod(6).status, RodStatus::live);
+  EXPECT_NEAR(t.rod(6).slide, 0.02, 1e-12);
+
+  t.device.present = 0xFF;
+  t.take(t.device.frame());
+  EXPECT_EQ(t.rod(5).status, RodStatus::live);
+  EXPECT_NEAR(t.rod(5).slide, 0.01, 1e-12);
+  t.device.slide[5] -= 8;
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(5).slide, 0.009, 1e-12);
+}
+
+TEST(RodTracker, ARodNeverHeardOfIsAbsent) {
+  Tracked t;
+  t.device.present = 0x0F;
+  t.take(t.device.frame());
+  t.tracker.hold();
+  EXPECT_EQ(t.rod(3).status, RodStatus::held);
+  EXPECT_EQ(t.rod(4).status, RodStatus::absent);
+}
+
+// A steady motion, reported every 5 ms, seen through frames of another period.
+void expect_steady_rate(std::uint32_t frame_us, double tolerance) {
+  Tracked t;
+  t.take(t.device.frame(frame_us));
+  std::uint32_t reported_us = 0;
+  double worst = 0;
+  for (std::uint32_t at = frame_us; at < 1'000'000; at += frame_us) {
+    for (; reported_us + 5'000 <= at; reported_us += 5'000) {
+      t.device.slide[0] += 40;  // 5 mm in 5 ms: 1 m/s
+      t.device.spin[0] -= 80;
+    }
+    t.take(t.device.frame(frame_us));
+    if (at < 50'000) continue;
+    worst = std::max(worst, std::abs(t.rod(0).slide_rate - 1.0));
+    EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 250 * tolerance);
+  }
+  EXPECT_LT(worst, tolerance);
+  testing::Test::RecordProperty("worst_rate_error", std::to_string(worst));
+}
+
+TEST(RodTracker, RateOfASteadyMotionStandsThroughFramesOf1And4Ms) {
+  expect_steady_rate(1'000, 0.01);  // exact: every report falls on a frame
+  expect_steady_rate(4'000, 0.31);
+}
+
+TEST(RodTracker, RateFallsToZeroWhenCountsStop) {
+  Tracked t;
+  t.take(t.device.frame());
+  for (int i = 0; i < 10; ++i) {
+    t.device.slide[0] += 40;
+    t.take(t.device.frame());
+  }
+  EXPECT_GT(t.rod(0).slide_rate, 1.0);
+  for (int i = 0; i < 4; ++i) t.take(t.device.frame());
+  EXPECT_EQ(t.rod(0).slide_rate, 0.0);
+  EXPECT_EQ(t.rod(0).status, RodStatus::live);
+}
+
+TEST(RodTracker, MotionDuringASilenceIsNoBurstOfSpeed) {
+  Tracked t;
+  t.take(t.device.frame());
+  t.take(t.device.frame());
+  t.tracker.hold();
+  t.device.slide[0] += 800;  // 100 mm in 100 ms
+  t.take(t.device.frame(100'000));
+  EXPECT_NEAR(t.rod(0).slide, 0.1, 1e-12);
+  EXPECT_NEAR(t.rod(0).slide_rate, 1.0, 1e-9);
+}
+
+TEST(RodTracker, ReportsWhatTheSensorsComplainOf) {
+  Tracked t;
+  wire::DeviceFrame frame = t.device.frame();
+  frame.overflow = 0b101;
+  frame.quality = 7;
+  t.take(frame);
+  EXPECT_EQ(t.counters.overflows, 2u);
+  EXPECT_EQ(t.counters.line_errors, 7u);
+}
+
+}  // namespace
