@@ -18,8 +18,10 @@ step_packages() { packages_install "$LOGS/packages-apt.log" build play check; }
 step_format() {
   local files
   mapfile -t files < <(our_files '*.h' '*.cpp' '*.c')
-  clang-format --dry-run --Werror "${files[@]}"
-  said "${#files[@]} files"
+  clang-format --dry-run --Werror "${files[@]}" 2>"$LOGS/format.all" && said "${#files[@]} files" && return
+  echo "these are not as .clang-format has them; clang-format -i FILE puts them right:"
+  sed -n 's/^\([^: ]*\):[0-9]*:[0-9]*: error.*/\1/p' "$LOGS/format.all" | uniq -c
+  return 1
 }
 
 step_layers() {
