@@ -18,6 +18,9 @@ namespace wire {
 inline constexpr std::uint16_t kControlVersion = 1;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
+inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
+inline constexpr std::size_t kMaxText = 200;  // bytes: reason, text
+
 inline constexpr std::uint8_t kWatchOnly = 255;
 
 // Client to server, first message, within 5 s of connecting.
@@ -31,13 +34,13 @@ struct Hello {
 
 // Server to client: accepted.
 struct Welcome {
-  std::uint64_t session = 0;      // names this run of the server
-  std::uint64_t token = 0;        // the client's secret for its input datagrams
-  std::uint16_t udp_port = 0;     // where the server takes input datagrams
+  std::uint64_t session = 0;   // names this run of the server
+  std::uint64_t token = 0;     // the client's secret for its input datagrams
+  std::uint16_t udp_port = 0;  // where the server takes input datagrams
   std::uint32_t tick_us = 1000;
-  std::uint8_t layout = 0;        // foosball::Layout
-  std::uint8_t team = kWatchOnly; // granted
-  std::string multicast;          // group address, or empty for unicast to udp_port
+  std::uint8_t layout = 0;         // foosball::Layout
+  std::uint8_t team = kWatchOnly;  // granted
+  std::string multicast;           // group address, or empty for unicast to udp_port
   std::uint16_t multicast_port = 0;
 };
 
@@ -61,7 +64,8 @@ struct Pong {
   std::uint64_t id = 0;
 };
 
-// Server to client: something a person should read ("cabinet /dev/ttyACM0 unplugged: its rods hold").
+// Server to client: something a person should read ("cabinet /dev/ttyACM0 unplugged: its rods
+// hold").
 struct Notice {
   enum class Level : std::uint8_t { info, warning, cleared };
   Level level = Level::info;
@@ -76,7 +80,8 @@ struct Bye {
 
 using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye>;
 
-// Appends the framed message.
+// Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
+// characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.
 void encode_control(const ControlMessage& message, std::vector<std::byte>& out);
 
 // Cuts a byte stream into messages. One instance a connection.
@@ -88,7 +93,9 @@ class ControlReader {
   Status next(ControlMessage& message);
 
  private:
-  std::vector<std::byte> buffer_;
+  Status refuse();
+
+  std::vector<std::byte> buffer_;  // bytes pushed; those before read_ are done with
   std::size_t read_ = 0;
   bool broken_ = false;
 };

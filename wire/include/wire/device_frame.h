@@ -38,13 +38,16 @@ struct DeviceFrame {
   uint8_t quality;
 };
 
+// Eight bits at once: four shifts in place of a loop of eight, which would take an AVR a fifth of
+// its millisecond; no table, which would take its memory.
 inline uint16_t device_crc16(const uint8_t* bytes, size_t size) {
   uint16_t crc = 0xFFFF;
   for (size_t i = 0; i < size; ++i) {
-    crc = static_cast<uint16_t>(crc ^ static_cast<uint16_t>(bytes[i] << 8));
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = static_cast<uint16_t>((crc & 0x8000) ? (crc << 1) ^ 0x1021 : crc << 1);
-    }
+    crc = static_cast<uint16_t>(static_cast<uint16_t>(crc << 8) | (crc >> 8));
+    crc = static_cast<uint16_t>(crc ^ bytes[i]);
+    crc = static_cast<uint16_t>(crc ^ ((crc & 0xFF) >> 4));
+    crc = static_cast<uint16_t>(crc ^ static_cast<uint16_t>(crc << 12));
+    crc = static_cast<uint16_t>(crc ^ static_cast<uint16_t>((crc & 0xFF) << 5));
   }
   return crc;
 }

@@ -13,7 +13,8 @@ inline constexpr std::size_t kMaxInputDatagram = 160;
 
 struct InputRod {
   bool driven = false;
-  float slide = 0, angle = 0;            // [m], [rad]
+  float slide = 0;                       // [m]
+  double angle = 0;                      // [rad], full turns count; wraps at 65536 turns
   float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
 };
 
@@ -24,7 +25,13 @@ struct InputDatagram {
   std::array<InputRod, 8> rods{};
 };
 
+// Writes one datagram; returns its size, or 0 if out is smaller than that. Values out of a field's
+// range are clamped, those not finite are 0. out: kMaxInputDatagram bytes.
 std::size_t encode_input(const InputDatagram& input, std::span<std::byte> out);
+// False unless magic, version, layout hash, every range, the exact length and the checksum hold;
+// input is then unspecified but valid.
 bool decode_input(std::span<const std::byte> in, InputDatagram& input);
+
+std::uint32_t input_layout_hash();
 
 }  // namespace wire

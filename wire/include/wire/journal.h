@@ -1,4 +1,5 @@
-// The recording of a match: what went into every tick, so that foosball::Match replays it to the bit.
+// The recording of a match: what went into every tick, so that foosball::Match replays it to the
+// bit.
 //
 // A file is a sequence of records [u32 payload length][u32 CRC-32 of the payload][payload], little
 // endian, appended as play goes on; a reader stops at the first bad record and keeps all before it.
@@ -16,6 +17,11 @@
 
 namespace wire {
 
+inline constexpr std::int64_t kJournalAngleLimit = 1'000'000'000'000'000;  // [urad], 1e9 rad
+inline constexpr int kJournalBatch = 64;                                   // ticks a record
+inline constexpr std::size_t kMaxJournalCommands = 64;                     // a tick
+inline constexpr std::size_t kMaxKeyframe = 1 << 20;                       // bytes
+
 // A rod target on the grid of the journal. The simulation is only ever fed values that went through
 // this grid, so that live play and replay see the same numbers.
 struct JournalRod {
@@ -26,6 +32,18 @@ struct JournalRod {
   bool live = false;
   bool operator==(const JournalRod&) const = default;
 };
+
+// The same in SI units.
+struct RodTargetValues {
+  double slide = 0, angle = 0;            // [m], [rad]
+  double slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
+  bool live = false;
+};
+
+// Nearest point of the grid: what is out of range saturates; a rod with a value that is not finite
+// is not live, at zero. quantise(dequantise(r)) == r for every r within the limits.
+JournalRod quantise_rod(const RodTargetValues& values);
+RodTargetValues dequantise_rod(const JournalRod& rod);
 
 struct JournalCommand {
   std::uint8_t kind = 0, team = 0, value = 0;
@@ -43,7 +61,7 @@ struct JournalHeader {
 struct JournalTick {
   std::uint64_t tick = 0;  // the first is 0, each next one more
   std::array<JournalRod, 8> rods{};
-  std::vector<JournalCommand> commands;  // at most 64
+  std::vector<JournalCommand> commands;  // at most kMaxJournalCommands
 };
 
 struct JournalHash {
@@ -52,8 +70,8 @@ struct JournalHash {
 };
 
 struct JournalKeyframe {
-  std::uint64_t tick = 0;            // ticks stepped so far
-  std::vector<std::byte> snapshot;   // foosball::Match::snapshot, at most 1 MiB
+  std::uint64_t tick = 0;           // ticks stepped so far
+  std::vector<std::byte> snapshot;  // foosball::Match::snapshot, at most kMaxKeyframe
 };
 
 struct JournalEnd {
@@ -61,21 +79,29 @@ struct JournalEnd {
   std::uint64_t state_hash = 0;
 };
 
-using JournalEntry = std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe, JournalEnd>;
+using JournalEntry =
+    std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe, JournalEnd>;
 
 // Encodes entries to bytes ready to append to a file. Ticks are coded as changes against the tick
-// before and gathered in records of up to kJournalBatch; flush() closes an open record.
-inline constexpr int kJournalBatch = 64;
-
+// before and gathered in records of up to kJournalBatch; any other entry, and flush(), closes the
+// open record.
 class JournalEncoder {
  public:
-  void add(const JournalEntry& entry, std::vector<std::byte>& out);
+  // False, and nothing is written, for an entry that a reader would refuse: no header first, or a
+  // second one, a tick that is not the next, a count that is not the ticks so far, too many
+  // commands, a command, layout or angle out of range, too large a keyframe, anything after the
+  // end.
+  bool add(const JournalEntry& entry, std::vector<std::byte>& out);
   void flush(std::vector<std::byte>& out);
 
  private:
-  JournalTick previous_;
-  std::vector<std::byte> open_;
+  bool add_tick(const JournalTick& tick, std::vector<std::byte>& out);
+
+  std::array<JournalRod, 8> previous_{};
+  std::uint64_t next_tick_ = 0;
+  std::vector<std::byte> open_;  // ticks of the open record, without its head
   int open_ticks_ = 0;
+  bool started_ = false, ended_ = false;
 };
 
 // Reads entries from the bytes of a whole file, which must outlive the reader.
@@ -84,16 +110,26 @@ class JournalReader {
   explicit JournalReader(std::span<const std::byte> file) : file_(file) {}
   // The next entry; nothing at the end or at the first bad record.
   std::optional<JournalEntry> next();
-  // Empty after a clean end; else what was wrong and at which byte.
+  // Empty after a clean end; else what was wrong and at which byte. A file that stops between two
+  // records is clean, though play was cut off: no JournalEnd came.
   const std::string& problem() const { return problem_; }
 
  private:
+  std::nullopt_t fail(const std::string& what);
+  std::string open_record();
+  std::optional<JournalEntry> read_entry();
+  std::optional<JournalEntry> read_tick();
+  template <class Entry, class Describe>
+  std::optional<JournalEntry> read_whole(Entry entry, Describe describe);
+
   std::span<const std::byte> file_;
-  std::size_t at_ = 0;
-  std::span<const std::byte> record_;
-  std::size_t record_at_ = 0;
+  std::size_t at_ = 0;                 // next record
+  std::span<const std::byte> record_;  // payload not yet read
+  std::size_t record_at_ = 0;          // the record's first byte, for problem_
   int ticks_left_ = 0;
-  JournalTick previous_;
+  std::array<JournalRod, 8> previous_{};
+  std::uint64_t next_tick_ = 0;
+  bool started_ = false, ended_ = false;
   std::string problem_;
 };
 

@@ -1,5 +1,6 @@
 // The snapshot: one UDP datagram a tick, server to every listener. What it holds is described once,
-// in wire/snapshot_description.h; encoder, decoder, layout hash and docs/protocol.md come from there.
+// in wire/snapshot_description.h; encoder, decoder, layout hash and docs/protocol.md come from
+// there.
 #pragma once
 
 #include <array>
@@ -17,10 +18,10 @@ inline constexpr int kMaxBalls = 1;
 inline constexpr int kMaxEvents = 8;
 
 struct PoseVelocity {
-  std::array<float, 3> position{};          // world [m]
+  std::array<float, 3> position{};               // world [m]
   std::array<float, 4> orientation{0, 0, 0, 1};  // unit quaternion x y z w, body to world
-  std::array<float, 3> linear_velocity{};   // world, of the body's origin [m/s]
-  std::array<float, 3> angular_velocity{};  // world [rad/s]
+  std::array<float, 3> linear_velocity{};        // world, of the body's origin [m/s]
+  std::array<float, 3> angular_velocity{};       // world [rad/s]
 };
 
 struct ManState {
@@ -30,14 +31,15 @@ struct ManState {
 };
 
 struct RodSnapshot {
-  float slide = 0, angle = 0;            // as simulated [m], [rad] (unbounded, 24 bit at 1/65536 turn)
+  float slide = 0, angle = 0;  // as simulated [m], [rad] (unbounded, 24 bit at 1/65536 turn)
   float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
   std::uint8_t status = 0;               // cabinet::RodStatus: absent, live, held
   std::uint8_t source = 0;               // 0 none, 1 cabinet, 2 client, 3 computer, 4 replay
 };
 
 struct EventSnapshot {
-  std::uint32_t id = 0;  // counts up; an event is repeated in 8 snapshots, so that a loss shows it still
+  std::uint32_t id =
+      0;  // counts up; an event is repeated in 8 snapshots, so that a loss shows it still
   std::uint8_t kind = 0, team = 0, rod = 0, man = 0;
   float value = 0;
   std::array<float, 3> point{};
@@ -45,9 +47,9 @@ struct EventSnapshot {
 
 struct Snapshot {
   std::uint64_t session = 0;
-  std::uint64_t sequence = 0;      // of the datagram
-  std::uint64_t tick = 0;          // of the simulation
-  std::int64_t send_time_us = 0;   // server's monotonic clock
+  std::uint64_t sequence = 0;     // of the datagram
+  std::uint64_t tick = 0;         // of the simulation
+  std::int64_t send_time_us = 0;  // server's monotonic clock
   std::uint8_t layout = 0, screen = 0;
   bool paused = false, ball_in_play = false;
   std::array<std::uint8_t, 2> score{};
@@ -57,18 +59,22 @@ struct Snapshot {
   float screen_seconds = 0, play_seconds = 0;
   PoseVelocity ball;
   std::array<RodSnapshot, kRods> rods{};
-  std::vector<ManState> men;            // <= kMaxMen
-  std::vector<EventSnapshot> events;    // <= kMaxEvents, oldest first
+  std::vector<ManState> men;          // <= kMaxMen
+  std::vector<EventSnapshot> events;  // <= kMaxEvents, oldest first
 };
 
 // Writes one datagram; returns its size, <= kMaxDatagram for every snapshot within the stated
-// counts. Values out of a field's range are clamped. out: kMaxDatagram bytes.
+// counts (further men and events are left out), or 0 if out is too small. Values out of a field's
+// range are clamped, those not finite are 0. out: kMaxDatagram bytes.
 std::size_t encode_snapshot(const Snapshot& snapshot, std::span<std::byte> out);
 
-// False unless magic, version, layout hash, every range and the exact length hold; snapshot is then
-// unspecified but valid. Never reads outside in; never asserts.
+// False unless magic, version, layout hash, every range, the exact length and the checksum hold;
+// snapshot is then unspecified but valid. Never reads outside in; never asserts.
 bool decode_snapshot(std::span<const std::byte> in, Snapshot& snapshot);
 
 std::uint32_t snapshot_layout_hash();
+
+// A rod's angle is sent modulo 256 turns. The full angle of that class which is nearest to `near`.
+double unwrap_angle(double wrapped, double near);
 
 }  // namespace wire

@@ -1,0 +1,117 @@
+// What the journal's payloads hold, once. See wire/description.h for the vocabulary, wire/journal.h
+// for the records around them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "wire/description.h"
+#include "wire/journal.h"
+#include "wire/limits.h"
+
+namespace wire {
+
+inline constexpr std::uint64_t kJournalMagic = 0x4C4A4653;  // "SFJL"
+inline constexpr std::uint64_t kJournalVersion = 1;
+
+// First byte of each payload.
+enum class JournalKind : std::uint8_t { header = 1, ticks = 2, hash = 3, keyframe = 4, end = 5 };
+
+constexpr Constant journal_kind(JournalKind kind) {
+  return Constant{"kind", 8, static_cast<std::uint64_t>(kind), "of payload"};
+}
+
+// How a rod's target differs from the tick before (at tick 0: from a rod that is not live, at 0).
+struct JournalRodChange {
+  bool changed = false;
+  bool live = false;
+  std::int64_t slide = 0, angle = 0, slide_rate = 0, angle_rate = 0;
+};
+
+struct JournalTickChange {
+  std::array<JournalRodChange, 8> rods{};
+  std::vector<JournalCommand> commands;
+};
+
+struct JournalTicksHead {
+  std::uint64_t first_tick = 0;
+  std::uint8_t count = 0;
+};
+
+inline constexpr std::uint64_t kAnyTick = std::numeric_limits<std::uint64_t>::max();
+
+template <class Codec, class H>
+void describe_journal_header(Codec& codec, H& h) {
+  constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
+  codec.constant(journal_kind(JournalKind::header));
+  codec.constant(Constant{"magic", 32, kJournalMagic, "bytes \"SFJL\""});
+  codec.constant(Constant{"version", 16, kJournalVersion, ""});
+  codec.layout_hash(LayoutHash{"layout_hash", "of all the journal's tables"});
+  codec.integer(Integer{"layout", 8, kLayoutCount - 1, "", "0 paper, 1 tournament"}, h.layout);
+  codec.integer(Integer{"seed", 64, std::numeric_limits<std::uint64_t>::max(), "", ""}, h.seed);
+  codec.integer(Integer{"goals_to_win", 32, kAny32, "", ""}, h.goals_to_win);
+  codec.integer(Integer{"max_goals", 32, kAny32, "", ""}, h.max_goals);
+  codec.integer(Integer{"dead_ball_ms", 32, kAny32, "ms", ""}, h.dead_ball_ms);
+  codec.integer(Integer{"ceremony_ms", 32, kAny32, "ms", ""}, h.ceremony_ms);
+  codec.integer(Integer{"end_ms", 32, kAny32, "ms", ""}, h.end_ms);
+}
+
+template <class Codec, class H>
+void describe_journal_ticks_head(Codec& codec, H& head) {
+  codec.constant(journal_kind(JournalKind::ticks));
+  codec.varint(Varint{"first_tick", kAnyTick, "", "one more than the last tick before"},
+               head.first_tick);
+  codec.integer(Integer{"count", 8, kJournalBatch, "", "so many ticks follow, at least 1"},
+                head.count);
+}
+
+template <class Codec, class T>
+void describe_journal_tick(Codec& codec, T& tick) {
+  constexpr std::int64_t kDelta32 = std::numeric_limits<std::uint32_t>::max();
+  codec.array(Group{"rods", "from -x to +x"}, tick.rods, [&](auto& rod) {
+    codec.flag(Flag{"changed", "against the tick before"}, rod.changed);
+    codec.when(Group{"changed", "only then follow:"}, rod.changed, [&] {
+      codec.flag(Flag{"live", ""}, rod.live);
+      codec.delta(Delta{"slide", kDelta32, "100 nm", "change"}, rod.slide);
+      codec.delta(Delta{"angle", 2 * kJournalAngleLimit, "urad", "change"}, rod.angle);
+      codec.delta(Delta{"slide_rate", kDelta32, "um/s", "change"}, rod.slide_rate);
+      codec.delta(Delta{"angle_rate", kDelta32, "mrad/s", "change"}, rod.angle_rate);
+    });
+  });
+  codec.list(List{"commands", 7, kMaxJournalCommands, "in the order they were applied"},
+             tick.commands, [&](auto& command) {
+               codec.integer(Integer{"kind", 2, kCommandKindCount - 1, "",
+                                     "0 push, 1 choose character, 2 pause, 3 restart"},
+                             command.kind);
+               codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
+               codec.integer(Integer{"value", 8, 255, "", ""}, command.value);
+             });
+  codec.align();
+}
+
+template <class Codec, class H>
+void describe_journal_hash(Codec& codec, H& hash) {
+  codec.constant(journal_kind(JournalKind::hash));
+  codec.varint(Varint{"tick", kAnyTick, "", "ticks stepped so far"}, hash.tick);
+  codec.integer(Integer{"state_hash", 64, std::numeric_limits<std::uint64_t>::max(), "", ""},
+                hash.state_hash);
+}
+
+template <class Codec, class K>
+void describe_journal_keyframe(Codec& codec, K& keyframe) {
+  codec.constant(journal_kind(JournalKind::keyframe));
+  codec.varint(Varint{"tick", kAnyTick, "", "ticks stepped so far"}, keyframe.tick);
+  codec.bytes(Bytes{"snapshot", kMaxKeyframe, "of the match, opaque here"}, keyframe.snapshot);
+}
+
+template <class Codec, class E>
+void describe_journal_end(Codec& codec, E& end) {
+  codec.constant(journal_kind(JournalKind::end));
+  codec.varint(Varint{"ticks", kAnyTick, "", "in all"}, end.ticks);
+  codec.integer(Integer{"state_hash", 64, std::numeric_limits<std::uint64_t>::max(), "", ""},
+                end.state_hash);
+}
+
+}  // namespace wire

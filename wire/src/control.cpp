@@ -1,0 +1,196 @@
+#include "wire/control.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "control_generated.h"
+#include "text.h"
+#include "wire/limits.h"
+
+namespace wire {
+namespace {
+
+constexpr std::size_t kLengthBytes = 4;
+
+// --- to FlatBuffers: one function a message, found by overload.
+
+using Builder = flatbuffers::FlatBufferBuilder;
+
+auto text(Builder& b, const std::string& s, std::size_t max_bytes) {
+  return b.CreateString(clean_text(s, max_bytes));
+}
+auto build(Builder& b, const Hello& m) {
+  return fb::CreateHello(b, m.version, m.snapshot_layout, text(b, m.name, kMaxName), m.udp_port,
+                         m.team);
+}
+auto build(Builder& b, const Welcome& m) {
+  return fb::CreateWelcome(b, m.session, m.token, m.udp_port, m.tick_us, m.layout, m.team,
+                           text(b, m.multicast, kMaxName), m.multicast_port);
+}
+auto build(Builder& b, const Refusal& m) {
+  return fb::CreateRefusal(b, static_cast<fb::RefusalCode>(m.code), text(b, m.reason, kMaxText));
+}
+auto build(Builder& b, const Wish& m) {
+  return fb::CreateWish(b, m.kind, m.team, m.value);
+}
+auto build(Builder& b, const Ping& m) {
+  return fb::CreatePing(b, m.id);
+}
+auto build(Builder& b, const Pong& m) {
+  return fb::CreatePong(b, m.id);
+}
+auto build(Builder& b, const Notice& m) {
+  return fb::CreateNotice(b, static_cast<fb::NoticeLevel>(m.level), m.topic,
+                          text(b, m.text, kMaxText));
+}
+auto build(Builder& b, const Bye& m) {
+  return fb::CreateBye(b, text(b, m.reason, kMaxText));
+}
+
+template <class Table>
+fb::Message kind_of(flatbuffers::Offset<Table>) {
+  return fb::MessageTraits<Table>::enum_value;
+}
+
+// --- from FlatBuffers, verified: false where a value is out of range.
+
+bool take(const flatbuffers::String* from, std::size_t max_bytes, std::string& to) {
+  if (!is_clean_text(from->string_view(), max_bytes)) return false;
+  to = from->str();
+  return true;
+}
+bool is_team(std::uint8_t team) {
+  return team < kTeamCount || team == kWatchOnly;
+}
+
+bool take(const fb::Hello& t, Hello& m) {
+  m.version = t.version();
+  m.snapshot_layout = t.snapshot_layout();
+  m.udp_port = t.udp_port();
+  m.team = t.team();
+  return take(t.name(), kMaxName, m.name) && is_team(m.team);
+}
+bool take(const fb::Welcome& t, Welcome& m) {
+  m.session = t.session();
+  m.token = t.token();
+  m.udp_port = t.udp_port();
+  m.tick_us = t.tick_us();
+  m.layout = t.layout();
+  m.team = t.team();
+  m.multicast_port = t.multicast_port();
+  return take(t.multicast(), kMaxName, m.multicast) && m.tick_us > 0 && m.layout < kLayoutCount &&
+         is_team(m.team);
+}
+bool take(const fb::Refusal& t, Refusal& m) {
+  m.code = static_cast<Refusal::Code>(t.code());
+  return t.code() <= fb::RefusalCode::MAX && take(t.reason(), kMaxText, m.reason);
+}
+bool take(const fb::Wish& t, Wish& m) {
+  m = {t.kind(), t.team(), t.value()};
+  return m.kind < kCommandKindCount && m.team < kTeamCount;
+}
+bool take(const fb::Ping& t, Ping& m) {
+  m.id = t.id();
+  return true;
+}
+bool take(const fb::Pong& t, Pong& m) {
+  m.id = t.id();
+  return true;
+}
+bool take(const fb::Notice& t, Notice& m) {
+  m.level = static_cast<Notice::Level>(t.level());
+  m.topic = t.topic();
+  return t.level() <= fb::NoticeLevel::MAX && take(t.text(), kMaxText, m.text);
+}
+bool take(const fb::Bye& t, Bye& m) {
+  return take(t.reason(), kMaxText, m.reason);
+}
+
+template <class Struct, class Table>
+bool take_as(const Table* table, ControlMessage& message) {
+  return table != nullptr && take(*table, message.emplace<Struct>());
+}
+
+// The verifier lets a message of a kind it does not know pass; the last line does not.
+bool take_any(const fb::Control& control, ControlMessage& message) {
+  switch (control.message_type()) {
+    case fb::Message::Hello:
+      return take_as<Hello>(control.message_as_Hello(), message);
+    case fb::Message::Welcome:
+      return take_as<Welcome>(control.message_as_Welcome(), message);
+    case fb::Message::Refusal:
+      return take_as<Refusal>(control.message_as_Refusal(), message);
+    case fb::Message::Wish:
+      return take_as<Wish>(control.message_as_Wish(), message);
+    case fb::Message::Ping:
+      return take_as<Ping>(control.message_as_Ping(), message);
+    case fb::Message::Pong:
+      return take_as<Pong>(control.message_as_Pong(), message);
+    case fb::Message::Notice:
+      return take_as<Notice>(control.message_as_Notice(), message);
+    case fb::Message::Bye:
+      return take_as<Bye>(control.message_as_Bye(), message);
+    case fb::Message::NONE:
+      break;
+  }
+  return false;
+}
+
+// bytes: aligned as operator new aligns, since FlatBuffers reads its numbers in place.
+bool parse(const std::vector<std::byte>& bytes, ControlMessage& message) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  constexpr std::uint32_t kMaxDepth = 4, kMaxTables = 4;
+  flatbuffers::Verifier verifier(data, bytes.size(), kMaxDepth, kMaxTables);
+  return fb::VerifyControlBuffer(verifier) && take_any(*fb::GetControl(data), message);
+}
+
+}  // namespace
+
+void encode_control(const ControlMessage& message, std::vector<std::byte>& out) {
+  Builder builder(256);
+  std::visit(
+      [&](const auto& m) {
+        const auto table = build(builder, m);
+        fb::FinishControlBuffer(builder, fb::CreateControl(builder, kind_of(table), table.Union()));
+      },
+      message);
+  const std::size_t size = builder.GetSize();
+  for (std::size_t i = 0; i < kLengthBytes; ++i) {
+    out.push_back(static_cast<std::byte>(size >> 8 * i));
+  }
+  const auto* data = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  out.insert(out.end(), data, data + size);
+}
+
+void ControlReader::push(std::span<const std::byte> bytes) {
+  if (broken_) return;
+  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(read_));
+  read_ = 0;
+  buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+}
+
+ControlReader::Status ControlReader::refuse() {
+  broken_ = true;
+  buffer_ = {};
+  read_ = 0;
+  return Status::broken;
+}
+
+ControlReader::Status ControlReader::next(ControlMessage& message) {
+  if (broken_) return Status::broken;
+  const auto waiting = std::span<const std::byte>(buffer_).subspan(read_);
+  if (waiting.size() < kLengthBytes) return Status::need_more;
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < kLengthBytes; ++i) {
+    size |= static_cast<std::size_t>(waiting[i]) << 8 * i;
+  }
+  if (size > kMaxControlMessage) return refuse();
+  if (waiting.size() < kLengthBytes + size) return Status::need_more;
+  const auto payload = waiting.subspan(kLengthBytes, size);
+  const std::vector<std::byte> aligned(payload.begin(), payload.end());
+  if (!parse(aligned, message)) return refuse();
+  read_ += kLengthBytes + size;
+  return Status::message;
+}
+
+}  // namespace wire

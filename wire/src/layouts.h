@@ -1,0 +1,22 @@
+// The list of each message's fields, and the hash that names it on the wire.
+#pragma once
+
+#include "layout.h"
+
+namespace wire {
+
+struct NamedLayout {
+  const char* name;
+  const char* meaning;
+  Layout layout;
+};
+
+Layout snapshot_layout();
+Layout input_layout();
+// One for each kind of payload, and one for the ticks inside a record of ticks.
+std::vector<NamedLayout> journal_layouts();
+
+// Over all of journal_layouts(); computed once.
+std::uint32_t journal_layout_hash();
+
+}  // namespace wire

@@ -1,0 +1,62 @@
+#include "text.h"
+
+#include <cstdint>
+
+namespace wire {
+namespace {
+
+constexpr std::uint32_t kInvalid = 0xFFFFFFFF;
+
+std::size_t length_from_lead(unsigned char lead) {
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead < 0xE0) return 2;
+  if (lead >= 0xE0 && lead < 0xF0) return 3;
+  if (lead >= 0xF0 && lead < 0xF5) return 4;
+  return 0;
+}
+
+// The character that text starts with, length its bytes; kInvalid (RFC 3629: too long a form, a
+// surrogate, above U+10FFFF, not UTF-8 at all) takes one byte.
+std::uint32_t first_character(std::string_view text, std::size_t& length) {
+  const auto byte_at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  length = length_from_lead(byte_at(0));
+  std::uint32_t character = kInvalid;
+  if (length == 1) {
+    character = byte_at(0);
+  } else if (length != 0 && length <= text.size()) {
+    character = byte_at(0) & (0x7FU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+      if ((byte_at(i) & 0xC0) != 0x80) character = kInvalid;
+      if (character != kInvalid) character = character << 6 | (byte_at(i) & 0x3FU);
+    }
+    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = character >= 0xD800 && character < 0xE000;
+    if (character < kLeast[length] || surrogate || character > 0x10FFFF) character = kInvalid;
+  }
+  if (character == kInvalid) length = 1;
+  return character;
+}
+
+bool is_control(std::uint32_t character) {
+  return character < 0x20 || (character >= 0x7F && character < 0xA0);
+}
+
+}  // namespace
+
+std::string clean_text(std::string_view text, std::size_t max_bytes) {
+  std::string clean;
+  for (std::size_t at = 0, length = 0; at < text.size(); at += length) {
+    const std::uint32_t character = first_character(text.substr(at), length);
+    const bool shown = character != kInvalid && !is_control(character);
+    const std::string_view piece = shown ? text.substr(at, length) : std::string_view("?");
+    if (clean.size() + piece.size() > max_bytes) break;
+    clean += piece;
+  }
+  return clean;
+}
+
+bool is_clean_text(std::string_view text, std::size_t max_bytes) {
+  return text.size() <= max_bytes && clean_text(text, max_bytes) == text;
+}
+
+}  // namespace wire

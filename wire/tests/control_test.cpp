@@ -1,0 +1,220 @@
+#include "wire/control.h"
+
+#include <gtest/gtest.h>
+
+#include "control_generated.h"
+#include "samples.h"
+#include "text.h"
+
+namespace wire {
+namespace {
+
+using samples::Bytes;
+using samples::encoded;
+using Status = ControlReader::Status;
+
+// A frame around a FlatBuffers table that encode_control would never write.
+template <class Table>
+Bytes framed(flatbuffers::FlatBufferBuilder& b, fb::Message kind,
+             flatbuffers::Offset<Table> table) {
+  fb::FinishControlBuffer(b, fb::CreateControl(b, kind, table.Union()));
+  Bytes bytes;
+  for (std::size_t i = 0; i < 4; ++i) bytes.push_back(static_cast<std::byte>(b.GetSize() >> 8 * i));
+  const auto* data = reinterpret_cast<const std::byte*>(b.GetBufferPointer());
+  bytes.insert(bytes.end(), data, data + b.GetSize());
+  return bytes;
+}
+
+Status read_one(const Bytes& bytes) {
+  ControlReader reader;
+  reader.push(bytes);
+  ControlMessage message;
+  return reader.next(message);
+}
+
+TEST(Control, EveryMessageRoundTrips) {
+  for (const auto& [name, sent] : samples::control()) {
+    ControlReader reader;
+    reader.push(encoded(sent));
+    ControlMessage received;
+    ASSERT_EQ(reader.next(received), Status::message) << name;
+    EXPECT_TRUE(samples::same(sent, received)) << name;
+    EXPECT_EQ(reader.next(received), Status::need_more) << name;
+  }
+}
+
+TEST(Control, AStreamFedByteByByteGivesEveryMessageAtItsLastByte) {
+  const auto all = samples::control();
+  ControlReader reader;
+  ControlMessage received;
+  for (const auto& [name, sent] : all) {
+    const Bytes bytes = encoded(sent);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      ASSERT_EQ(reader.next(received), Status::need_more) << name << " byte " << i;
+      reader.push(std::span(bytes).subspan(i, 1));
+    }
+    ASSERT_EQ(reader.next(received), Status::message) << name;
+    EXPECT_TRUE(samples::same(sent, received)) << name;
+  }
+}
+
+TEST(Control, ManyMessagesInOnePushComeOutInOrder) {
+  Bytes stream;
+  for (std::uint64_t id = 0; id < 1000; ++id) encode_control(Ping{id}, stream);
+  ControlReader reader;
+  reader.push(stream);
+  ControlMessage received;
+  for (std::uint64_t id = 0; id < 1000; ++id) {
+    ASSERT_EQ(reader.next(received), Status::message);
+    ASSERT_EQ(std::get<Ping>(received).id, id);
+  }
+  EXPECT_EQ(reader.next(received), Status::need_more);
+}
+
+TEST(Control, EveryTruncationWaitsForMore) {
+  for (const auto& [name, sent] : samples::control()) {
+    const Bytes whole = encoded(sent);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      EXPECT_EQ(read_one({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
+                Status::need_more);
+    }
+  }
+}
+
+TEST(Control, EveryTruncationThatClaimsToBeWholeIsRefused) {
+  for (const auto& [name, sent] : samples::control()) {
+    const Bytes whole = encoded(sent);
+    for (std::size_t size = 4; size < whole.size(); ++size) {
+      Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+      part[0] = static_cast<std::byte>(size - 4);
+      part[1] = static_cast<std::byte>((size - 4) >> 8);
+      EXPECT_NE(read_one(part), Status::need_more) << name << " " << size;
+      // FlatBuffers pads at the end of a string: a cut there loses nothing.
+      if (size + 4 <= whole.size()) {
+        EXPECT_EQ(read_one(part), Status::broken) << name << " " << size;
+      }
+    }
+  }
+}
+
+TEST(Control, NoSingleBitFlipGivesAValueOutOfRange) {
+  for (const auto& [name, sent] : samples::control()) {
+    const Bytes whole = encoded(sent);
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+      Bytes bytes = whole;
+      bytes[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
+      ControlReader reader;
+      reader.push(bytes);
+      ControlMessage received;
+      if (reader.next(received) != Status::message) continue;
+      // What was accepted is a message that can be sent: it comes back the same.
+      ControlReader again;
+      again.push(encoded(received));
+      ControlMessage returned;
+      ASSERT_EQ(again.next(returned), Status::message) << name << " " << bit;
+      EXPECT_TRUE(samples::same(received, returned)) << name << " " << bit;
+    }
+  }
+}
+
+TEST(Control, ALengthAboveTheCapBreaksTheConnectionForGood) {
+  for (const std::size_t size : {kMaxControlMessage + 1, std::size_t{0xFFFFFFFF}}) {
+    ControlReader reader;
+    Bytes head;
+    for (int shift = 0; shift < 32; shift += 8)
+      head.push_back(static_cast<std::byte>(size >> shift));
+    reader.push(head);
+    ControlMessage message;
+    EXPECT_EQ(reader.next(message), Status::broken);
+    reader.push(encoded(ControlMessage{Ping{1}}));
+    EXPECT_EQ(reader.next(message), Status::broken);
+  }
+}
+
+TEST(Control, AnEmptyFrameAndGarbageAreRefused) {
+  EXPECT_EQ(read_one(Bytes(4, std::byte{0})), Status::broken);
+  std::mt19937_64 random(31);
+  for (int i = 0; i < 1000; ++i) {
+    Bytes bytes(4 + random() % 200);
+    for (std::byte& b : bytes) b = static_cast<std::byte>(random());
+    bytes[0] = static_cast<std::byte>(bytes.size() - 4);
+    bytes[1] = bytes[2] = bytes[3] = std::byte{0};
+    EXPECT_EQ(read_one(bytes), Status::broken);
+  }
+}
+
+TEST(Control, AnHttpRequestIsRefused) {
+  const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const auto bytes = std::as_bytes(std::span(request));
+  EXPECT_EQ(read_one({bytes.begin(), bytes.end()}), Status::broken);
+}
+
+TEST(Control, ValuesOutOfRangeAreRefused) {
+  flatbuffers::FlatBufferBuilder b;
+  const auto refused = [&](fb::Message kind, auto table) {
+    const Status status = read_one(framed(b, kind, table));
+    b.Clear();
+    return status == Status::broken;
+  };
+  EXPECT_FALSE(refused(fb::Message::Wish, fb::CreateWish(b, 3, 1, 255)));
+  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 4, 0, 0))) << "kind";
+  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 0, 2, 0))) << "team";
+  EXPECT_TRUE(refused(fb::Message::Hello, fb::CreateHelloDirect(b, 1, 1, "a", 1, 2))) << "team";
+  EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 0, 0, 0, "", 0)))
+      << "a tick of length 0";
+  EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 1, 2, 0, "", 0)))
+      << "layout";
+  EXPECT_TRUE(refused(fb::Message::Refusal,
+                      fb::CreateRefusalDirect(b, static_cast<fb::RefusalCode>(5), "")));
+  EXPECT_TRUE(refused(fb::Message::Notice,
+                      fb::CreateNoticeDirect(b, static_cast<fb::NoticeLevel>(3), 0, "")));
+  EXPECT_TRUE(refused(static_cast<fb::Message>(200), fb::CreatePing(b, 1))) << "unknown kind";
+}
+
+TEST(Control, TextsThatAreLongOrNotPlainUtf8AreRefused) {
+  flatbuffers::FlatBufferBuilder b;
+  const auto status_of = [&](const std::string& name) {
+    const Status status =
+        read_one(framed(b, fb::Message::Hello, fb::CreateHello(b, 1, 1, b.CreateString(name))));
+    b.Clear();
+    return status;
+  };
+  EXPECT_EQ(status_of(std::string(64, 'a')), Status::message);
+  EXPECT_EQ(status_of(std::string(65, 'a')), Status::broken);
+  EXPECT_EQ(status_of("\xE2\x82\xAC"), Status::message);
+  EXPECT_EQ(status_of("\xE2\x82"), Status::broken) << "cut";
+  EXPECT_EQ(status_of("\xC0\xAF"), Status::broken) << "overlong";
+  EXPECT_EQ(status_of("\xED\xA0\x80"), Status::broken) << "surrogate";
+  EXPECT_EQ(status_of("\xF4\x90\x80\x80"), Status::broken) << "above the last character";
+  EXPECT_EQ(status_of("\x1B[2J"), Status::broken) << "escape sequence for a terminal";
+  EXPECT_EQ(status_of(std::string("a\0b", 3)), Status::broken);
+}
+
+TEST(Control, WhatIsSentIsMadePlainAndCutToWholeCharacters) {
+  const auto sent_name = [](const std::string& name) {
+    ControlReader reader;
+    reader.push(encoded(ControlMessage{Hello{1, 0, name, 0, 0}}));
+    ControlMessage message;
+    EXPECT_EQ(reader.next(message), Status::message);
+    return std::get<Hello>(message).name;
+  };
+  EXPECT_EQ(sent_name("a\nb\xFF"), "a?b?");
+  std::string euros;
+  for (int i = 0; i < 30; ++i) euros += "\xE2\x82\xAC";
+  EXPECT_EQ(sent_name(euros), euros.substr(0, 63));
+}
+
+TEST(CleanText, IsIdempotent) {
+  std::mt19937_64 random(32);
+  for (int i = 0; i < 10'000; ++i) {
+    std::string text(random() % 40, ' ');
+    for (char& c : text) c = static_cast<char>(random());
+    const std::size_t cap = random() % 40;
+    const std::string clean = clean_text(text, cap);
+    EXPECT_LE(clean.size(), cap);
+    EXPECT_TRUE(is_clean_text(clean, cap));
+  }
+}
+
+}  // namespace
+}  // namespace wire

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "samples.h"
+
+namespace wire::samples {
+namespace {
+
+bool same_rotation(const std::array<float, 4>& a, const std::array<float, 4>& b) {
+  constexpr double kQuantum = 1.5e-4;
+  double plus = 0, minus = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    plus = std::max(plus, std::abs(static_cast<double>(a[i]) + static_cast<double>(b[i])));
+    minus = std::max(minus, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+  }
+  return std::min(plus, minus) <= kQuantum;
+}
+
+bool same(const PoseVelocity& a, const PoseVelocity& b) {
+  return a.position == b.position && a.linear_velocity == b.linear_velocity &&
+         a.angular_velocity == b.angular_velocity && same_rotation(a.orientation, b.orientation);
+}
+
+bool same(const ManState& a, const ManState& b) {
+  return a.rod == b.rod && a.man == b.man && same(a.body, b.body);
+}
+
+auto tied(const RodSnapshot& r) {
+  return std::tie(r.slide, r.angle, r.slide_rate, r.angle_rate, r.status, r.source);
+}
+auto tied(const EventSnapshot& e) {
+  return std::tie(e.id, e.kind, e.team, e.rod, e.man, e.value, e.point);
+}
+auto tied(const InputRod& r) {
+  return std::tie(r.driven, r.slide, r.angle, r.slide_rate, r.angle_rate);
+}
+auto tied(const Hello& m) {
+  return std::tie(m.version, m.snapshot_layout, m.name, m.udp_port, m.team);
+}
+auto tied(const Welcome& m) {
+  return std::tie(m.session, m.token, m.udp_port, m.tick_us, m.layout, m.team, m.multicast,
+                  m.multicast_port);
+}
+auto tied(const Refusal& m) {
+  return std::tie(m.code, m.reason);
+}
+auto tied(const Wish& m) {
+  return std::tie(m.kind, m.team, m.value);
+}
+auto tied(const Ping& m) {
+  return std::tie(m.id);
+}
+auto tied(const Pong& m) {
+  return std::tie(m.id);
+}
+auto tied(const Notice& m) {
+  return std::tie(m.level, m.topic, m.text);
+}
+auto tied(const Bye& m) {
+  return std::tie(m.reason);
+}
+auto tied(const JournalHeader& e) {
+  return std::tie(e.version, e.layout, e.seed, e.goals_to_win, e.max_goals, e.dead_ball_ms,
+                  e.ceremony_ms, e.end_ms);
+}
+auto tied(const JournalTick& e) {
+  return std::tie(e.tick, e.rods, e.commands);
+}
+auto tied(const JournalHash& e) {
+  return std::tie(e.tick, e.state_hash);
+}
+auto tied(const JournalKeyframe& e) {
+  return std::tie(e.tick, e.snapshot);
+}
+auto tied(const JournalEnd& e) {
+  return std::tie(e.ticks, e.state_hash);
+}
+
+template <class List>
+bool all_tied(const List& a, const List& b) {
+  return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return tied(x) == tied(y); });
+}
+
+template <class Variant>
+bool same_variant(const Variant& a, const Variant& b) {
+  return a.index() == b.index() && std::visit(
+                                       [&](const auto& x) {
+                                         using T = std::decay_t<decltype(x)>;
+                                         return tied(x) == tied(std::get<T>(b));
+                                       },
+                                       a);
+}
+
+auto tied_head(const Snapshot& s) {
+  return std::tie(s.session, s.sequence, s.tick, s.send_time_us, s.layout, s.screen, s.paused,
+                  s.ball_in_play, s.score, s.character, s.confirmed, s.last_scorer,
+                  s.screen_seconds, s.play_seconds);
+}
+
+}  // namespace
+
+bool same_but_for_ties(const Snapshot& a, const Snapshot& b) {
+  return tied_head(a) == tied_head(b) && same(a.ball, b.ball) && all_tied(a.rods, b.rods) &&
+         std::ranges::equal(a.men, b.men,
+                            [](const ManState& x, const ManState& y) { return same(x, y); }) &&
+         all_tied(a.events, b.events);
+}
+
+bool same(const InputDatagram& a, const InputDatagram& b) {
+  return std::tie(a.session, a.token, a.sequence) == std::tie(b.session, b.token, b.sequence) &&
+         all_tied(a.rods, b.rods);
+}
+
+bool same(const ControlMessage& a, const ControlMessage& b) {
+  return same_variant(a, b);
+}
+bool same(const JournalEntry& a, const JournalEntry& b) {
+  return same_variant(a, b);
+}
+
+}  // namespace wire::samples

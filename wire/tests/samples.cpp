@@ -1,0 +1,307 @@
+#include "samples.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "crc32.h"
+#include "wire/limits.h"
+
+namespace wire::samples {
+namespace {
+
+double uniform(std::mt19937_64& random, double limit) {
+  return limit * (2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0);
+}
+
+template <class T>
+T below(std::mt19937_64& random, std::uint64_t count) {
+  return static_cast<T>(random() % count);
+}
+
+PoseVelocity random_pose(std::mt19937_64& random, double spin) {
+  PoseVelocity pose;
+  double sum = 0;
+  for (auto& v : pose.orientation) {
+    v = static_cast<float>(uniform(random, 1));
+    sum += static_cast<double>(v) * static_cast<double>(v);
+  }
+  for (auto& v : pose.orientation) v = static_cast<float>(static_cast<double>(v) / std::sqrt(sum));
+  for (auto& v : pose.position) v = static_cast<float>(uniform(random, 1.99));
+  for (auto& v : pose.linear_velocity) v = static_cast<float>(uniform(random, 60));
+  for (auto& v : pose.angular_velocity) v = static_cast<float>(uniform(random, spin));
+  return pose;
+}
+
+PoseVelocity plain_pose(float seed) {
+  PoseVelocity pose;
+  pose.position = {0.1F * seed, -0.2F, 0.05F};
+  pose.orientation = {0.0F, 0.6F, 0.0F, -0.8F};
+  pose.linear_velocity = {1.5F, -2.25F, seed};
+  pose.angular_velocity = {10.0F, -20.0F, 30.0F};
+  return pose;
+}
+
+Snapshot random_head(std::mt19937_64& random) {
+  Snapshot s;
+  s.session = random();
+  s.sequence = random();
+  s.tick = random();
+  s.send_time_us = static_cast<std::int64_t>(random() >> 1);
+  s.layout = below<std::uint8_t>(random, kLayoutCount);
+  s.screen = below<std::uint8_t>(random, kScreenCount);
+  s.paused = random() % 2;
+  s.ball_in_play = random() % 2;
+  s.score = {below<std::uint8_t>(random, 256), below<std::uint8_t>(random, 256)};
+  s.character = {below<std::uint8_t>(random, kCharacterCount),
+                 below<std::uint8_t>(random, kCharacterCount)};
+  s.confirmed = {random() % 2 == 0, random() % 2 == 0};
+  s.last_scorer = below<std::uint8_t>(random, kTeamCount);
+  s.screen_seconds = static_cast<float>(8000 + uniform(random, 8000));
+  s.play_seconds = static_cast<float>(8000 + uniform(random, 8000));
+  s.ball = random_pose(random, 2000);
+  for (RodSnapshot& rod : s.rods) {
+    rod.slide = static_cast<float>(uniform(random, 1.9));
+    rod.angle = static_cast<float>(uniform(random, 800));
+    rod.slide_rate = static_cast<float>(uniform(random, 60));
+    rod.angle_rate = static_cast<float>(uniform(random, 250));
+    rod.status = below<std::uint8_t>(random, kRodStatusCount);
+    rod.source = below<std::uint8_t>(random, kRodSourceCount);
+  }
+  return s;
+}
+
+JournalRod random_rod(std::mt19937_64& random, const JournalRod& before) {
+  switch (random() % 8) {
+    case 0:  // anything
+      return {static_cast<std::int32_t>(random()),
+              static_cast<std::int64_t>(random() % 2'000'000'000'000'001) - kJournalAngleLimit,
+              static_cast<std::int32_t>(random()), static_cast<std::int32_t>(random()),
+              random() % 2 == 0};
+    case 1:
+    case 2: {  // a hand's small move
+      JournalRod rod = before;
+      rod.slide_100nm += rod.slide_100nm < 0 ? 312 : -417;
+      rod.angle_urad += rod.angle_urad < 0 ? 12'000 : -9'000;
+      rod.live = true;
+      return rod;
+    }
+    default:
+      return before;
+  }
+}
+
+}  // namespace
+
+Snapshot snapshot() {
+  Snapshot s;
+  s.session = 0x1122334455667788;
+  s.sequence = 1'000'001;
+  s.tick = 1'000'000;
+  s.send_time_us = 123'456'789'012;
+  s.layout = 1;
+  s.screen = 2;
+  s.ball_in_play = true;
+  s.score = {3, 4};
+  s.character = {2, 1};
+  s.confirmed = {true, false};
+  s.last_scorer = 1;
+  s.screen_seconds = 12.5F;
+  s.play_seconds = 99.25F;
+  s.ball = plain_pose(0.5F);
+  for (std::size_t i = 0; i < s.rods.size(); ++i) {
+    const float n = static_cast<float>(i);
+    s.rods[i] = {0.01F * n,
+                 1.5F * n - 4.0F,
+                 -0.5F * n,
+                 3.0F * n,
+                 static_cast<std::uint8_t>(i % kRodStatusCount),
+                 static_cast<std::uint8_t>(i % kRodSourceCount)};
+  }
+  s.men = {{0, 0, plain_pose(1.0F)}, {7, 4, plain_pose(-1.0F)}};
+  s.events = {{77, 0, 1, 5, 3, 0.125F, {0.25F, -0.5F, 0.017F}}};
+  return s;
+}
+
+InputDatagram input() {
+  InputDatagram i;
+  i.session = 0x1122334455667788;
+  i.token = 0x99AABBCCDDEEFF00;
+  i.sequence = 4242;
+  for (std::size_t rod = 0; rod < i.rods.size(); ++rod) {
+    const float n = static_cast<float>(rod);
+    i.rods[rod] = {rod % 2 == 1, 0.02F * n - 0.05F, 2000.0 * n - 5000.0, 0.25F * n, -1.5F * n};
+  }
+  return i;
+}
+
+std::vector<std::pair<std::string, ControlMessage>> control() {
+  return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0}},
+          {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
+                              "239.1.2.3", 4244}},
+          {"refusal", Refusal{Refusal::Code::team_taken, "Team 0 is taken; choose team 1."}},
+          {"wish", Wish{1, 1, 2}},
+          {"ping", Ping{7}},
+          {"pong", Pong{7}},
+          {"notice", Notice{Notice::Level::warning, 3, "cabinet unplugged: its rods hold"}},
+          {"bye", Bye{"window closed"}}};
+}
+
+std::vector<JournalEntry> journal() {
+  std::vector<JournalEntry> entries{JournalHeader{1, 1, 42, 5, 8, 6000, 2500, 6000}};
+  JournalTick tick;
+  tick.rods[3] = {400'000, -1'570'796, 2'000'000, -31'416, true};
+  tick.commands = {{0, 1, 0}, {1, 0, 2}};
+  entries.emplace_back(tick);
+  tick.tick = 1;
+  tick.commands.clear();
+  tick.rods[3].slide_100nm = 400'321;
+  entries.emplace_back(tick);
+  tick.tick = 2;
+  entries.emplace_back(tick);
+  entries.emplace_back(JournalHash{3, 0xFEEDFACECAFEBEEF});
+  entries.emplace_back(JournalKeyframe{3, {std::byte{1}, std::byte{2}, std::byte{3}}});
+  entries.emplace_back(JournalEnd{3, 0xFEEDFACECAFEBEEF});
+  return entries;
+}
+
+DeviceFrame device_frame() {
+  DeviceFrame frame{};
+  frame.flags = 1;
+  frame.sequence = 0x0102;
+  frame.time_us = 0x03040506;
+  for (int rod = 0; rod < kDeviceRods; ++rod) {
+    frame.slide[rod] = static_cast<std::uint16_t>(1000 * rod);
+    frame.spin[rod] = static_cast<std::uint16_t>(65535 - 300 * rod);
+  }
+  frame.present = 0xFF;
+  frame.overflow = 0x08;
+  frame.quality = 2;
+  return frame;
+}
+
+Snapshot random_snapshot(std::mt19937_64& random, bool full) {
+  Snapshot s = random_head(random);
+  s.men.resize(full ? kMaxMen : random() % (kMaxMen + 1));
+  for (ManState& man : s.men) {
+    man.rod = below<std::uint8_t>(random, kRods);
+    man.man = below<std::uint8_t>(random, kMenOnRod);
+    man.body = random_pose(random, 250);
+  }
+  s.events.resize(full ? kMaxEvents : random() % (kMaxEvents + 1));
+  for (EventSnapshot& event : s.events) {
+    event.id = static_cast<std::uint32_t>(random());
+    event.kind = below<std::uint8_t>(random, kEventKindCount);
+    event.team = below<std::uint8_t>(random, kTeamCount);
+    event.rod = below<std::uint8_t>(random, kRods);
+    event.man = below<std::uint8_t>(random, kMenOnRod);
+    event.value = static_cast<float>(uniform(random, 7.9));
+    for (float& v : event.point) v = static_cast<float>(uniform(random, 1.99));
+  }
+  return s;
+}
+
+InputDatagram random_input(std::mt19937_64& random) {
+  InputDatagram i;
+  i.session = random();
+  i.token = random();
+  i.sequence = static_cast<std::uint32_t>(random());
+  for (InputRod& rod : i.rods) {
+    rod.driven = random() % 2;
+    rod.slide = static_cast<float>(uniform(random, 1.9));
+    rod.angle = uniform(random, 200'000);
+    rod.slide_rate = static_cast<float>(uniform(random, 60));
+    rod.angle_rate = static_cast<float>(uniform(random, 250));
+  }
+  return i;
+}
+
+std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
+  std::vector<JournalEntry> entries{JournalHeader{1, 0, random(), 5, 8, 1, 2, 3}};
+  JournalTick tick;
+  for (; tick.tick < static_cast<std::uint64_t>(ticks); ++tick.tick) {
+    for (JournalRod& rod : tick.rods) rod = random_rod(random, rod);
+    tick.commands.resize(random() % 16 == 0 ? random() % (kMaxJournalCommands + 1) : 0);
+    for (JournalCommand& command : tick.commands) {
+      command = {below<std::uint8_t>(random, kCommandKindCount),
+                 below<std::uint8_t>(random, kTeamCount), below<std::uint8_t>(random, 256)};
+    }
+    entries.emplace_back(tick);
+    if (random() % 50 == 0) entries.emplace_back(JournalHash{tick.tick + 1, random()});
+    if (random() % 100 == 0) {
+      JournalKeyframe keyframe{tick.tick + 1, Bytes(random() % 3000)};
+      for (std::byte& b : keyframe.snapshot) b = static_cast<std::byte>(random());
+      entries.emplace_back(keyframe);
+    }
+  }
+  entries.emplace_back(JournalEnd{tick.tick, random()});
+  return entries;
+}
+
+Bytes encoded(const Snapshot& snapshot) {
+  Bytes bytes(kMaxDatagram);
+  bytes.resize(encode_snapshot(snapshot, bytes));
+  return bytes;
+}
+
+Bytes encoded(const InputDatagram& input) {
+  Bytes bytes(kMaxInputDatagram);
+  bytes.resize(encode_input(input, bytes));
+  return bytes;
+}
+
+Bytes encoded(const ControlMessage& message) {
+  Bytes bytes;
+  encode_control(message, bytes);
+  return bytes;
+}
+
+Bytes encoded(const std::vector<JournalEntry>& journal) {
+  Bytes bytes;
+  JournalEncoder encoder;
+  for (const JournalEntry& entry : journal) encoder.add(entry, bytes);
+  encoder.flush(bytes);
+  return bytes;
+}
+
+Bytes encoded(const DeviceFrame& frame) {
+  Bytes bytes(kDeviceFrameBytes);
+  encode_device_frame(frame, reinterpret_cast<std::uint8_t*>(bytes.data()));
+  return bytes;
+}
+
+Bytes encoded_cobs(const DeviceFrame& frame) {
+  const Bytes plain = encoded(frame);
+  Bytes bytes(kDeviceCobsBytes);
+  bytes.resize(cobs_encode(reinterpret_cast<const std::uint8_t*>(plain.data()), plain.size(),
+                           reinterpret_cast<std::uint8_t*>(bytes.data())));
+  return bytes;
+}
+
+void reseal(Bytes& datagram) {
+  if (datagram.size() < 4) return;
+  const std::size_t covered = datagram.size() - 4;
+  const std::uint32_t crc = crc32(std::span(datagram).first(covered));
+  for (std::size_t i = 0; i < 4; ++i) {
+    datagram[covered + i] = static_cast<std::byte>(crc >> 8 * i);
+  }
+}
+
+std::string hex(const Bytes& bytes) {
+  std::string text;
+  for (const std::byte b : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", static_cast<unsigned>(b));
+    text += digits;
+  }
+  return text;
+}
+
+Bytes from_hex(const std::string& text) {
+  Bytes bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    bytes.push_back(static_cast<std::byte>(std::stoi(text.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+}  // namespace wire::samples

@@ -1,0 +1,53 @@
+// Messages that tests, benchmarks and the fuzz corpus share.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "wire/control.h"
+#include "wire/device_frame.h"
+#include "wire/input_datagram.h"
+#include "wire/journal.h"
+#include "wire/snapshot.h"
+
+namespace wire::samples {
+
+using Bytes = std::vector<std::byte>;
+
+// Of each message one with every field set, and none at random: their bytes are golden.
+Snapshot snapshot();
+InputDatagram input();
+std::vector<std::pair<std::string, ControlMessage>> control();  // one of each kind, named
+std::vector<JournalEntry> journal();
+DeviceFrame device_frame();
+
+// Random within the ranges. full: every man and every event.
+Snapshot random_snapshot(std::mt19937_64& random, bool full);
+// Equal to the bit; but rotations with two equally large components may name either as the largest,
+// and then differ by a quantum.
+bool same_but_for_ties(const Snapshot& a, const Snapshot& b);
+bool same(const InputDatagram& a, const InputDatagram& b);
+bool same(const ControlMessage& a, const ControlMessage& b);
+bool same(const JournalEntry& a, const JournalEntry& b);
+
+InputDatagram random_input(std::mt19937_64& random);
+// A whole recording of so many ticks.
+std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks);
+
+Bytes encoded(const Snapshot& snapshot);
+Bytes encoded(const InputDatagram& input);
+Bytes encoded(const ControlMessage& message);
+Bytes encoded(const std::vector<JournalEntry>& journal);
+Bytes encoded(const DeviceFrame& frame);       // the plain frame
+Bytes encoded_cobs(const DeviceFrame& frame);  // as on a serial line
+
+// Puts the right CRC-32 at the end of a datagram, so that what lies under it is tested.
+void reseal(Bytes& datagram);
+
+std::string hex(const Bytes& bytes);
+Bytes from_hex(const std::string& text);
+
+}  // namespace wire::samples
