@@ -171,11 +171,10 @@ TEST(Snapshot, RoundTripKeepsIntegersAndLosesLessThanTheStatedBounds) {
   EXPECT_LE(worst.man_spin, 3.95e-3);    // 3.91e-3 rad/s
   EXPECT_LE(worst.ball_spin, 0.0314);    // 0.0312 rad/s
   EXPECT_LE(worst.orientation, 1.5e-4);  // 1.21e-4 rad; the bound is that of four equal parts
-            1.5e-4);                 // 1.33e-4 rad; 2 sqrt(12) half steps where all four are equal
-            EXPECT_LE(worst.slide, 2.0e-6);    // 1.91e-6 m, of the 0.5 mm allowed at the cabinet
-            EXPECT_LE(worst.angle, 8.0e-5);    // 6.11e-5 rad, of the 1 degree (0.017) allowed
-            EXPECT_LE(worst.seconds, 4.9e-4);  // 4.88e-4 s
-            EXPECT_LE(worst.impulse, 3.1e-5);  // 3.05e-5 N s
+  EXPECT_LE(worst.slide, 2.0e-6);        // 1.91e-6 m, of the 0.5 mm allowed at the cabinet
+  EXPECT_LE(worst.angle, 8.0e-5);        // 6.11e-5 rad, of the 1 degree (0.017) allowed
+  EXPECT_LE(worst.seconds, 4.9e-4);      // 4.88e-4 s
+  EXPECT_LE(worst.impulse, 3.1e-5);      // 3.05e-5 N s
 }
 
 TEST(Snapshot, DecodedEncodesToTheSameAgain) {
