@@ -28,9 +28,9 @@ struct HalfSpace {};
 using Shape = std::variant<Sphere, Box, Capsule, HalfSpace>;
 
 struct Material {
-  double friction = 0.5;            // Coulomb; a pair uses sqrt(a * b)
-  double restitution = 0.0;         // [0, 1]; a pair uses the larger
-  double rolling_friction = 0.0;    // lever arm of the rolling resistance [m]; a pair uses the larger
+  double friction = 0.5;          // Coulomb; a pair uses sqrt(a * b)
+  double restitution = 0.0;       // [0, 1]; a pair uses the larger
+  double rolling_friction = 0.0;  // lever arm of the rolling resistance [m]; a pair uses the larger
 };
 
 // Two colliders meet if each one's category is in the other's mask.
@@ -41,15 +41,15 @@ struct CollisionFilter {
 
 struct ColliderDesc {
   Shape shape = Sphere{1.0};
-  SE3 T_body_shape;             // pose of the shape in the body's frame
+  SE3 T_body_shape;  // pose of the shape in the body's frame
   Material material;
   CollisionFilter filter;
   bool sensor = false;          // reports overlap as events, is never pushed
   std::uint64_t user_data = 0;  // returned in events and queries
 };
 
-// Inertia of a solid of uniform density [kg/m^3], about the shape's own origin, in the shape's frame.
-// HalfSpace has none: returns zero.
+// Inertia of a solid of uniform density [kg/m^3], about the shape's own origin, in the shape's
+// frame. HalfSpace has none: returns zero.
 Inertia solid_inertia(const Shape& shape, double density);
 
 }  // namespace vp

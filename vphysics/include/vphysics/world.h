@@ -81,9 +81,10 @@ struct JointDrive {
 struct LinkDesc {
   int parent = -1;  // index of an earlier link; -1: the world
   JointKind joint = JointKind::fixed;
-  SE3 T_parent_joint;  // joint frame at q = 0, in the parent's frame; the link's frame moves with it
+  SE3 T_parent_joint;  // joint frame at q = 0, in the parent's frame; the link's frame moves with
+                       // it
   Inertia inertia;     // about the link's origin; mass > 0
-  double armature[2] = {0.0, 0.0};  // added to the diagonal of the joint-space inertia
+  double armature[2] = {0.0, 0.0};       // added to the diagonal of the joint-space inertia
   double joint_damping[2] = {0.0, 0.0};  // viscous, [N s/m] or [N m s/rad]
   JointLimit limit[2];
   std::uint64_t user_data = 0;
@@ -98,8 +99,8 @@ struct ArticulationDesc {
 struct ContactEvent {
   enum class Kind : std::uint8_t { begin, hit, end };
   Kind kind;
-  bool sensor;            // one of the two is a sensor
-  ColliderId a, b;        // a < b by creation
+  bool sensor;      // one of the two is a sensor
+  ColliderId a, b;  // a < b by creation
   std::uint64_t user_data_a, user_data_b;
   Vec3 point;             // world frame [m]
   Vec3 normal;            // world frame, from a to b
@@ -110,10 +111,10 @@ struct ContactEvent {
 
 // Set when a step had to degrade; the step is finished all the same.
 struct StepStatus {
-  bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it and
-                              // what it touches were held for the rest of the step
-  bool non_finite = false;    // a body left the range of numbers and was stopped where it was
-  double time_held = 0.0;     // the part of dt lost to impact_limit [s]
+  bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it
+                              // and what it touches were held for the rest of the step
+  bool non_finite = false;  // a body left the range of numbers and was stopped where it was
+  double time_held = 0.0;   // the part of dt lost to impact_limit [s]
 };
 
 struct StepCounters {

@@ -1,0 +1,33 @@
+// Which bounds overlap: sort and sweep along the axis on which the centres are spread most.
+//
+// The pairs found and their order depend on the bounds alone: the order kept from call to call only
+// makes the next sort cheap.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/bounds.h"
+
+namespace vp::collide {
+
+struct IndexPair {
+  std::uint32_t a, b;  // a < b
+  constexpr auto operator<=>(const IndexPair&) const = default;
+};
+
+class BroadPhase {
+ public:
+  // Appends every pair of overlapping, non-empty bounds of which at least one is movable, sorted.
+  void find_pairs(std::span<const Bounds> bounds, std::span<const std::uint8_t> movable,
+                  std::vector<IndexPair>& pairs);
+
+ private:
+  int widest_axis(std::span<const Bounds> bounds) const;
+  void sort_along(int axis, std::span<const Bounds> bounds);
+
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace vp::collide

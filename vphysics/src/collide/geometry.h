@@ -1,0 +1,29 @@
+// Shapes as the engine keeps them: flat, without a variant.
+#pragma once
+
+#include <cstdint>
+
+#include "vphysics/shapes.h"
+
+namespace vp::collide {
+
+enum class Kind : std::uint8_t { sphere, capsule, box, half_space };
+
+struct Geometry {
+  Kind kind = Kind::sphere;
+  double radius = 0.0;  // sphere, capsule
+  Vec3 half;            // box: half extents; capsule: (0, 0, half length)
+};
+
+Geometry make_geometry(const Shape& shape);
+
+// Signed distance of a point in the shape's frame from its surface, negative inside, and the
+// direction in which it grows fastest. The shapes are convex, hence so is the distance: it lies
+// above each of its tangent planes. The sweep rests on that.
+struct SignedDistance {
+  double distance;
+  Vec3 normal;  // unit, outward
+};
+SignedDistance signed_distance(const Geometry& geometry, const Vec3& point);
+
+}  // namespace vp::collide

@@ -1,0 +1,36 @@
+// Where two shapes touch or nearly touch.
+#pragma once
+
+#include <cstdint>
+
+#include "collide/geometry.h"
+
+namespace vp::collide {
+
+inline constexpr int kMaxPoints = 4;
+
+struct ManifoldPoint {
+  Vec3 position;          // world frame, midway between the two surfaces
+  double separation;      // along the normal; negative: penetration
+  std::uint32_t feature;  // the same from step to step while the same features touch
+};
+
+struct Manifold {
+  Vec3 normal;  // unit, world frame, from a to b
+  int count = 0;
+  ManifoldPoint points[kMaxPoints];
+
+  void add(const Vec3& position, double separation, std::uint32_t feature) {
+    if (count < kMaxPoints) points[count++] = {position, separation, feature};
+  }
+};
+
+// The contact points with a separation of at most margin. Precondition: not two half-spaces.
+void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                   double margin, Manifold& manifold);
+
+// Box against box by the separating axis theorem and clipping (box_box.cpp).
+void collide_boxes(const Vec3& half_a, const SE3& T_a, const Vec3& half_b, const SE3& T_b,
+                   double margin, Manifold& manifold);
+
+}  // namespace vp::collide

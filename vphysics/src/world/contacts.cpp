@@ -1,0 +1,244 @@
+// From pairs to constraints, and from solved constraints to events and what is remembered.
+#include <algorithm>
+#include <cmath>
+
+#include "world/impl.h"
+
+namespace vp {
+namespace {
+
+const PairRecord* lookup(const std::vector<PairRecord>& sorted, std::uint64_t key) {
+  const auto it = std::lower_bound(sorted.begin(), sorted.end(), key,
+                                   [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
+  return it != sorted.end() && it->key == key ? &*it : nullptr;
+}
+
+const PairPoint* point_of(const PairRecord& record, std::uint32_t feature) {
+  for (std::uint32_t i = 0; i < record.count; ++i) {
+    if (record.points[i].feature == feature) return &record.points[i];
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+// This step's record of the pair; on first sight it takes over from the last step whether the two
+// were touching.
+PairRecord& World::Impl::record_of(const ColliderPair& pair) {
+  auto it = std::lower_bound(next_records.begin(), next_records.end(), pair.key,
+                             [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
+  if (it == next_records.end() || it->key != pair.key) {
+    PairRecord record;
+    record.key = pair.key;
+    record.a = pair.a;
+    record.b = pair.b;
+    it = next_records.insert(it, record);
+  }
+  return *it;
+}
+
+void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold& m, bool swept,
+                              bool warm, std::vector<solve::ContactConstraint>& out) {
+  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
+  solve::ContactConstraint& c = out.emplace_back();
+  c.a = a.body;
+  c.b = b.body;
+  c.collider_a = pair.a;
+  c.collider_b = pair.b;
+  c.friction = std::sqrt(a.material.friction * b.material.friction);
+  c.restitution = std::max(a.material.restitution, b.material.restitution);
+  const bool rolls =
+      a.geometry.kind == collide::Kind::sphere || b.geometry.kind == collide::Kind::sphere;
+  c.rolling = rolls ? std::max(a.material.rolling_friction, b.material.rolling_friction) : 0.0;
+  c.swept = swept;
+  c.count = m.count;
+  set_normal(c, m.normal);
+  const PairRecord* last = warm ? lookup(records, pair.key) : nullptr;
+  c.rolling_impulse = last ? last->rolling : Vec3{};
+  for (int i = 0; i < m.count; ++i) {
+    solve::ContactPoint& p = c.points[i];
+    p.position = m.points[i].position;
+    p.separation = m.points[i].separation;
+    p.feature = m.points[i].feature;
+    const PairPoint* old = last ? point_of(*last, p.feature) : nullptr;
+    p.normal_impulse = old ? old->normal_impulse : 0.0;
+    p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
+    p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
+  }
+}
+
+void World::Impl::find_discrete_contacts(double h) {
+  discrete_contacts.clear();
+  collide::Manifold m;
+  for (const ColliderPair& pair : discrete_pairs) {
+    const Collider &a = colliders[pair.a], &b = colliders[pair.b];
+    const bool sensor = a.sensor || b.sensor;
+    find_manifold(a.geometry, a.T, b.geometry, b.T, sensor ? 0.0 : discrete_margin(pair, h), m);
+    if (m.count == 0) continue;
+    if (sensor) {
+      report_sensor(pair, m.points[0].position, m.normal, 0.0);
+    } else {
+      add_contact(pair, m, false, true, discrete_contacts);
+    }
+  }
+}
+
+void World::Impl::find_swept_contacts(bool warm) {
+  collide::Manifold m;
+  for (const SweptPair& swept : swept_pairs) {
+    if (swept.sensor || swept.separation > desc.contact_slop) continue;
+    const Collider &a = colliders[swept.pair.a], &b = colliders[swept.pair.b];
+    find_manifold(a.geometry, a.T, b.geometry, b.T, desc.contact_slop, m);
+    if (m.count > 0) add_contact(swept.pair, m, true, warm, contacts);
+  }
+}
+
+// The motor, as f = k (p - q - h v) + d (v_t - v), is a soft row: v + s f h = target with
+// s = 1 / (h^2 k + h d); it is felt once a step, impacts are over too soon for it. The stops are
+// hard rows that let the joint just reach them by the end of the step.
+void World::Impl::add_joint_rows(double h, bool first) {
+  joint_rows.clear();
+  for (Articulation& art : articulations) {
+    for (int i = 0; i < 2; ++i) {
+      JointAxis& axis = art.axes[i];
+      if (!axis.free) continue;
+      const JointDrive& d = axis.drive;
+      const double gain = h * (h * d.stiffness + d.damping);
+      if (first && gain > 0.0 && d.max_force > 0.0) {
+        const double most = d.max_force * h;
+        const double target =
+            h * (d.stiffness * (d.position - axis.q) + d.damping * d.velocity) / gain;
+        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, target,
+                              1.0 / gain, -most, most, std::clamp(axis.drive_impulse, -most, most),
+                              &axis.drive_impulse});
+      } else if (first) {
+        axis.drive_impulse = 0.0;
+      }
+      const double rate = dot(art.axis, i == kAngle ? bodies[art.body].w : bodies[art.body].v);
+      const double below = (axis.limit.lower - axis.q) / h, above = (axis.limit.upper - axis.q) / h;
+      // Rows only for stops within reach; twice the present rate, since an impulse may add to it.
+      const double near = 2.0 * std::fabs(rate) + 1.0;
+      if (below > -near) {
+        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, below, 0.0, 0.0,
+                              1e30, 0.0, nullptr});
+      }
+      if (above < near) {
+        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, above, 0.0,
+                              -1e30, 0.0, 0.0, nullptr});
+      }
+    }
+  }
+}
+
+void World::Impl::solve_contacts(double h, bool first) {
+  if (!first) {
+    // An impact: contacts found at the start of the step take part with fresh impulses.
+    for (solve::ContactConstraint& c : discrete_contacts) {
+      c.rolling_impulse = {};
+      for (int i = 0; i < c.count; ++i) {
+        c.points[i].normal_impulse = c.points[i].tangent_impulse[0] =
+            c.points[i].tangent_impulse[1] = 0.0;
+      }
+    }
+  }
+  contacts.assign(discrete_contacts.begin(), discrete_contacts.end());
+  find_swept_contacts(first);
+  add_joint_rows(h, first);
+  if (contacts.empty() && joint_rows.empty()) return;
+  refresh_solver_bodies();
+  solve::solve({solver_bodies, contacts, joint_rows, h, desc.contact_slop,
+                desc.restitution_threshold, desc.velocity_iterations});
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].alive || bodies[i].motion != Motion::dynamic) continue;
+    bodies[i].w = solver_bodies[i].w;
+    bodies[i].v = solver_bodies[i].v;
+    (void)stop_if_out_of_range(i);
+  }
+  for (solve::JointRow& row : joint_rows) {
+    if (row.remember) *row.remember = row.impulse;
+  }
+  apply_corrections();
+  for (const solve::ContactConstraint& c : contacts) {
+    counters.contacts += static_cast<std::uint32_t>(c.count);
+  }
+}
+
+void World::Impl::emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
+                       const Vec3& normal, double approach, double impulse, double time) {
+  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
+  events.push_back({kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
+                    collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal,
+                    approach, impulse, time});
+}
+
+void World::Impl::report_contacts(double time) {
+  for (const solve::ContactConstraint& c : contacts) {
+    double impulse = 0.0, approach = 0.0, nearest = collide::kFar;
+    Vec3 point;
+    for (int i = 0; i < c.count; ++i) {
+      const solve::ContactPoint& p = c.points[i];
+      impulse += p.normal_impulse;
+      if (p.normal_impulse > 0.0) approach = std::max(approach, p.approach);
+      if (p.separation < nearest) nearest = p.separation, point = p.position;
+    }
+    if (impulse <= 0.0 && nearest > desc.contact_slop) continue;
+    const ColliderPair pair = make_pair(colliders, c.collider_a, c.collider_b);
+    PairRecord& record = record_of(pair);
+    const PairRecord* last = lookup(records, pair.key);
+    const bool known = record.touching || (last && last->touching);
+    record.touching = true;
+    if (!known) emit(ContactEvent::Kind::begin, pair, point, c.normal, approach, impulse, time);
+    if (approach > desc.restitution_threshold) {
+      emit(ContactEvent::Kind::hit, pair, point, c.normal, approach, impulse, time);
+    }
+  }
+}
+
+void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal,
+                                double time) {
+  PairRecord& record = record_of(pair);
+  const PairRecord* last = lookup(records, pair.key);
+  const bool known = record.touching || (last && last->touching);
+  record.touching = true;
+  if (!known) emit(ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
+}
+
+// Swept bodies report a sensor even if they are through it within the step.
+void World::Impl::report_swept_sensors(double h, double time) {
+  for (const SweptPair& swept : swept_pairs) {
+    if (!swept.sensor) continue;
+    const collide::SweepQuery query = sweep_query(swept, h);
+    const double t = swept.separation <= query.tolerance ? 0.0 : time_of_impact(query, 0.0);
+    if (t < 0.0) continue;
+    const Vec3 centre = query.centre + t * query.sphere.v;
+    report_sensor(swept.pair, centre, {0, 0, 0}, time + t);
+  }
+}
+
+// What carries a resting load at the start of the step is the best guess for the next one.
+void World::Impl::remember_impulses() {
+  for (const solve::ContactConstraint& c : contacts) {
+    PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b));
+    record.count = static_cast<std::uint32_t>(c.count);
+    record.rolling = c.rolling_impulse;
+    for (int i = 0; i < c.count; ++i) {
+      const solve::ContactPoint& p = c.points[i];
+      record.points[i] = {
+          p.feature, p.normal_impulse,
+          p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]};
+      // A bounce carries nothing on.
+      if (p.target > 0.0) record.points[i] = {p.feature, 0.0, {}};
+    }
+  }
+}
+
+void World::Impl::report_ends() {
+  for (const PairRecord& last : records) {
+    if (!last.touching) continue;
+    const PairRecord* now = lookup(next_records, last.key);
+    if (now && now->touching) continue;
+    emit(ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0, 0.0);
+  }
+}
+
+}  // namespace vp

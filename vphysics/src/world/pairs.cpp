@@ -1,0 +1,173 @@
+// Which colliders may meet within the rest of the step.
+#include <algorithm>
+
+#include "world/impl.h"
+
+namespace vp {
+
+ColliderPair make_pair(const std::vector<Collider>& colliders, std::uint32_t i, std::uint32_t j) {
+  if (colliders[i].serial > colliders[j].serial) std::swap(i, j);
+  return {(std::uint64_t{colliders[i].serial} << 32) | colliders[j].serial, i, j};
+}
+
+bool should_meet(const Collider& a, const Collider& b) {
+  return (a.filter.category & b.filter.mask) && (b.filter.category & a.filter.mask) &&
+         !(a.sensor && b.sensor);
+}
+
+namespace {
+
+bool can_move(const Body& body) {
+  return body.motion != Motion::fixed;
+}
+
+// Whether any collider of the one may meet any of the other.
+bool may_meet(const Body& a, const Body& b) {
+  if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
+  const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
+  return pushable || a.has_sensor || b.has_sensor;
+}
+
+bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const Collider& cb) {
+  return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
+}
+
+// Distance from the body's reference point to the farthest point of its local bounds.
+double reach_of(const Body& body) {
+  const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
+  const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
+  return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
+                   std::max(std::fabs(lower.y), std::fabs(upper.y)),
+                   std::max(std::fabs(lower.z), std::fabs(upper.z))});
+}
+
+// No point of the body moves farther than this within h.
+double travel(const Body& body, const collide::Motion& m, double h) {
+  if (!can_move(body) || collide::empty(body.local)) return 0.0;
+  return (norm(m.v) + norm(m.w) * reach_of(body)) * h;
+}
+
+}  // namespace
+
+void World::Impl::refresh_bounds(double h) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.alive) {
+      bounds[i] = {};
+    } else if (body.unbounded) {
+      // The bounds of a plane's body enclose those of its colliders, planes included.
+      bounds[i] = collide::transformed(body.T, body.local);
+      pose_colliders(i);
+      for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+        bounds[i] = merged(bounds[i], colliders[c].bounds);
+      }
+    } else if (!collide::empty(body.local)) {
+      bounds[i] = grown(collide::transformed(body.T, body.local),
+                        desc.contact_slop + travel(body, motions[i], h));
+    } else {
+      bounds[i] = {};
+    }
+    movable[i] = body.alive && can_move(body);
+  }
+}
+
+void World::Impl::pose_colliders(std::uint32_t index) {
+  if (posed[index]) return;
+  posed[index] = 1;
+  for (std::uint32_t c = bodies[index].first_collider; c != kNone; c = colliders[c].next) {
+    Collider& collider = colliders[c];
+    collider.T = bodies[index].T * collider.T_body_shape;
+    collider.bounds = bounds_of(collider.geometry, collider.T);
+  }
+}
+
+double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
+  const std::uint32_t a = colliders[pair.a].body, b = colliders[pair.b].body;
+  return desc.contact_slop + travel(bodies[a], motions[a], h) + travel(bodies[b], motions[b], h);
+}
+
+// Pairs without a continuous body.
+void World::Impl::find_discrete_pairs(double h) {
+  body_pairs.clear();
+  discrete_pairs.clear();
+  broad_phase.find_pairs(bounds, movable, body_pairs);
+  for (const collide::IndexPair& pair : body_pairs) {
+    const Body &a = bodies[pair.a], &b = bodies[pair.b];
+    if (a.continuous || b.continuous || !may_meet(a, b)) continue;
+    pose_colliders(pair.a);
+    pose_colliders(pair.b);
+    const double margin =
+        desc.contact_slop + travel(a, motions[pair.a], h) + travel(b, motions[pair.b], h);
+    for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
+      const Collider& ca = colliders[i];
+      const collide::Bounds near = grown(ca.bounds, margin);
+      if (!overlap(near, bounds[pair.b])) continue;
+      for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
+        const Collider& cb = colliders[j];
+        if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
+        if (pushable_or_sensed(a, b, ca, cb)) discrete_pairs.push_back(make_pair(colliders, i, j));
+      }
+    }
+  }
+  std::sort(discrete_pairs.begin(), discrete_pairs.end(),
+            [](const ColliderPair& p, const ColliderPair& q) { return p.key < q.key; });
+  counters.pairs += static_cast<std::uint32_t>(discrete_pairs.size());
+}
+
+collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const {
+  const Collider& sphere = colliders[p.sphere_is_a ? p.pair.a : p.pair.b];
+  const Collider& other = colliders[p.sphere_is_a ? p.pair.b : p.pair.a];
+  return {sphere.T.position(),
+          sphere.geometry.radius,
+          motions[sphere.body],
+          &other.geometry,
+          other.T,
+          motions[other.body],
+          h,
+          0.05 * desc.contact_slop};
+}
+
+// Pairs of a continuous body's colliders with those of another body that can meet within h.
+void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
+  const Body &a = bodies[index], &b = bodies[other];
+  const collide::Motion &ma = motions[index], &mb = motions[other];
+  pose_colliders(index);
+  pose_colliders(other);
+  const double speed = norm(ma.v - mb.v);
+  const double wa = norm(ma.w), wb = norm(mb.w);
+  for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
+    const Collider& ball = colliders[i];
+    const double own = speed + wa * norm(ball.T.position() - ma.x);
+    const double far = norm(ball.T.position() - mb.x) + own * h;
+    const double margin = desc.contact_slop + (own + wb * far) * h;
+    const collide::Bounds near = grown(ball.bounds, margin);
+    for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
+      const Collider& cb = colliders[j];
+      if (!overlap(near, cb.bounds) || !should_meet(ball, cb)) continue;
+      if (ball.geometry.kind != collide::Kind::sphere) continue;  // a sensor of another shape
+      const Vec3 local = inverse_times(cb.T, ball.T.position());
+      const double separation = signed_distance(cb.geometry, local).distance - ball.geometry.radius;
+      if (separation > margin) continue;
+      const ColliderPair pair = make_pair(colliders, i, j);
+      swept_pairs.push_back({pair, pair.a == i, ball.sensor || cb.sensor, separation});
+    }
+  }
+}
+
+void World::Impl::find_swept_pairs(double h) {
+  swept_pairs.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].alive || !bodies[i].continuous) continue;
+    for (std::uint32_t j = 0; j < bodies.size(); ++j) {
+      // Two continuous bodies meet once, in the order of their slots.
+      if (j == i || !bodies[j].alive || (bodies[j].continuous && j < i)) continue;
+      if (overlap(bounds[i], bounds[j]) && may_meet(bodies[i], bodies[j])) add_swept_pairs(i, j, h);
+    }
+  }
+  std::sort(swept_pairs.begin(), swept_pairs.end(),
+            [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });
+  counters.pairs = std::max(counters.pairs,
+                            static_cast<std::uint32_t>(discrete_pairs.size() + swept_pairs.size()));
+}
+
+}  // namespace vp

@@ -1,0 +1,235 @@
+// The mutable state as bytes: 8-byte little-endian words.
+//
+//   magic, format, structure digest, number of bodies, of articulations, of pair records
+//   bodies:         pose (12), w, v, prescribed twist (6)
+//   articulations:  for slide and angle: q, drive (5), drive impulse
+//   records:        key, a | b, count | touching, rolling, 4 points
+//   digest of all words before
+#include <bit>
+#include <cstring>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
+constexpr std::uint64_t kFormat = 1;
+
+struct Digest {
+  std::uint64_t digest = kMagic;
+  void word(std::uint64_t w) { digest = mixed(digest, w); }
+};
+
+struct ByteSink : Digest {
+  std::vector<std::byte>& bytes;
+  explicit ByteSink(std::vector<std::byte>& b) : bytes(b) {}
+  void word(std::uint64_t w) {
+    Digest::word(w);
+    const std::size_t n = bytes.size();
+    bytes.resize(n + sizeof w);
+    std::memcpy(bytes.data() + n, &w, sizeof w);
+  }
+};
+
+template <class Sink>
+void put(Sink& sink, double x) {
+  sink.word(std::bit_cast<std::uint64_t>(x));
+}
+template <class Sink>
+void put(Sink& sink, const Vec3& a) {
+  put(sink, a.x);
+  put(sink, a.y);
+  put(sink, a.z);
+}
+
+template <class Sink>
+void put(Sink& sink, const PairRecord& r) {
+  sink.word(r.key);
+  sink.word((std::uint64_t{r.a} << 32) | r.b);
+  sink.word((std::uint64_t{r.count} << 32) | (r.touching ? 1u : 0u));
+  put(sink, r.rolling);
+  for (const PairPoint& p : r.points) {
+    sink.word(p.feature);
+    put(sink, p.normal_impulse);
+    put(sink, p.friction);
+  }
+}
+
+// Reads words; out of bytes or out of range makes it fail for good.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  std::uint64_t word() {
+    std::uint64_t w = 0;
+    if (bytes_.size() < sizeof w) {
+      ok_ = false;
+      return 0;
+    }
+    std::memcpy(&w, bytes_.data(), sizeof w);
+    bytes_ = bytes_.subspan(sizeof w);
+    return w;
+  }
+  double number() {
+    const double x = std::bit_cast<double>(word());
+    check(std::isfinite(x));
+    return x;
+  }
+  double bounded() {
+    const double x = number();
+    check(in_range(x));
+    return x;
+  }
+  Vec3 vector() {
+    const double x = bounded(), y = bounded(), z = bounded();
+    return {x, y, z};
+  }
+  void check(bool condition) { ok_ = ok_ && condition; }
+  bool ok() const { return ok_; }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool ok_ = true;
+};
+
+void read(Reader& in, Body& body) {
+  const Vec3 cx = in.vector(), cy = in.vector(), cz = in.vector(), p = in.vector();
+  body.T = SE3({cx, cy, cz}, p);
+  in.check(is_pose(body.T));
+  body.w = in.vector();
+  body.v = in.vector();
+  body.prescribed.w = in.vector();
+  body.prescribed.v = in.vector();
+}
+
+void read(Reader& in, JointAxis& axis) {
+  axis.q = in.bounded();
+  JointDrive& d = axis.drive;
+  d.position = in.bounded();
+  d.velocity = in.bounded();
+  d.stiffness = in.number();
+  d.damping = in.number();
+  d.max_force = in.number();
+  in.check(!problem_with(d).has_value());
+  axis.drive_impulse = in.number();
+}
+
+void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
+  r.key = in.word();
+  const std::uint64_t both = in.word(), flags = in.word();
+  r.a = static_cast<std::uint32_t>(both >> 32);
+  r.b = static_cast<std::uint32_t>(both);
+  r.count = static_cast<std::uint32_t>(flags >> 32);
+  r.touching = (flags & 1u) != 0;
+  in.check((flags & 0xfffffffeu) == 0 && r.count <= collide::kMaxPoints);
+  const bool exist = r.a < colliders.size() && r.b < colliders.size() && r.a != r.b &&
+                     colliders[r.a].alive && colliders[r.b].alive;
+  in.check(exist && make_pair(colliders, r.a, r.b).key == r.key &&
+           colliders[r.a].serial < colliders[r.b].serial);
+  r.rolling = in.vector();
+  for (PairPoint& p : r.points) {
+    const std::uint64_t feature = in.word();
+    in.check(feature <= 0xffffffffu);
+    p.feature = static_cast<std::uint32_t>(feature);
+    p.normal_impulse = in.bounded();
+    in.check(p.normal_impulse >= 0.0);
+    p.friction = in.vector();
+  }
+}
+
+tl::unexpected<Error> bad(const char* message) {
+  return tl::make_unexpected(Error{Errc::bad_data, message});
+}
+
+}  // namespace
+
+template <class Sink>
+void World::Impl::write(Sink& sink) const {
+  sink.word(kMagic);
+  sink.word(kFormat);
+  sink.word(structure);
+  sink.word(bodies.size());
+  sink.word(articulations.size());
+  sink.word(records.size());
+  for (const Body& body : bodies) {
+    const Mat3& R = body.T.rotation();
+    for (const Vec3* v : {&R.cx, &R.cy, &R.cz, &body.T.position(), &body.w, &body.v,
+                          &body.prescribed.w, &body.prescribed.v}) {
+      put(sink, *v);
+    }
+  }
+  for (const Articulation& art : articulations) {
+    for (const JointAxis& axis : art.axes) {
+      put(sink, axis.q);
+      const JointDrive& d = axis.drive;
+      for (const double x : {d.position, d.velocity, d.stiffness, d.damping, d.max_force})
+        put(sink, x);
+      put(sink, axis.drive_impulse);
+    }
+  }
+  for (const PairRecord& record : records) put(sink, record);
+}
+
+void World::snapshot(std::vector<std::byte>& bytes) const {
+  ByteSink sink(bytes);
+  impl_->write(sink);
+  sink.word(sink.digest);
+}
+
+std::uint64_t World::state_hash() const {
+  Digest sink;
+  impl_->write(sink);
+  return sink.digest;
+}
+
+Expected<void> World::restore(std::span<const std::byte> bytes) {
+  constexpr std::size_t kHeader = 6 * sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
+  if (bytes.size() < kHeader + kTail || bytes.size() % sizeof(std::uint64_t) != 0) {
+    return bad("restore: too short to be a snapshot; hand in what snapshot() wrote");
+  }
+  Digest digest;
+  Reader all(bytes.first(bytes.size() - kTail));
+  while (!all.at_end()) digest.word(all.word());
+  Reader tail(bytes.last(kTail));
+  if (tail.word() != digest.digest)
+    return bad("restore: the checksum is wrong; the bytes are damaged");
+
+  Reader in(bytes.first(bytes.size() - kTail));
+  if (in.word() != kMagic || in.word() != kFormat) {
+    return bad("restore: not a snapshot of this version; take a new one");
+  }
+  if (in.word() != impl_->structure || in.word() != impl_->bodies.size() ||
+      in.word() != impl_->articulations.size()) {
+    return bad(
+        "restore: a snapshot of another world; build this one by the same sequence of calls");
+  }
+  const std::uint64_t count = in.word();
+  constexpr std::size_t kRecord = 26 * sizeof(std::uint64_t);
+  if (count > bytes.size() / kRecord)
+    return bad("restore: more contacts announced than bytes follow");
+
+  std::vector<Body> bodies = impl_->bodies;
+  std::vector<Articulation> articulations = impl_->articulations;
+  std::vector<PairRecord> records(count);
+  for (Body& body : bodies) read(in, body);
+  for (Articulation& art : articulations) {
+    for (JointAxis& axis : art.axes) read(in, axis);
+  }
+  for (std::size_t i = 0; i < records.size() && in.ok(); ++i) {
+    read(in, impl_->colliders, records[i]);
+    in.check(i == 0 || records[i - 1].key < records[i].key);
+  }
+  if (!in.ok() || !in.at_end())
+    return bad("restore: a value is out of range; the bytes are damaged");
+  impl_->bodies.swap(bodies);
+  impl_->articulations.swap(articulations);
+  impl_->records.swap(records);
+  return {};
+}
+
+}  // namespace vp

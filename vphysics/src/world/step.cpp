@@ -1,0 +1,282 @@
+// One step: forces, then contacts and impacts in the order of time.
+//
+//   integrate forces over dt
+//   repeat   solve what touches now
+//            advance everything at constant twists to the next impact of a continuous body
+//   until the step is over; after max_impacts_per_step impacts, what would meet is held instead.
+//
+// See docs/decisions/0002-impacts-and-contacts.md.
+#include <algorithm>
+#include <cmath>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+tl::unexpected<Error> refuse(const char* message) {
+  return tl::make_unexpected(Error{Errc::invalid_argument, message});
+}
+
+}  // namespace
+
+Expected<StepStatus> World::step(double dt) {
+  if (!(dt > 0.0 && dt <= 0.1)) return refuse("step: dt must be in (0, 0.1] seconds");
+  impl_->begin_step(dt);
+  impl_->run(dt);
+  impl_->finish_step();
+  return impl_->status;
+}
+
+void World::Impl::begin_step(double dt) {
+  const std::size_t n = bodies.size();
+  status = {};
+  counters = {};
+  events.clear();
+  next_records.clear();
+  bounds.resize(n);
+  movable.resize(n);
+  motions.resize(n);
+  solver_bodies.resize(n);
+  start_poses.resize(n);
+  start_q.resize(2 * articulations.size());
+  posed.assign(n, 0);
+  held.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i) start_poses[i] = bodies[i].T;
+  for (std::size_t i = 0; i < articulations.size(); ++i) {
+    start_q[2 * i] = articulations[i].axes[0].q;
+    start_q[2 * i + 1] = articulations[i].axes[1].q;
+  }
+  integrate_forces(dt);
+}
+
+void World::Impl::integrate_forces(double dt) {
+  for (Body& body : bodies) {
+    if (!body.alive) continue;
+    if (body.motion == Motion::kinematic) {
+      // The origin goes along the chord to where the twist takes it.
+      const SE3 end = body.T * Exp(dt * body.prescribed);
+      body.w = body.T.rotate(body.prescribed.w);
+      body.v = (1.0 / dt) * (end.position() - body.T.position());
+    } else if (body.motion == Motion::dynamic && !body.is_link) {
+      body.v += dt * desc.gravity;
+      body.v *= 1.0 / (1.0 + dt * body.linear_damping);
+      body.w *= 1.0 / (1.0 + dt * body.angular_damping);
+    }
+  }
+  for (Articulation& art : articulations) {
+    Body& body = bodies[art.body];
+    const Vec3 lever = cross(body.T.rotate(art.first_moment), desc.gravity);
+    const double force[2] = {art.mass * dot(art.axis, desc.gravity), dot(art.axis, lever)};
+    for (int i = 0; i < 2; ++i) {
+      const JointAxis& axis = art.axes[i];
+      if (!axis.free) continue;
+      Vec3& rate = i == kSlide ? body.v : body.w;
+      const double now = dot(art.axis, rate) + dt * force[i] / axis.inertia;
+      rate = (now / (1.0 + dt * axis.damping / axis.inertia)) * art.axis;
+    }
+  }
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].alive) (void)stop_if_out_of_range(i);
+  }
+}
+
+bool World::Impl::stop_if_out_of_range(std::uint32_t index) {
+  Body& body = bodies[index];
+  if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
+  status.non_finite = true;
+  body.w = body.v = {};
+  body.prescribed = {};
+  body.T = start_poses[index];
+  if (body.is_link) {
+    Articulation& art = articulations[body.articulation];
+    for (std::size_t i = 0; i < 2; ++i) {
+      art.axes[i].q = start_q[2 * body.articulation + i];
+      art.axes[i].drive_impulse = 0.0;
+    }
+    place_link(art);
+  }
+  posed[index] = 0;
+  return true;
+}
+
+void World::Impl::refresh_solver_bodies() {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    solve::SolverBody& s = solver_bodies[i];
+    s = {};
+    if (!body.alive) continue;
+    s.w = body.w;
+    s.v = body.v;
+    s.x = reference_point(body);
+    if (body.motion != Motion::dynamic) continue;
+    if (body.is_link) {
+      const Articulation& art = articulations[body.articulation];
+      if (art.axes[kSlide].free) s.linear = outer(1.0 / art.axes[kSlide].inertia, art.axis);
+      if (art.axes[kAngle].free) s.angular = outer(1.0 / art.axes[kAngle].inertia, art.axis);
+    } else {
+      const double m = 1.0 / body.mass;
+      s.linear = {m, m, m, 0, 0, 0};
+      s.angular =
+          body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
+    }
+  }
+}
+
+// Constant twists for the rest of the step. A tumbling body turns at the rate it will have halfway:
+// w + (h/2) w', I w' = -w x I w, which makes the turn second order.
+void World::Impl::refresh_motions(double h) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    motions[i] = {reference_point(body), body.v, body.w};
+    if (held[i] || !body.alive || body.motion == Motion::fixed) {
+      motions[i].v = motions[i].w = {};
+    } else if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic) {
+      const Mat3& R = body.T.rotation();
+      const Vec3 w = transposed_times(R, body.w);
+      const Vec3 turn = body.inverse_central * cross(body.central * w, w);
+      const double share = 0.5 * h * norm(turn) / std::max(1e-30, norm(w));
+      // Beyond half of itself the correction is no correction any more.
+      motions[i].w = body.w + (0.5 * h * std::min(1.0, 0.5 / std::max(share, 0.5))) * (R * turn);
+    }
+  }
+}
+
+void World::Impl::advance_body(std::uint32_t index, double h) {
+  Body& body = bodies[index];
+  const collide::Motion& m = motions[index];
+  posed[index] = 0;
+  if (body.is_link) {
+    Articulation& art = articulations[body.articulation];
+    art.axes[kSlide].q += h * dot(art.axis, m.v);
+    art.axes[kAngle].q += h * dot(art.axis, m.w);
+    place_link(art);
+    return;
+  }
+  const Mat3 R = body.T.rotation();
+  const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
+  const Mat3 next = turns ? orthonormalized(Exp(h * m.w) * R) : R;
+  if (body.motion == Motion::dynamic && !body.isotropic && turns) {
+    // Angular momentum is what stays; the rate follows from it.
+    const Vec3 momentum = body.central * transposed_times(R, body.w);
+    body.w = next * (body.inverse_central * transposed_times(next, R * momentum));
+  }
+  place(body, m.x + h * m.v, next);
+}
+
+void World::Impl::advance(double h) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].alive || bodies[i].motion == Motion::fixed || held[i]) continue;
+    advance_body(i, h);
+    if (stop_if_out_of_range(i)) held[i] = 1;
+  }
+  for (solve::ContactConstraint& c : discrete_contacts) {
+    const collide::Motion &a = motions[c.a], &b = motions[c.b];
+    for (int i = 0; i < c.count; ++i) {
+      solve::ContactPoint& p = c.points[i];
+      const Vec3 u = b.v + cross(b.w, p.position - b.x) - a.v - cross(a.w, p.position - a.x);
+      p.separation += h * dot(c.normal, u);
+    }
+  }
+}
+
+void World::Impl::apply_corrections() {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const solve::SolverBody& s = solver_bodies[i];
+    if (s.shift == Vec3{} && s.turn == Vec3{}) continue;
+    Body& body = bodies[i];
+    posed[i] = 0;
+    if (body.is_link) {
+      Articulation& art = articulations[body.articulation];
+      const double moved[2] = {dot(art.axis, s.shift), dot(art.axis, s.turn)};
+      for (int k = 0; k < 2; ++k) {
+        JointAxis& axis = art.axes[k];
+        axis.q = std::clamp(axis.q + moved[k], std::min(axis.limit.lower, axis.q),
+                            std::max(axis.limit.upper, axis.q));
+      }
+      place_link(art);
+    } else {
+      place(body, s.x + s.shift, orthonormalized(Exp(s.turn) * body.T.rotation()));
+    }
+  }
+}
+
+// The time until a continuous body meets something, or a negative number. A pair that touches
+// already counts only when it would get deeper than the slop, and deeper than it is: a ball that
+// rests, rolls or is pinched costs nothing.
+double World::Impl::next_impact(double h) {
+  double first = -1.0;
+  for (const SweptPair& swept : swept_pairs) {
+    if (swept.sensor) continue;
+    const double slop = desc.contact_slop;
+    const double target =
+        swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
+    const double t = time_of_impact(sweep_query(swept, first < 0.0 ? h : first), target);
+    if (t >= 0.0 && (first < 0.0 || t < first)) first = t;
+  }
+  return first;
+}
+
+// Too many impacts: whoever would still meet stands still for the rest of the step. Each round
+// holds at least one more body, so this ends.
+void World::Impl::hold_what_meets(double h) {
+  status.impact_limit = true;
+  status.time_held = h;
+  for (bool again = true; again;) {
+    again = false;
+    for (const SweptPair& swept : swept_pairs) {
+      const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
+      if (swept.sensor || (held[a] && held[b])) continue;
+      const double slop = desc.contact_slop;
+      const double target =
+          swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
+      if (time_of_impact(sweep_query(swept, h), target) < 0.0) continue;
+      again = true;
+      held[a] = held[b] = 1;
+      motions[a].v = motions[a].w = motions[b].v = motions[b].w = {};
+    }
+  }
+}
+
+void World::Impl::run(double dt) {
+  double time = 0.0;
+  refresh_motions(dt);
+  refresh_bounds(dt);
+  find_discrete_pairs(dt);
+  find_swept_pairs(dt);
+  find_discrete_contacts(dt);
+  for (int solves = 0;; ++solves) {
+    const double h = dt - time;
+    solve_contacts(h, solves == 0);
+    if (solves == 0) remember_impulses();
+    report_contacts(time);
+    refresh_motions(h);
+    refresh_bounds(h);
+    find_swept_pairs(h);
+    if (solves >= desc.max_impacts_per_step && next_impact(h) >= 0.0) hold_what_meets(h);
+    double t = next_impact(h);
+    const bool last = t < 0.0;
+    if (last) t = h;
+    report_swept_sensors(t, time);
+    if (solves == 0) report_ends();
+    advance(t);
+    if (last) return;
+    time += t;
+    ++counters.impacts;
+    refresh_motions(dt - time);
+    refresh_bounds(dt - time);
+    find_swept_pairs(dt - time);
+  }
+}
+
+void World::Impl::finish_step() {
+  std::erase_if(next_records, [](const PairRecord& r) {
+    bool loaded = r.touching;
+    for (std::uint32_t i = 0; i < r.count; ++i) loaded |= r.points[i].normal_impulse > 0.0;
+    return !loaded;
+  });
+  records.swap(next_records);
+}
+
+}  // namespace vp

@@ -1,0 +1,122 @@
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+constexpr const char* kRange = " must be finite and at most 1e9 in magnitude";
+
+bool positive(double x) {
+  return in_range(x) && x > 0.0;
+}
+bool not_negative(double x) {
+  return in_range(x) && x >= 0.0;
+}
+
+// Positive definite by its leading minors.
+bool positive_definite(const Sym3& A) {
+  const double minor = A.xx * A.yy - A.xy * A.xy;
+  const double determinant = A.xx * (A.yy * A.zz - A.yz * A.yz) -
+                             A.xy * (A.xy * A.zz - A.yz * A.zx) +
+                             A.zx * (A.xy * A.yz - A.yy * A.zx);
+  return A.xx > 0.0 && minor > 0.0 && determinant > 0.0;
+}
+
+bool in_range(const Sym3& A) {
+  return vp::in_range(Vec3{A.xx, A.yy, A.zz}) && vp::in_range(Vec3{A.xy, A.yz, A.zx});
+}
+
+std::optional<std::string> problem_with(const Inertia& J) {
+  if (!positive(J.mass()))
+    return "inertia: the mass must be positive; set a mass or use solid_inertia";
+  if (!vp::in_range(J.first_moment()) || !in_range(J.rotational())) {
+    return std::string("inertia: every entry") + kRange;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with_shape(const Shape& shape) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) {
+    if (!positive(s->radius)) return "sphere: the radius must be positive and finite";
+  } else if (const auto* b = std::get_if<Box>(&shape)) {
+    const Vec3& h = b->half_extents;
+    if (!positive(h.x) || !positive(h.y) || !positive(h.z)) {
+      return "box: every half extent must be positive and finite";
+    }
+  } else if (const auto* c = std::get_if<Capsule>(&shape)) {
+    if (!positive(c->radius)) return "capsule: the radius must be positive and finite";
+    if (!not_negative(c->half_length)) return "capsule: the half length must be zero or more";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_pose(const SE3& T) {
+  constexpr double kTolerance = 1e-6;
+  const Mat3& R = T.rotation();
+  if (!in_range(T.position()) || !in_range(R.cx) || !in_range(R.cy) || !in_range(R.cz))
+    return false;
+  const Vec3 d = cross(R.cx, R.cy) - R.cz;
+  return std::fabs(dot(R.cx, R.cx) - 1.0) < kTolerance &&
+         std::fabs(dot(R.cy, R.cy) - 1.0) < kTolerance && std::fabs(dot(R.cx, R.cy)) < kTolerance &&
+         norm(d) < kTolerance;
+}
+
+std::optional<std::string> problem_with(const BodyDesc& desc) {
+  if (!is_pose(desc.T_world_body)) return "T_world_body must be a finite rotation and position";
+  if (!in_range(desc.velocity)) return std::string("velocity") + kRange;
+  if (desc.motion > Motion::dynamic) return "motion must be fixed, kinematic or dynamic";
+  if (!not_negative(desc.linear_damping) || !not_negative(desc.angular_damping)) {
+    return "damping must be zero or more";
+  }
+  if (desc.motion != Motion::dynamic) return std::nullopt;
+  if (auto problem = problem_with(desc.inertia)) return problem;
+  if (!positive_definite(desc.inertia.central())) {
+    return "inertia: the rotational part about the centre of mass must be positive definite; is it "
+           "given about the body's origin?";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with(const ColliderDesc& desc) {
+  if (auto problem = problem_with_shape(desc.shape)) return problem;
+  if (!is_pose(desc.T_body_shape)) return "T_body_shape must be a finite rotation and position";
+  const Material& m = desc.material;
+  if (!not_negative(m.friction)) return "material: friction must be zero or more";
+  if (!(m.restitution >= 0.0 && m.restitution <= 1.0))
+    return "material: restitution must be in [0, 1]";
+  if (!not_negative(m.rolling_friction)) return "material: rolling friction must be zero or more";
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with(const LinkDesc& desc) {
+  if (desc.joint > JointKind::cylindrical) return "joint must be one of JointKind";
+  if (!is_pose(desc.T_parent_joint)) return "T_parent_joint must be a finite rotation and position";
+  if (auto problem = problem_with(desc.inertia)) return problem;
+  for (int i = 0; i < 2; ++i) {
+    if (!not_negative(desc.armature[i])) return "armature must be zero or more";
+    if (!not_negative(desc.joint_damping[i])) return "joint_damping must be zero or more";
+    if (!(desc.limit[i].lower <= 0.0 && desc.limit[i].upper >= 0.0)) {
+      return "limit: lower <= 0 <= upper must hold, a joint is created at 0";
+    }
+  }
+  const bool turns = desc.joint == JointKind::revolute || desc.joint == JointKind::cylindrical;
+  const double armature = desc.armature[desc.joint == JointKind::revolute ? 0 : 1];
+  if (turns && !(desc.inertia.rotational().zz + armature > 0.0)) {
+    return "inertia: the moment about the joint's axis (zz) plus armature must be positive";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with(const JointDrive& drive) {
+  if (!in_range(drive.position) || !in_range(drive.velocity)) {
+    return std::string("drive: position and velocity") + kRange;
+  }
+  const auto gain = [](double x) { return std::isfinite(x) && x >= 0.0; };
+  if (!gain(drive.stiffness) || !gain(drive.damping) || !gain(drive.max_force)) {
+    return "drive: stiffness, damping and max_force must be finite and zero or more";
+  }
+  return std::nullopt;
+}
+
+}  // namespace vp

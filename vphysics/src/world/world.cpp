@@ -1,0 +1,354 @@
+// Building a world, and reading and setting its state.
+#include "vphysics/world.h"
+
+#include <bit>
+#include <utility>
+
+#include "vphysics/assert.h"
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+tl::unexpected<Error> refuse(Errc code, std::string message) {
+  return tl::make_unexpected(Error{code, std::move(message)});
+}
+tl::unexpected<Error> refuse(std::string message) {
+  return refuse(Errc::invalid_argument, std::move(message));
+}
+tl::unexpected<Error> stale(const char* what) {
+  return refuse(std::string("the ") + what +
+                " does not exist (any more); keep the id that its creation returned");
+}
+
+// The first free slot, or a new one.
+template <class Slot>
+std::uint32_t take_slot(std::vector<Slot>& slots, std::vector<std::uint32_t>& free) {
+  std::uint32_t index = static_cast<std::uint32_t>(slots.size());
+  if (free.empty()) {
+    slots.emplace_back();
+  } else {
+    index = free.back();
+    free.pop_back();
+  }
+  const std::uint32_t generation = slots[index].generation + 1;
+  slots[index] = Slot{};
+  slots[index].generation = generation;
+  slots[index].alive = true;
+  return index;
+}
+
+bool isotropic(const Sym3& I) {
+  const double tolerance = 1e-12 * I.xx;
+  const auto zero = [&](double x) { return std::fabs(x) <= tolerance; };
+  return zero(I.xx - I.yy) && zero(I.xx - I.zz) && zero(I.xy) && zero(I.yz) && zero(I.zx);
+}
+
+}  // namespace
+
+std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
+  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
+  return digest ^ (digest >> 29);
+}
+
+BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index) {
+  return {index + 1, bodies[index].generation};
+}
+
+ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t index) {
+  return {index + 1, colliders[index].generation};
+}
+
+World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
+  VP_ASSERT(is_finite(desc.gravity) && desc.contact_slop > 0.0 && desc.velocity_iterations > 0 &&
+            desc.max_impacts_per_step >= 0 && desc.restitution_threshold >= 0.0);
+  impl_->desc = desc;
+}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+const Body* World::Impl::find(BodyId id) const {
+  if (id.index == 0 || id.index > bodies.size()) return nullptr;
+  const Body& body = bodies[id.index - 1];
+  return body.alive && body.generation == id.generation ? &body : nullptr;
+}
+Body* World::Impl::find(BodyId id) {
+  return const_cast<Body*>(std::as_const(*this).find(id));
+}
+
+const Articulation* World::Impl::find(ArticulationId id) const {
+  return id.index != 0 && id.index <= articulations.size() && id.generation == 1
+             ? &articulations[id.index - 1]
+             : nullptr;
+}
+Articulation* World::Impl::find(ArticulationId id) {
+  return const_cast<Articulation*>(std::as_const(*this).find(id));
+}
+
+Vec3 World::Impl::reference_point(const Body& body) const {
+  return body.motion == Motion::dynamic && !body.is_link ? body.T * body.centre : body.T.position();
+}
+
+void World::Impl::place(Body& body, const Vec3& reference, const Mat3& R) {
+  const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
+  body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
+}
+
+void World::Impl::place_link(const Articulation& art) {
+  const auto [s, c] = sin_cos(art.axes[kAngle].q);
+  const SE3 T_joint_link(Mat3{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}, {0, 0, art.axes[kSlide].q});
+  bodies[art.body].T = art.T_world_joint * T_joint_link;
+}
+
+Expected<BodyId> World::create_body(const BodyDesc& desc) {
+  if (auto problem = problem_with(desc)) return refuse("create_body: " + *problem);
+  const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
+  Body& body = impl_->bodies[index];
+  body.motion = desc.motion;
+  body.continuous = desc.continuous && desc.motion == Motion::dynamic;
+  body.user_data = desc.user_data;
+  body.T = SE3(orthonormalized(desc.T_world_body.rotation()), desc.T_world_body.position());
+  if (desc.motion == Motion::dynamic) {
+    body.mass = desc.inertia.mass();
+    body.centre = desc.inertia.centre_of_mass();
+    body.central = desc.inertia.central();
+    body.inverse_central = inverse(body.central);
+    body.isotropic = isotropic(body.central);
+    body.linear_damping = desc.linear_damping;
+    body.angular_damping = desc.angular_damping;
+  }
+  impl_->structure = mixed(impl_->structure, 0x100u + index);
+  const BodyId id = body_id(impl_->bodies, index);
+  if (desc.motion != Motion::fixed) (void)set_velocity(id, desc.velocity);
+  return id;
+}
+
+void World::Impl::release_collider(std::uint32_t index) {
+  std::erase_if(records, [&](const PairRecord& r) { return r.a == index || r.b == index; });
+  colliders[index].alive = false;
+  free_colliders.push_back(index);
+}
+
+Expected<void> World::destroy_body(BodyId id) {
+  Body* body = impl_->find(id);
+  if (!body) return stale("body");
+  if (body->is_link) return refuse("destroy_body: a link lives as long as its articulation");
+  for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
+    impl_->release_collider(c);
+  }
+  body->alive = false;
+  body->first_collider = kNone;
+  impl_->free_bodies.push_back(id.index - 1);
+  impl_->structure = mixed(impl_->structure, 0x200u + id.index);
+  return {};
+}
+
+Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
+  Body* body = impl_->find(body_handle);
+  if (!body) return stale("body");
+  if (auto problem = problem_with(desc)) return refuse("add_collider: " + *problem);
+  const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
+  if (half_space && (body->motion != Motion::fixed)) {
+    return refuse("add_collider: a half-space needs a fixed body");
+  }
+  if (body->continuous && !desc.sensor && !std::holds_alternative<Sphere>(desc.shape)) {
+    return refuse(
+        Errc::unsupported,
+        "add_collider: only spheres are swept in this version; give a continuous body spheres");
+  }
+  const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
+  Collider& c = impl_->colliders[index];
+  c.body = body_handle.index - 1;
+  c.sensor = desc.sensor;
+  c.serial = impl_->next_serial++;
+  c.geometry = collide::make_geometry(desc.shape);
+  c.T_body_shape = SE3(orthonormalized(desc.T_body_shape.rotation()), desc.T_body_shape.position());
+  c.material = desc.material;
+  c.filter = desc.filter;
+  c.user_data = desc.user_data;
+  (body->last_collider == kNone ? body->first_collider
+                                : impl_->colliders[body->last_collider].next) = index;
+  body->last_collider = index;
+  body->categories |= c.filter.category;
+  body->masks |= c.filter.mask;
+  body->has_sensor |= c.sensor;
+  if (half_space) {
+    body->unbounded = true;
+  } else {
+    body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
+  }
+  std::uint64_t& digest = impl_->structure;
+  digest = mixed(digest, 0x300u + index);
+  digest = mixed(digest, static_cast<std::uint64_t>(c.geometry.kind) + 16u * body_handle.index);
+  for (const double x :
+       {c.geometry.radius, c.geometry.half.x, c.geometry.half.y, c.geometry.half.z}) {
+    digest = mixed(digest, std::bit_cast<std::uint64_t>(x));
+  }
+  return collider_id(impl_->colliders, index);
+}
+
+Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc) {
+  if (desc.links.empty()) return refuse("create_articulation: at least one link is needed");
+  if (desc.links.size() > 1) {
+    return refuse(Errc::unsupported,
+                  "create_articulation: this version simulates one link on the world; create one "
+                  "articulation for each link");
+  }
+  const LinkDesc& link = desc.links[0];
+  if (link.parent != -1)
+    return refuse("create_articulation: the first link's parent must be -1, the world");
+  if (auto problem = problem_with(link)) return refuse("create_articulation: " + *problem);
+
+  const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
+  Body& body = impl_->bodies[index];
+  body.motion = link.joint == JointKind::fixed ? Motion::fixed : Motion::dynamic;
+  body.is_link = true;
+  body.articulation = static_cast<std::uint32_t>(impl_->articulations.size());
+  body.user_data = link.user_data;
+
+  Articulation art;
+  art.kind = link.joint;
+  art.body = index;
+  art.T_world_joint =
+      SE3(orthonormalized(link.T_parent_joint.rotation()), link.T_parent_joint.position());
+  art.axis = art.T_world_joint.rotation().cz;
+  art.mass = link.inertia.mass();
+  art.first_moment = link.inertia.first_moment();
+  for (int dof = 0; dof < degrees_of_freedom(link.joint); ++dof) {
+    const int i = link.joint == JointKind::revolute ? kAngle : dof;
+    JointAxis& axis = art.axes[i];
+    axis.free = true;
+    axis.inertia = (i == kSlide ? art.mass : link.inertia.rotational().zz) + link.armature[dof];
+    axis.damping = link.joint_damping[dof];
+    axis.limit = link.limit[dof];
+  }
+  impl_->articulations.push_back(art);
+  impl_->place_link(art);
+  impl_->structure = mixed(impl_->structure, 0x400u + static_cast<std::uint64_t>(link.joint));
+  return ArticulationId{static_cast<std::uint32_t>(impl_->articulations.size()), 1};
+}
+
+BodyId World::link_body(ArticulationId id, int link) const {
+  const Articulation* art = impl_->find(id);
+  return art && link == 0 ? body_id(impl_->bodies, art->body) : BodyId{};
+}
+
+bool World::contains(BodyId id) const {
+  return impl_->find(id) != nullptr;
+}
+
+SE3 World::pose(BodyId id) const {
+  const Body* body = impl_->find(id);
+  VP_ASSERT(body && "pose: the body does not exist (any more)");
+  return body ? body->T : SE3{};
+}
+
+se3 World::velocity(BodyId id) const {
+  const Body* body = impl_->find(id);
+  VP_ASSERT(body && "velocity: the body does not exist (any more)");
+  if (!body) return {};
+  if (body->motion == Motion::kinematic) return body->prescribed;
+  const Vec3 v = body->v + cross(body->w, body->T.position() - impl_->reference_point(*body));
+  return {body->T.unrotate(body->w), body->T.unrotate(v)};
+}
+
+Expected<void> World::set_pose(BodyId id, const SE3& T) {
+  Body* body = impl_->find(id);
+  if (!body) return stale("body");
+  if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
+  if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
+  body->T = SE3(orthonormalized(T.rotation()), T.position());
+  return {};
+}
+
+Expected<void> World::set_velocity(BodyId id, const se3& V) {
+  Body* body = impl_->find(id);
+  if (!body) return stale("body");
+  if (body->is_link)
+    return refuse("set_velocity: a link is moved by its joint; use set_joint_state");
+  if (body->motion == Motion::fixed) return refuse("set_velocity: the body is fixed");
+  if (!in_range(V)) return refuse("set_velocity: every entry must be finite and at most 1e9");
+  if (body->motion == Motion::kinematic) {
+    body->prescribed = V;
+    return {};
+  }
+  body->w = body->T.rotate(V.w);
+  body->v = body->T.rotate(V.v + cross(V.w, body->centre));
+  return {};
+}
+
+Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
+  Body* body = impl_->find(id);
+  if (!body) return stale("body");
+  if (body->motion != Motion::dynamic) return refuse("apply_impulse: the body is not dynamic");
+  if (!in_range(impulse) || !in_range(point)) {
+    return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
+  }
+  const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
+  if (body->is_link) {
+    const Articulation& art = impl_->articulations[body->articulation];
+    const Vec3& a = art.axis;
+    if (art.axes[kSlide].free) body->v += (dot(a, impulse) / art.axes[kSlide].inertia) * a;
+    if (art.axes[kAngle].free) body->w += (dot(a, moment) / art.axes[kAngle].inertia) * a;
+    return {};
+  }
+  body->v += (1.0 / body->mass) * impulse;
+  body->w += rotated(body->T.rotation(), body->inverse_central) * moment;
+  return {};
+}
+
+double World::joint_position(ArticulationId id, int link, int dof) const {
+  const Articulation* art = impl_->find(id);
+  const int i = art && link == 0 ? art->axis_index(dof) : -1;
+  VP_ASSERT(i >= 0 && "joint_position: no such joint coordinate");
+  return i >= 0 ? art->axes[i].q : 0.0;
+}
+
+double World::joint_velocity(ArticulationId id, int link, int dof) const {
+  const Articulation* art = impl_->find(id);
+  const int i = art && link == 0 ? art->axis_index(dof) : -1;
+  VP_ASSERT(i >= 0 && "joint_velocity: no such joint coordinate");
+  if (i < 0) return 0.0;
+  const Body& body = impl_->bodies[art->body];
+  return dot(art->axis, i == kSlide ? body.v : body.w);
+}
+
+Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, double position,
+                                      double velocity) {
+  Articulation* art = impl_->find(id);
+  const int i = art && link == 0 ? art->axis_index(dof) : -1;
+  if (i < 0)
+    return refuse("set_joint_state: no such joint coordinate; check articulation, link and dof");
+  if (!in_range(position) || !in_range(velocity)) {
+    return refuse("set_joint_state: position and velocity must be finite and at most 1e9");
+  }
+  const JointLimit& limit = art->axes[i].limit;
+  if (position < limit.lower || position > limit.upper) {
+    return refuse("set_joint_state: the position must lie within the joint's limits");
+  }
+  art->axes[i].q = position;
+  Body& body = impl_->bodies[art->body];
+  (i == kSlide ? body.v : body.w) = velocity * art->axis;
+  impl_->place_link(*art);
+  return {};
+}
+
+Expected<void> World::set_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
+  Articulation* art = impl_->find(id);
+  const int i = art && link == 0 ? art->axis_index(dof) : -1;
+  if (i < 0) return refuse("set_drive: no such joint coordinate; check articulation, link and dof");
+  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
+  art->axes[i].drive = drive;
+  return {};
+}
+
+std::span<const ContactEvent> World::contact_events() const {
+  return impl_->events;
+}
+const StepCounters& World::counters() const {
+  return impl_->counters;
+}
+
+}  // namespace vp
