@@ -77,6 +77,8 @@ struct Rules {
   double dead_ball_seconds = 6.0;   // without a touch and almost at rest
   double ceremony_seconds = 2.5;
   double end_seconds = 6.0;
+
+  bool operator==(const Rules&) const = default;
 };
 
 struct MatchDesc {

@@ -28,6 +28,11 @@ enum class Layout : std::uint8_t {
 };
 inline constexpr int kLayouts = 2;
 
+// The way a team attacks along x, and the way its players push a rod along y: the players of team 0
+// stand on the -y side with their own goal to the left, those of team 1 opposite.
+constexpr double attack_sign(int team) { return team == 0 ? 1.0 : -1.0; }
+constexpr double push_sign(int team) { return team == 0 ? 1.0 : -1.0; }
+
 // What a rod is for, from a team's own goal outwards.
 enum class Line : std::uint8_t { goalie, defence, midfield, attack };
 

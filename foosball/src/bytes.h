@@ -1,0 +1,73 @@
+// Little-endian bytes of a saved match. Writer and reader have the same calls, so that what is saved
+// is described once, by a function that visits every field. The reader never reads outside; its
+// first error sticks and is asked for once at the end.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace foosball {
+
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::vector<std::byte>& out) : out_(out) {}
+
+  template <class T>
+  void choice(const T& x, int /*end*/) {
+    out_.push_back(static_cast<std::byte>(x));
+  }
+  void flag(const bool& x) { choice(x, 2); }
+  void count(const std::uint64_t& x) {
+    for (int i = 0; i < 8; ++i) out_.push_back(static_cast<std::byte>(x >> (8 * i)));
+  }
+  void real(const double& x, double /*low*/, double /*high*/) {
+    count(std::bit_cast<std::uint64_t>(x));
+  }
+
+ private:
+  std::vector<std::byte>& out_;
+};
+
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> in) : in_(in) {}
+  bool ok() const { return ok_; }
+  std::span<const std::byte> rest() const { return in_; }
+
+  // A bool, an integer or an enum in [0, end), end <= 256.
+  template <class T>
+  void choice(T& x, int end) {
+    const auto value = static_cast<int>(take(1));
+    if (require(value < end)) x = static_cast<T>(value);
+  }
+  void flag(bool& x) { choice(x, 2); }
+  void count(std::uint64_t& x) { x = take(8); }
+  // A number in [low, high]; NaN is an error.
+  void real(double& x, double low, double high) {
+    const auto value = std::bit_cast<double>(take(8));
+    if (require(value >= low && value <= high)) x = value;
+  }
+  bool require(bool condition) {
+    ok_ = ok_ && condition;
+    return ok_;
+  }
+
+ private:
+  std::uint64_t take(std::size_t size) {
+    if (!require(in_.size() >= size)) return 0;
+    std::uint64_t x = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      x |= std::uint64_t{std::to_integer<std::uint8_t>(in_[i])} << (8 * i);
+    }
+    in_ = in_.subspan(size);
+    return x;
+  }
+
+  std::span<const std::byte> in_;
+  bool ok_ = true;
+};
+
+}  // namespace foosball

@@ -1,0 +1,28 @@
+#include "computer_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "foosball/table.h"
+
+namespace foosball {
+
+void HandAxis::move(double goal, const AxisLimits& limits) {
+  const double error = goal - position_;
+  // v^2 = 2 a d, with a tenth of the acceleration kept in hand; within a tick of the goal, arrive.
+  const double stopping = std::sqrt(1.8 * limits.acceleration * std::fabs(error));
+  const double speed = std::min({limits.rate, stopping, std::fabs(error) / kTick});
+  accelerate(std::copysign(speed, error), limits);
+}
+
+void HandAxis::swing(double goal, const AxisLimits& limits) {
+  accelerate(std::copysign(limits.rate, goal - position_), limits);
+}
+
+void HandAxis::accelerate(double wanted_rate, const AxisLimits& limits) {
+  const double most = limits.acceleration * kTick;
+  rate_ += std::clamp(wanted_rate - rate_, -most, most);
+  position_ += rate_ * kTick;
+}
+
+}  // namespace foosball

@@ -1,0 +1,47 @@
+// What a computer player sees: the table turned so that its own goal is at -x, with a person's
+// delay, and the guess of where the ball is now.
+//
+// Team frame: for team 1 the table's turned half a revolution about z. A rod's swing is the angle
+// with the feet forward (towards the opponent) positive.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "foosball/match.h"
+
+namespace foosball {
+
+struct Sighting {
+  bool ball_in_play = false;
+  vp::Vec3 ball, velocity;
+  std::array<double, kRods> slide{}, swing{};
+};
+
+// Coordinates of a rod between the table's frame and a team's.
+constexpr double team_slide(int team, double slide) { return attack_sign(team) * slide; }
+constexpr double team_swing(int team, double angle) { return -attack_sign(team) * angle; }
+
+class ComputerSight {
+ public:
+  ComputerSight(int team, int delay_ticks);
+
+  void look(const MatchView& view);
+  // The rods as seen, and the ball carried on to now from where and how fast it was seen.
+  const Sighting& now() const { return now_; }
+
+ private:
+  Sighting in_team_frame(const MatchView& view) const;
+
+  int team_;
+  std::vector<Sighting> seen_;  // a ring of the last delay ticks
+  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+  Sighting now_;
+};
+
+// y of a ball after a time, bounced off the side walls.
+double y_after(const TableSpec& table, double y, double vy, double time);
+
+}  // namespace foosball

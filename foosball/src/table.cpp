@@ -1,0 +1,130 @@
+// The figures of the table; each says where it comes from.
+#include "foosball/table.h"
+
+namespace foosball {
+namespace {
+
+// Rods 150 mm apart, 12 mm under the foot of the average man (notes on a German table).
+constexpr double kRodPitch = 0.150;
+constexpr double kRodHeight = 0.084;
+constexpr double kLength = 1.200;
+constexpr double kWidth = 0.680;
+
+// Half of the widest man and 2 mm of air: slide limits are those of the widest character, so that a
+// choice of character never changes what a hand can reach or how a cabinet is calibrated.
+constexpr double kWallClearance = 0.022 + 0.002;
+
+// A goalie alone on his rod would reach every corner; a stop holds him here. What he cannot reach
+// beyond lies on the raised corner and rolls back to him.
+constexpr double kLoneGoalieLimit = 0.270;
+
+constexpr RodSpec rod_spec(int index, int team, Line line, int men, double spacing) {
+  const double outermost = 0.5 * (men - 1) * spacing;
+  const double to_wall = 0.5 * kWidth - outermost - kWallClearance;
+  const double limit = men == 1 ? kLoneGoalieLimit : to_wall;
+  return {team, line, (index - 3.5) * kRodPitch, men, spacing, limit};
+}
+
+struct LinePlan {
+  int men;
+  double spacing;
+};
+using TeamPlan = std::array<LinePlan, 4>;  // by Line
+
+// 1-2-5-3 with the spacings of real rods. Four men 155 mm apart just reach every y between the walls.
+constexpr TeamPlan kTournament{{{1, 0.0}, {2, 0.239}, {5, 0.120}, {3, 0.190}}};
+constexpr TeamPlan kPaper{{{4, 0.155}, {4, 0.155}, {4, 0.155}, {4, 0.155}}};
+
+// From -x to +x, as on every real table: each midfield faces the other, each attack the defence.
+struct Post {
+  int team;
+  Line line;
+};
+constexpr std::array<Post, kRods> kPosts{{{0, Line::goalie},
+                                          {0, Line::defence},
+                                          {1, Line::attack},
+                                          {0, Line::midfield},
+                                          {1, Line::midfield},
+                                          {0, Line::attack},
+                                          {1, Line::defence},
+                                          {1, Line::goalie}}};
+
+constexpr TableSpec describe(Layout layout) {
+  TableSpec table{};
+  table.layout = layout;
+  table.length = kLength;
+  table.width = kWidth;
+  table.wall_height = 0.115;  // rods pass through at 84 mm
+  table.rod_height = kRodHeight;
+  table.goal_width = 0.205;
+  table.goal_height = 0.080;
+  table.goal_depth = 0.120;
+  table.corner_rise = 0.0105;
+  table.corner_size = 0.140;
+  table.ball_radius = 0.0173;  // Tornado ball: 34.6 mm, 26.3 g
+  table.ball_mass = 0.0263;
+  table.rod_mass = 1.10;
+  table.rod_radius = 0.008;
+  const TeamPlan& plan = layout == Layout::paper ? kPaper : kTournament;
+  for (int i = 0; i < kRods; ++i) {
+    const Post& post = kPosts[i];
+    const LinePlan& line = plan[static_cast<int>(post.line)];
+    table.rods[i] = rod_spec(i, post.team, post.line, line.men, line.spacing);
+  }
+  return table;
+}
+
+constexpr std::array<TableSpec, kLayouts> kTables{describe(Layout::paper),
+                                                  describe(Layout::tournament)};
+
+// Every foot corner stays within 75 mm of the axis, which is what the end wall leaves a goalie; no
+// head reaches below the top of the ball when the man hangs head down, so that none pins it there.
+constexpr std::array<CharacterSpec, kCharacters> kCharacterSpecs{{
+    {"tall and thin", 0.020, 0.020, 0.024, 0.018, 0.046, 0.0735, 0.060, 0.60, 0.75},
+    {"average", 0.024, 0.020, 0.032, 0.022, 0.044, 0.0720, 0.070, 0.60, 0.65},
+    {"small and fat", 0.030, 0.022, 0.044, 0.030, 0.038, 0.0700, 0.085, 0.70, 0.50},
+}};
+
+constexpr int kPartsOfMan = 4;
+using ManBoxes = std::array<ManBox, kPartsOfMan>;
+
+// A box centred on the axis' vertical plane, between two heights in the man's frame.
+ManBox slab(ManBox::Part part, double width, double depth, double bottom, double top) {
+  return {{0.0, 0.0, 0.5 * (bottom + top)}, {0.5 * depth, 0.5 * width, 0.5 * (top - bottom)}, part};
+}
+
+ManBoxes boxes_of(const CharacterSpec& c) {
+  constexpr double kFootHeight = 0.024;  // its top is above a ball on the field: no edge to climb
+  constexpr double kHip = -0.028;
+  constexpr double kShoulder = 0.020;
+  const double sole = -c.foot_reach;
+  const double ankle = sole + kFootHeight;
+  return {{slab(ManBox::Part::foot, c.foot_width, c.foot_depth, sole, ankle),
+           slab(ManBox::Part::leg, 0.8 * c.foot_width, 0.6 * c.foot_depth, ankle, kHip),
+           slab(ManBox::Part::torso, c.torso_width, c.torso_depth, kHip, kShoulder),
+           slab(ManBox::Part::head, 0.016, 0.016, kShoulder, c.head_height)}};
+}
+
+}  // namespace
+
+const CharacterSpec& character_spec(int character) { return kCharacterSpecs.at(character); }
+
+std::span<const ManBox> man_boxes(int character) {
+  static const std::array<ManBoxes, kCharacters> boxes{
+      boxes_of(kCharacterSpecs[0]), boxes_of(kCharacterSpecs[1]), boxes_of(kCharacterSpecs[2])};
+  return boxes.at(character);
+}
+
+const TableSpec& table_spec(Layout layout) { return kTables.at(static_cast<int>(layout)); }
+
+double man_offset(const RodSpec& rod, int man) { return (man - 0.5 * (rod.men - 1)) * rod.spacing; }
+
+std::array<int, 4> rods_of_team(const TableSpec& table, int team) {
+  std::array<int, 4> rods{};
+  for (int i = 0; i < kRods; ++i) {
+    if (table.rods[i].team == team) rods[static_cast<int>(table.rods[i].line)] = i;
+  }
+  return rods;
+}
+
+}  // namespace foosball

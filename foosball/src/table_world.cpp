@@ -1,0 +1,273 @@
+#include "table_world.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "tuning.h"
+
+namespace foosball {
+namespace {
+
+using vp::Box;
+using vp::Mat3;
+using vp::SE3;
+using vp::Vec3;
+
+constexpr std::uint32_t kBallCategory = 1;
+constexpr std::uint32_t kTableCategory = 2;
+constexpr std::uint32_t kManCategory = 4;
+
+// Thick enough that no depth of penetration ever has its way out on the far side.
+constexpr double kWallThickness = 0.20;  // [m]
+
+// A joint's axis is its z; a rod's is the table's y. Columns: the joint's axes in the world.
+constexpr Mat3 kRodAxes{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+
+// Ids and sizes here are the table's own: nothing of what is made or moved can be refused.
+template <class T>
+T must(vp::Expected<T> result) {
+  assert(result);
+  return std::move(*result);
+}
+void must([[maybe_unused]] const vp::Expected<void>& result) { assert(result); }
+
+// Rod with its men, which are balanced about the axis as on tournament tables, so that a rod let go
+// stays as it is. Link frame: z along the rod.
+vp::Inertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterSpec& c) {
+  constexpr double kHalfLength = 0.55;
+  const double men = rod.men * c.mass;
+  const double mass = table.rod_mass + men;
+  // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
+  const double gyration = 0.6 * c.foot_reach;
+  const double axial = 0.5 * table.rod_mass * table.rod_radius * table.rod_radius +
+                       men * gyration * gyration;
+  const double across = mass * kHalfLength * kHalfLength / 3.0;
+  return {mass, Vec3{across, across, axial}};
+}
+
+}  // namespace
+
+std::uint64_t encode(const Tag& tag) {
+  return static_cast<std::uint64_t>(tag.what) | std::uint64_t{tag.rod} << 8 |
+         std::uint64_t{tag.man} << 16 | std::uint64_t{tag.part} << 24;
+}
+
+Tag decode_tag(std::uint64_t user_data) {
+  return {static_cast<Tag::What>(user_data & 0xff), static_cast<std::uint8_t>(user_data >> 8),
+          static_cast<std::uint8_t>(user_data >> 16), static_cast<std::uint8_t>(user_data >> 24)};
+}
+
+TableWorld::TableWorld(Layout layout, const Characters& characters) : table_(table_spec(layout)) {
+  vp::BodyDesc fixed;
+  fixed.motion = vp::Motion::fixed;
+  fixed_ = must(world_.create_body(fixed));
+  add_field_and_walls();
+  add_corners();
+  add_ball();
+  for (int i = 0; i < kRods; ++i) add_rod(i, characters[table_.rods[i].team]);
+  contacts_.reserve(64);
+  found_.reserve(64);
+  park_ball();
+}
+
+// --- building ------------------------------------------------------------------------------------
+
+void TableWorld::add_fixed(const vp::Shape& shape, const SE3& T_world_shape,
+                           const vp::Material& material, Tag::What what) {
+  vp::ColliderDesc desc;
+  desc.shape = shape;
+  desc.T_body_shape = T_world_shape;
+  desc.material = material;
+  desc.filter = {kTableCategory, kBallCategory};
+  desc.user_data = encode({what});
+  must(world_.add_collider(fixed_, desc));
+}
+
+void TableWorld::add_field_and_walls() {
+  add_fixed(vp::HalfSpace{}, SE3{}, tuning::kField, Tag::What::field);
+  const double t = 0.5 * kWallThickness;
+  const double h = 0.5 * table_.wall_height;
+  const double beyond = table_.goal_depth + kWallThickness;
+  const Box side{{0.5 * table_.length + beyond, t, h}};
+  for (const double s : {-1.0, 1.0}) {
+    add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), tuning::kWall,
+              Tag::What::wall);
+    add_goal(s);
+  }
+}
+
+// An end wall as deep as the goal, with the opening, and the box behind it.
+void TableWorld::add_goal(double side) {
+  const double front = 0.5 * table_.length;
+  const double depth = 0.5 * table_.goal_depth;
+  const double x = side * (front + depth);
+  const double post = 0.5 * table_.goal_width;
+  const double flank = 0.5 * (0.5 * table_.width - post);
+  const double h = 0.5 * table_.wall_height;
+  for (const double s : {-1.0, 1.0}) {
+    add_fixed(Box{{depth, flank, h}}, SE3(Vec3{x, s * (post + flank), h}), tuning::kWall,
+              Tag::What::wall);
+  }
+  const double lintel = 0.5 * (table_.wall_height - table_.goal_height);
+  add_fixed(Box{{depth, post, lintel}}, SE3(Vec3{x, 0.0, table_.goal_height + lintel}),
+            tuning::kWall, Tag::What::wall);
+  const double t = 0.5 * kWallThickness;
+  add_fixed(Box{{t, 0.5 * table_.width, h}},
+            SE3(Vec3{side * (front + table_.goal_depth + t), 0.0, h}), tuning::kGoalBox,
+            Tag::What::wall);
+}
+
+// Each corner is the top face of a slab: the plane through two points of the field's edges, a leg
+// away from the corner, and the point corner_rise above the corner itself.
+void TableWorld::add_corners() {
+  const double leg = table_.corner_size;
+  const double half_thickness = 0.03;
+  for (const double sx : {-1.0, 1.0}) {
+    for (const double sy : {-1.0, 1.0}) {
+      const Vec3 corner{sx * 0.5 * table_.length, sy * 0.5 * table_.width, 0.0};
+      const Vec3 foot = corner - 0.5 * leg * Vec3{sx, sy, 0.0};  // middle of the ramp's lower edge
+      const Vec3 rise = corner + Vec3{0.0, 0.0, table_.corner_rise} - foot;
+      const Vec3 up = (1.0 / vp::norm(rise)) * rise;
+      const Vec3 along = (1.0 / std::sqrt(2.0)) * Vec3{-sx, sy, 0.0};
+      Vec3 normal = cross(along, up);
+      if (normal.z < 0.0) normal = -normal;
+      const Vec3 y = cross(normal, along);
+      const Vec3 centre = foot + 0.5 * rise - half_thickness * normal;
+      add_fixed(Box{{0.5 * leg * std::sqrt(2.0), 0.5 * vp::norm(rise), half_thickness}},
+                SE3(Mat3{along, y, normal}, centre), tuning::kField, Tag::What::field);
+    }
+  }
+}
+
+void TableWorld::add_ball() {
+  const double r = table_.ball_radius;
+  const double m = table_.ball_mass;
+  const double i = 0.4 * m * r * r;
+  vp::BodyDesc desc;
+  desc.inertia = vp::Inertia(m, Vec3{i, i, i});
+  desc.continuous = true;
+  ball_ = must(world_.create_body(desc));
+  vp::ColliderDesc shape;
+  shape.shape = vp::Sphere{r};
+  shape.material = tuning::kBall;
+  shape.filter = {kBallCategory, kTableCategory | kManCategory};
+  shape.user_data = encode({Tag::What::ball});
+  must(world_.add_collider(ball_, shape));
+}
+
+void TableWorld::add_rod(int rod, int character) {
+  const RodSpec& spec = table_.rods[rod];
+  const CharacterSpec& c = character_spec(character);
+  vp::LinkDesc link;
+  link.joint = vp::JointKind::cylindrical;
+  link.T_parent_joint = SE3(kRodAxes, Vec3{spec.x, 0.0, table_.rod_height});
+  link.inertia = rod_inertia(table_, spec, c);
+  link.armature[0] = tuning::kHandMass;
+  link.armature[1] = tuning::kHandInertia;
+  link.limit[0] = {-spec.slide_limit, spec.slide_limit};
+  rods_[rod] = must(world_.create_articulation({{link}}));
+
+  const vp::BodyId body = world_.link_body(rods_[rod], 0);
+  const SE3 T_link_table(transpose(kRodAxes), Vec3{});
+  for (int man = 0; man < spec.men; ++man) {
+    const auto boxes = man_boxes(character);
+    for (std::size_t part = 0; part < boxes.size(); ++part) {
+      const Vec3 centre = boxes[part].centre + Vec3{0.0, man_offset(spec, man), 0.0};
+      vp::ColliderDesc desc;
+      desc.shape = Box{boxes[part].half_extents};
+      desc.T_body_shape = T_link_table * SE3(centre);
+      desc.material = {c.foot_friction, c.foot_restitution, 0.0};
+      desc.filter = {kManCategory, kBallCategory};
+      desc.user_data = encode({Tag::What::man, static_cast<std::uint8_t>(rod),
+                               static_cast<std::uint8_t>(man), static_cast<std::uint8_t>(part)});
+      must(world_.add_collider(body, desc));
+    }
+  }
+  drive(rod, {});
+}
+
+// --- rods ----------------------------------------------------------------------------------------
+
+namespace {
+
+// A critically damped drive of the inertia. The error is cut so that the speed it asks for stays
+// within the bound: at rest error * stiffness = speed * damping.
+vp::JointDrive drive_towards(double target, double rate, double now, double inertia,
+                             double max_force, double max_rate) {
+  const double stiffness = inertia * tuning::kDriveOmega * tuning::kDriveOmega;
+  const double damping = 2.0 * inertia * tuning::kDriveOmega;
+  const double furthest = max_rate * damping / stiffness;
+  const double position = now + std::clamp(target - now, -furthest, furthest);
+  return {position, std::clamp(rate, -max_rate, max_rate), stiffness, damping, max_force};
+}
+
+}  // namespace
+
+void TableWorld::drive(int rod, const RodTarget& target) {
+  const RodSpec& spec = table_.rods[rod];
+  const RodState now = this->rod(rod);
+  const double slide = std::clamp(target.slide, -spec.slide_limit, spec.slide_limit);
+  const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
+  // The heaviest rod's figures serve all: a lighter one is only damped a little more.
+  constexpr double kSlideInertia = 1.9;     // [kg]
+  constexpr double kAngleInertia = 1.0e-3;  // [kg m^2]
+  must(world_.set_drive(rods_[rod], 0, 0,
+                        drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide,
+                                      kSlideInertia, tuning::kHandForce, tuning::kMaxSlideRate)));
+  must(world_.set_drive(rods_[rod], 0, 1,
+                        drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia,
+                                      tuning::kHandTorque, tuning::kMaxAngleRate)));
+}
+
+RodState TableWorld::rod(int rod) const {
+  const vp::ArticulationId id = rods_[rod];
+  return {world_.joint_position(id, 0, 0), world_.joint_position(id, 0, 1),
+          world_.joint_velocity(id, 0, 0), world_.joint_velocity(id, 0, 1)};
+}
+
+void TableWorld::set_rod(int rod, const RodState& state) {
+  must(world_.set_joint_state(rods_[rod], 0, 0, state.slide, state.slide_rate));
+  must(world_.set_joint_state(rods_[rod], 0, 1, state.angle, state.angle_rate));
+}
+
+// --- ball ----------------------------------------------------------------------------------------
+
+BallState TableWorld::ball() const {
+  const SE3 pose = world_.pose(ball_);
+  const vp::se3 V = world_.velocity(ball_);
+  return {pose, pose.rotate(V.v), pose.rotate(V.w)};
+}
+
+void TableWorld::set_ball(const Vec3& position, const Vec3& velocity) {
+  must(world_.set_pose(ball_, SE3(position)));
+  must(world_.set_velocity(ball_, {Vec3{}, velocity}));
+}
+
+void TableWorld::park_ball() { set_ball(Vec3{0.0, 0.0, 1.0}, Vec3{}); }
+
+bool TableWorld::free_for_ball(const Vec3& position) const {
+  constexpr double kAir = 0.001;
+  found_.clear();
+  // Walls and corners are kept away from by whoever chooses the place; the field is always touched.
+  world_.overlap_sphere(position, table_.ball_radius + kAir, found_, {kBallCategory, kManCategory});
+  return found_.empty();
+}
+
+// --- time ----------------------------------------------------------------------------------------
+
+bool TableWorld::step() {
+  const auto result = world_.step(kTick);
+  status_ = *result;
+  contacts_.clear();
+  for (const vp::ContactEvent& event : world_.contact_events()) {
+    const Tag a = decode_tag(event.user_data_a);
+    const Tag b = decode_tag(event.user_data_b);
+    if (contacts_.size() == contacts_.capacity()) break;
+    contacts_.push_back({a.what == Tag::What::ball ? b : a, event.kind, event.impulse, event.point});
+  }
+  return !status_.non_finite;
+}
+
+}  // namespace foosball

@@ -1,0 +1,90 @@
+// The table as a physical world: field, walls, goals, corners, ball, and eight rods with their men,
+// each rod a one-link articulation driven by a bounded force. Knows nothing of scores and screens.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foosball/match.h"
+#include "vphysics/world.h"
+
+namespace foosball {
+
+// What a collider of the table is; travels through the world as its user data.
+struct Tag {
+  enum class What : std::uint8_t { ball, field, wall, man } what;
+  std::uint8_t rod = 0, man = 0, part = 0;  // of a man; part indexes man_boxes()
+};
+std::uint64_t encode(const Tag& tag);
+Tag decode_tag(std::uint64_t user_data);
+
+struct BallState {
+  vp::SE3 pose;
+  vp::Vec3 velocity, spin;  // world
+};
+
+// The ball met something during the last step.
+struct BallContact {
+  Tag other;
+  vp::ContactEvent::Kind kind;
+  double impulse;
+  vp::Vec3 point;
+};
+
+class TableWorld {
+ public:
+  using Characters = std::array<int, kTeams>;
+
+  TableWorld(const TableWorld&) = delete;
+  TableWorld& operator=(const TableWorld&) = delete;
+
+  // All rods at slide 0, angle 0; the ball parked. Each character is in [0, kCharacters).
+  TableWorld(Layout layout, const Characters& characters);
+
+  const TableSpec& table() const { return table_; }
+
+  // Drives a rod towards a target: finite, within the slide limit.
+  void drive(int rod, const RodTarget& target);
+  RodState rod(int rod) const;
+  void set_rod(int rod, const RodState& state);
+
+  BallState ball() const;
+  void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
+  // Out of everything's way, at rest, for this step.
+  void park_ball();
+  // Nothing but the field would touch a ball here.
+  bool free_for_ball(const vp::Vec3& position) const;
+
+  // One kTick. False if the world had to stop something that had left the range of numbers.
+  bool step();
+  std::span<const BallContact> contacts() const { return contacts_; }
+  const vp::StepStatus& status() const { return status_; }
+  const vp::StepCounters& counters() const { return world_.counters(); }
+
+  void snapshot(std::vector<std::byte>& bytes) const { world_.snapshot(bytes); }
+  std::uint64_t state_hash() const { return world_.state_hash(); }
+  vp::Expected<void> restore(std::span<const std::byte> bytes) { return world_.restore(bytes); }
+
+ private:
+  void add_fixed(const vp::Shape& shape, const vp::SE3& T_world_shape, const vp::Material& material,
+                 Tag::What what);
+  void add_field_and_walls();
+  void add_goal(double side);
+  void add_corners();
+  void add_ball();
+  void add_rod(int rod, int character);
+
+  const TableSpec& table_;
+  vp::World world_;
+  vp::BodyId fixed_;
+  vp::BodyId ball_;
+  std::array<vp::ArticulationId, kRods> rods_{};
+  std::vector<BallContact> contacts_;
+  mutable std::vector<vp::ColliderId> found_;
+  vp::StepStatus status_;
+};
+
+}  // namespace foosball
