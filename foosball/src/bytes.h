@@ -1,6 +1,6 @@
-// Little-endian bytes of a saved match. Writer and reader have the same calls, so that what is saved
-// is described once, by a function that visits every field. The reader never reads outside; its
-// first error sticks and is asked for once at the end.
+// Little-endian bytes of a saved match. Writer and reader have the same calls, so that what is
+// saved is described once, by a function that visits every field. The reader never reads outside;
+// its first error sticks and is asked for once at the end.
 #pragma once
 
 #include <bit>

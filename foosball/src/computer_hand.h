@@ -1,5 +1,5 @@
-// The hand of a computer player on one rod: moves with a hand's speeds and accelerations, so that it
-// can do nothing a person could not. In its team's frame: see computer_sight.h.
+// The hand of a computer player on one rod: moves with a hand's speeds and accelerations, so that
+// it can do nothing a person could not. In its team's frame: see computer_sight.h.
 #pragma once
 
 namespace foosball {

@@ -111,7 +111,7 @@ void ComputerPlayer::Impl::work_logo(const MatchView& view) {
 }
 
 void ComputerPlayer::Impl::work_selection(const MatchView& view) {
-  constexpr double kLookAround = 0.4;                     // [s]
+  constexpr double kLookAround = 0.4;                       // [s]
   constexpr double kOneChoice = 2.0 * vp::kPi / 3.0 + 0.1;  // a little beyond a third of a turn
   if (view.confirmed[team] || view.screen_seconds < kLookAround) {
     rods[kScreenRod].slide().move(0.0, kCalmSlide);

@@ -20,8 +20,12 @@ struct Sighting {
 };
 
 // Coordinates of a rod between the table's frame and a team's.
-constexpr double team_slide(int team, double slide) { return attack_sign(team) * slide; }
-constexpr double team_swing(int team, double angle) { return -attack_sign(team) * angle; }
+constexpr double team_slide(int team, double slide) {
+  return attack_sign(team) * slide;
+}
+constexpr double team_swing(int team, double angle) {
+  return -attack_sign(team) * angle;
+}
 
 class ComputerSight {
  public:

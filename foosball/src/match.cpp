@@ -6,10 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "bytes.h"
-#include "match_state.h"
+#include "match_save.h"
 #include "random.h"
-#include "table_world.h"
 
 namespace foosball {
 namespace {
@@ -19,21 +17,17 @@ constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
 constexpr std::size_t kMaxEventsPerStep = 128;
 
-std::uint64_t ticks(double seconds) { return static_cast<std::uint64_t>(seconds / kTick + 0.5); }
-
-constexpr std::uint64_t kMagic = 0x31304d4253;  // "SBM01"
+std::uint64_t ticks(double seconds) {
+  return static_cast<std::uint64_t>(seconds / kTick + 0.5);
+}
 
 bool plausible(const MatchDesc& desc) {
   const Rules& rules = desc.rules;
-  const auto duration = [](double s) { return s > 0.0 && s <= 3600.0; };
+  const auto duration = [](double s) { return s > 0.0 && s <= kMaxDuration; };
   return static_cast<int>(desc.layout) < kLayouts && rules.goals_to_win >= 1 &&
-         rules.goals_to_win <= rules.max_goals && rules.max_goals < kMaxScore &&
+         rules.goals_to_win <= rules.max_goals && rules.max_goals <= kMaxScore &&
          duration(rules.dead_ball_seconds) && duration(rules.ceremony_seconds) &&
          duration(rules.end_seconds);
-}
-
-tl::unexpected<vp::Error> refuse(vp::Errc code, const char* why) {
-  return tl::unexpected(vp::Error{code, why});
 }
 
 bool usable(const RodTarget& target) {
@@ -44,7 +38,8 @@ bool usable(const RodTarget& target) {
 }  // namespace
 
 struct Match::Impl {
-  explicit Impl(const MatchDesc& d) : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built)) {
+  explicit Impl(const MatchDesc& d)
+      : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built)) {
     state.random = Random(d.seed).state();
     events.reserve(kMaxEventsPerStep);
     reset_gestures();
@@ -90,7 +85,6 @@ struct Match::Impl {
   void refresh_view();
 
   vp::Expected<void> restore(std::span<const std::byte> bytes);
-  std::uint64_t state_hash() const;
 };
 
 // --- one step ------------------------------------------------------------------------------------
@@ -167,9 +161,9 @@ void Match::Impl::note_contacts() {
       state.last_toucher = team;
     }
     if (contact.kind != vp::ContactEvent::Kind::hit) continue;
-    const EventKind kind = man                                ? EventKind::man_hit
+    const EventKind kind = man                             ? EventKind::man_hit
                            : other.what == Tag::What::wall ? EventKind::wall_hit
-                                                              : EventKind::field_hit;
+                                                           : EventKind::field_hit;
     emit(Event{kind, static_cast<std::uint8_t>(team), other.rod, other.man, contact.impulse,
                contact.point});
   }
@@ -378,68 +372,24 @@ void Match::Impl::refresh_view() {
   for (int rod = 0; rod < kRods; ++rod) view.rods[rod] = world->rod(rod);
 }
 
-// --- saving --------------------------------------------------------------------------------------
-
-// A saved match: magic, description, state; the world's own bytes follow to the end.
-template <class Archive, class Desc, class State>
-void visit_head(Archive& archive, std::uint64_t& magic, Desc& desc, State& state) {
-  archive.count(magic);
-  archive.choice(desc.layout, kLayouts);
-  archive.choice(desc.rules.goals_to_win, kMaxScore);
-  archive.choice(desc.rules.max_goals, kMaxScore);
-  archive.real(desc.rules.dead_ball_seconds, 0.0, 3600.0);
-  archive.real(desc.rules.ceremony_seconds, 0.0, 3600.0);
-  archive.real(desc.rules.end_seconds, 0.0, 3600.0);
-  MatchState::visit(archive, state);
-}
-
-void write_head(const MatchDesc& desc, const MatchState& state, std::vector<std::byte>& bytes) {
-  ByteWriter writer(bytes);
-  std::uint64_t magic = kMagic;
-  visit_head(writer, magic, desc, state);
-}
-
 vp::Expected<void> Match::Impl::restore(std::span<const std::byte> bytes) {
-  ByteReader reader(bytes);
-  std::uint64_t magic = 0;
-  MatchDesc saved;
-  MatchState saved_state;
-  visit_head(reader, magic, saved, saved_state);
-  if (!reader.ok() || magic != kMagic) {
-    return refuse(vp::Errc::bad_data, "These bytes are not a saved match of this version.");
-  }
-  if (saved.layout != desc.layout || !(saved.rules == desc.rules)) {
-    return refuse(vp::Errc::bad_data,
-                  "The saved match has another table or other rules; create the match with those.");
-  }
-  auto restored = std::make_unique<TableWorld>(desc.layout, saved_state.built);
-  if (const auto result = restored->restore(reader.rest()); !result) {
-    return tl::unexpected(result.error());
-  }
-  state = saved_state;
-  world = std::move(restored);
+  auto saved = load_match(desc, bytes);
+  if (!saved) return tl::unexpected(std::move(saved).error());
+  state = saved->state;
+  world = std::move(saved->world);
   events.clear();
   refresh_view();
   return {};
-}
-
-std::uint64_t Match::Impl::state_hash() const {
-  std::vector<std::byte> head;
-  write_head(desc, state, head);
-  // FNV-1a over the head's bytes and those of the world's hash.
-  ByteWriter(head).count(world->state_hash());
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const std::byte b : head) hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
-  return hash;
 }
 
 // --- the public face -----------------------------------------------------------------------------
 
 vp::Expected<Match> Match::create(const MatchDesc& desc) {
   if (!plausible(desc)) {
-    return refuse(vp::Errc::invalid_argument,
-                  "The match cannot be played: check layout, goals (1 <= to win <= most < 100) and "
-                  "durations (0 to 3600 s).");
+    return tl::unexpected(vp::Error{
+        vp::Errc::invalid_argument,
+        "The match cannot be played: check layout, goals (1 <= to win <= most <= 99) and durations "
+        "(above 0, at most 3600 s)."});
   }
   return Match(std::make_unique<Impl>(desc));
 }
@@ -449,18 +399,25 @@ Match::~Match() = default;
 Match::Match(Match&&) noexcept = default;
 Match& Match::operator=(Match&&) noexcept = default;
 
-void Match::step(const TickInput& input) { impl_->step(input); }
-const MatchView& Match::view() const { return impl_->view; }
-std::span<const Event> Match::events() const { return impl_->events; }
+void Match::step(const TickInput& input) {
+  impl_->step(input);
+}
+const MatchView& Match::view() const {
+  return impl_->view;
+}
+std::span<const Event> Match::events() const {
+  return impl_->events;
+}
 
 void Match::snapshot(std::vector<std::byte>& bytes) const {
-  write_head(impl_->desc, impl_->state, bytes);
-  impl_->world->snapshot(bytes);
+  save_match(impl_->desc, impl_->state, *impl_->world, bytes);
 }
 vp::Expected<void> Match::restore(std::span<const std::byte> bytes) {
   return impl_->restore(bytes);
 }
-std::uint64_t Match::state_hash() const { return impl_->state_hash(); }
+std::uint64_t Match::state_hash() const {
+  return hash_match(impl_->desc, impl_->state, *impl_->world);
+}
 
 vp::SE3 man_pose(const TableSpec& table, int rod, int man, const RodState& state) {
   const RodSpec& spec = table.rods[rod];

@@ -24,14 +24,14 @@ struct MatchState {
 
   // The ball.
   bool ball_in_play = false;
-  bool ball_parked = true;   // else it lies where it is: in play, or in the goal it went into
-  int serve_rod = 0;         // the rod at which the ball is to be put in play, and
+  bool ball_parked = true;     // else it lies where it is: in play, or in the goal it went into
+  int serve_rod = 0;           // the rod at which the ball is to be put in play, and
   std::uint64_t serve_in = 0;  // after how many ticks; counts while the ball is not in play
-  int last_server = 0;       // team
-  int last_toucher = 0;      // team
-  bool served = false;       // from a midfield: two men must touch before a goal counts
-  std::uint64_t touched = 0; // men that touched since the ball was put in play: bit rod * 5 + man
-  int touching = 0;          // parts of men in contact with the ball now
+  int last_server = 0;         // team
+  int last_toucher = 0;        // team
+  bool served = false;         // from a midfield: two men must touch before a goal counts
+  std::uint64_t touched = 0;   // men that touched since the ball was put in play: bit rod * 5 + man
+  int touching = 0;            // parts of men in contact with the ball now
   DeadBallWatch dead_ball;
 
   // The rods: where each is held while no hand is on it.
@@ -45,7 +45,8 @@ struct MatchState {
 };
 
 // Scores, and a count of parts in contact, that fit a byte and no match reaches.
-inline constexpr int kMaxScore = 100;
+inline constexpr int kMaxScore = 99;
+inline constexpr double kMaxDuration = 3600.0;  // [s]
 inline constexpr int kMaxTouching = 200;
 // A rod turned further than this [rad] has been held by nobody: two million revolutions.
 inline constexpr double kMaxAngle = 1e7;

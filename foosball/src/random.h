@@ -19,7 +19,9 @@ class Random {
   }
   double unit() { return next() * 0x1p-32; }  // [0, 1)
   double between(double low, double high) { return low + (high - low) * unit(); }
-  int below(int n) { return static_cast<int>((std::uint64_t{next()} * static_cast<std::uint32_t>(n)) >> 32); }
+  int below(int n) {
+    return static_cast<int>((std::uint64_t{next()} * static_cast<std::uint32_t>(n)) >> 32);
+  }
   // Bell-shaped, mean 0, deviation 1, within +-3: the sum of three uniforms.
   double bell() { return 2.0 * (unit() + unit() + unit() - 1.5); }
 

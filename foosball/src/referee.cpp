@@ -16,7 +16,9 @@ constexpr double kPossession = 15.0;          // [s]
 // 54 mm, its edge then 30 mm above the field, where the ball is still 12 mm thick on each side.
 constexpr double kReach = 0.060;  // [m]
 
-double seconds(std::uint64_t ticks) { return static_cast<double>(ticks) * kTick; }
+double seconds(std::uint64_t ticks) {
+  return static_cast<double>(ticks) * kTick;
+}
 
 bool in_goal(const TableSpec& table, const vp::Vec3& ball) {
   return std::fabs(ball.y) < 0.5 * table.goal_width && ball.z < table.goal_height && ball.z > 0.0;

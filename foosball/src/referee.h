@@ -9,7 +9,9 @@
 
 namespace foosball {
 
-constexpr int opponent(int team) { return 1 - team; }
+constexpr int opponent(int team) {
+  return 1 - team;
+}
 
 // The team that scores with the ball here: it has wholly passed the goal line inside the goal.
 std::optional<int> goal_by(const TableSpec& table, const vp::Vec3& ball);
@@ -45,7 +47,7 @@ class DeadBallWatch {
   }
 
  private:
-  vp::Vec3 anchor_;  // the ball has stayed near this point ...
+  vp::Vec3 anchor_;                    // the ball has stayed near this point ...
   std::uint64_t ticks_here_ = 0;       // ... for so long,
   std::uint64_t ticks_untouched_ = 0;  // and for so long no man has touched it
 };

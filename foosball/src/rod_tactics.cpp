@@ -24,7 +24,9 @@ constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
 constexpr double kHalfFoot = 0.012;  // [m]
 constexpr double kSteepest = 0.8;    // tangent of the most oblique shot tried
 
-double lerp(double a, double b, double t) { return a + (b - a) * t; }
+double lerp(double a, double b, double t) {
+  return a + (b - a) * t;
+}
 
 // Least distance between the line from the ball to (goal line, target) and the men in the way.
 double clearance(const TableSpec& table, const Sighting& now, int team, double target) {
@@ -154,8 +156,8 @@ bool RodTactics::can_strike(const TableSpec& table, const Sighting& now) const {
 }
 
 // Chooses the least guarded of a few targets, and how far beside the ball the foot must come down:
-// a flat foot sends the ball straight on; its edge, at an angle a from the axis of play, touches the
-// ball r sin a beyond the foot's side.
+// a flat foot sends the ball straight on; its edge, at an angle a from the axis of play, touches
+// the ball r sin a beyond the foot's side.
 void RodTactics::take_aim(const TableSpec& table, const Sighting& now, const Temper& temper,
                           Random& random) {
   const double run = 0.5 * table.length - now.ball.x;

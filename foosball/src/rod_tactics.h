@@ -10,8 +10,8 @@ namespace foosball {
 
 // What skill makes of a player.
 struct Temper {
-  double delay;                // sight to hand [s]
-  double aim_error;            // standard deviation of a foot's place at the hit [m]
+  double delay;                  // sight to hand [s]
+  double aim_error;              // standard deviation of a foot's place at the hit [m]
   double pause_low, pause_high;  // thought spent with the foot drawn back [s]
   AxisLimits slide, swing, strike;
 };

@@ -31,7 +31,8 @@ struct LinePlan {
 };
 using TeamPlan = std::array<LinePlan, 4>;  // by Line
 
-// 1-2-5-3 with the spacings of real rods. Four men 155 mm apart just reach every y between the walls.
+// 1-2-5-3 with the spacings of real rods. Four men 155 mm apart just reach every y between the
+// walls.
 constexpr TeamPlan kTournament{{{1, 0.0}, {2, 0.239}, {5, 0.120}, {3, 0.190}}};
 constexpr TeamPlan kPaper{{{4, 0.155}, {4, 0.155}, {4, 0.155}, {4, 0.155}}};
 
@@ -107,7 +108,9 @@ ManBoxes boxes_of(const CharacterSpec& c) {
 
 }  // namespace
 
-const CharacterSpec& character_spec(int character) { return kCharacterSpecs.at(character); }
+const CharacterSpec& character_spec(int character) {
+  return kCharacterSpecs.at(character);
+}
 
 std::span<const ManBox> man_boxes(int character) {
   static const std::array<ManBoxes, kCharacters> boxes{
@@ -115,9 +118,13 @@ std::span<const ManBox> man_boxes(int character) {
   return boxes.at(character);
 }
 
-const TableSpec& table_spec(Layout layout) { return kTables.at(static_cast<int>(layout)); }
+const TableSpec& table_spec(Layout layout) {
+  return kTables.at(static_cast<int>(layout));
+}
 
-double man_offset(const RodSpec& rod, int man) { return (man - 0.5 * (rod.men - 1)) * rod.spacing; }
+double man_offset(const RodSpec& rod, int man) {
+  return (man - 0.5 * (rod.men - 1)) * rod.spacing;
+}
 
 std::array<int, 4> rods_of_team(const TableSpec& table, int team) {
   std::array<int, 4> rods{};

@@ -31,7 +31,9 @@ T must(vp::Expected<T> result) {
   assert(result);
   return std::move(*result);
 }
-void must([[maybe_unused]] const vp::Expected<void>& result) { assert(result); }
+void must([[maybe_unused]] const vp::Expected<void>& result) {
+  assert(result);
+}
 
 // Rod with its men, which are balanced about the axis as on tournament tables, so that a rod let go
 // stays as it is. Link frame: z along the rod.
@@ -41,8 +43,8 @@ vp::Inertia rod_inertia(const TableSpec& table, const RodSpec& rod, const Charac
   const double mass = table.rod_mass + men;
   // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
   const double gyration = 0.6 * c.foot_reach;
-  const double axial = 0.5 * table.rod_mass * table.rod_radius * table.rod_radius +
-                       men * gyration * gyration;
+  const double axial =
+      0.5 * table.rod_mass * table.rod_radius * table.rod_radius + men * gyration * gyration;
   const double across = mass * kHalfLength * kHalfLength / 3.0;
   return {mass, Vec3{across, across, axial}};
 }
@@ -245,7 +247,9 @@ void TableWorld::set_ball(const Vec3& position, const Vec3& velocity) {
   must(world_.set_velocity(ball_, {Vec3{}, velocity}));
 }
 
-void TableWorld::park_ball() { set_ball(Vec3{0.0, 0.0, 1.0}, Vec3{}); }
+void TableWorld::park_ball() {
+  set_ball(Vec3{0.0, 0.0, 1.0}, Vec3{});
+}
 
 bool TableWorld::free_for_ball(const Vec3& position) const {
   constexpr double kAir = 0.001;
@@ -265,7 +269,8 @@ bool TableWorld::step() {
     const Tag a = decode_tag(event.user_data_a);
     const Tag b = decode_tag(event.user_data_b);
     if (contacts_.size() == contacts_.capacity()) break;
-    contacts_.push_back({a.what == Tag::What::ball ? b : a, event.kind, event.impulse, event.point});
+    contacts_.push_back(
+        {a.what == Tag::What::ball ? b : a, event.kind, event.impulse, event.point});
   }
   return !status_.non_finite;
 }

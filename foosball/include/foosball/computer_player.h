@@ -1,5 +1,5 @@
-// A computer player: sees what a person sees, moves the rods of one team with a hand's speed limits.
-// Deterministic: its state and seed are its own; one call a tick.
+// A computer player: sees what a person sees, moves the rods of one team with a hand's speed
+// limits. Deterministic: its state and seed are its own; one call a tick.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class ComputerPlayer {
   ComputerPlayer(ComputerPlayer&&) noexcept;
   ComputerPlayer& operator=(ComputerPlayer&&) noexcept;
 
-  // Targets for the rods of its team; the others are left as they are. Works the screens too: pushes
-  // at the logo, chooses and confirms a character.
+  // Targets for the rods of its team; the others are left as they are. Works the screens too:
+  // pushes at the logo, chooses and confirms a character.
   void play(const MatchView& view, RodTargets& targets);
 
  private:

@@ -1,8 +1,8 @@
 // A match as a pure step function of its state and its inputs: no clock, no file, no socket, no
 // randomness but the seed it is handed. The server, the replayer and the tests all link this one.
 //
-// Screens (paper, sections 5 and 5.1) are worked with the rods themselves: push any rod of a team to
-// start, spin it to choose a character, push to confirm. See docs/rules.md.
+// Screens (paper, sections 5 and 5.1) are worked with the rods themselves: push any rod of a team
+// to start, spin it to choose a character, push to confirm. See docs/rules.md.
 #pragma once
 
 #include <array>
@@ -50,31 +50,31 @@ enum class Screen : std::uint8_t { logo, selection, play, ceremony, end };
 inline constexpr int kScreens = 5;
 
 enum class EventKind : std::uint8_t {
-  man_hit,     // value = impulse [N s]
-  wall_hit,    // value = impulse
-  field_hit,   // value = impulse
-  goal,        // team scored
+  man_hit,    // value = impulse [N s]
+  wall_hit,   // value = impulse
+  field_hit,  // value = impulse
+  goal,       // team scored
   serve,
-  dead_ball,   // no man reached the ball in time: served again
-  ball_out,    // left the table
-  screen,      // value = the new Screen
-  match_won,   // team won
+  dead_ball,  // no man reached the ball in time: served again
+  ball_out,   // left the table
+  screen,     // value = the new Screen
+  match_won,  // team won
 };
 inline constexpr int kEventKinds = 9;
 
 struct Event {
   EventKind kind;
-  std::uint8_t team = 0;   // of the man or the goal
-  std::uint8_t rod = 0;    // man_hit
-  std::uint8_t man = 0;    // man_hit
+  std::uint8_t team = 0;  // of the man or the goal
+  std::uint8_t rod = 0;   // man_hit
+  std::uint8_t man = 0;   // man_hit
   double value = 0.0;
-  vp::Vec3 point;          // world [m]
+  vp::Vec3 point;  // world [m]
 };
 
 struct Rules {
-  int goals_to_win = 5;             // "to 5, last game by two, max 8" (ITSF)
+  int goals_to_win = 5;  // "to 5, last game by two, max 8" (ITSF)
   int max_goals = 8;
-  double dead_ball_seconds = 6.0;   // without a touch and almost at rest
+  double dead_ball_seconds = 6.0;  // without a touch and almost at rest
   double ceremony_seconds = 2.5;
   double end_seconds = 6.0;
 
@@ -106,7 +106,7 @@ struct MatchView {
   bool ball_in_play = false;
   vp::Vec3 ball_position, ball_velocity;  // world
   vp::SE3 ball_pose;
-  vp::Vec3 ball_spin;                    // world [rad/s]
+  vp::Vec3 ball_spin;  // world [rad/s]
   std::array<RodState, kRods> rods{};
 };
 

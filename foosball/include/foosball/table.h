@@ -30,30 +30,35 @@ inline constexpr int kLayouts = 2;
 
 // The way a team attacks along x, and the way its players push a rod along y: the players of team 0
 // stand on the -y side with their own goal to the left, those of team 1 opposite.
-constexpr double attack_sign(int team) { return team == 0 ? 1.0 : -1.0; }
-constexpr double push_sign(int team) { return team == 0 ? 1.0 : -1.0; }
+constexpr double attack_sign(int team) {
+  return team == 0 ? 1.0 : -1.0;
+}
+constexpr double push_sign(int team) {
+  return team == 0 ? 1.0 : -1.0;
+}
 
 // What a rod is for, from a team's own goal outwards.
 enum class Line : std::uint8_t { goalie, defence, midfield, attack };
 
-// A character a team can choose (paper, section 5: tall and thin attacks well, small and fat defends
-// well). The man's body is a set of boxes fixed to the rod.
+// A character a team can choose (paper, section 5: tall and thin attacks well, small and fat
+// defends well). The man's body is a set of boxes fixed to the rod.
 struct CharacterSpec {
   const char* name;
-  double foot_width;      // along the rod [m]
-  double foot_depth;      // fore and aft [m]
-  double torso_width;     // along the rod [m]
-  double torso_depth;     // fore and aft [m]
-  double head_height;     // above the rod's axis [m]
-  double foot_reach;      // rod axis to sole [m]
-  double mass;            // [kg]
+  double foot_width;   // along the rod [m]
+  double foot_depth;   // fore and aft [m]
+  double torso_width;  // along the rod [m]
+  double torso_depth;  // fore and aft [m]
+  double head_height;  // above the rod's axis [m]
+  double foot_reach;   // rod axis to sole [m]
+  double mass;         // [kg]
   double foot_friction;
   double foot_restitution;
 };
 inline constexpr int kCharacters = 3;
 const CharacterSpec& character_spec(int character);  // precondition: 0 <= character < kCharacters
 
-// The boxes of one man in the man's frame: origin on the rod's axis, axes as the table's at angle 0.
+// The boxes of one man in the man's frame: origin on the rod's axis, axes as the table's at angle
+// 0.
 struct ManBox {
   vp::Vec3 centre;        // [m]
   vp::Vec3 half_extents;  // [m]
@@ -64,27 +69,27 @@ std::span<const ManBox> man_boxes(int character);
 struct RodSpec {
   int team;
   Line line;
-  double x;                // of the axis [m]
-  int men;                 // <= kMaxMenOnRod
-  double spacing;          // between neighbours [m]
-  double slide_limit;      // |slide| <= this [m]
+  double x;            // of the axis [m]
+  int men;             // <= kMaxMenOnRod
+  double spacing;      // between neighbours [m]
+  double slide_limit;  // |slide| <= this [m]
 };
 
 struct TableSpec {
   Layout layout;
-  double length;          // along x, between the goal lines [m]
-  double width;           // along y, between the side walls [m]
-  double wall_height;     // [m]
-  double rod_height;      // axis above the field [m]
-  double goal_width;      // [m]
-  double goal_height;     // [m]
-  double goal_depth;      // [m]
-  double corner_rise;     // height of the raised corners [m]
-  double corner_size;     // their legs along x and y [m]
-  double ball_radius;     // [m]
-  double ball_mass;       // [kg]
-  double rod_mass;        // without men [kg]
-  double rod_radius;      // [m]
+  double length;                    // along x, between the goal lines [m]
+  double width;                     // along y, between the side walls [m]
+  double wall_height;               // [m]
+  double rod_height;                // axis above the field [m]
+  double goal_width;                // [m]
+  double goal_height;               // [m]
+  double goal_depth;                // [m]
+  double corner_rise;               // height of the raised corners [m]
+  double corner_size;               // their legs along x and y [m]
+  double ball_radius;               // [m]
+  double ball_mass;                 // [kg]
+  double rod_mass;                  // without men [kg]
+  double rod_radius;                // [m]
   std::array<RodSpec, kRods> rods;  // from -x to +x
 };
 const TableSpec& table_spec(Layout layout);

@@ -1,0 +1,67 @@
+#include "match_save.h"
+
+#include <utility>
+
+#include "bytes.h"
+
+namespace foosball {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x31'30'4d'42'46'53;  // "SFBM01"
+
+template <class Archive, class Count, class Desc, class State>
+void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
+  archive.count(magic);
+  archive.choice(desc.layout, kLayouts);
+  archive.choice(desc.rules.goals_to_win, kMaxScore + 1);
+  archive.choice(desc.rules.max_goals, kMaxScore + 1);
+  archive.real(desc.rules.dead_ball_seconds, 0.0, kMaxDuration);
+  archive.real(desc.rules.ceremony_seconds, 0.0, kMaxDuration);
+  archive.real(desc.rules.end_seconds, 0.0, kMaxDuration);
+  MatchState::visit(archive, state);
+}
+
+tl::unexpected<vp::Error> refuse(const char* why) {
+  return tl::unexpected(vp::Error{vp::Errc::bad_data, why});
+}
+
+}  // namespace
+
+void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world,
+                std::vector<std::byte>& bytes) {
+  ByteWriter writer(bytes);
+  visit_head(writer, kMagic, desc, state);
+  world.snapshot(bytes);
+}
+
+vp::Expected<SavedMatch> load_match(const MatchDesc& desc, std::span<const std::byte> bytes) {
+  ByteReader reader(bytes);
+  std::uint64_t magic = 0;
+  MatchDesc saved_desc;
+  SavedMatch saved;
+  visit_head(reader, magic, saved_desc, saved.state);
+  if (!reader.ok() || magic != kMagic) {
+    return refuse("These bytes are not a saved match of this version.");
+  }
+  if (saved_desc.layout != desc.layout || !(saved_desc.rules == desc.rules)) {
+    return refuse("The saved match has another table or other rules; create the match with those.");
+  }
+  saved.world = std::make_unique<TableWorld>(desc.layout, saved.state.built);
+  if (auto result = saved.world->restore(reader.rest()); !result) {
+    return tl::unexpected(std::move(result).error());
+  }
+  return saved;
+}
+
+// FNV-1a over the head's bytes and those of the world's hash.
+std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world) {
+  std::vector<std::byte> head;
+  ByteWriter writer(head);
+  visit_head(writer, kMagic, desc, state);
+  writer.count(world.state_hash());
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::byte b : head) hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
+  return hash;
+}
+
+}  // namespace foosball
