@@ -39,6 +39,7 @@ LAYERS = {
     'cabinet/': 'cabinet',
     'cabinet/include/cabinet/hand.h': 'hand',
     'cabinet/include/cabinet/rod_input.h': 'hand',
+    'cabinet/include/cabinet/rate_filter.h': 'hand',
     'firmware/': 'firmware',
     'server/': 'server',
     'client/': 'client',
