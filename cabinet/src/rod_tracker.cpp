@@ -2,14 +2,32 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cabinet {
 namespace {
 
-// Longest gap over which counts are trusted. At the fastest rod surface (1.1 m/s) and 8 counts/mm
-// half a wrap of the counts takes 3.7 s; beyond it a difference no longer names one motion.
-constexpr std::int64_t kLongestGapUs = 2'000'000;
+// Over a longer gap than it takes the fastest hand to move half a wrap of the counts, a difference
+// of counts no longer names one motion. 3.7 s at 8 counts/mm, 0.75 s at 1000 dpi, 63 ms at 12000
+// cpi.
+constexpr double kFastestSurface = 1.1;            // [m/s] of a rod: 140 rad/s on 16 mm
+constexpr double kRodRadius = 0.008;               // [m]
+constexpr std::int64_t kLongestGapUs = 2'000'000;  // a hand does other things in longer
+constexpr std::int64_t kShortestGapUs = 50'000;    // a dozen lost frames are never a new run
+
+std::int64_t longest_gap_us(const Calibration& calibration) {
+  double metres = std::numeric_limits<double>::infinity();  // a count, of the finest sensor
+  for (const RodCalibration& rod : calibration.rods) {
+    metres = std::min({metres, std::hypot(rod.m[0][0], rod.m[0][1]),
+                       std::hypot(rod.m[1][0], rod.m[1][1]) * kRodRadius});
+  }
+  const double us =
+      std::min(32767 * metres / kFastestSurface * 1e6, static_cast<double>(kLongestGapUs));
+  return std::max(static_cast<std::int64_t>(us), kShortestGapUs);
+}
+
 // A restarted micro-controller is believed when it has been up for less than this ...
 constexpr std::uint32_t kBootUs = 10'000'000;
 // ... and so many frames followed each other: fewer could be a late duplicate.
@@ -32,11 +50,6 @@ int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
 }
 
-bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) {
-  const std::int32_t elapsed = elapsed_us(last, frame);
-  return sequence_step(last, frame) > 0 && elapsed >= 0 && elapsed <= kLongestGapUs;
-}
-
 template <std::size_t... I>
 std::array<RateFilter, kRods> make_filters(std::index_sequence<I...>) {
   return {((void)I, RateFilter(kReportUs, kRateHoldUs))...};
@@ -47,7 +60,13 @@ std::array<RateFilter, kRods> make_filters(std::index_sequence<I...>) {
 RodTracker::RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit)
     : calibration_(calibration),
       slide_limit_(slide_limit),
+      longest_gap_us_(longest_gap_us(calibration)),
       rates_(make_filters(std::make_index_sequence<kRods>())) {}
+
+bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const {
+  const std::int32_t elapsed = elapsed_us(last, frame);
+  return sequence_step(last, frame) > 0 && elapsed >= 0 && elapsed <= longest_gap_us_;
+}
 
 void RodTracker::hold() {
   for (int rod = 0; rod < kRods; ++rod) {
@@ -64,7 +83,7 @@ bool RodTracker::starts_new_run(const wire::DeviceFrame& frame) {
   const bool in_row = strays_ > 0 && sequence_step(stray_, frame) == 1 && follows(stray_, frame);
   strays_ = in_row ? strays_ + 1 : 1;
   stray_ = frame;
-  const bool later = elapsed_us(last_, frame) > kLongestGapUs;
+  const bool later = elapsed_us(last_, frame) > longest_gap_us_;
   return strays_ >= kStraysOfNewRun && (later || frame.time_us < kBootUs);
 }
 

@@ -31,11 +31,13 @@ class RodTracker {
   std::uint32_t last_frame_time_us() const { return last_.time_us; }
 
  private:
+  bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const;
   bool starts_new_run(const wire::DeviceFrame& frame);
   void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us);
 
   Calibration calibration_;
   std::array<double, kRods> slide_limit_;
+  std::int64_t longest_gap_us_;  // over which counts are trusted
   RodInputs rods_{};
   std::array<RateFilter, kRods> rates_;
   wire::DeviceFrame last_{};
