@@ -1,0 +1,231 @@
+#include "core/mouse_link.h"
+
+namespace firmware {
+
+namespace {
+
+const uint8_t kReset = 0xFF, kSetRate = 0xF3, kSetResolution = 0xE8, kStreamMode = 0xEA,
+              kEnable = 0xF4, kReadData = 0xEB;
+const uint8_t kAck = 0xFA, kResend = 0xFE, kFailed = 0xFC, kSelfTestPassed = 0xAA, kMouseId = 0x00;
+
+const uint8_t kScript[] = {kReset, kSetRate, 200, kSetResolution, 3, kStreamMode, kEnable};
+const uint8_t kAfterReset = 1;  // where a mouse begins that has just reset itself
+const uint8_t kGateAt = 6;
+const uint8_t kScriptEnd = sizeof kScript;
+
+bool passed(uint16_t now_ms, uint16_t deadline_ms) {
+  return static_cast<int16_t>(static_cast<uint16_t>(now_ms - deadline_ms)) >= 0;
+}
+
+}  // namespace
+
+MouseLink::Event MouseLink::on_received(Ps2Receiver::Event event, uint16_t now_ms) {
+  switch (event) {
+    case Ps2Receiver::kNone:
+      return kNone;
+    case Ps2Receiver::kByte:
+      return on_byte(receiver_.byte(), true, now_ms);
+    case Ps2Receiver::kParityError:
+      on_byte(receiver_.byte(), false, now_ms);
+      return kError;
+    case Ps2Receiver::kFramingError:
+      break;
+  }
+  parser_.lose();
+  return kError;
+}
+
+MouseLink::Event MouseLink::on_byte(uint8_t value, bool good, uint16_t now_ms) {
+  byte_ms_ = now_ms;
+  if (state_ == kStream) return on_stream_byte(value, good, now_ms);
+  const uint8_t before = last_byte_;
+  last_byte_ = good ? value : 0xFF;
+  if (!good) return kNone;
+  const bool asked = state_ == kReply || (state_ == kSend && !lines_.sending(mouse_));
+  if (asked) {
+    on_reply(value, now_ms);
+  } else if (state_ == kBat) {
+    if (value == kFailed) give_up(now_ms);
+    if (before == kSelfTestPassed && value == kMouseId) restart();
+  } else if (state_ == kAbsent && before == kSelfTestPassed && value == kMouseId) {
+    restart();  // just plugged in
+  }
+  return kNone;
+}
+
+MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t now_ms) {
+  switch (parser_.byte(value, good, receiver_.after_gap())) {
+    case PacketParser::kMovement:
+      heard_ms_ = now_ms;
+      put_off_ = 0;
+      return kMovement;
+    case PacketParser::kResync:
+      return kResync;
+    case PacketParser::kNone:
+      break;
+  }
+  return kNone;
+}
+
+void MouseLink::on_reply(uint8_t value, uint16_t now_ms) {
+  if (value == kAck) {
+    acknowledged(now_ms);
+  } else if (value == kResend || value == kFailed) {
+    try_again(now_ms);
+  }
+}
+
+void MouseLink::restart() {
+  script_at_ = kAfterReset;
+  tries_ = 0;
+  begin(kScript[script_at_]);
+}
+
+void MouseLink::acknowledged(uint16_t now_ms) {
+  tries_ = 0;
+  if (asking_) {
+    stream(now_ms);
+    return;
+  }
+  if (command_ == kReset && script_at_ == 0) {
+    state_ = kBat;
+    deadline_ms_ = static_cast<uint16_t>(now_ms + kBatMs);
+    return;
+  }
+  ++script_at_;
+  if (script_at_ == kScriptEnd) {
+    stream(now_ms);
+  } else if (script_at_ == kGateAt) {
+    state_ = kGate;
+  } else {
+    begin(kScript[script_at_]);
+  }
+}
+
+void MouseLink::stream(uint16_t now_ms) {
+  asking_ = false;
+  present_ = true;
+  state_ = kStream;
+  heard_ms_ = now_ms;
+  parser_.reset();
+}
+
+void MouseLink::begin(uint8_t command) {
+  command_ = command;
+  since_tick_ = lines_.tick();
+  state_ = kPause;
+}
+
+void MouseLink::take_hold() {
+  lines_.inhibit(mouse_);
+  since_tick_ = lines_.tick();
+  state_ = kInhibit;
+}
+
+void MouseLink::try_again(uint16_t now_ms) {
+  if (++tries_ < kTries) {
+    begin(command_);
+  } else {
+    give_up(now_ms);
+  }
+}
+
+void MouseLink::give_up(uint16_t now_ms) {
+  lines_.release(mouse_);
+  receiver_.reset();
+  state_ = kAbsent;
+  present_ = false;
+  asking_ = false;
+  tries_ = 0;
+  put_off_ = 0;
+  deadline_ms_ = static_cast<uint16_t>(now_ms + kRetryMs);
+}
+
+void MouseLink::send_command(uint16_t now_ms) {
+  // A packet that began just before the clock was taken has to be let through: after a command the
+  // mouse would not send it again, and its counts would be lost.
+  if (asking_ && receiver_.busy() && put_off_ < kTries) {
+    ++put_off_;
+    lines_.release(mouse_);
+    receiver_.reset();
+    stream(now_ms);
+    return;
+  }
+  receiver_.reset();
+  lines_.send(mouse_, command_);
+  state_ = kSend;
+  deadline_ms_ = static_cast<uint16_t>(now_ms + kSendMs);
+}
+
+MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
+  if (!parser_.between_packets() &&
+      passed(now_ms, static_cast<uint16_t>(byte_ms_ + kUnfinishedMs))) {
+    if (parser_.looks_like_power_on()) {
+      present_ = false;
+      restart();
+      return kNone;
+    }
+    parser_.expire();
+    return kResync;
+  }
+  if (passed(now_ms, static_cast<uint16_t>(heard_ms_ + kSilenceMs)) && !receiver_.busy()) {
+    asking_ = true;
+    command_ = kReadData;
+    take_hold();
+  }
+  return kNone;
+}
+
+MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) {
+  // While the clock is held, a byte cut off must stay known: send_command() looks at it.
+  if (state_ != kInhibit && receiver_.sweep(tick) == Ps2Receiver::kFramingError) {
+    parser_.lose();
+    return kError;
+  }
+  const uint8_t waited = static_cast<uint8_t>(tick - since_tick_);
+  switch (state_) {
+    case kAbsent:
+      if (!passed(now_ms, deadline_ms_)) break;
+      script_at_ = 0;
+      begin(kScript[0]);
+      break;
+    case kPause:
+      if (waited >= kInhibitTicks) take_hold();
+      break;
+    case kInhibit:
+      if (waited >= kInhibitTicks) send_command(now_ms);
+      break;
+    case kSend:
+      if (!lines_.sending(mouse_)) {
+        if (!lines_.acknowledged(mouse_)) {
+          try_again(now_ms);
+          break;
+        }
+        state_ = kReply;
+        deadline_ms_ = static_cast<uint16_t>(now_ms + kReplyMs);
+      } else if (passed(now_ms, deadline_ms_)) {
+        lines_.release(mouse_);
+        // One that is not there is tried again later, one that was there just now at once.
+        if (present_) {
+          try_again(now_ms);
+        } else {
+          give_up(now_ms);
+        }
+      }
+      break;
+    case kReply:
+      if (passed(now_ms, deadline_ms_)) try_again(now_ms);
+      break;
+    case kBat:
+      if (passed(now_ms, deadline_ms_)) give_up(now_ms);
+      break;
+    case kGate:
+      if (gate_open) begin(kScript[kGateAt]);
+      break;
+    case kStream:
+      return tend_stream(now_ms);
+  }
+  return kNone;
+}
+
+}  // namespace firmware

@@ -1,0 +1,99 @@
+// One mouse from power-on to movements: reset (FF: FA AA 00), rate 200 (F3 C8), 8 counts/mm (E8
+// 03), stream mode (EA), then enable (F4) once the gate opens for all. Runs by itself whenever a
+// mouse is plugged in, and again when it vanishes.
+//
+// A mouse at rest sends nothing, so one that is silent is asked for its data (EB): the answer
+// carries the movement since the last packet, hence loses no count, and no answer means that it is
+// gone.
+#ifndef FIRMWARE_CORE_MOUSE_LINK_H
+#define FIRMWARE_CORE_MOUSE_LINK_H
+
+#include <stdint.h>
+
+#include "core/mouse_packet.h"
+#include "core/ps2_lines.h"
+#include "core/ps2_receiver.h"
+
+namespace firmware {
+
+class MouseLink {
+ public:
+  enum State : uint8_t {
+    kAbsent,   // nobody answers; a reset is tried every kRetryMs
+    kPause,    // the mouse ends its byte before the clock is taken from it
+    kInhibit,  // clock held low
+    kSend,     // the mouse clocks the command out of us
+    kReply,    // waiting for FA
+    kBat,      // waiting for AA 00, the end of its self-test
+    kGate,     // set up, waiting to be enabled together with the others
+    kStream,
+  };
+  enum Event : uint8_t {
+    kNone,
+    kMovement,  // movement() is new
+    kResync,
+    kError,  // parity or framing
+  };
+
+  MouseLink(Ps2Lines& lines, uint8_t mouse) : lines_(lines), mouse_(mouse) {}
+
+  // A falling edge of this mouse's clock.
+  Event edge(uint8_t tick, uint8_t bit, uint16_t now_ms) {
+    const Ps2Receiver::Event event = receiver_.edge(tick, bit);
+    return event == Ps2Receiver::kNone ? kNone : on_received(event, now_ms);
+  }
+  // Timeouts and the next command; at least every 4 ms. now_ms wraps.
+  Event step(uint8_t tick, uint16_t now_ms, bool gate_open);
+
+  State state() const { return state_; }
+  // Enabled and answering, as far as is known.
+  bool present() const { return present_; }
+  // Set up as far as it goes alone.
+  bool waits_at_gate() const { return state_ == kGate; }
+  const Movement& movement() const { return parser_.movement(); }
+
+  static const uint8_t kInhibitTicks = 6;   // 120 us; the mouse needs at least 100
+  static const uint16_t kSendMs = 20;       // a mouse begins to clock within 15 ms
+  static const uint16_t kReplyMs = 25;      // and answers within 20
+  static const uint16_t kBatMs = 1000;      // self-tests of 300 to 750 ms are usual
+  static const uint16_t kRetryMs = 100;     // between resets of an absent mouse
+  static const uint16_t kSilenceMs = 250;   // then a streaming mouse is asked whether it is there
+  static const uint16_t kUnfinishedMs = 5;  // then an unfinished packet is given up
+  static const uint8_t kTries = 3;          // of each command
+
+ private:
+  Event on_received(Ps2Receiver::Event event, uint16_t now_ms);
+  Event on_byte(uint8_t value, bool good, uint16_t now_ms);
+  Event on_stream_byte(uint8_t value, bool good, uint16_t now_ms);
+  void on_reply(uint8_t value, uint16_t now_ms);
+  void restart();
+  void begin(uint8_t command);
+  void acknowledged(uint16_t now_ms);
+  void stream(uint16_t now_ms);
+  void take_hold();
+  void try_again(uint16_t now_ms);
+  void give_up(uint16_t now_ms);
+  void send_command(uint16_t now_ms);
+  Event tend_stream(uint16_t now_ms);
+
+  Ps2Receiver receiver_;
+  Ps2Lines& lines_;
+  const uint8_t mouse_;
+  PacketParser parser_;
+  State state_ = kAbsent;
+  bool present_ = false;
+  bool asking_ = false;  // the command under way is EB, not the script's
+  uint8_t script_at_ = 0;
+  uint8_t command_ = 0;
+  uint8_t tries_ = 0;
+  uint8_t put_off_ = 0;  // times EB gave way to a packet that had just begun
+  uint8_t last_byte_ = 0;
+  uint8_t since_tick_ = 0;
+  uint16_t deadline_ms_ = 0;  // kAbsent: the next attempt
+  uint16_t heard_ms_ = 0;     // last whole packet
+  uint16_t byte_ms_ = 0;
+};
+
+}  // namespace firmware
+
+#endif

@@ -1,0 +1,58 @@
+#include "core/ps2_lines.h"
+
+namespace firmware {
+
+namespace {
+
+uint8_t bit_of(uint8_t mouse) {
+  return static_cast<uint8_t>(1u << mouse);
+}
+
+bool odd_ones(uint8_t value) {
+  value = static_cast<uint8_t>(value ^ (value >> 4));
+  value = static_cast<uint8_t>(value ^ (value >> 2));
+  value = static_cast<uint8_t>(value ^ (value >> 1));
+  return (value & 1) != 0;
+}
+
+// Bit number i of value becomes the mouse's bit in plane i.
+void set_planes(uint8_t* planes, uint8_t count, uint8_t bit, uint16_t value) {
+  for (uint8_t i = 0; i < count; ++i) {
+    planes[i] = static_cast<uint8_t>((value & 1) != 0 ? planes[i] | bit : planes[i] & ~bit);
+    value = static_cast<uint16_t>(value >> 1);
+  }
+}
+
+}  // namespace
+
+void Ps2Lines::inhibit(uint8_t mouse) {
+  SamplingHeld held;
+  clock_low_ = static_cast<uint8_t>(clock_low_ | bit_of(mouse));
+  drive_lines(clock_low_, data_low_);
+}
+
+void Ps2Lines::release(uint8_t mouse) {
+  SamplingHeld held;
+  const uint8_t others = static_cast<uint8_t>(~bit_of(mouse));
+  sending_ = static_cast<uint8_t>(sending_ & others);
+  data_low_ = static_cast<uint8_t>(data_low_ & others);
+  clock_low_ = static_cast<uint8_t>(clock_low_ & others);
+  drive_lines(clock_low_, data_low_);
+}
+
+void Ps2Lines::send(uint8_t mouse, uint8_t value) {
+  SamplingHeld held;
+  const uint8_t bit = bit_of(mouse);
+  const uint8_t others = static_cast<uint8_t>(~bit);
+  const uint16_t parity = odd_ones(value) ? 0 : 0x100, stop = 0x200;
+  const uint16_t bits = static_cast<uint16_t>(value | parity | stop);
+  set_planes(planes_, kPlanes, bit, bits);
+  set_planes(left_, kCounterPlanes, bit, kPlanes);
+  acknowledged_ = static_cast<uint8_t>(acknowledged_ & others);
+  sending_ = static_cast<uint8_t>(sending_ | bit);
+  data_low_ = static_cast<uint8_t>(data_low_ | bit);  // the start bit
+  clock_low_ = static_cast<uint8_t>(clock_low_ & others);
+  drive_lines(clock_low_, data_low_);
+}
+
+}  // namespace firmware

@@ -1,0 +1,87 @@
+// A cabinet without the wood: the firmware's own .elf runs in simavr, eight simulated mice are on
+// its pins, and a simulated PC takes what it sends. Time is virtual: nothing happens but in
+// advance_us().
+//
+// simavr is GPL-3: this library is for tests only and is linked into nothing that is shipped.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware_sim/sim_mouse.h"
+
+namespace firmware_sim {
+
+inline constexpr int kMice = 8;
+
+enum class Board {
+  mega32u4,  // USB: 64-byte HID reports, one a millisecond
+  mega2560,  // UART0: COBS frames at 1 Mbaud, 250 a second
+};
+
+// The .elf that this build made for board.
+std::string firmware_elf(Board board);
+
+struct Report {
+  std::uint64_t time_us = 0;  // when the host took it
+  std::array<std::uint8_t, 64> bytes{};
+};
+
+struct CabinetOptions {
+  std::array<MouseOptions, kMice> mice{};
+  std::uint32_t host_poll_us = 1000;  // how often the USB host asks for a report
+};
+
+class CabinetSim {
+ public:
+  // Power-on of everything. Throws std::runtime_error when the .elf cannot be loaded.
+  explicit CabinetSim(const std::string& elf, Board board, const CabinetOptions& options = {});
+  explicit CabinetSim(Board board, const CabinetOptions& options = {});
+  ~CabinetSim();
+  CabinetSim(const CabinetSim&) = delete;
+  CabinetSim& operator=(const CabinetSim&) = delete;
+
+  // Throws std::runtime_error when the firmware crashes.
+  void advance_us(std::uint64_t us);
+  std::uint64_t now_us() const;
+
+  SimMouse& mouse(int rod);
+  // All mice that are plugged in are enabled by the firmware.
+  bool all_enabled() const;
+
+  // mega32u4: the reports taken since the last call.
+  std::vector<Report> take_reports();
+  // mega2560: the bytes that left UART0 since the last call.
+  std::vector<std::uint8_t> take_serial();
+
+  // ---- the simulated USB host (mega32u4)
+  bool usb_configured() const;
+  void usb_reset();  // and enumerates again
+  // As read during enumeration; empty before.
+  const std::vector<std::uint8_t>& device_descriptor() const;
+  const std::vector<std::uint8_t>& configuration_descriptor() const;
+  const std::vector<std::uint8_t>& report_descriptor() const;
+  struct ControlResult {
+    bool stalled = false;
+    std::vector<std::uint8_t> data;
+  };
+  // One control transfer without data from the host, after enumeration; advances the time. Throws
+  // std::runtime_error when the device has not answered within 50 ms.
+  ControlResult control(const std::array<std::uint8_t, 8>& setup);
+
+  // ---- measured
+  std::uint32_t serial_baud() const;  // as UART0 is set up
+  double idle_share() const;  // of the CPU's cycles, slept, since the last call of reset_idle()
+  void reset_idle();
+  std::size_t static_ram_bytes() const;  // .data and .bss
+  std::size_t unused_ram_bytes() const;  // between them and the deepest stack so far
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace firmware_sim
