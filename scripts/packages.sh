@@ -15,6 +15,7 @@ build  libcli11-dev          command lines
 build  libspdlog-dev         logs
 build  libfmt-dev            formatted text, also inside spdlog
 build  libexpected-dev       tl::expected, how errors are returned
+build  nlohmann-json3-dev    JSON, the calibration file
 build  libglfw3-dev          the window, its keys, mice and gamepads
 build  libgles-dev           OpenGL ES headers
 build  libegl-dev            EGL headers, how OpenGL ES is reached

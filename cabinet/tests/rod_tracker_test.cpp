@@ -222,6 +222,7 @@ TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
   EXPECT_NEAR(t.rod(6).slide, 0.02, 1e-12);
 
   t.device.present = 0xFF;
+  t.device.slide[5] = -500;  // plugged in again, it counts from elsewhere
   t.take(t.device.frame());
   EXPECT_EQ(t.rod(5).status, RodStatus::live);
   EXPECT_NEAR(t.rod(5).slide, 0.01, 1e-12);
