@@ -121,20 +121,23 @@ step_fuzz() {
   ((status == 0 && good == all))
 }
 
-# A match of two computer players, recorded by the g++ Release server, goes through four replayers.
+# A match of two computer players, recorded by the g++ Release server while the Debug replayers are
+# built, goes through four replayers, each also with save and restore in the middle.
 step_replay() {
-  local record=$LOGS/replay.sfr preset hash
-  configure debug "$LOGS/debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
-  configure clang-debug "$LOGS/clang-debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
-  build debug "$LOGS/debug-build.log" foosball-replay
-  build clang-debug "$LOGS/clang-debug-build.log" foosball-replay
+  local record=$LOGS/replay.sfr preset hash server_pid
   rm -f "$record"
-  build/release/bin/space-foosball-server --port 0 --team0 computer --team1 computer --seed 7 \
-    --seconds "${SF_REPLAY_SECONDS:-15}" --record "$record"
+  build/release/bin/space-foosball-server --port 0 --team0 computer --team1 computer --seed 7 --quiet \
+    --seconds 20 --record "$record" &
+  server_pid=$!
+  for preset in debug clang-debug; do
+    configure "$preset" "$LOGS/$preset-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
+    build "$preset" "$LOGS/$preset-build.log" foosball-replay
+  done
+  wait "$server_pid"
   : >"$LOGS/replay.hashes"
   for preset in release debug clang clang-debug; do
     replay_hash "$preset" "$record" >>"$LOGS/replay.hashes"
-    replay_hash "$preset" "$record" --restore-at 5000 >>"$LOGS/replay.hashes"
+    replay_hash "$preset" "$record" --restore-at 10000 >>"$LOGS/replay.hashes"
   done
   cat "$LOGS/replay.hashes"
   [[ $(wc -l <"$LOGS/replay.hashes") == 8 ]]
@@ -147,7 +150,7 @@ step_replay() {
 replay_hash() {
   local preset=$1 words
   words=$("build/$preset/bin/foosball-replay" "${@:2}")
-  echo "$preset ${*:3} $(grep -oE '\b[0-9a-f]{16}\b' <<<"$words" | tail -n 1)"
+  echo "$preset ${*:3} $(sed -n 's/^hash *//p' <<<"$words")"
 }
 
 step_play() {
