@@ -106,7 +106,7 @@ step_tidy() { python3 scripts/tidy.py --build build/clang | tee "$LOGS/tidy.all"
 step_fuzz() {
   local seconds=${SF_FUZZ_SECONDS:-5} status=0
   configure fuzz "$LOGS/fuzz-configure.log" -DSF_WERROR=ON
-  build fuzz "$LOGS/fuzz-build.log" all
+  build fuzz "$LOGS/fuzz-build.log" fuzz_targets
   rm -rf "$LOGS/fuzz"
   mkdir -p "$LOGS/fuzz"
   [[ -s build/fuzz/fuzz-targets.txt ]] || { echo "there is no fuzz target" && return 1; }
