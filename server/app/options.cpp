@@ -1,0 +1,143 @@
+#include "options.h"
+
+#include <arpa/inet.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <map>
+
+#include "server/exit_code.h"
+
+namespace app {
+namespace {
+
+constexpr std::uint16_t kDefaultPort = 7531;
+constexpr double kMaxSeconds = 1e6;  // 11 days
+
+bool parse_ipv4(const std::string& text, in_addr& address) {
+  return ::inet_pton(AF_INET, text.c_str(), &address) == 1;
+}
+
+std::string check_address(const std::string& text) {
+  in_addr address{};
+  return parse_ipv4(text, address) ? "" : "\"" + text + "\" is no IPv4 address, such as 0.0.0.0";
+}
+
+std::optional<server::Endpoint> parse_group(const std::string& text) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const std::string address = text.substr(0, colon), port = text.substr(colon + 1);
+  in_addr parsed{};
+  if (!parse_ipv4(address, parsed) || !IN_MULTICAST(ntohl(parsed.s_addr))) return std::nullopt;
+  const bool digits = !port.empty() && port.size() <= 5 &&
+                      port.find_first_not_of("0123456789") == std::string::npos;
+  const long number = digits ? std::stol(port) : 0;
+  if (number < 1 || number > 65535) return std::nullopt;
+  return server::Endpoint{address, static_cast<std::uint16_t>(number)};
+}
+
+std::string check_group(const std::string& text) {
+  return parse_group(text) ? "" : "\"" + text + "\" is no multicast group, such as 239.7.5.31:7532";
+}
+
+std::string check_seconds(const std::string& text) {
+  double value = 0.0;
+  const bool ok = CLI::detail::lexical_cast(text, value) && value > 0.0 && value <= kMaxSeconds;
+  return ok ? "" : "\"" + text + "\" is no number of seconds between 0.001 and 1000000";
+}
+
+struct Raw {
+  std::string layout = "tournament", team0 = "human", team1 = "human", multicast;
+  double seconds = 0.0;
+  bool fast = false, no_real_time = false;
+};
+
+void add_match(CLI::App& cli, Options& o, Raw& raw) {
+  const CLI::IsMember player({"human", "computer"});
+  cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
+      ->check(CLI::IsMember({"paper", "tournament"}));
+  cli.add_option("--seed", o.match.seed, "of the match and the computer players");
+  cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
+      ->check(player);
+  cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
+  cli.add_option("--device", o.devices,
+                 "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; may be given "
+                 "more than once");
+  cli.add_option("--calibration", o.calibration, "of the cabinet's sensors")->needs("--device");
+}
+
+void add_network(CLI::App& cli, Options& o, Raw& raw) {
+  o.network.port = kDefaultPort;
+  cli.add_option("--port", o.network.port,
+                 "TCP for control and UDP for input, on the same number; 0: any free one")
+      ->check(CLI::Range(0, 65535));
+  cli.add_option("--listen", o.network.listen,
+                 "IPv4 address to listen at; without it, only this machine can connect")
+      ->check(check_address);
+  cli.add_option("--multicast", raw.multicast, "GROUP:PORT to send the snapshots to, all at once")
+      ->check(check_group);
+}
+
+void add_run(CLI::App& cli, Options& o, Raw& raw) {
+  auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
+  auto* replay =
+      cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
+          ->excludes(record)
+          ->excludes("--device");
+  cli.add_flag("--fast", raw.fast, "replay as fast as it goes")->needs(replay);
+  cli.add_option("--seconds", raw.seconds, "end after so much time of the match")
+      ->check(check_seconds);
+  cli.add_flag("--exit-when-empty", o.run.exit_when_empty,
+               "end when the last client that joined has left");
+  cli.add_option("--cpu", o.loop.cpu, "pin the tick to this core")->check(CLI::Range(0, 1023));
+  cli.add_flag("--no-real-time", raw.no_real_time,
+               "do not ask for real-time priority and locked memory");
+  cli.add_option("--ready-file", o.ready_file, "written with port=N once clients can connect");
+  cli.add_option("--stats-file", o.stats_file, "figures of the run, as JSON or, if *.csv, CSV");
+  cli.add_flag("--quiet", o.quiet, "say only what is wrong");
+}
+
+// A bare path says by itself what it is.
+std::string with_scheme(const std::string& device) {
+  if (device.find(':') != std::string::npos) return device;
+  if (device.rfind("/dev/hidraw", 0) == 0) return "hid:" + device;
+  return (device.rfind("/dev/", 0) == 0 ? "serial:" : "file:") + device;
+}
+
+void translate(Options& o, const Raw& raw) {
+  o.match.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
+  o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
+  if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
+  o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
+  o.loop.paced = !raw.fast;
+  o.loop.real_time = !raw.no_real_time;
+  for (std::string& device : o.devices) device = with_scheme(device);
+}
+
+}  // namespace
+
+tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
+  CLI::App cli{
+      "The physics server of Space Foosball: steps the match 1000 times a second and sends it to\n"
+      "every renderer that has joined. Ctrl-C ends it.\n\n"
+      "Exit codes: 0 ended as told; 1 a replay differs, or something failed; 2 a bad option;\n"
+      "3 the port is in use.",
+      "space-foosball-server"};
+  Options options;
+  Raw raw;
+  add_match(cli, options, raw);
+  add_network(cli, options, raw);
+  add_run(cli, options, raw);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return tl::unexpected(Leave{server::kExitOk, cli.help()});
+  } catch (const CLI::ParseError& error) {
+    return tl::unexpected(
+        Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options\n"});
+  }
+  translate(options, raw);
+  return options;
+}
+
+}  // namespace app

@@ -1,0 +1,41 @@
+// What the server counts. Bytes from outside are never asserted, only accepted or counted here.
+#pragma once
+
+#include <cstdint>
+
+namespace server {
+
+// Connections and messages on the control port.
+struct ControlCounters {
+  std::uint64_t accepted = 0;  // connections
+  std::uint64_t joined = 0;
+  std::uint64_t left = 0;
+  std::uint64_t refused = 0;         // for version, layout, a taken team or a full house
+  std::uint64_t bad_messages = 0;    // unreadable, cut short, or out of place
+  std::uint64_t timed_out = 0;       // no Hello in time
+  std::uint64_t slow_dropped = 0;    // did not read what was sent to them
+  std::uint64_t wishes = 0;          // handed on to the match
+  std::uint64_t wishes_dropped = 0;  // not allowed, or too many
+};
+
+// Datagrams on the input port.
+struct InputCounters {
+  std::uint64_t accepted = 0;
+  std::uint64_t bad = 0;      // not an input datagram: length, checksum, range
+  std::uint64_t foreign = 0;  // another session's, an unknown token, or a watcher's
+  std::uint64_t stale = 0;    // no newer than one accepted: late, or sent twice
+};
+
+struct Counters {
+  std::uint64_t ticks = 0;
+  std::uint64_t snapshots_sent = 0;  // datagrams, over all listeners
+  std::uint64_t snapshot_bytes = 0;
+  std::uint64_t send_errors = 0;
+  std::uint64_t events_dropped = 0;
+  std::uint64_t journal_bytes = 0;
+  std::uint64_t journal_dropped = 0;  // entries that the journal lacks, at least
+  InputCounters input;
+  ControlCounters control;
+};
+
+}  // namespace server

@@ -1,0 +1,62 @@
+// A recorded match, read tick by tick, and the referee over its replay: the state hashes, keyframes
+// and the end that the journal holds must be those of the match that was stepped with its inputs.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "foosball/match.h"
+#include "wire/journal.h"
+
+namespace server {
+
+class Playback {
+ public:
+  enum class Verdict {
+    same,       // every hash agreed, to the recorded end
+    cut_short,  // every hash agreed, but the recording stops without its end
+    differs,    // a hash did not agree: this build does not play the match as it was played
+  };
+
+  // Reads the file; the error is a sentence. Refused: what cannot be read or does not begin with a
+  // match's header.
+  static tl::expected<std::unique_ptr<Playback>, std::string> open(const std::string& path);
+  static tl::expected<std::unique_ptr<Playback>, std::string> from_bytes(
+      std::vector<std::byte> file, const std::string& name);
+
+  const foosball::MatchDesc& match() const { return match_; }
+
+  // Checks what the journal says about the match as it stands, then gives the inputs of its next
+  // tick; nothing at the end. The match must have been stepped with every tick given before.
+  const wire::JournalTick* next(const foosball::Match& match);
+
+  Verdict verdict() const;
+  std::string verdict_sentence() const;
+  std::uint64_t ticks() const { return ticks_; }  // given so far
+  std::uint64_t hashes_checked() const { return checked_; }
+
+ private:
+  Playback(std::vector<std::byte> file, std::string name);
+  void check(const foosball::Match& match, const wire::JournalHash& hash);
+  void check(const foosball::Match& match, const wire::JournalKeyframe& keyframe);
+  void compare(std::uint64_t tick, bool same);
+
+  std::vector<std::byte> file_;
+  std::string name_;
+  wire::JournalReader reader_;
+  foosball::MatchDesc match_;
+  wire::JournalTick tick_;
+  std::vector<std::byte> scratch_;
+  std::uint64_t ticks_ = 0, checked_ = 0;
+  std::optional<std::uint64_t> first_difference_;  // ticks stepped
+  bool ended_ = false;
+};
+
+// Steps the match with one journaled tick: the only way in which a replay steps.
+void step_recorded(foosball::Match& match, const wire::JournalTick& tick);
+
+}  // namespace server

@@ -1,0 +1,76 @@
+// The physics server without its clock: sources and clients in, one step of the match, journal and
+// snapshots out. tick() is called by the loop (server/loop.h) 1000 times a second, or by a test in
+// lockstep: the number of ticks never depends on a clock.
+//
+// Threads: all is called on one thread, the tick's. The control port and the journal have threads
+// of their own inside; tick() never waits for them, for a socket or for the disk.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "cabinet/device_source.h"
+#include "foosball/match.h"
+#include "server/counters.h"
+#include "server/log.h"
+#include "server/network.h"
+#include "server/playback.h"
+
+namespace server {
+
+struct ServerOptions {
+  foosball::MatchDesc match;
+  std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
+  NetworkOptions network;
+  ControlLimits limits;
+  std::uint64_t session = 0;              // random, other at every start
+  std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
+  std::string record;                     // a file, or empty
+  std::unique_ptr<Playback> replay;       // plays this instead of what sources and clients say
+  Log log = [](LogLevel, const std::string&) {};
+};
+
+struct StartError {
+  enum class Kind { bad_option, port_taken, failed };
+  Kind kind;
+  std::string sentence;  // what is wrong and what to do
+};
+
+class Server {
+ public:
+  static tl::expected<std::unique_ptr<Server>, StartError> create(ServerOptions options);
+  ~Server();  // as finish(), if that was not called
+
+  void add_device(std::unique_ptr<cabinet::DeviceSource> device);
+
+  // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
+  void tick(std::int64_t now_us);
+
+  // Something all clients should read; replaces the notice of the same topic.
+  enum class Topic : std::uint32_t { overload = 1, journal = 2, replay = 3, devices = 100 };
+  void warn(Topic topic, const std::string& text);
+  void clear(Topic topic, const std::string& text);
+
+  // Says Bye to the clients and closes the journal.
+  void finish(const std::string& reason);
+
+  std::uint16_t port() const;
+  const foosball::Match& match() const;
+  bool replay_over() const;             // nothing more to play
+  const Playback* replay() const;       // or null
+  int clients() const;                  // joined now, as the last tick saw it
+  std::uint64_t clients_ever() const;   // joined so far
+  std::string journal_problem() const;  // empty: none
+  Counters counters() const;
+
+ private:
+  struct Impl;
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace server

@@ -1,0 +1,48 @@
+// A bounded queue between one writing and one reading thread, without locks: neither ever waits for
+// the other. Full and empty are answers, not errors.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <utility>
+
+namespace server {
+
+template <class T, std::size_t kCapacity>
+class SpscQueue {
+  static_assert((kCapacity & (kCapacity - 1)) == 0, "a power of two");
+
+ public:
+  // Writer. False when full: nothing is taken.
+  bool push(T value) {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail - head_.load(std::memory_order_acquire) == kCapacity) return false;
+    slots_[tail % kCapacity] = std::move(value);
+    tail_.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+
+  // Writer: places left, at least.
+  std::size_t room() const {
+    return kCapacity -
+           (tail_.load(std::memory_order_relaxed) - head_.load(std::memory_order_acquire));
+  }
+
+  // Reader. False when empty.
+  bool pop(T& value) {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (head == tail_.load(std::memory_order_acquire)) return false;
+    value = std::move(slots_[head % kCapacity]);
+    head_.store(head + 1, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  // On cache lines of their own, so that writer and reader do not pull one line to and fro.
+  alignas(64) std::atomic<std::size_t> head_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};
+  alignas(64) std::array<T, kCapacity> slots_{};
+};
+
+}  // namespace server

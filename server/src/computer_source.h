@@ -1,0 +1,32 @@
+// A computer player as an input source: one look at the match a poll, so one poll a tick.
+#pragma once
+
+#include "cabinet/rod_input.h"
+#include "foosball/computer_player.h"
+
+namespace server {
+
+class ComputerSource final : public cabinet::InputSource {
+ public:
+  // view must outlive the source and be that of the tick before.
+  ComputerSource(const foosball::ComputerPlayerDesc& desc, const foosball::MatchView& view);
+
+  // While it does not play, its rods are absent and nothing is computed.
+  void set_playing(bool playing);
+
+  void poll(std::int64_t now_us) override;
+  const cabinet::RodInputs& rods() const override { return rods_; }
+  const cabinet::SourceCounters& counters() const override { return counters_; }
+  const std::string& name() const override { return name_; }
+
+ private:
+  foosball::ComputerPlayer player_;
+  const foosball::MatchView& view_;
+  foosball::RodTargets targets_{};
+  cabinet::RodInputs rods_{};
+  cabinet::SourceCounters counters_;
+  std::string name_;
+  bool playing_ = false;
+};
+
+}  // namespace server

@@ -1,0 +1,75 @@
+#include "control_connection.h"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+
+namespace server {
+namespace {
+
+bool would_block() {
+  return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
+}
+
+// A peer that vanished without a word (power, cable) is noticed within about 10 s.
+void watch_for_silence(int fd) {
+  const auto set = [fd](int level, int name, int value) {
+    ::setsockopt(fd, level, name, &value, sizeof value);
+  };
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 4);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 2);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, 10'000);
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+}
+
+}  // namespace
+
+ControlConnection::ControlConnection(FileDescriptor socket, const sockaddr_in& peer,
+                                     std::int64_t hello_deadline_us)
+    : deadline_us(hello_deadline_us), socket_(std::move(socket)), peer_(peer) {
+  watch_for_silence(socket_.get());
+}
+
+bool ControlConnection::receive() {
+  std::array<std::byte, 16 * 1024> buffer;
+  const ssize_t size = ::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
+  if (size < 0) return would_block();
+  if (size == 0) return false;
+  heard_ = true;
+  if (state != State::closing) reader_.push({buffer.data(), static_cast<std::size_t>(size)});
+  return true;
+}
+
+wire::ControlReader::Status ControlConnection::next(wire::ControlMessage& message) {
+  return reader_.next(message);
+}
+
+bool ControlConnection::send(const wire::ControlMessage& message, std::size_t cap) {
+  wire::encode_control(message, out_);
+  return out_.size() - sent_ <= cap;
+}
+
+bool ControlConnection::flush() {
+  while (wants_to_send()) {
+    const ssize_t size = ::send(socket_.get(), out_.data() + sent_, out_.size() - sent_,
+                                MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (size < 0) return would_block();
+    sent_ += static_cast<std::size_t>(size);
+  }
+  out_.clear();
+  sent_ = 0;
+  if (shut_when_sent_) ::shutdown(socket_.get(), SHUT_WR);
+  return true;
+}
+
+void ControlConnection::close_softly(std::int64_t until_us) {
+  state = State::closing;
+  deadline_us = until_us;
+  shut_when_sent_ = true;
+}
+
+}  // namespace server

@@ -1,0 +1,86 @@
+#include "server/loop.h"
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "clock.h"
+
+namespace server {
+namespace {
+
+void sleep_until(std::int64_t deadline_ns) {
+  timespec until{};
+  until.tv_sec = static_cast<time_t>(deadline_ns / 1'000'000'000);
+  until.tv_nsec = static_cast<long>(deadline_ns % 1'000'000'000);
+  // A signal ends the sleep early; the tick then comes to see that it should stop.
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
+std::string because() {
+  return std::string(": ") + std::strerror(errno);
+}
+
+}  // namespace
+
+TickLoop::TickLoop(const LoopOptions& options, Log log) : options_(options), log_(std::move(log)) {}
+
+void TickLoop::ask_for_rights() {
+  // Without real-time priority the kernel may round a sleep up by 50 us; ask it not to.
+  ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  if (options_.cpu >= 0) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(options_.cpu), &set);
+    const bool pinned = ::sched_setaffinity(0, sizeof set, &set) == 0;
+    log_(pinned ? LogLevel::info : LogLevel::warning,
+         "core " + std::to_string(options_.cpu) + (pinned ? ": pinned" : " not given" + because()));
+  }
+  if (!options_.real_time) return;
+  const sched_param priority{.sched_priority = options_.priority};
+  // Reset on fork: threads and children made later are ordinary ones.
+  const bool fifo = ::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &priority) == 0;
+  log_(fifo ? LogLevel::info : LogLevel::warning,
+       fifo ? "real-time priority " + std::to_string(options_.priority)
+            : "no real-time priority" + because() +
+                  "; on a busy machine ticks will be late (give CAP_SYS_NICE)");
+  // What is mapped now, which is all that a tick touches. Not the future: where the limit is low,
+  // that would make a later allocation of another thread fail.
+  const bool locked = ::mlockall(MCL_CURRENT) == 0;
+  log_(locked ? LogLevel::info : LogLevel::warning,
+       locked
+           ? "memory locked"
+           : "memory not locked" + because() + "; a page may be swapped out (give CAP_IPC_LOCK)");
+}
+
+// Whole periods that have passed are left out.
+std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t now) {
+  const std::int64_t next = deadline + kPeriodNs;
+  if (!options_.paced || now < next + kPeriodNs) return next;
+  const std::int64_t missed = (now - next) / kPeriodNs;
+  stats_.missed += static_cast<std::uint64_t>(missed);
+  return next + missed * kPeriodNs;
+}
+
+void TickLoop::run(const std::function<bool(std::int64_t, const LoopStats&)>& tick) {
+  if (options_.paced) ask_for_rights();
+  const std::int64_t start = monotonic_ns();
+  std::int64_t deadline = start + kPeriodNs;
+  for (bool go_on = true; go_on;) {
+    if (options_.paced) sleep_until(deadline);
+    const std::int64_t woken = monotonic_ns();
+    go_on = tick(woken / 1000, stats_);
+    const std::int64_t done = monotonic_ns();
+    if (options_.paced) stats_.lateness.record(woken - deadline);
+    stats_.cost.record(done - woken);
+    ++stats_.ticks;
+    stats_.seconds = static_cast<double>(done - start) * 1e-9;
+    deadline = next_deadline(deadline, done);
+  }
+}
+
+}  // namespace server

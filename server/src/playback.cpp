@@ -1,0 +1,99 @@
+#include "server/playback.h"
+
+#include "match_record.h"
+#include "wire/read_file.h"
+
+namespace server {
+
+tl::expected<std::unique_ptr<Playback>, std::string> Playback::open(const std::string& path) {
+  auto bytes = wire::read_file(path, wire::kMaxJournalFile);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return from_bytes(std::move(*bytes), path);
+}
+
+tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
+    std::vector<std::byte> file, const std::string& name) {
+  std::unique_ptr<Playback> playback(new Playback(std::move(file), name));
+  const auto first = playback->reader_.next();
+  const auto* header = first ? std::get_if<wire::JournalHeader>(&*first) : nullptr;
+  if (header == nullptr) {
+    const std::string& problem = playback->reader_.problem();
+    return tl::unexpected(name + " is no recorded match" +
+                          (problem.empty() ? "" : " (" + problem + ")") +
+                          ": choose a file that --record wrote");
+  }
+  playback->match_ = from_header(*header);
+  return playback;
+}
+
+Playback::Playback(std::vector<std::byte> file, std::string name)
+    : file_(std::move(file)), name_(std::move(name)), reader_(file_) {}
+
+const wire::JournalTick* Playback::next(const foosball::Match& match) {
+  while (auto entry = reader_.next()) {
+    if (auto* tick = std::get_if<wire::JournalTick>(&*entry)) {
+      tick_ = std::move(*tick);
+      ++ticks_;
+      return &tick_;
+    }
+    if (const auto* hash = std::get_if<wire::JournalHash>(&*entry)) check(match, *hash);
+    if (const auto* keyframe = std::get_if<wire::JournalKeyframe>(&*entry)) check(match, *keyframe);
+    if (const auto* end = std::get_if<wire::JournalEnd>(&*entry)) {
+      check(match, {end->ticks, end->state_hash});
+      ended_ = true;
+    }
+  }
+  return nullptr;
+}
+
+void Playback::check(const foosball::Match& match, const wire::JournalHash& hash) {
+  compare(hash.tick, hash.tick == ticks_ && hash.state_hash == match.state_hash());
+}
+
+void Playback::check(const foosball::Match& match, const wire::JournalKeyframe& keyframe) {
+  scratch_.clear();
+  match.snapshot(scratch_);
+  compare(keyframe.tick, keyframe.tick == ticks_ && keyframe.snapshot == scratch_);
+}
+
+void Playback::compare(std::uint64_t tick, bool same) {
+  ++checked_;
+  if (!same && !first_difference_) first_difference_ = tick;
+}
+
+Playback::Verdict Playback::verdict() const {
+  if (first_difference_) return Verdict::differs;
+  return ended_ && reader_.problem().empty() ? Verdict::same : Verdict::cut_short;
+}
+
+std::string Playback::verdict_sentence() const {
+  const std::string after =
+      std::to_string(ticks_) + " ticks, " + std::to_string(checked_) + " states compared";
+  switch (verdict()) {
+    case Verdict::same:
+      return "the replay is the match that was played: " + after;
+    case Verdict::cut_short:
+      return name_ + " stops early" +
+             (reader_.problem().empty() ? " (no end was recorded)"
+                                        : " (" + reader_.problem() + ")") +
+             "; it is the match that was played so far: " + after;
+    case Verdict::differs:
+      return "the replay differs from the match that was played, first seen at tick " +
+             std::to_string(*first_difference_) +
+             ": it was recorded by another release, or this "
+             "build is not deterministic";
+  }
+  return {};
+}
+
+void step_recorded(foosball::Match& match, const wire::JournalTick& tick) {
+  foosball::TickInput input;
+  for (int rod = 0; rod < foosball::kRods; ++rod) input.rods[rod] = from_grid(tick.rods[rod]);
+  std::array<foosball::Command, wire::kMaxJournalCommands> commands;
+  const std::size_t count = std::min(tick.commands.size(), commands.size());
+  for (std::size_t i = 0; i < count; ++i) commands[i] = from_record(tick.commands[i]);
+  input.commands = std::span(commands).first(count);
+  match.step(input);
+}
+
+}  // namespace server

@@ -1,0 +1,45 @@
+#include "remote_source.h"
+
+namespace server {
+
+RemoteSource::RemoteSource(const foosball::TableSpec& table, int team)
+    : name_("client of team " + std::to_string(team)) {
+  for (int rod = 0; rod < foosball::kRods; ++rod) own_[rod] = table.rods[rod].team == team;
+}
+
+void RemoteSource::reset() {
+  rods_ = {};
+  heard_ = false;
+}
+
+bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us) {
+  // As a signed difference, so that a counter that wraps goes on.
+  const auto ahead = static_cast<std::int32_t>(input.sequence - sequence_);
+  if (heard_ && ahead <= 0) {
+    ++counters_.stale;
+    return false;
+  }
+  if (heard_) counters_.lost += static_cast<std::uint64_t>(ahead - 1);
+  ++counters_.frames;
+  heard_ = true;
+  sequence_ = input.sequence;
+  heard_us_ = now_us;
+  for (int rod = 0; rod < cabinet::kRods; ++rod) {
+    const wire::InputRod& in = input.rods[rod];
+    if (!own_[rod] || !in.driven) continue;
+    rods_[rod] = {in.slide,      in.angle, in.slide_rate,
+                  in.angle_rate, now_us,   cabinet::RodStatus::live};
+  }
+  return true;
+}
+
+void RemoteSource::poll(std::int64_t now_us) {
+  if (!heard_ || now_us - heard_us_ < kSilenceUs) return;
+  for (cabinet::RodInput& rod : rods_) {
+    if (rod.status != cabinet::RodStatus::live) continue;
+    rod.status = cabinet::RodStatus::held;
+    rod.slide_rate = rod.angle_rate = 0.0;
+  }
+}
+
+}  // namespace server

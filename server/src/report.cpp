@@ -1,0 +1,135 @@
+#include "server/report.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+namespace server {
+namespace {
+
+double us(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-3;
+}
+
+double per_second(std::uint64_t count, const LoopStats& loop) {
+  return loop.seconds > 0.0 ? static_cast<double>(count) / loop.seconds : 0.0;
+}
+
+struct Figure {
+  const char* name;
+  double value;
+};
+
+double number(std::uint64_t count) {
+  return static_cast<double>(count);
+}
+
+std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
+  const Counters c = server.counters();
+  const auto& score = server.match().view().score;
+  return {
+      {"score0", static_cast<double>(score[0])},
+      {"score1", static_cast<double>(score[1])},
+      {"seconds", loop.seconds},
+      {"ticks", number(c.ticks)},
+      {"ticks_per_second", per_second(c.ticks, loop)},
+      {"ticks_missed", number(loop.missed)},
+      {"missed_share", loop.missed_share()},
+      {"late_p50_us", us(loop.lateness.quantile(0.5))},
+      {"late_p99_us", us(loop.lateness.quantile(0.99))},
+      {"late_p999_us", us(loop.lateness.quantile(0.999))},
+      {"late_max_us", us(loop.lateness.max())},
+      {"tick_p50_us", us(loop.cost.quantile(0.5))},
+      {"tick_p99_us", us(loop.cost.quantile(0.99))},
+      {"tick_p999_us", us(loop.cost.quantile(0.999))},
+      {"tick_max_us", us(loop.cost.max())},
+      {"snapshots_sent", number(c.snapshots_sent)},
+      {"snapshots_per_second", per_second(c.snapshots_sent, loop)},
+      {"snapshot_bytes", number(c.snapshot_bytes)},
+      {"send_errors", number(c.send_errors)},
+      {"events_dropped", number(c.events_dropped)},
+      {"journal_bytes", number(c.journal_bytes)},
+      {"journal_dropped", number(c.journal_dropped)},
+      {"clients_joined", number(c.control.joined)},
+      {"clients_left", number(c.control.left)},
+      {"clients_refused", number(c.control.refused)},
+      {"control_bad", number(c.control.bad_messages)},
+      {"control_timed_out", number(c.control.timed_out)},
+      {"control_slow_dropped", number(c.control.slow_dropped)},
+      {"wishes", number(c.control.wishes)},
+      {"wishes_dropped", number(c.control.wishes_dropped)},
+      {"input_accepted", number(c.input.accepted)},
+      {"input_bad", number(c.input.bad)},
+      {"input_foreign", number(c.input.foreign)},
+      {"input_stale", number(c.input.stale)},
+  };
+}
+
+std::string quantiles(const Histogram& h) {
+  return fmt::format("p50 {:.0f}  p99 {:.0f}  p99.9 {:.0f}  max {:.0f} us", us(h.quantile(0.5)),
+                     us(h.quantile(0.99)), us(h.quantile(0.999)), us(h.max()));
+}
+
+bool ends_with_csv(const std::string& path) {
+  return path.size() >= 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
+}
+
+}  // namespace
+
+std::string summary(const Server& server, const LoopStats& loop) {
+  const Counters c = server.counters();
+  const auto& score = server.match().view().score;
+  std::string text;
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "score      {} : {}\n", score[0], score[1]);
+  fmt::format_to(out, "ticks      {} in {:.1f} s ({:.1f} a second), {} missed ({:.3f}%)\n", c.ticks,
+                 loop.seconds, per_second(c.ticks, loop), loop.missed, 100.0 * loop.missed_share());
+  if (loop.lateness.count() > 0) fmt::format_to(out, "lateness   {}\n", quantiles(loop.lateness));
+  fmt::format_to(out, "tick cost  {}\n", quantiles(loop.cost));
+  fmt::format_to(out, "snapshots  {} sent, {} errors\n", c.snapshots_sent, c.send_errors);
+  fmt::format_to(out, "input      {} taken, {} bad, {} foreign, {} stale\n", c.input.accepted,
+                 c.input.bad, c.input.foreign, c.input.stale);
+  fmt::format_to(out,
+                 "clients    {} joined, {} left, {} refused, {} bad, {} without a word, {} slow\n",
+                 c.control.joined, c.control.left, c.control.refused, c.control.bad_messages,
+                 c.control.timed_out, c.control.slow_dropped);
+  if (c.journal_bytes > 0 || c.journal_dropped > 0) {
+    fmt::format_to(out, "journal    {} bytes, {} entries dropped\n", c.journal_bytes,
+                   c.journal_dropped);
+  }
+  return text;
+}
+
+tl::expected<void, std::string> write_stats(const Server& server, const LoopStats& loop,
+                                            const std::string& path) {
+  const bool csv = ends_with_csv(path);
+  std::string text = csv ? "name,value\n" : "{";
+  const char* separator = "\n";
+  for (const Figure& f : figures(server, loop)) {
+    if (csv) {
+      text += fmt::format("{},{:.10g}\n", f.name, f.value);
+    } else {
+      text += fmt::format("{}  \"{}\": {:.10g}", separator, f.name, f.value);
+      separator = ",\n";
+    }
+  }
+  if (!csv) text += "\n}\n";
+  return write_whole(path, text);
+}
+
+tl::expected<void, std::string> write_whole(const std::string& path, const std::string& text) {
+  const std::string part = path + ".part";
+  std::FILE* file = std::fopen(part.c_str(), "wb");
+  bool ok = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  if (file != nullptr) ok = std::fclose(file) == 0 && ok;
+  if (ok && std::rename(part.c_str(), path.c_str()) == 0) return {};
+  const int error = errno;
+  std::remove(part.c_str());
+  return tl::unexpected("cannot write " + path + ": " + std::strerror(error) +
+                        "; choose a file in a folder that can be written");
+}
+
+}  // namespace server

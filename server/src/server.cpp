@@ -1,0 +1,318 @@
+#include "server/server.h"
+
+#include <span>
+
+#include "broadcaster.h"
+#include "control_server.h"
+#include "device_watch.h"
+#include "event_repeater.h"
+#include "input_port.h"
+#include "match_record.h"
+#include "recorder.h"
+#include "rod_desk.h"
+#include "snapshot_builder.h"
+#include "socket.h"
+
+namespace server {
+namespace {
+
+StartError port_error(const NetworkOptions& network, const SocketError& error) {
+  const std::string where = std::to_string(network.port) + " on " + network.listen;
+  if (error.occupied) {
+    return {StartError::Kind::port_taken,
+            "port " + where +
+                " is already in use: stop the program that has it (ss -lntup lists "
+                "them), or choose another port with --port (0 takes any free one)"};
+  }
+  return {StartError::Kind::failed, "cannot listen at port " + where + ": " + error.reason +
+                                        "; choose an address of this machine with --listen"};
+}
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
+       std::unique_ptr<Recorder>&& journal);
+
+  void take_control_events();
+  void admit(const ControlEvent& event);
+  void dismiss(std::uint32_t client);
+  void add_wish(const foosball::Command& wish);
+  bool gather(std::int64_t now_us);
+  void gather_live(std::int64_t now_us);
+  void broadcast(std::int64_t now_us);
+  void put_drivers(wire::Snapshot& out) const;
+  void watch_journal();
+  void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
+  ControlOptions control_options() const;
+
+  struct Client {
+    std::uint32_t id;
+    std::uint8_t team;
+  };
+
+  ServerOptions options;
+  foosball::Match match;
+  std::uint16_t port;
+  FileDescriptor udp;
+  InputPort input;
+  Broadcaster broadcaster;
+  RodDesk desk;
+  DeviceWatch device_watch;
+  EventRepeater events;
+  std::unique_ptr<Recorder> recorder;  // or none
+  std::vector<Client> clients;
+  std::uint64_t clients_ever = 0;
+  std::uint64_t ticks = 0;
+  bool replay_over = false, journal_told = false, finished = false;
+
+  wire::JournalTick next;  // the inputs of the tick under way
+  wire::Snapshot snapshot;
+  std::array<std::byte, wire::kMaxDatagram> datagram;
+  ControlServer control;  // last: its thread ends first
+};
+
+Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
+                   std::unique_ptr<Recorder>&& journal)
+    : options(std::move(given)),
+      match(std::move(made)),
+      port(opened.port),
+      udp(std::move(opened.udp)),
+      input(udp.get(), options.session),
+      broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1),
+      desk(options.match, options.computer, match.view()),
+      recorder(std::move(journal)),
+      control(control_options(), std::move(opened.tcp)) {
+  clients.reserve(static_cast<std::size_t>(options.limits.connections));
+  next.commands.reserve(wire::kMaxJournalCommands);
+  snapshot.session = options.session;
+  if (options.network.multicast) {
+    const auto& group = *options.network.multicast;
+    broadcaster.add(0, *parse_address(group.address, group.port));
+  }
+}
+
+ControlOptions Server::Impl::control_options() const {
+  ControlOptions out;
+  out.limits = options.limits;
+  out.session = options.session;
+  out.udp_port = port;
+  out.layout = options.match.layout;
+  out.multicast = options.network.multicast;
+  out.teams_open = options.replay == nullptr;
+  out.random = options.random;
+  out.log = options.log;
+  return out;
+}
+
+// --- what comes in
+// --------------------------------------------------------------------------------
+
+void Server::Impl::take_control_events() {
+  next.commands.clear();
+  ControlEvent event;
+  // Wishes beyond what a tick of the journal takes wait in the queue for the next one.
+  while (next.commands.size() < wire::kMaxJournalCommands && control.next_event(event)) {
+    switch (event.kind) {
+      case ControlEvent::Kind::joined:
+        admit(event);
+        break;
+      case ControlEvent::Kind::left:
+        dismiss(event.client);
+        break;
+      case ControlEvent::Kind::wish:
+        if (!options.replay) next.commands.push_back(to_record(event.wish));
+        break;
+    }
+  }
+}
+
+void Server::Impl::admit(const ControlEvent& event) {
+  clients.push_back({event.client, event.team});
+  ++clients_ever;
+  const bool plays = event.team < foosball::kTeams;
+  if (plays) desk.set_claimed(event.team, true);
+  input.add(event.client, event.token, plays ? &desk.remote(event.team) : nullptr);
+  const bool unicast = !options.network.multicast && event.listener.sin_port != 0;
+  if (unicast) broadcaster.add(event.client, event.listener);
+}
+
+void Server::Impl::dismiss(std::uint32_t client) {
+  for (const Client& c : clients) {
+    if (c.id == client && c.team < foosball::kTeams) desk.set_claimed(c.team, false);
+  }
+  std::erase_if(clients, [client](const Client& c) { return c.id == client; });
+  input.remove(client);
+  broadcaster.remove(client);
+}
+
+// False when a recording has no further tick.
+bool Server::Impl::gather(std::int64_t now_us) {
+  input.receive(now_us);
+  if (!options.replay) {
+    gather_live(now_us);
+    return true;
+  }
+  if (replay_over) return false;
+  const wire::JournalTick* recorded = options.replay->next(match);
+  if (recorded == nullptr) {
+    replay_over = true;
+    return false;
+  }
+  next = *recorded;
+  return true;
+}
+
+void Server::Impl::gather_live(std::int64_t now_us) {
+  desk.poll(now_us);
+  next.tick = ticks;
+  for (int rod = 0; rod < foosball::kRods; ++rod) next.rods[rod] = to_grid(desk.rods()[rod]);
+  device_watch.look(desk.devices(), now_us, [this](auto level, auto index, const auto& text) {
+    notify(level, static_cast<std::uint32_t>(Topic::devices) + index, text);
+  });
+}
+
+// --- what goes out
+// --------------------------------------------------------------------------------
+
+void Server::Impl::put_drivers(wire::Snapshot& out) const {
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const bool live = next.rods[rod].live;
+    const auto status = options.replay ? live ? cabinet::RodStatus::live : cabinet::RodStatus::held
+                                       : desk.rods()[rod].status;
+    const auto driver = options.replay ? RodDriver::replay : desk.driver(rod);
+    out.rods[rod].status = static_cast<std::uint8_t>(status);
+    out.rods[rod].source = static_cast<std::uint8_t>(driver);
+  }
+}
+
+void Server::Impl::broadcast(std::int64_t now_us) {
+  ++snapshot.sequence;
+  snapshot.send_time_us = now_us;
+  build_snapshot(match.view(), snapshot);
+  put_drivers(snapshot);
+  events.fill(snapshot.events);
+  const std::size_t size = wire::encode_snapshot(snapshot, datagram);
+  broadcaster.send(std::span(datagram).first(size));
+}
+
+void Server::Impl::watch_journal() {
+  if (!recorder || journal_told || !recorder->file().failed()) return;
+  journal_told = true;
+  notify(wire::Notice::Level::warning, static_cast<std::uint32_t>(Topic::journal),
+         recorder->file().problem());
+}
+
+void Server::Impl::notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text) {
+  control.notify({level, topic, text});
+}
+
+// --- the face
+// -------------------------------------------------------------------------------------
+
+tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions options) {
+  using Kind = StartError::Kind;
+  if (options.replay) options.match = options.replay->match();
+  const wire::JournalHeader header = to_header(options.match);
+  options.match = from_header(header);
+  auto match = foosball::Match::create(options.match);
+  if (!match) return tl::unexpected(StartError{Kind::failed, match.error().message});
+  const auto& group = options.network.multicast;
+  if (group && !parse_address(group->address, group->port)) {
+    return tl::unexpected(
+        StartError{Kind::bad_option, "\"" + group->address + "\" is no IPv4 address"});
+  }
+  auto ports = open_ports(options.network);
+  if (!ports) return tl::unexpected(port_error(options.network, ports.error()));
+
+  std::unique_ptr<Recorder> recorder;
+  if (!options.record.empty()) {
+    auto file = JournalFile::create({.path = options.record});
+    if (!file) return tl::unexpected(StartError{Kind::bad_option, file.error()});
+    recorder = std::make_unique<Recorder>(std::move(*file), header);
+  }
+  return std::unique_ptr<Server>(new Server(std::make_unique<Impl>(
+      std::move(options), std::move(*match), std::move(*ports), std::move(recorder))));
+}
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Server::~Server() {
+  finish("the server ends");
+}
+
+void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
+  impl_->desk.add_device(std::move(device));
+}
+
+void Server::tick(std::int64_t now_us) {
+  Impl& s = *impl_;
+  s.take_control_events();
+  if (s.gather(now_us)) {
+    step_recorded(s.match, s.next);
+    ++s.ticks;
+    s.events.add(s.match.events());
+    s.broadcast(now_us);  // first of all: a hand waits for it
+    if (s.recorder) s.recorder->add(s.next, s.match);
+  } else {
+    s.broadcast(now_us);
+  }
+  s.watch_journal();
+}
+
+void Server::warn(Topic topic, const std::string& text) {
+  impl_->notify(wire::Notice::Level::warning, static_cast<std::uint32_t>(topic), text);
+}
+
+void Server::clear(Topic topic, const std::string& text) {
+  impl_->notify(wire::Notice::Level::cleared, static_cast<std::uint32_t>(topic), text);
+}
+
+void Server::finish(const std::string& reason) {
+  if (impl_->finished) return;
+  impl_->finished = true;
+  impl_->control.stop(reason);
+  if (impl_->recorder) impl_->recorder->finish(impl_->match);
+}
+
+std::uint16_t Server::port() const {
+  return impl_->port;
+}
+const foosball::Match& Server::match() const {
+  return impl_->match;
+}
+bool Server::replay_over() const {
+  return impl_->replay_over;
+}
+const Playback* Server::replay() const {
+  return impl_->options.replay.get();
+}
+int Server::clients() const {
+  return static_cast<int>(impl_->clients.size());
+}
+std::uint64_t Server::clients_ever() const {
+  return impl_->clients_ever;
+}
+
+std::string Server::journal_problem() const {
+  return impl_->recorder ? impl_->recorder->file().problem() : std::string{};
+}
+
+Counters Server::counters() const {
+  const Impl& s = *impl_;
+  Counters out;
+  out.ticks = s.ticks;
+  out.snapshots_sent = s.broadcaster.sent();
+  out.snapshot_bytes = s.broadcaster.bytes();
+  out.send_errors = s.broadcaster.errors();
+  out.events_dropped = s.events.dropped();
+  if (s.recorder) {
+    out.journal_bytes = s.recorder->file().bytes_written();
+    out.journal_dropped = s.recorder->file().entries_dropped();
+  }
+  out.input = s.input.counters();
+  out.control = s.control.counters();
+  return out;
+}
+
+}  // namespace server
