@@ -1,0 +1,36 @@
+// The other end of the loop benchmark: a process of its own with N clients on real sockets, which
+// counts what arrives.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace bench {
+
+struct ListenerTotals {
+  std::uint64_t joined = 0;
+  std::uint64_t received = 0;
+  std::uint64_t bad = 0;        // not a snapshot, or another session's
+  std::uint64_t gaps = 0;       // sequence numbers missing between the first and last of a listener
+  std::uint64_t reordered = 0;  // or twice
+  bool complete = false;        // all were told Bye
+};
+
+class Listeners {
+ public:
+  // Forks: call before any thread is made.
+  explicit Listeners(int count);
+  ~Listeners();
+
+  bool join(std::uint16_t port);           // tells them; false when not all could join
+  std::optional<ListenerTotals> totals();  // after the server's Bye
+
+ private:
+  pid_t child_ = -1;
+  std::uint64_t expected_ = 0;
+  int to_child_ = -1, from_child_ = -1;
+};
+
+}  // namespace bench
