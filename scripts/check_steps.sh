@@ -42,16 +42,14 @@ step_scripts() {
   said "${#files[@]} scripts"
 }
 
-# whole_build PRESET [-D...]: configures and builds everything, warnings as errors.
+# whole_build PRESET FIRMWARE: configures and builds everything, warnings as errors.
 whole_build() {
-  local preset=$1
-  shift
-  configure "$preset" "$LOGS/$preset-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON "$@"
-  build "$preset" "$LOGS/$preset-build.log" all
+  configure "$1" "$LOGS/$1-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON -DSF_FIRMWARE="$2"
+  build "$1" "$LOGS/$1-build.log" all
 }
 
-step_gcc() { whole_build release; }
-step_clang() { whole_build clang; }
+step_gcc() { whole_build release ON; }
+step_clang() { whole_build clang OFF; } # the firmware has one compiler, avr-g++
 
 # run_tests PRESET [ctest options]: under a virtual display; leaves the numbers for the totals.
 run_tests() {
@@ -85,7 +83,7 @@ step_tests_gcc() { run_tests release; }
 step_tests_clang() { run_tests clang -L fast; }
 
 sanitized_tests() { # sanitized_tests PRESET
-  configure "$1" "$LOGS/$1-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON
+  configure "$1" "$LOGS/$1-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON -DSF_FIRMWARE=OFF
   no_address_randomisation bash scripts/common.sh build "$1" "$LOGS/$1-build.log" fast_tests
   run_tests "$1" -L fast
 }
@@ -130,7 +128,7 @@ step_replay() {
     --seconds 20 --record "$record" &
   server_pid=$!
   for preset in debug clang-debug; do
-    configure "$preset" "$LOGS/$preset-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF
+    configure "$preset" "$LOGS/$preset-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
     build "$preset" "$LOGS/$preset-build.log" foosball-replay
   done
   wait "$server_pid"

@@ -10,15 +10,15 @@ build  g++                   the C++ compiler
 build  cmake                 configures the build
 build  ninja-build           runs the build
 build  pkg-config            finds libraries that have no CMake package
-build  libasio-dev           sockets and timers of the server and the client
+build  flatbuffers-compiler  the control messages' code from their description
+build  libflatbuffers-dev    control messages
 build  libcli11-dev          command lines
 build  libspdlog-dev         logs
-build  libfmt-dev            formatted text, also inside spdlog
+build  libfmt-dev            formatted text of the reports
 build  libexpected-dev       tl::expected, how errors are returned
 build  nlohmann-json3-dev    JSON, the calibration file
 build  libglfw3-dev          the window, its keys, mice and gamepads
 build  libgles-dev           OpenGL ES headers
-build  libegl-dev            EGL headers, how OpenGL ES is reached
 build  libglm-dev            vectors and matrices of the renderer
 build  libstb-dev            fonts and PNG files
 build  libopenal-dev         sound
