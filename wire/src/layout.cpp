@@ -9,7 +9,7 @@ namespace {
 
 std::string number(double value) {
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
+  std::snprintf(text.data(), text.size(), "%.9g", value);
   return text.data();
 }
 
@@ -87,8 +87,8 @@ void Lister::wrapped(const Wrapped& f, double) {
 }
 
 void Lister::rotation(const Rotation& f, const std::array<float, 4>&) {
-  add(f.name, "rotation", static_cast<std::uint64_t>(2 + 3 * f.bits),
-      "by " + number(f.step() * 1e6) + "e-6", "", f.meaning);
+  add(f.name, "rotation", static_cast<std::uint64_t>(2 + 3 * f.bits), "by " + number(f.step()), "",
+      f.meaning);
 }
 
 void Lister::add_varint(const Varint& f) {

@@ -60,7 +60,7 @@ struct Fixed {
   constexpr std::int64_t max_code() const {
     return (std::int64_t{1} << bits) - (is_signed ? 2 : 1);
   }
-  constexpr double low() const { return -step * static_cast<double>(zero()); }
+  constexpr double low() const { return zero() == 0 ? 0 : -step * static_cast<double>(zero()); }
   constexpr double high() const { return step * static_cast<double>(max_code() - zero()); }
 };
 

@@ -1,0 +1,26 @@
+// Any bytes as an input datagram, as they are and under a right checksum. What is accepted comes
+// back to the bit.
+#include <cstdlib>
+
+#include "samples.h"
+
+namespace {
+
+void read(const wire::samples::Bytes& bytes) {
+  wire::InputDatagram once, twice;
+  if (!wire::decode_input(bytes, once)) return;
+  if (wire::samples::encoded(once) != bytes) std::abort();
+  if (!wire::decode_input(wire::samples::encoded(once), twice)) std::abort();
+  if (!wire::samples::same(once, twice)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto in = std::as_bytes(std::span(data, size));
+  wire::samples::Bytes bytes(in.begin(), in.end());
+  read(bytes);
+  wire::samples::reseal(bytes);
+  read(bytes);
+  return 0;
+}

@@ -1,0 +1,25 @@
+// Any bytes as a snapshot, as they are and under a right checksum. What is accepted comes back the
+// same.
+#include <cstdlib>
+
+#include "samples.h"
+
+namespace {
+
+void read(const wire::samples::Bytes& bytes) {
+  wire::Snapshot once, twice;
+  if (!wire::decode_snapshot(bytes, once)) return;
+  if (!wire::decode_snapshot(wire::samples::encoded(once), twice)) std::abort();
+  if (!wire::samples::same_but_for_ties(once, twice)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto in = std::as_bytes(std::span(data, size));
+  wire::samples::Bytes bytes(in.begin(), in.end());
+  read(bytes);
+  wire::samples::reseal(bytes);
+  read(bytes);
+  return 0;
+}

@@ -1,0 +1,220 @@
+#include "protocol_doc.h"
+
+#include <flatbuffers/reflection_generated.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "layouts.h"
+#include "wire/control.h"
+#include "wire/device_frame.h"
+#include "wire/input_datagram.h"
+#include "wire/journal.h"
+#include "wire/snapshot.h"
+
+namespace wire {
+namespace {
+
+constexpr const char* kHead = R"(# The protocol
+
+<!-- Made by wire_protocol_doc from wire/include/wire/*_description.h, wire/control.fbs and
+     wire/include/wire/device_frame.h. Do not edit: change those, then run
+     `ninja -C build/release wire_protocol_doc && build/release/bin/wire_protocol_doc docs/protocol.md`. -->
+
+Five kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
+over TCP, the journal in a file, and the cabinet's frames over USB. Everything is little endian.
+)";
+
+constexpr const char* kVocabulary = R"(
+## How the bit-packed messages are written
+
+Snapshot, input datagram and journal payloads are fields without gaps, in the order of their tables.
+Bits are filled from the lowest of each byte, bytes in order. `x[]` is an element of an array or list;
+"max bits" is one field's most, "times" how often it occurs at most.
+
+| kind | written as |
+|---|---|
+| constant | always this value; anything else is refused |
+| hash | 32 bits, the layout hash given with the table: FNV-1a over names, kinds, bits and ranges. A message with another hash is of another version and is refused |
+| integer, flag | unsigned; above the range is refused |
+| fixed | value = step * (code - zero), where zero = 2^(bits-1) - 1; a code of all ones is refused. "x3": three of them, x, y, z |
+| unsigned fixed | value = step * code |
+| wrapped | an angle in units of 1/65536 turn as two's complement: angles that differ by 2^bits units have the same code |
+| rotation | 2 bits: which of x, y, z, w is the largest; then the three others in order, each as a fixed of 15 bits over +-1/sqrt(2). The largest is sqrt(1 - sum of squares). Refused where it would not be the largest by more than 3 steps |
+| varint | groups of 7 bits, lowest first, each in 8 bits of which the highest says that more follow; the shortest form only |
+| delta | a signed number v as the varint of (v << 1) xor (v >> 63) |
+| array | so many elements, nothing before them |
+| list | a count of so many bits, then the elements |
+| condition | no bits; what follows in its structure is there only if the flag before is 1 |
+| bytes | a varint length, zero bits to the next byte, then so many bytes |
+| padding | zero bits to the next byte |
+| checksum | CRC-32 as in zlib (reflected 0x04C11DB7) over all bytes before it; nothing may follow |
+
+A sender clamps what is out of range, and writes 0 for what is not finite. A receiver refuses a
+message as a whole: wrong magic, version, layout hash or checksum, a value out of range, too short or
+too long.
+)";
+
+constexpr const char* kControlText = R"(
+A stream of messages both ways, each a u32 length of what follows (1 to %zu; more ends the connection)
+and a FlatBuffers buffer of so many bytes with the file identifier "SFCT", root table `Control`, not
+size-prefixed. `wire/control.fbs` is the schema. Every buffer is verified before it is read. Texts are
+UTF-8 without control characters. A message of an unknown kind, one that fails verification and a value
+out of range end the connection.
+)";
+
+constexpr const char* kJournalText = R"(
+A file is a sequence of records, appended while play goes on, so that what was written before a power
+cut can be read:
+
+| offset | size | field |
+|---|---|---|
+| 0 | 4 | length of the payload, at least 1 |
+| 4 | 4 | CRC-32 of the payload |
+| 8 | length | payload, described below by its first byte |
+
+A reader stops at the first bad record and keeps all before it. The first record is a header, the last,
+if play ended in order, an end; ticks count up from 0 without a gap. Ticks are gathered in records of
+up to %d, each tick as the change against the one before; a record is closed early by any other entry.
+)";
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  const int size = std::snprintf(nullptr, 0, format, values...);
+  std::string text(static_cast<std::size_t>(size) + 1, '\0');
+  std::snprintf(text.data(), text.size(), format, values...);
+  text.pop_back();
+  return text;
+}
+
+std::string table(const Layout& layout) {
+  std::string text = "| field | kind | max bits | times | range | unit | meaning |\n";
+  text += "|---|---|---|---|---|---|---|\n";
+  for (const LayoutRow& row : layout) {
+    text += "| " + row.path + " | " + row.kind + " | " + std::to_string(row.bits) + " | " +
+            std::to_string(row.count) + " | " + row.range + " | " + row.unit + " | " + row.meaning +
+            " |\n";
+  }
+  return text;
+}
+
+std::string datagram(const Layout& layout, std::size_t cap) {
+  return formatted("\nLayout hash 0x%08X. At most %zu bytes, never more than %zu.\n\n",
+                   layout_hash(layout), static_cast<std::size_t>(max_bits(layout) / 8), cap) +
+         table(layout);
+}
+
+std::string journal() {
+  std::string text = formatted(kJournalText, kJournalBatch);
+  text += formatted("\nLayout hash 0x%08X, over all these tables.\n", journal_layout_hash());
+  for (const NamedLayout& part : journal_layouts()) {
+    text += std::string("\n### ") + part.name + "\n\n" + part.meaning + "\n\n" + table(part.layout);
+  }
+  return text;
+}
+
+std::string file_text(const char* path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+using Comments = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>;
+
+std::string comment(const Comments* lines) {
+  std::string text;
+  if (lines == nullptr) return text;
+  for (const auto* line : *lines) text += line->str();
+  return text.empty() ? text : text.substr(text.find_first_not_of(' '));
+}
+
+std::string type_name(const reflection::Schema& schema, const reflection::Field& field) {
+  const reflection::Type& type = *field.type();
+  if (type.index() >= 0 && type.base_type() != reflection::Obj) {
+    const auto* values = schema.enums()->Get(static_cast<unsigned>(type.index()))->values();
+    std::string text;
+    for (const auto* value : *values) {
+      text +=
+          (text.empty() ? "" : ", ") + std::to_string(value->value()) + " " + value->name()->str();
+    }
+    return "u8: " + text;
+  }
+  switch (type.base_type()) {
+    case reflection::UByte:
+      return "u8";
+    case reflection::UShort:
+      return "u16";
+    case reflection::UInt:
+      return "u32";
+    case reflection::ULong:
+      return "u64";
+    case reflection::String:
+      return "string";
+    default:
+      return reflection::EnumNameBaseType(type.base_type());
+  }
+}
+
+std::string control_table(const reflection::Schema& schema, const reflection::Object& object) {
+  std::vector<const reflection::Field*> fields(object.fields()->begin(), object.fields()->end());
+  std::ranges::sort(fields, {}, [](const reflection::Field* field) { return field->id(); });
+  std::string text = "\n| id | field | type | default | meaning |\n|---|---|---|---|---|\n";
+  for (const auto* field : fields) {
+    const std::string start =
+        field->required() ? "required" : std::to_string(field->default_integer());
+    text += "| " + std::to_string(field->id()) + " | " + field->name()->str() + " | " +
+            type_name(schema, *field) + " | " + start + " | " + comment(field->documentation()) +
+            " |\n";
+  }
+  return text;
+}
+
+std::string control() {
+  std::string text = formatted(kControlText, kMaxControlMessage);
+  const std::string binary = file_text(WIRE_CONTROL_BFBS);
+  flatbuffers::Verifier verifier(reinterpret_cast<const std::uint8_t*>(binary.data()),
+                                 binary.size());
+  if (!reflection::VerifySchemaBuffer(verifier)) return "(no schema)\n";
+  const reflection::Schema& schema = *reflection::GetSchema(binary.data());
+  for (const auto* value : *schema.enums()->LookupByKey("wire.fb.Message")->values()) {
+    if (value->value() == 0) continue;  // NONE
+    const std::string name = value->name()->str();
+    const auto& object = *schema.objects()->LookupByKey(("wire.fb." + name).c_str());
+    const std::string words = comment(object.documentation());
+    text += "\n### " + std::to_string(value->value()) + " " + name + "\n";
+    text += (words.empty() ? "" : "\n" + words + "\n") + control_table(schema, object);
+  }
+  return text;
+}
+
+// The comment that opens the header: the words before its include guard.
+std::string device_frame() {
+  std::istringstream header(file_text(WIRE_DEVICE_FRAME_H));
+  std::string text = "\n```\n";
+  for (std::string line; std::getline(header, line) && line.starts_with("//");) {
+    text += line.size() > 3 ? line.substr(3) + "\n" : "\n";
+  }
+  return text + "```\n";
+}
+
+}  // namespace
+
+std::string protocol_document() {
+  std::string text = kHead;
+  text += kVocabulary;
+  text += "\n## Snapshot\n\nUDP, server to every listener, one a tick.\n";
+  text += datagram(snapshot_layout(), kMaxDatagram);
+  text +=
+      "\n## Input datagram\n\nUDP, client to server, on every change and at least 20 a second.\n";
+  text += datagram(input_layout(), kMaxInputDatagram);
+  text += "\n## Control messages\n" + control();
+  text += "\n## Journal\n" + journal();
+  text += "\n## Device frame\n" + device_frame();
+  return text;
+}
+
+}  // namespace wire

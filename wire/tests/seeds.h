@@ -1,0 +1,19 @@
+// What the fuzz targets start from, kept in wire/fuzz/corpus/TARGET/NAME. wire_fuzz_corpus writes
+// them, a test compares them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "samples.h"
+
+namespace wire::samples {
+
+struct Seed {
+  std::string target, name;
+  Bytes bytes;
+};
+
+std::vector<Seed> seeds();
+
+}  // namespace wire::samples
