@@ -1,5 +1,6 @@
 // Any bytes as a device frame, plain (as they are and under a right CRC) and in COBS. What is
 // accepted comes back to the bit.
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
