@@ -15,6 +15,8 @@ namespace {
 constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // A push in the same breath as the goal is the end of the shot, not a wish to go on.
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
+// A ball that meets something at less than about 0.1 m/s is neither heard nor felt.
+constexpr double kLeastHit = 0.003;  // [N s]
 constexpr std::size_t kMaxEventsPerStep = 128;
 
 std::uint64_t ticks(double seconds) {
@@ -160,7 +162,7 @@ void Match::Impl::note_contacts() {
       state.touched |= std::uint64_t{1} << (other.rod * kMaxMenOnRod + other.man);
       state.last_toucher = team;
     }
-    if (contact.kind != vp::ContactEvent::Kind::hit) continue;
+    if (contact.kind != vp::ContactEvent::Kind::hit || contact.impulse < kLeastHit) continue;
     const EventKind kind = man                             ? EventKind::man_hit
                            : other.what == Tag::What::wall ? EventKind::wall_hit
                                                            : EventKind::field_hit;

@@ -51,11 +51,11 @@ Temper temper_of(double skill) {
   const double s = std::clamp(skill, 0.0, 1.0);
   return {.delay = lerp(0.25, 0.07, s),
           .aim_error = lerp(0.008, 0.0015, s),
-          .pause_low = lerp(0.5, 0.08, s),
-          .pause_high = lerp(1.2, 0.45, s),
+          .pause_low = lerp(0.5, 0.05, s),
+          .pause_high = lerp(1.2, 0.30, s),
           .slide = {lerp(0.6, 2.2, s), lerp(10.0, 45.0, s)},
           .swing = {lerp(10.0, 25.0, s), lerp(200.0, 900.0, s)},
-          .strike = {lerp(35.0, 95.0, s), lerp(1200.0, 7000.0, s)}};
+          .strike = {lerp(40.0, 120.0, s), lerp(1500.0, 9000.0, s)}};
 }
 
 void RodTactics::adopt(double slide, double swing) {
@@ -209,11 +209,25 @@ void RodTactics::wind_up(const TableSpec& table, const Sighting& now, const Temp
   const bool aligned = std::fabs(goal_slide_ - slide_.position()) < 0.003;
   const bool ready = is_drawn && aligned && since_ > pause_;
   constexpr double kPatience = 0.6;  // [s] beyond the pause, then strike at what there is
-  if (ready || since_ > pause_ + kPatience) stance_ = Stance::strike;
+  if (ready || since_ > pause_ + kPatience) {
+    stance_ = Stance::strike;
+    power_ = power_for(table, ahead);
+  }
+}
+
+// A ball far ahead is met by a foot already rising, which would lift it off the table: the further,
+// the softer, so that the part of the speed that goes upwards stays small.
+double RodTactics::power_for(const TableSpec& table, double ahead) const {
+  constexpr double kLift = 0.11;  // upward share of a full strike that still stays on the table
+  constexpr double kLeast = 0.25;
+  const double rise = std::max(0.0, ahead - 0.010 - table.ball_radius);
+  const double arm = table.rod_height - table.ball_radius;
+  const double sine = rise / std::sqrt(rise * rise + arm * arm);
+  return sine > kLift ? std::max(kLeast, kLift / sine) : 1.0;
 }
 
 void RodTactics::strike(const Temper& temper) {
-  swing_.swing(level() + 2.0, temper.strike);
+  swing_.swing(level() + 2.0, {power_ * temper.strike.rate, temper.strike.acceleration});
   if (swing_.position() > level() + kThrough) stance_ = Stance::recover;
 }
 

@@ -44,6 +44,7 @@ class RodTactics {
   void take_aim(const TableSpec& table, const Sighting& now, const Temper& temper, Random& random);
   double guard_y(const TableSpec& table, const Sighting& now) const;
   double slide_for(const TableSpec& table, double y) const;
+  double power_for(const TableSpec& table, double ahead) const;
   double level() const;  // the full turn nearest to the swing, where the feet hang down
 
   int team_, rod_;
@@ -54,6 +55,7 @@ class RodTactics {
   double pause_ = 0.0;  // before this strike [s]
   double aim_ = 0.0;    // foot's centre from the ball's [m]
   double aside_ = 0.0;  // sidestep while the foot goes back past a ball beside it [m]
+  double power_ = 1.0;  // of this strike, share of the full rate
   double goal_slide_ = 0.0;
 };
 

@@ -55,7 +55,7 @@ constexpr TableSpec describe(Layout layout) {
   table.layout = layout;
   table.length = kLength;
   table.width = kWidth;
-  table.wall_height = 0.115;  // rods pass through at 84 mm
+  table.wall_height = 0.130;  // rods pass through at 84 mm; a ball that hops stays inside
   table.rod_height = kRodHeight;
   table.goal_width = 0.205;
   table.goal_height = 0.080;
@@ -81,9 +81,9 @@ constexpr std::array<TableSpec, kLayouts> kTables{describe(Layout::paper),
 // Every foot corner stays within 75 mm of the axis, which is what the end wall leaves a goalie; no
 // head reaches below the top of the ball when the man hangs head down, so that none pins it there.
 constexpr std::array<CharacterSpec, kCharacters> kCharacterSpecs{{
-    {"tall and thin", 0.020, 0.020, 0.024, 0.018, 0.046, 0.0735, 0.060, 0.60, 0.75},
-    {"average", 0.024, 0.020, 0.032, 0.022, 0.044, 0.0720, 0.070, 0.60, 0.65},
-    {"small and fat", 0.030, 0.022, 0.044, 0.030, 0.038, 0.0700, 0.085, 0.70, 0.50},
+    {"tall and thin", 0.020, 0.020, 0.024, 0.020, 0.046, 0.0735, 0.060, 0.60, 0.82},
+    {"average", 0.024, 0.020, 0.032, 0.022, 0.044, 0.0720, 0.070, 0.60, 0.72},
+    {"small and fat", 0.030, 0.022, 0.044, 0.030, 0.038, 0.0700, 0.085, 0.70, 0.58},
 }};
 
 constexpr int kPartsOfMan = 4;
@@ -101,7 +101,8 @@ ManBoxes boxes_of(const CharacterSpec& c) {
   const double sole = -c.foot_reach;
   const double ankle = sole + kFootHeight;
   return {{slab(ManBox::Part::foot, c.foot_width, c.foot_depth, sole, ankle),
-           slab(ManBox::Part::leg, 0.8 * c.foot_width, 0.6 * c.foot_depth, ankle, kHip),
+           // As deep as the foot: a ball that hops meets one upright face, not an edge to fly off.
+           slab(ManBox::Part::leg, 0.8 * c.foot_width, c.foot_depth, ankle, kHip),
            slab(ManBox::Part::torso, c.torso_width, c.torso_depth, kHip, kShoulder),
            slab(ManBox::Part::head, 0.016, 0.016, kShoulder, c.head_height)}};
 }

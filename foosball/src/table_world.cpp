@@ -61,7 +61,8 @@ Tag decode_tag(std::uint64_t user_data) {
           static_cast<std::uint8_t>(user_data >> 16), static_cast<std::uint8_t>(user_data >> 24)};
 }
 
-TableWorld::TableWorld(Layout layout, const Characters& characters) : table_(table_spec(layout)) {
+TableWorld::TableWorld(Layout layout, const Characters& characters)
+    : table_(table_spec(layout)), world_({.gravity = {0.0, 0.0, -tuning::kGravity}}) {
   vp::BodyDesc fixed;
   fixed.motion = vp::Motion::fixed;
   fixed_ = must(world_.create_body(fixed));
@@ -119,6 +120,13 @@ void TableWorld::add_goal(double side) {
   add_fixed(Box{{t, 0.5 * table_.width, h}},
             SE3(Vec3{side * (front + table_.goal_depth + t), 0.0, h}), tuning::kGoalBox,
             Tag::What::wall);
+  // A mat that stops a scored ball. It begins where the ball has wholly passed the line, so that no
+  // rolling ball is turned by its edge before the goal counts.
+  const double mat = 0.5 * table_.goal_depth - table_.ball_radius;
+  constexpr double kMatHeight = 0.0005;
+  add_fixed(Box{{mat, post, 0.01}},
+            SE3(Vec3{side * (front + table_.goal_depth - mat), 0.0, kMatHeight - 0.01}),
+            tuning::kGoalBox, Tag::What::field);
 }
 
 // Each corner is the top face of a slab: the plane through two points of the field's edges, a leg
@@ -194,15 +202,17 @@ void TableWorld::add_rod(int rod, int character) {
 
 namespace {
 
-// A critically damped drive of the inertia. The error is cut so that the speed it asks for stays
-// within the bound: at rest error * stiffness = speed * damping.
-vp::JointDrive drive_towards(double target, double rate, double now, double inertia,
+// A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
+// The error is cut so that the speed it asks for stays within the bound: at rest
+// error * stiffness = speed * damping.
+vp::JointDrive drive_towards(double target, double target_rate, double now, double inertia,
                              double max_force, double max_rate) {
   const double stiffness = inertia * tuning::kDriveOmega * tuning::kDriveOmega;
   const double damping = 2.0 * inertia * tuning::kDriveOmega;
   const double furthest = max_rate * damping / stiffness;
-  const double position = now + std::clamp(target - now, -furthest, furthest);
-  return {position, std::clamp(rate, -max_rate, max_rate), stiffness, damping, max_force};
+  const double rate = std::clamp(target_rate, -max_rate, max_rate);
+  const double error = target + rate * kTick - now;
+  return {now + std::clamp(error, -furthest, furthest), rate, stiffness, damping, max_force};
 }
 
 }  // namespace
@@ -214,7 +224,7 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
   // The heaviest rod's figures serve all: a lighter one is only damped a little more.
   constexpr double kSlideInertia = 1.9;     // [kg]
-  constexpr double kAngleInertia = 1.0e-3;  // [kg m^2]
+  constexpr double kAngleInertia = 1.2e-3;  // [kg m^2]
   must(world_.set_drive(rods_[rod], 0, 0,
                         drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide,
                                       kSlideInertia, tuning::kHandForce, tuning::kMaxSlideRate)));
@@ -261,7 +271,24 @@ bool TableWorld::free_for_ball(const Vec3& position) const {
 
 // --- time ----------------------------------------------------------------------------------------
 
+// See tuning::kSagFrom.
+void TableWorld::let_field_sag() {
+  const Vec3 ball = world_.pose(ball_).position();
+  const bool on_field =
+      ball.z < table_.ball_radius + 0.001 && std::fabs(ball.y) < 0.5 * table_.width;
+  if (!on_field) return;
+  double nearest = table_.length;  // from ball to rod
+  for (const RodSpec& rod : table_.rods) {
+    if (std::fabs(rod.x - ball.x) < std::fabs(nearest)) nearest = rod.x - ball.x;
+  }
+  const bool between_rods = std::fabs(ball.x) < table_.rods[kRods - 1].x;
+  if (!between_rods || std::fabs(nearest) < tuning::kSagFrom) return;
+  const double impulse = table_.ball_mass * tuning::kSagAcceleration * kTick;
+  must(world_.apply_impulse(ball_, {std::copysign(impulse, nearest), 0.0, 0.0}, ball));
+}
+
 bool TableWorld::step() {
+  let_field_sag();
   const auto result = world_.step(kTick);
   status_ = *result;
   contacts_.clear();

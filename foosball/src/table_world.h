@@ -76,6 +76,7 @@ class TableWorld {
   void add_corners();
   void add_ball();
   void add_rod(int rod, int character);
+  void let_field_sag();
 
   const TableSpec& table_;
   vp::World world_;

@@ -15,14 +15,14 @@ namespace foosball {
 struct ShotsReport {
   int shots = 0;
   long ticks = 0;
-  long man_hits = 0, wall_hits = 0;
+  long man_hits = 0, table_hits = 0;
   long over_the_wall = 0;  // left over a wall: allowed
   long through_a_man = 0;  // never allowed
   long outside = 0;        // never allowed
   long held_steps = 0;     // the engine met its impact limit
   double held_seconds = 0.0;
-  double deepest_in_man = 0.0;   // [m]
-  double deepest_in_wall = 0.0;  // [m], field included
+  double deepest_in_man = 0.0;    // [m]
+  double deepest_in_table = 0.0;  // [m], field included
 };
 
 class ShotGallery {
@@ -36,6 +36,29 @@ class ShotGallery {
     for (int i = 0; i < shots; ++i) shot();
   }
   const ShotsReport& report() const { return report_; }
+
+  // Whether the segment meets the box about the origin (slabs).
+  static bool crosses(const vp::Vec3& a, const vp::Vec3& b, const vp::Vec3& half) {
+    double enter = 0.0, leave = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = b[axis] - a[axis];
+      if (std::fabs(way) < 1e-12) {
+        if (std::fabs(a[axis]) > half[axis]) return false;
+        continue;
+      }
+      const double t0 = (-half[axis] - a[axis]) / way, t1 = (half[axis] - a[axis]) / way;
+      enter = std::max(enter, std::min(t0, t1));
+      leave = std::min(leave, std::max(t0, t1));
+    }
+    return enter <= leave;
+  }
+
+  // Of a point from the box about the origin; negative inside.
+  static double distance(const vp::Vec3& p, const vp::Vec3& half) {
+    const vp::Vec3 q{std::fabs(p.x) - half.x, std::fabs(p.y) - half.y, std::fabs(p.z) - half.z};
+    const vp::Vec3 out{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)};
+    return vp::norm(out) + std::min(0.0, std::max({q.x, q.y, q.z}));
+  }
 
  private:
   static constexpr int kTicks = 16;       // 20 m/s: 0.32 m, two rods and a wall away
@@ -65,11 +88,27 @@ class ShotGallery {
                random_.between(-0.5 * table().width + r, 0.5 * table().width - r),
                random_.unit() < 0.7 ? r + 0.011 : random_.between(r + 0.011, 0.09)};
     } while (!world_.free_for_ball(place));
-    // Mostly along the field; a quarter at any slope.
-    vp::Vec3 way{random_.between(-1.0, 1.0), random_.between(-1.0, 1.0), 0.0};
-    way.z = random_.unit() < 0.25 ? random_.between(-1.0, 0.5) : random_.between(-0.05, 0.05);
+    const vp::Vec3 way = random_.unit() < 0.5 ? towards_a_man(place) : anywhere();
     const double length = vp::norm(way);
     world_.set_ball(place, (kSpeed / std::max(length, 0.01)) * way);
+  }
+
+  // Mostly along the field; a quarter at any slope.
+  vp::Vec3 anywhere() {
+    const bool steep = random_.unit() < 0.25;
+    return {random_.between(-1.0, 1.0), random_.between(-1.0, 1.0),
+            steep ? random_.between(-1.0, 0.5) : random_.between(-0.05, 0.05)};
+  }
+
+  // At some part of a man of the nearest or next rod.
+  vp::Vec3 towards_a_man(const vp::Vec3& from) {
+    const int nearest = static_cast<int>((from.x + 0.6) / 0.150);
+    const int rod = std::clamp(nearest + random_.below(3) - 1, 0, kRods - 1);
+    const int man = random_.below(table().rods[rod].men);
+    const auto boxes = man_boxes(characters_[table().rods[rod].team]);
+    const ManBox& box = boxes[random_.below(static_cast<int>(boxes.size()))];
+    const vp::SE3 T_world_man = man_pose(table(), rod, man, world_.rod(rod));
+    return T_world_man * box.centre - from;
   }
 
   void shot() {
@@ -88,7 +127,7 @@ class ShotGallery {
       ++report_.ticks;
       for (const BallContact& contact : world_.contacts()) {
         if (contact.kind != vp::ContactEvent::Kind::hit) continue;
-        ++(contact.other.what == Tag::What::man ? report_.man_hits : report_.wall_hits);
+        ++(contact.other.what == Tag::What::man ? report_.man_hits : report_.table_hits);
       }
       report_.held_steps += world_.status().impact_limit ? 1 : 0;
       report_.held_seconds += world_.status().time_held;
@@ -117,55 +156,37 @@ class ShotGallery {
     }
   }
 
-  // False once the ball has left over a wall.
+  // Depth of the ball in the inside of the table: field, walls, goal boxes. Above the walls there
+  // is none; the rounding of a ball that passes over an edge is not judged. False once it is out.
   bool judge_table(const vp::Vec3& ball) {
     const double r = table().ball_radius;
     const double past_side = std::fabs(ball.y) - (0.5 * table().width - r);
     const double past_end = std::fabs(ball.x) - (0.5 * table().length - r);
-    const bool at_mouth =
-        std::fabs(ball.y) < 0.5 * table().goal_width && ball.z < table().goal_height;
-    const double past_box = past_end - table().goal_depth;
-    double depth = std::max({past_side, r - ball.z, at_mouth ? past_box : past_end});
-    // Above the wall the ball may be over it; its rounding may then overlap the edge.
-    const bool over = ball.z > table().wall_height - r;
-    if (over && std::max(past_side, past_end) > 0.0) {
-      if (std::max(past_side, past_end) > r) ++report_.over_the_wall;
-      return std::max(past_side, past_end) <= r;
+    if (ball.z > table().wall_height) {
+      const bool out = std::max(past_side, past_end) > r;
+      report_.over_the_wall += out ? 1 : 0;
+      return !out;
     }
-    // On the posts and under the lintel only a part of the ball is in the mouth.
-    if (at_mouth || past_end < 0.0 || !near_mouth(ball)) {
-      report_.deepest_in_wall = std::max(report_.deepest_in_wall, depth);
-      if (depth > 0.5 * r) ++report_.outside;
-    }
+    double depth = std::max(past_side, r - ball.z);
+    if (past_end > 0.0) depth = std::max(depth, depth_at_end(ball, past_end));
+    report_.deepest_in_table = std::max(report_.deepest_in_table, depth);
+    report_.outside += depth > 0.5 * r ? 1 : 0;
     return true;
   }
-  bool near_mouth(const vp::Vec3& ball) const {
+
+  // Of a ball that overlaps the plane of an end wall by past_end.
+  double depth_at_end(const vp::Vec3& ball, double past_end) const {
     const double r = table().ball_radius;
-    return std::fabs(ball.y) < 0.5 * table().goal_width + r && ball.z < table().goal_height + r &&
-           std::fabs(ball.x) < 0.5 * table().length;
-  }
-
-  // Whether the segment meets the box about the origin (slabs).
-  static bool crosses(const vp::Vec3& a, const vp::Vec3& b, const vp::Vec3& half) {
-    double enter = 0.0, leave = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double way = b[axis] - a[axis];
-      if (std::fabs(way) < 1e-12) {
-        if (std::fabs(a[axis]) > half[axis]) return false;
-        continue;
-      }
-      const double t0 = (-half[axis] - a[axis]) / way, t1 = (half[axis] - a[axis]) / way;
-      enter = std::max(enter, std::min(t0, t1));
-      leave = std::min(leave, std::max(t0, t1));
+    const double post = std::fabs(ball.y) - 0.5 * table().goal_width;  // beside the opening, if > 0
+    const double lintel = ball.z - table().goal_height;                // above it, if > 0
+    if (past_end < r) {
+      // Its centre is still on the field: distance to the nearest point of the wall's face.
+      if (post > 0.0 || lintel > 0.0) return past_end;
+      const double to_edge = std::min(-post, -lintel);
+      const double to_face = r - past_end;
+      return r - std::sqrt(to_edge * to_edge + to_face * to_face);
     }
-    return enter <= leave;
-  }
-
-  // Of a point from the box about the origin; negative inside.
-  static double distance(const vp::Vec3& p, const vp::Vec3& half) {
-    const vp::Vec3 q{std::fabs(p.x) - half.x, std::fabs(p.y) - half.y, std::fabs(p.z) - half.z};
-    const vp::Vec3 out{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)};
-    return vp::norm(out) + std::min(0.0, std::max({q.x, q.y, q.z}));
+    return std::max({past_end - table().goal_depth, post + r, lintel + r});
   }
 
   TableWorld world_;
