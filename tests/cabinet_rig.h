@@ -1,0 +1,51 @@
+// The whole way of the data in lockstep: the firmware in its simulator, a real socket pair in place
+// of hidraw, the server's tick, and a listener on UDP that decodes what a renderer would. Time is
+// the simulator's; every exchange is awaited, none is timed.
+#pragma once
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cabinet/device_source.h"
+#include "firmware_sim/cabinet_sim.h"
+#include "server/server.h"
+#include "wire/snapshot.h"
+
+namespace end_to_end {
+
+class CabinetRig {
+ public:
+  explicit CabinetRig(foosball::Layout layout);
+  ~CabinetRig();
+  CabinetRig(const CabinetRig&) = delete;
+  CabinetRig& operator=(const CabinetRig&) = delete;
+
+  // One millisecond of everything; returns the snapshot that the listener got for it.
+  const wire::Snapshot& step();
+
+  firmware_sim::CabinetSim& cabinet() { return sim_; }
+  // A second reader of the same reports: what the PC made of the counts, before the physics.
+  const cabinet::DeviceSource& tap() const { return *tap_; }
+  // Ticks without a snapshot, or with one for another tick, since the listener joined.
+  int snapshots_missed() const { return missed_; }
+
+ private:
+  void join();
+  bool receive(wire::Snapshot& snapshot);
+  void forward_reports();
+
+  firmware_sim::CabinetSim sim_{firmware_sim::Board::mega32u4};
+  std::unique_ptr<server::Server> server_;
+  std::unique_ptr<cabinet::DeviceSource> tap_;
+  std::vector<int> report_ends_;  // where simulated reports are written
+  int udp_ = -1, tcp_ = -1;
+  wire::Snapshot last_;
+  bool first_ = true;
+  int missed_ = 0;
+};
+
+}  // namespace end_to_end
