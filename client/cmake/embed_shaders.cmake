@@ -1,0 +1,33 @@
+# Run by the build: cmake -DDIR=... -DOUT=... -P embed_shaders.cmake. Writes one .cpp in which every
+# shader is a raw string, found by its file name.
+file(GLOB shaders "${DIR}/*.glsl" "${DIR}/*.vert" "${DIR}/*.frag")
+list(SORT shaders)
+set(body "")
+foreach(path IN LISTS shaders)
+  get_filename_component(name "${path}" NAME)
+  file(READ "${path}" text)
+  string(APPEND body "    {\"${name}\", R\"glsl(${text})glsl\"},\n")
+endforeach()
+file(WRITE "${OUT}.new" "// Written by client/cmake/embed_shaders.cmake.
+#include \"render/shaders.h\"
+
+#include <array>
+#include <utility>
+
+namespace client {
+namespace {
+using Entry = std::pair<std::string_view, std::string_view>;
+const auto kShaders = std::to_array<Entry>({
+${body}});
+}  // namespace
+
+std::string_view shader_source(std::string_view name) {
+  for (const auto& [key, text] : kShaders) {
+    if (key == name) return text;
+  }
+  return {};
+}
+
+}  // namespace client
+")
+file(COPY_FILE "${OUT}.new" "${OUT}" ONLY_IF_DIFFERENT)

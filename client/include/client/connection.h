@@ -1,0 +1,74 @@
+// The way to the physics server: control messages over TCP, snapshots and inputs over UDP, each on
+// a thread of its own. A server that falls silent or goes away is looked for again until it is
+// back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "client/snapshot_buffer.h"
+#include "wire/control.h"
+#include "wire/input_datagram.h"
+
+namespace client {
+
+inline constexpr std::uint16_t kDefaultPort = 7531;
+
+struct ConnectionOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = kDefaultPort;
+  std::string name = "player";
+  std::uint8_t team = wire::kWatchOnly;
+  std::int64_t silence_us = 500'000;     // no snapshot for so long: the server is lost
+  std::int64_t retry_us = 250'000;       // between attempts to join
+  std::int64_t patience_us = 1'000'000;  // for a connection and its Welcome
+};
+
+enum class Link : std::uint8_t {
+  connecting,  // never joined yet
+  joined,
+  lost,     // was joined, is looked for
+  refused,  // the server says why, in detail; asked again now and then
+};
+
+struct ConnectionStatus {
+  Link link = Link::connecting;
+  std::string detail;     // one sentence, or empty
+  wire::Welcome welcome;  // of the last time it was joined
+  std::uint64_t joins = 0;
+  bool small_receive_buffer = false;  // the system granted less than was asked for
+};
+
+class Connection {
+ public:
+  // Opens the UDP socket and starts. The error says what to do; a server that is not there is none.
+  static tl::expected<std::unique_ptr<Connection>, std::string> open(
+      const ConnectionOptions& options);
+  ~Connection();  // says Bye
+
+  // Any thread.
+  ConnectionStatus status() const;
+  std::string address() const;  // "HOST:PORT"
+  SceneSample sample(std::int64_t now_us);
+  std::vector<wire::EventSnapshot> take_events();
+  std::vector<wire::Notice> notices() const;  // standing ones, oldest first
+  SnapshotCounters counters() const;
+  std::int64_t delay_us() const;
+  // Asks for something; forgotten while not joined.
+  void wish(const wire::Wish& wish);
+  // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
+  // 20 times a second until nothing was heard from the caller for a second.
+  void drive(const std::array<wire::InputRod, 8>& rods);
+  std::uint64_t inputs_sent() const;
+
+ private:
+  struct Impl;
+  explicit Connection(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace client

@@ -1,0 +1,24 @@
+// What a person did at the window between two frames, without any window library's types.
+#pragma once
+
+#include "cabinet/hand.h"
+
+namespace client {
+
+struct InputEvents {
+  double mouse_right = 0.0;    // [px], only while the pointer is captured
+  double mouse_forward = 0.0;  // [px], away from the person
+  int choose_line = -1;        // 0..3: a key for that line was pressed
+  int wheel = 0;               // steps, outwards positive
+  double key_slide = 0.0;      // -1, 0, 1: away from the person positive, as held
+  double key_spin = 0.0;       // -1, 0, 1: to the right positive, as held
+  bool toggle_automatic = false;
+  bool toggle_pause = false;
+  bool push = false;  // click, Space or Enter
+  bool has_pad = false;
+  cabinet::PadState pad;
+  bool pad_push = false;
+  bool pad_pause = false;
+};
+
+}  // namespace client

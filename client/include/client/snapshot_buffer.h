@@ -1,0 +1,93 @@
+// Snapshots as they come in, put in order, and the scene to be drawn now: a little behind the
+// newest, as little as the network's unevenness allows.
+//
+// The server's simulated time (tick * tick_us) is laid along this process' clock by the fastest
+// arrivals of the last 256; what the slower ones came later is the jitter. The scene is played
+//   delay = 1.5 ticks + the jitter's 98th percentile, at most kLongestDelay
+// behind the fastest arrival. Changes of the delay are slewed in, so that time never jumps in play.
+// One thread at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "wire/snapshot.h"
+
+namespace client {
+
+struct SnapshotCounters {
+  std::uint64_t received = 0;   // taken in
+  std::uint64_t bad = 0;        // bytes that are no snapshot
+  std::uint64_t old = 0;        // duplicates, and too late to be of use
+  std::uint64_t foreign = 0;    // of another session
+  std::uint64_t lost = 0;       // never came, or came too late
+  std::uint64_t reordered = 0;  // came after a newer one, and in time
+};
+
+struct SceneSample {
+  bool any = false;       // false: nothing was received in this session
+  bool starving = false;  // the newest snapshot is used up: the scene stands still
+  wire::Snapshot state;
+};
+
+class SnapshotBuffer {
+ public:
+  static constexpr std::int64_t kLongestDelayUs = 50'000;
+  static constexpr std::int64_t kExtrapolateUs =
+      20'000;  // further ahead a guess looks worse than a stop
+
+  // Snapshots of other sessions are dropped from now on. A session that goes on keeps its scene.
+  void begin_session(std::uint64_t session, std::uint32_t tick_us);
+
+  enum class Verdict : std::uint8_t { taken, old, foreign };
+  Verdict push(wire::Snapshot snapshot, std::int64_t arrival_us);
+  void count_bad() { ++counters_.bad; }
+
+  // Calls must not go back in time.
+  SceneSample sample(std::int64_t now_us);
+  // Events whose tick the drawn scene has reached, each once, oldest first.
+  std::vector<wire::EventSnapshot> take_events();
+
+  SnapshotCounters counters() const;
+  std::int64_t delay_us() const { return delay_us_; }
+  std::int64_t last_arrival_us() const { return last_arrival_us_; }  // 0: none yet
+
+ private:
+  static constexpr std::size_t kKept = 128;
+  static constexpr std::size_t kWindow = 256;
+
+  std::int64_t time_of(const wire::Snapshot& s) const {
+    return static_cast<std::int64_t>(s.tick) * tick_us_;
+  }
+  bool insert(wire::Snapshot snapshot);
+  void note_arrival(std::int64_t offset_us);
+  void note_events(const wire::Snapshot& snapshot);
+  void count_sequence(std::uint64_t sequence, bool newest);
+  std::int64_t play_time(std::int64_t now_us);
+
+  struct PendingEvent {
+    std::uint64_t tick;
+    wire::EventSnapshot event;
+  };
+
+  std::uint64_t session_ = 0;
+  std::int64_t tick_us_ = 1000;
+  std::deque<wire::Snapshot> kept_;  // by tick, oldest first
+  SnapshotCounters counters_;
+  std::uint64_t first_sequence_ = 0, newest_sequence_ = 0, in_session_ = 0, lost_before_ = 0;
+
+  std::array<std::int64_t, kWindow> offsets_{};  // arrival - simulated time
+  std::size_t offset_count_ = 0, offset_next_ = 0;
+  std::int64_t fastest_us_ = 0, delay_us_ = 1500;
+
+  bool playing_ = false;
+  std::int64_t play_us_ = 0, sampled_at_us_ = 0, last_arrival_us_ = 0;
+  std::deque<PendingEvent> events_;
+  std::uint32_t last_event_ = 0;
+  bool any_event_ = false;
+};
+
+}  // namespace client

@@ -1,0 +1,60 @@
+// The turf: calm dark teal in mown bands, markings drawn from their signed distances so that they
+// stay sharp at every size, and the ball's contact shadow as a cue of its height.
+in vec3 v_position;
+in vec3 v_shadow;
+uniform vec2 u_half_field;    // [m]
+uniform float u_goal_width;   // [m]
+uniform vec3 u_team_colour[2];
+uniform vec4 u_ball;          // position, radius [m]; radius 0: none
+uniform vec4 u_active_rod;    // x, strength, rod's side of the marker (y), tick of the pulse
+out vec4 o_colour;
+
+float box_distance(vec2 p, vec2 half_size) {
+  vec2 d = abs(p) - half_size;
+  return length(max(d, 0.0)) + min(max(d.x, d.y), 0.0);
+}
+
+// Coverage of a line of the width around distance zero.
+float line(float distance, float half_width) {
+  float blur = max(fwidth(distance), 0.0004);
+  return 1.0 - smoothstep(half_width - 0.5 * blur, half_width + 0.7 * blur, abs(distance));
+}
+
+float markings(vec2 p) {
+  float w = 0.0024;
+  float m = line(p.x, w);
+  m = max(m, line(length(p) - 0.103, w));
+  m = max(m, 1.0 - smoothstep(0.0075, 0.0095, length(p)));
+  vec2 q = vec2(u_half_field.x - abs(p.x), p.y);  // from either goal line inwards
+  m = max(m, line(box_distance(q, vec2(0.225, 0.5 * u_goal_width + 0.085)), w));
+  m = max(m, line(box_distance(q, vec2(0.105, 0.5 * u_goal_width + 0.018)), w));
+  m = max(m, 1.0 - smoothstep(0.0055, 0.0075, length(q - vec2(0.160, 0.0))));
+  m = max(m, line(length(q - vec2(0.160, 0.0)) - 0.100, w) * step(0.2255, q.x));
+  return m;
+}
+
+void main() {
+  vec2 p = v_position.xy;
+  vec2 band = abs(fract(p / vec2(0.150, 2.0) + 0.25) - 0.5);
+  float mown = smoothstep(0.245, 0.255, band.x);
+  vec3 turf = mix(vec3(0.0060, 0.050, 0.062), vec3(0.0085, 0.064, 0.078), mown);
+  float towards = smoothstep(0.35, 1.0, abs(p.x) / u_half_field.x);
+  turf += u_team_colour[p.x > 0.0 ? 1 : 0] * 0.014 * towards;
+  float edge = min(u_half_field.x - abs(p.x), u_half_field.y - abs(p.y));
+  float m = markings(p);
+
+  Surface s = Surface(mix(turf, vec3(0.52, 0.66, 0.70), 0.86 * m), 0.72, 0.0);
+  float occlusion = mix(0.45, 1.0, smoothstep(0.0, 0.05, edge));
+  float contact = 1.0;
+  if (u_ball.w > 0.0) {
+    float height = max(u_ball.z - u_ball.w, 0.0);
+    float radius = u_ball.w * (1.05 + 5.0 * height);
+    float d = length(p - u_ball.xy) / radius;
+    contact = 1.0 - 0.72 / (1.0 + 22.0 * height) * (1.0 - smoothstep(0.15, 1.15, d));
+  }
+  vec3 c = shade(s, v_position, vec3(0.0, 0.0, 1.0), v_shadow, occlusion) * contact;
+  // A soft lane of light lies under the rod in hand.
+  float lane = (p.x - u_active_rod.x) / 0.020;
+  c += u_active_rod.y * exp(-lane * lane) * vec3(0.16, 0.20, 0.19) * (0.55 + 0.45 * s.albedo.g * 8.0);
+  o_colour = scene_output(c, 1.0);
+}

@@ -1,0 +1,14 @@
+// The side walls' upper half: clear, so that the near wall hides nothing of the field.
+in vec3 v_position;
+in vec3 v_normal;
+uniform vec3 u_eye;
+uniform float u_top;  // [m]
+out vec4 o_colour;
+
+void main() {
+  vec3 v = normalize(u_eye - v_position);
+  float facing = abs(dot(normalize(v_normal), v));
+  float edge = smoothstep(u_top - 0.006, u_top - 0.001, v_position.z);
+  float alpha = 0.05 + 0.16 * pow(1.0 - facing, 3.0) + 0.35 * edge;
+  o_colour = scene_output(vec3(0.32, 0.50, 0.62) * (1.0 + 0.8 * edge), alpha);
+}

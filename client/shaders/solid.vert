@@ -1,0 +1,29 @@
+// Instanced solids: table, rods, handles, men.
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec4 a_albedo;    // square root of linear rgb; a: share of the tint
+layout(location = 3) in vec4 a_material;  // roughness, metal, emission / 4, occlusion
+layout(location = 4) in vec4 i_row0;      // rows of the pose, world from mesh (rigid or mirrored)
+layout(location = 5) in vec4 i_row1;
+layout(location = 6) in vec4 i_row2;
+layout(location = 7) in vec4 i_tint;      // linear rgb; a: glow of the active rod
+uniform mat4 u_view_projection;
+uniform mat4 u_shadow_matrix;
+out vec3 v_position;
+out vec3 v_normal;
+out vec3 v_shadow;
+flat out float v_glow;
+out vec3 v_albedo;
+out vec4 v_material;
+
+void main() {
+  vec4 p = vec4(a_position, 1.0);
+  v_position = vec3(dot(i_row0, p), dot(i_row1, p), dot(i_row2, p));
+  v_normal = vec3(dot(i_row0.xyz, a_normal), dot(i_row1.xyz, a_normal), dot(i_row2.xyz, a_normal));
+  v_shadow = (u_shadow_matrix * vec4(v_position, 1.0)).xyz;
+  vec3 albedo = a_albedo.rgb * a_albedo.rgb;
+  v_albedo = mix(albedo, albedo * i_tint.rgb, a_albedo.a);
+  v_material = a_material;
+  v_glow = i_tint.a;
+  gl_Position = u_view_projection * vec4(v_position, 1.0);
+}

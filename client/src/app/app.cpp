@@ -1,0 +1,303 @@
+#include "app/app.h"
+
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "app/effects.h"
+#include "app/frame_meter.h"
+#include "app/log.h"
+#include "app/view_motion.h"
+#include "app/window.h"
+#include "client/clock.h"
+#include "client/player_input.h"
+#include "render/hud.h"
+#include "render/image.h"
+#include "render/scene.h"
+
+namespace client {
+namespace {
+
+volatile std::sig_atomic_t asked_to_leave = 0;
+
+bool draws_in_software(const std::string& renderer) {
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
+    if (renderer.find(name) != std::string::npos) return true;
+  }
+  return false;
+}
+
+class App {
+ public:
+  explicit App(const Options& options) : options_(options) {}
+  // Empty, or the sentence to say; exit_code is then set.
+  std::string start(int& exit_code);
+  int loop();
+
+ private:
+  std::string use_quality(Quality quality);
+  void hear(std::int64_t now);
+  void follow_connection();
+  void take_input(std::int64_t now);
+  void draw(float dt);
+  HudState hud(const Camera& camera) const;
+  void judge_quality();
+  std::string take_screenshot();
+  void say_figures(double seconds) const;
+  bool leaving(double seconds) const;
+
+  const Options& options_;
+  std::optional<Window> window_;
+  std::unique_ptr<Scene> scene_;
+  std::optional<UiBatch> ui_;
+  std::unique_ptr<SoundPlayer> sounds_;
+  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<PlayerInput> player_;
+  Particles particles_;
+  ViewMotion motion_;
+  FrameMeter meter_;
+  SceneSample sample_;
+  ConnectionStatus status_;
+  std::uint64_t joins_seen_ = 0;
+  Link link_seen_ = Link::connecting;
+  glm::ivec2 size_{1, 1};
+  double seconds_ = 0.0;
+};
+
+std::string App::start(int& exit_code) {
+  exit_code = 4;
+  auto window = Window::open({options_.size, options_.fullscreen, "Space Foosball"});
+  if (!window) return window.error().sentence;
+  window_ = std::move(*window);
+  exit_code = 1;
+  auto font = Font::load(options_.font_directory);
+  if (!font) return font.error();
+  auto ui = UiBatch::create(std::move(*font));
+  if (!ui) return ui.error();
+  ui_ = std::move(*ui);
+  const std::string renderer = window_->renderer();
+  const Quality guess = draws_in_software(renderer) ? Quality::low : Quality::high;
+  log_info("drawing with " + renderer);
+  if (std::string error = use_quality(options_.quality.value_or(guess)); !error.empty())
+    return error;
+  if (!options_.mute) {
+    if (auto sounds = SoundPlayer::open()) {
+      sounds_ = std::move(*sounds);
+    } else {
+      log_warning(sounds.error());
+    }
+  }
+  auto connection = Connection::open(options_.connection);
+  if (!connection) return connection.error();
+  connection_ = std::move(*connection);
+  if (connection_->status().small_receive_buffer) {
+    log_warning(
+        "The system grants a smaller receive buffer than 4 MiB: a stall of the window may lose "
+        "snapshots (raise net.core.rmem_max to 4194304).");
+  }
+  exit_code = 0;
+  return {};
+}
+
+std::string App::use_quality(Quality quality) {
+  scene_.reset();  // before the new one: both at once are too much for a small GPU
+  auto scene = Scene::create(quality);
+  if (!scene) return scene.error();
+  scene_ = std::move(*scene);
+  log_info(std::string("quality ") + (quality == Quality::high ? "high" : "low"));
+  return {};
+}
+
+void App::follow_connection() {
+  status_ = connection_->status();
+  if (status_.link != link_seen_) {
+    link_seen_ = status_.link;
+    if (status_.link == Link::joined)
+      log_info("joined the physics server at " + connection_->address());
+    if (status_.link == Link::lost)
+      log_warning("physics server lost (" + status_.detail + "): waiting at " +
+                  connection_->address());
+    if (status_.link == Link::refused) log_warning("the physics server refuses: " + status_.detail);
+  }
+  if (status_.joins == joins_seen_) return;
+  joins_seen_ = status_.joins;
+  // Joined anew: the rods are where the server has them, so a hand begins anew too.
+  player_.reset();
+  if (status_.welcome.team < foosball::kTeams) {
+    const int layout = std::min<int>(status_.welcome.layout, foosball::kLayouts - 1);
+    player_ =
+        std::make_unique<PlayerInput>(status_.welcome.team, static_cast<foosball::Layout>(layout));
+  }
+}
+
+void App::hear(std::int64_t now) {
+  follow_connection();
+  SceneSample sample = connection_->sample(now);
+  if (sample.any) sample_ = std::move(sample);  // else the last scene stands
+  show_events(connection_->take_events(), particles_, sounds_.get());
+}
+
+void App::take_input(std::int64_t now) {
+  const InputEvents events = window_->poll();
+  if (!player_) return;
+  player_->update(events, sample_.any ? &sample_.state : nullptr, now);
+  if (status_.link != Link::joined || !sample_.any) return;
+  connection_->drive(player_->rods());
+  for (const wire::Wish& wish : player_->wishes()) connection_->wish(wish);
+}
+
+HudState App::hud(const Camera& camera) const {
+  HudState hud;
+  hud.state = sample_.any ? &sample_.state : nullptr;
+  hud.camera = camera;
+  hud.viewer_team = player_ ? status_.welcome.team : -1;
+  hud.mouse_free = !window_->captured();
+  hud.automatic_rod = player_ && player_->automatic();
+  hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
+  for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
+  switch (status_.link) {
+    case Link::joined:
+      if (!sample_.any)
+        hud.connection_message = "Waiting for the first snapshot from " + connection_->address();
+      if (sample_.starving) hud.connection_detail = "no news from the physics server";
+      break;
+    case Link::connecting:
+      hud.connection_message = "Waiting for the physics server at " + connection_->address();
+      hud.connection_detail = status_.detail;
+      break;
+    case Link::lost:
+      hud.connection_message = "Physics server lost: waiting at " + connection_->address();
+      hud.connection_detail = status_.detail;
+      break;
+    case Link::refused:
+      hud.connection_message = "The physics server at " + connection_->address() + " refuses";
+      hud.connection_detail = status_.detail;
+      break;
+  }
+  return hud;
+}
+
+void App::draw(float dt) {
+  size_ = glm::max(window_->size(), 1);
+  SceneView view;
+  view.time = static_cast<float>(seconds_);
+  view.active_rod = player_ ? player_->active_rod() : -1;
+  view.camera = player_camera(
+      motion_.step(sample_.any ? &sample_.state : nullptr, player_ ? status_.welcome.team : 0, dt),
+      size_);
+  static const wire::Snapshot kNothing;
+  const wire::Snapshot& state = sample_.any ? sample_.state : kNothing;
+  if (state.ball_in_play && !state.paused && status_.link == Link::joined) {
+    const auto& ball = state.ball;
+    particles_.streak({ball.position[0], ball.position[1], ball.position[2]},
+                      {ball.linear_velocity[0], ball.linear_velocity[1], ball.linear_velocity[2]},
+                      0.017f, dt);
+  }
+  if (!state.paused) particles_.step(dt);
+  if (sounds_) sounds_->set_listener(view.camera.eye, glm::vec3(0));
+  scene_->draw(state, view, particles_, size_);
+  draw_hud(*ui_, hud(view.camera), size_);
+}
+
+void App::judge_quality() {
+  if (options_.quality || scene_->quality() == Quality::low || !meter_.too_slow()) return;
+  log_info("high quality is too slow here");
+  meter_.restart_judgement();
+  if (const std::string error = use_quality(Quality::low); !error.empty()) {
+    log_warning(error);
+    window_->close();
+  }
+}
+
+std::string App::take_screenshot() {
+  const auto wrote = write_png(read_pixels(size_), options_.screenshot);
+  if (wrote) log_info("picture written to " + options_.screenshot);
+  return wrote ? std::string() : wrote.error();
+}
+
+bool App::leaving(double seconds) const {
+  return window_->should_close() || asked_to_leave != 0 ||
+         (options_.seconds && seconds >= *options_.seconds);
+}
+
+int App::loop() {
+  const std::int64_t began = now_us();
+  std::int64_t before = began;
+  bool shot = options_.screenshot.empty();
+  std::string failure;
+  for (bool last = false; !last;) {
+    const std::int64_t now = now_us();
+    const float dt = std::min(1e-6f * static_cast<float>(now - before), 0.1f);
+    before = now;
+    seconds_ = 1e-6 * static_cast<double>(now - began);
+    meter_.begin(now);
+    take_input(now);
+    hear(now_us());
+    draw(dt);
+    last = leaving(seconds_);
+    if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
+      shot = true;
+      failure = take_screenshot();
+    }
+    window_->swap();
+    meter_.end(now_us());
+    judge_quality();
+  }
+  say_figures(1e-6 * static_cast<double>(now_us() - began));
+  connection_.reset();  // says Bye
+  if (!failure.empty()) std::fprintf(stderr, "%s\n", failure.c_str());
+  return failure.empty() ? 0 : 1;
+}
+
+void App::say_figures(double seconds) const {
+  const SnapshotCounters c = connection_->counters();
+  const double rate = seconds > 0 ? static_cast<double>(meter_.frames()) / seconds : 0;
+  char text[640];
+  std::snprintf(
+      text, sizeof text,
+      "{\n  \"frames\": %llu,\n  \"frames_per_second\": %.1f,\n  \"quality\": \"%s\",\n"
+      "  \"snapshots_received\": %llu,\n  \"snapshots_lost\": %llu,\n  \"snapshots_bad\": %llu,\n"
+      "  \"snapshots_old\": %llu,\n  \"snapshots_foreign\": %llu,\n  \"snapshots_reordered\": "
+      "%llu,\n"
+      "  \"interpolation_delay_us\": %lld,\n  \"inputs_sent\": %llu,\n  \"joins\": %llu,\n  "
+      "\"seconds\": %.2f\n}\n",
+      static_cast<unsigned long long>(meter_.frames()), rate,
+      scene_->quality() == Quality::high ? "high" : "low",
+      static_cast<unsigned long long>(c.received), static_cast<unsigned long long>(c.lost),
+      static_cast<unsigned long long>(c.bad), static_cast<unsigned long long>(c.old),
+      static_cast<unsigned long long>(c.foreign), static_cast<unsigned long long>(c.reordered),
+      static_cast<long long>(connection_->delay_us()),
+      static_cast<unsigned long long>(connection_->inputs_sent()),
+      static_cast<unsigned long long>(joins_seen_), seconds);
+  std::printf(
+      "frames %llu (%.1f/s), snapshots %llu received, %llu lost, %llu bad, %llu old, %llu foreign, "
+      "interpolation delay %.2f ms\n",
+      static_cast<unsigned long long>(meter_.frames()), rate,
+      static_cast<unsigned long long>(c.received), static_cast<unsigned long long>(c.lost),
+      static_cast<unsigned long long>(c.bad), static_cast<unsigned long long>(c.old),
+      static_cast<unsigned long long>(c.foreign),
+      1e-3 * static_cast<double>(connection_->delay_us()));
+  if (options_.stats_file.empty()) return;
+  std::ofstream file(options_.stats_file);
+  file << text;
+  if (!file)
+    log_warning("Cannot write the figures to " + options_.stats_file +
+                ": choose a directory that can be written to.");
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { asked_to_leave = 1; });
+  App app(options);
+  int exit_code = 0;
+  if (const std::string error = app.start(exit_code); !error.empty()) {
+    std::fprintf(stderr, "%s\n", error.c_str());
+    return exit_code;
+  }
+  return app.loop();
+}
+
+}  // namespace client

@@ -1,0 +1,11 @@
+// One line a message on stderr.
+#pragma once
+
+#include <string>
+
+namespace client {
+
+void log_info(const std::string& sentence);
+void log_warning(const std::string& sentence);
+
+}  // namespace client

@@ -1,0 +1,38 @@
+// The command line of space-foosball.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "client/connection.h"
+#include "render/quality.h"
+
+namespace client {
+
+struct Options {
+  ConnectionOptions connection;
+  glm::ivec2 size{1280, 720};
+  bool fullscreen = false;
+  bool mute = false;
+  bool show_fps = false;
+  std::optional<Quality> quality;       // none: picked by what the machine can do
+  std::optional<double> seconds;        // play so long, then leave
+  std::optional<double> screenshot_at;  // none: at the end
+  std::string screenshot, stats_file, font_directory;
+};
+
+// What to print, and the exit code, when there is nothing to run: --help, or a bad value.
+struct Leave {
+  int exit_code;
+  std::string text;
+};
+
+tl::expected<Options, Leave> parse_options(int argc, const char* const* argv);
+
+// "HOST:PORT", "HOST" or ":PORT"; the error is a sentence.
+tl::expected<void, std::string> parse_server(const std::string& text, ConnectionOptions& into);
+tl::expected<glm::ivec2, std::string> parse_size(const std::string& text);
+
+}  // namespace client

@@ -1,0 +1,219 @@
+#include "app/window.h"
+
+#include <GLES3/gl3.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cmath>
+#include <utility>
+
+namespace client {
+
+struct Window::Impl {
+  GLFWwindow* handle = nullptr;
+  InputEvents events;
+  bool captured = false;
+  double last_x = 0, last_y = 0, wheel = 0;
+  bool have_last = false, close_asked = false;
+  bool pad_push_held = false, pad_pause_held = false;
+
+  ~Impl() {
+    if (handle != nullptr) glfwDestroyWindow(handle);
+    glfwTerminate();
+  }
+
+  void capture(bool on) {
+    captured = on;
+    have_last = false;
+    glfwSetInputMode(handle, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    if (glfwRawMouseMotionSupported()) glfwSetInputMode(handle, GLFW_RAW_MOUSE_MOTION, on);
+  }
+  void pressed(int key);
+  void moved(double x, double y);
+  void read_held_keys();
+  void read_pad();
+};
+
+namespace {
+
+Window::Impl& impl_of(GLFWwindow* handle);
+
+std::string last_glfw_error() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text != nullptr ? text : "no reason given";
+}
+
+GLFWwindow* create(const WindowOptions& options, int context_api) {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, context_api);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  GLFWmonitor* monitor = options.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
+  glm::ivec2 size = options.size;
+  if (monitor != nullptr) {
+    if (const GLFWvidmode* mode = glfwGetVideoMode(monitor)) size = {mode->width, mode->height};
+  }
+  return glfwCreateWindow(size.x, size.y, options.title.c_str(), monitor, nullptr);
+}
+
+}  // namespace
+
+void Window::Impl::pressed(int key) {
+  switch (key) {
+    case GLFW_KEY_1:
+    case GLFW_KEY_2:
+    case GLFW_KEY_3:
+    case GLFW_KEY_4:
+      events.choose_line = key - GLFW_KEY_1;
+      break;
+    case GLFW_KEY_TAB:
+      events.toggle_automatic = !events.toggle_automatic;
+      break;
+    case GLFW_KEY_P:
+      events.toggle_pause = !events.toggle_pause;
+      break;
+    case GLFW_KEY_SPACE:
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+      events.push = true;
+      break;
+    case GLFW_KEY_ESCAPE:
+      if (captured) {
+        capture(false);
+      } else {
+        close_asked = true;
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+void Window::Impl::moved(double x, double y) {
+  if (captured && have_last) {
+    events.mouse_right += x - last_x;
+    events.mouse_forward += last_y - y;
+  }
+  last_x = x;
+  last_y = y;
+  have_last = true;
+}
+
+void Window::Impl::read_held_keys() {
+  const auto held = [&](int a, int b) {
+    return glfwGetKey(handle, a) == GLFW_PRESS || glfwGetKey(handle, b) == GLFW_PRESS ? 1.0 : 0.0;
+  };
+  events.key_slide = held(GLFW_KEY_UP, GLFW_KEY_W) - held(GLFW_KEY_DOWN, GLFW_KEY_S);
+  events.key_spin = held(GLFW_KEY_RIGHT, GLFW_KEY_D) - held(GLFW_KEY_LEFT, GLFW_KEY_A);
+}
+
+void Window::Impl::read_pad() {
+  for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
+    GLFWgamepadstate state;
+    if (!glfwJoystickIsGamepad(id) || !glfwGetGamepadState(id, &state)) continue;
+    events.has_pad = true;
+    events.pad.left_x = state.axes[GLFW_GAMEPAD_AXIS_LEFT_X];
+    events.pad.left_y = -state.axes[GLFW_GAMEPAD_AXIS_LEFT_Y];  // GLFW: down positive
+    events.pad.right_x = state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X];
+    events.pad.right_y = -state.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y];
+    events.pad.previous_rod = state.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
+    events.pad.next_rod = state.buttons[GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER] == GLFW_PRESS;
+    const bool push = state.buttons[GLFW_GAMEPAD_BUTTON_A] == GLFW_PRESS;
+    const bool pause = state.buttons[GLFW_GAMEPAD_BUTTON_START] == GLFW_PRESS;
+    events.pad_push = push && !std::exchange(pad_push_held, push);
+    events.pad_pause = pause && !std::exchange(pad_pause_held, pause);
+    return;
+  }
+}
+
+tl::expected<Window, WindowError> Window::open(const WindowOptions& options) {
+  if (!glfwInit()) {
+    return tl::unexpected(WindowError{"No display to open a window on (" + last_glfw_error() +
+                                      "): start it on a desktop, or set DISPLAY, or run it under "
+                                      "xvfb-run, or play with ./play --headless."});
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->handle = create(options, GLFW_NATIVE_CONTEXT_API);
+  if (impl->handle == nullptr) impl->handle = create(options, GLFW_EGL_CONTEXT_API);
+  if (impl->handle == nullptr) {
+    return tl::unexpected(WindowError{
+        "This display gives no OpenGL ES 3.0 (" + last_glfw_error() +
+        "): install a driver (on Debian: apt-get install libgl1-mesa-dri libegl1 libgles2)."});
+  }
+  GLFWwindow* handle = impl->handle;
+  glfwMakeContextCurrent(handle);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(handle, impl.get());
+  glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int action, int) {
+    if (action == GLFW_PRESS) impl_of(w).pressed(key);
+  });
+  glfwSetCursorPosCallback(handle,
+                           [](GLFWwindow* w, double x, double y) { impl_of(w).moved(x, y); });
+  glfwSetScrollCallback(handle,
+                        [](GLFWwindow* w, double, double steps) { impl_of(w).wheel += steps; });
+  glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    if (impl_of(w).captured) {
+      impl_of(w).events.push = true;
+    } else {
+      impl_of(w).capture(true);  // the click that takes the pointer does nothing else
+    }
+  });
+  glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
+    if (!focused) impl_of(w).capture(false);
+  });
+  return Window(std::move(impl));
+}
+
+namespace {
+Window::Impl& impl_of(GLFWwindow* handle) {
+  return *static_cast<Window::Impl*>(glfwGetWindowUserPointer(handle));
+}
+}  // namespace
+
+Window::Window(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Window::Window(Window&&) noexcept = default;
+Window& Window::operator=(Window&&) noexcept = default;
+Window::~Window() = default;
+
+bool Window::should_close() const {
+  return impl_->close_asked || glfwWindowShouldClose(impl_->handle);
+}
+void Window::close() {
+  impl_->close_asked = true;
+}
+bool Window::captured() const {
+  return impl_->captured;
+}
+
+glm::ivec2 Window::size() const {
+  glm::ivec2 size{0, 0};
+  glfwGetFramebufferSize(impl_->handle, &size.x, &size.y);
+  return size;
+}
+
+void Window::swap() {
+  glfwSwapBuffers(impl_->handle);
+}
+
+InputEvents Window::poll() {
+  impl_->events = {};
+  glfwPollEvents();
+  impl_->read_held_keys();
+  impl_->read_pad();
+  const double whole = std::trunc(impl_->wheel);  // touch pads scroll in fractions of a step
+  impl_->wheel -= whole;
+  impl_->events.wheel = static_cast<int>(whole);
+  return impl_->events;
+}
+
+std::string Window::renderer() const {
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return name != nullptr ? name : "unknown";
+}
+
+}  // namespace client

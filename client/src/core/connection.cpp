@@ -1,0 +1,66 @@
+#include "client/connection.h"
+
+#include <arpa/inet.h>
+
+#include "client/clock.h"
+#include "core/control_link.h"
+
+namespace client {
+
+struct Connection::Impl {
+  Impl(const ConnectionOptions& o, UdpSocket udp)
+      : options(o), listener(std::move(udp)), link(o, listener) {}
+  ConnectionOptions options;
+  SnapshotListener listener;
+  ControlLink link;
+};
+
+tl::expected<std::unique_ptr<Connection>, std::string> Connection::open(
+    const ConnectionOptions& options) {
+  // A server on this machine is heard on this machine only.
+  const auto server = resolve(options.host, options.port);
+  if (!server) return tl::unexpected(server.error());
+  auto udp = open_udp(htonl(is_loopback(*server) ? INADDR_LOOPBACK : INADDR_ANY), 0);
+  if (!udp) return tl::unexpected(udp.error());
+  return std::unique_ptr<Connection>(
+      new Connection(std::make_unique<Impl>(options, std::move(*udp))));
+}
+
+Connection::Connection(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Connection::~Connection() = default;
+
+ConnectionStatus Connection::status() const {
+  ConnectionStatus status = impl_->link.status();
+  status.small_receive_buffer = impl_->listener.small_buffer();
+  return status;
+}
+
+std::string Connection::address() const {
+  return impl_->options.host + ":" + std::to_string(impl_->options.port);
+}
+SceneSample Connection::sample(std::int64_t now_us) {
+  return impl_->listener.sample(now_us);
+}
+std::vector<wire::EventSnapshot> Connection::take_events() {
+  return impl_->listener.take_events();
+}
+std::vector<wire::Notice> Connection::notices() const {
+  return impl_->link.notices();
+}
+SnapshotCounters Connection::counters() const {
+  return impl_->listener.counters();
+}
+std::int64_t Connection::delay_us() const {
+  return impl_->listener.delay_us();
+}
+void Connection::wish(const wire::Wish& wish) {
+  impl_->link.wish(wish);
+}
+void Connection::drive(const std::array<wire::InputRod, 8>& rods) {
+  impl_->listener.drive(rods, now_us());
+}
+std::uint64_t Connection::inputs_sent() const {
+  return impl_->listener.inputs_sent();
+}
+
+}  // namespace client

@@ -1,0 +1,62 @@
+// The TCP thread: joins the server, keeps an ear on it, and joins again when it was lost.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "client/connection.h"
+#include "core/snapshot_listener.h"
+#include "core/sockets.h"
+
+namespace client {
+
+class ControlLink {
+ public:
+  ControlLink(const ConnectionOptions& options, SnapshotListener& listener);
+  ~ControlLink();
+
+  ConnectionStatus status() const;
+  std::vector<wire::Notice> notices() const;
+  void wish(const wire::Wish& wish);
+
+ private:
+  enum class Stage : std::uint8_t { idle, connecting, greeting, joined };
+
+  void run();
+  int wait_ms(std::int64_t now_us) const;
+  void on_time(std::int64_t now_us);
+  void begin(std::int64_t now_us);
+  void on_connected(std::int64_t now_us);
+  void on_readable(std::int64_t now_us);
+  bool handle(const wire::ControlMessage& message, std::int64_t now_us);
+  void on_welcome(const wire::Welcome& welcome, std::int64_t now_us);
+  void on_notice(const wire::Notice& notice);
+  void drop(const std::string& why, std::int64_t now_us, bool refused = false);
+  void queue(const wire::ControlMessage& message);
+  void flush(std::int64_t now_us);
+  void say_bye();
+
+  const ConnectionOptions options_;
+  SnapshotListener& listener_;
+  Waker waker_;
+  std::atomic<bool> stop_{false};
+
+  // The thread's own.
+  Stage stage_ = Stage::idle;
+  Fd tcp_;
+  sockaddr_in server_{};
+  wire::ControlReader reader_;
+  std::vector<std::byte> out_;
+  std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;
+
+  mutable std::mutex mutex_;  // all below
+  ConnectionStatus status_;
+  std::map<std::uint32_t, wire::Notice> notices_;
+  std::vector<wire::Wish> wishes_;
+
+  std::thread thread_;
+};
+
+}  // namespace client

@@ -1,0 +1,155 @@
+#include "core/snapshot_listener.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/clock.h"
+
+namespace client {
+namespace {
+
+constexpr std::int64_t kSendEveryUs = 1'000;
+constexpr std::int64_t kRepeatUs = 45'000;  // 20 a second are promised: a little sooner
+constexpr std::int64_t kForgetUs =
+    1'000'000;  // a window that hangs must not hold the rods for ever
+constexpr int kIdleMs = 1000;
+
+bool same(const wire::InputRod& a, const wire::InputRod& b) {
+  return a.driven == b.driven && a.slide == b.slide && a.angle == b.angle &&
+         a.slide_rate == b.slide_rate && a.angle_rate == b.angle_rate;
+}
+
+}  // namespace
+
+SnapshotListener::SnapshotListener(UdpSocket unicast)
+    : unicast_(std::move(unicast)), thread_([this] { run(); }) {}
+
+SnapshotListener::~SnapshotListener() {
+  stop_ = true;
+  waker_.wake();
+  thread_.join();
+}
+
+tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welcome,
+                                                       const sockaddr_in& server,
+                                                       std::uint32_t interface) {
+  UdpSocket group;
+  if (!welcome.multicast.empty()) {
+    auto opened = open_multicast(welcome.multicast, welcome.multicast_port, interface);
+    if (!opened) return tl::unexpected(opened.error());
+    group = std::move(*opened);
+  }
+  const std::lock_guard lock(mutex_);
+  multicast_ = std::move(group);
+  server_ = server;
+  server_.sin_port = htons(welcome.udp_port);
+  buffer_.begin_session(welcome.session, welcome.tick_us);
+  input_.session = welcome.session;
+  input_.token = welcome.token;
+  joined_ = true;
+  waker_.wake();
+  return {};
+}
+
+void SnapshotListener::leave() {
+  const std::lock_guard lock(mutex_);
+  joined_ = false;
+  multicast_ = {};
+}
+
+SceneSample SnapshotListener::sample(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  return buffer_.sample(now_us);
+}
+
+std::vector<wire::EventSnapshot> SnapshotListener::take_events() {
+  const std::lock_guard lock(mutex_);
+  return buffer_.take_events();
+}
+
+SnapshotCounters SnapshotListener::counters() const {
+  const std::lock_guard lock(mutex_);
+  return buffer_.counters();
+}
+
+std::int64_t SnapshotListener::delay_us() const {
+  const std::lock_guard lock(mutex_);
+  return buffer_.delay_us();
+}
+
+void SnapshotListener::drive(const std::array<wire::InputRod, 8>& rods, std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  driven_at_us_ = now_us;
+  if (input_known_ && std::equal(rods.begin(), rods.end(), input_.rods.begin(), same)) return;
+  input_.rods = rods;
+  input_known_ = input_changed_ = true;
+  waker_.wake();
+}
+
+// Called with the lock held. A repeated input says where the rods are, no longer how fast.
+void SnapshotListener::send_input(std::int64_t now_us) {
+  if (!input_changed_) {
+    for (wire::InputRod& rod : input_.rods) rod.slide_rate = rod.angle_rate = 0;
+  }
+  ++input_.sequence;
+  std::array<std::byte, wire::kMaxInputDatagram> bytes;
+  const std::size_t size = wire::encode_input(input_, bytes);
+  ::sendto(unicast_.fd.get(), bytes.data(), size, 0, reinterpret_cast<const sockaddr*>(&server_),
+           sizeof server_);
+  inputs_sent_.fetch_add(1, std::memory_order_relaxed);
+  input_changed_ = false;
+  sent_at_us_ = now_us;
+}
+
+// Sends what is due; how long until the next is, in milliseconds.
+int SnapshotListener::send_due(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  if (!joined_ || !input_known_ || now_us - driven_at_us_ > kForgetUs) return kIdleMs;
+  const std::int64_t due = sent_at_us_ + (input_changed_ ? kSendEveryUs : kRepeatUs);
+  if (now_us >= due) {
+    send_input(now_us);
+    return static_cast<int>(kRepeatUs / 1000);
+  }
+  return static_cast<int>((due - now_us + 999) / 1000);
+}
+
+void SnapshotListener::receive(int fd) {
+  std::array<std::byte, wire::kMaxDatagram + 1>
+      bytes;  // one more: a longer datagram shows as too long
+  wire::Snapshot snapshot;
+  for (;;) {
+    const auto size = ::recv(fd, bytes.data(), bytes.size(), 0);
+    if (size < 0) return;
+    const std::int64_t arrival = now_us();
+    const bool good =
+        wire::decode_snapshot({bytes.data(), static_cast<std::size_t>(size)}, snapshot);
+    const std::lock_guard lock(mutex_);
+    if (!good) {
+      buffer_.count_bad();
+    } else if (buffer_.push(snapshot, arrival) == SnapshotBuffer::Verdict::taken) {
+      last_arrival_us_.store(arrival, std::memory_order_relaxed);
+    }
+  }
+}
+
+void SnapshotListener::run() {
+  while (!stop_) {
+    const int wait_ms = send_due(now_us());
+    int group = -1;
+    {
+      const std::lock_guard lock(mutex_);
+      group = multicast_.fd.get();
+    }
+    pollfd polled[3] = {
+        {waker_.fd(), POLLIN, 0}, {unicast_.fd.get(), POLLIN, 0}, {group, POLLIN, 0}};
+    if (::poll(polled, 3, wait_ms) < 0) continue;
+    if (polled[0].revents != 0) waker_.drain();
+    if (polled[1].revents != 0) receive(unicast_.fd.get());
+    if (group >= 0 && polled[2].revents != 0) receive(group);
+  }
+}
+
+}  // namespace client

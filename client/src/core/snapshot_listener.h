@@ -1,0 +1,64 @@
+// The UDP thread: hears snapshots as they come, and sends the person's inputs.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "client/snapshot_buffer.h"
+#include "core/sockets.h"
+#include "wire/control.h"
+#include "wire/input_datagram.h"
+
+namespace client {
+
+class SnapshotListener {
+ public:
+  explicit SnapshotListener(UdpSocket unicast);
+  ~SnapshotListener();
+
+  std::uint16_t port() const { return unicast_.port; }
+  bool small_buffer() const { return unicast_.small_buffer; }
+
+  // Joined: from now on snapshots of this session count, and inputs go to that address. The error
+  // is a sentence (the multicast group cannot be joined).
+  tl::expected<void, std::string> join(const wire::Welcome& welcome, const sockaddr_in& server,
+                                       std::uint32_t interface);
+  // No longer joined: nothing is sent.
+  void leave();
+
+  SceneSample sample(std::int64_t now_us);
+  std::vector<wire::EventSnapshot> take_events();
+  SnapshotCounters counters() const;
+  std::int64_t delay_us() const;
+  std::int64_t last_arrival_us() const { return last_arrival_us_.load(std::memory_order_relaxed); }
+
+  void drive(const std::array<wire::InputRod, 8>& rods, std::int64_t now_us);
+  std::uint64_t inputs_sent() const { return inputs_sent_.load(std::memory_order_relaxed); }
+
+ private:
+  void run();
+  void receive(int fd);
+  int send_due(std::int64_t now_us);
+  void send_input(std::int64_t now_us);
+
+  UdpSocket unicast_;
+  Waker waker_;
+  std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> last_arrival_us_{0};
+  std::atomic<std::uint64_t> inputs_sent_{0};
+
+  mutable std::mutex mutex_;  // all below
+  SnapshotBuffer buffer_;
+  UdpSocket multicast_;
+  bool joined_ = false;
+  sockaddr_in server_{};
+  wire::InputDatagram input_;
+  bool input_changed_ = false, input_known_ = false;
+  std::int64_t driven_at_us_ = 0, sent_at_us_ = 0;
+
+  std::thread thread_;  // last: starts when all else is there
+};
+
+}  // namespace client

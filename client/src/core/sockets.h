@@ -1,0 +1,65 @@
+// The sockets of the client: non-blocking, closed with their owner.
+#pragma once
+
+#include <netinet/in.h>
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace client {
+
+class Fd {
+ public:
+  Fd() = default;
+  explicit Fd(int fd) : fd_(fd) {}
+  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Fd& operator=(Fd&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Fd();
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_ = -1;
+};
+
+// Wakes a thread that waits in poll().
+class Waker {
+ public:
+  Waker();
+  int fd() const { return event_.get(); }
+  void wake() const;
+  void drain() const;
+
+ private:
+  Fd event_;
+};
+
+inline constexpr int kReceiveBufferBytes =
+    4 * 1024 * 1024;  // half a second's stall at 1 kHz loses nothing
+
+struct UdpSocket {
+  Fd fd;
+  std::uint16_t port = 0;
+  bool small_buffer = false;  // less than kReceiveBufferBytes was granted
+};
+
+bool is_loopback(const sockaddr_in& address);
+std::string text_of(const sockaddr_in& address);
+tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port);
+// address: the interface to listen on; port 0: any free one.
+tl::expected<UdpSocket, std::string> open_udp(std::uint32_t address, std::uint16_t port);
+// A socket that hears the group, on the interface with that address.
+tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
+                                                    std::uint32_t interface);
+// Begins to connect; finished (or failed) when the socket turns writable.
+tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server);
+// 0: connected; else the errno.
+int connect_result(const Fd& socket);
+sockaddr_in local_address(const Fd& socket);
+
+}  // namespace client

@@ -1,0 +1,30 @@
+// A player's view: standing at the long side, own goal to the left, looking down at the whole
+// table.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace client {
+
+struct Camera {
+  glm::vec3 eye{0.0f};
+  glm::mat4 view{1.0f};
+  glm::mat4 projection{1.0f};
+  glm::mat4 view_projection{1.0f};
+
+  // Pixel from the top left, and the depth along the view [m] (not positive: behind the eye).
+  glm::vec3 project(const glm::vec3& world, const glm::ivec2& screen) const;
+};
+
+struct CameraView {
+  int team = 0;            // whose side; a watcher stands with team 0
+  float orbit = 0.0f;      // turned about the table [rad]: the logo and the ceremony drift slowly
+  float closeness = 0.0f;  // 0 whole table .. 1 near
+  glm::vec2 lean{0.0f};    // of the gaze towards the play [m]
+};
+
+Camera player_camera(const CameraView& view, const glm::ivec2& screen);
+
+}  // namespace client

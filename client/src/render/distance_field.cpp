@@ -1,0 +1,88 @@
+#include "render/distance_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace client {
+namespace {
+
+constexpr float kFar = 1e10f;
+
+// One line of the transform: in place, f becomes min over q of (p - q)^2 + f(q).
+class LineTransform {
+ public:
+  explicit LineTransform(int longest)
+      : value_(static_cast<std::size_t>(longest)),
+        place_(static_cast<std::size_t>(longest)),
+        border_(static_cast<std::size_t>(longest) + 1) {}
+
+  void run(float* f, int count, int stride) {
+    int last = 0;
+    place_[0] = 0;
+    border_[0] = -std::numeric_limits<float>::infinity();
+    border_[1] = std::numeric_limits<float>::infinity();
+    for (int q = 0; q < count; ++q) value_[static_cast<std::size_t>(q)] = f[q * stride];
+    for (int q = 1; q < count; ++q) {
+      float s = meeting(q, place_[static_cast<std::size_t>(last)]);
+      while (s <= border_[static_cast<std::size_t>(last)]) {
+        --last;
+        s = meeting(q, place_[static_cast<std::size_t>(last)]);
+      }
+      ++last;
+      place_[static_cast<std::size_t>(last)] = q;
+      border_[static_cast<std::size_t>(last)] = s;
+      border_[static_cast<std::size_t>(last) + 1] = std::numeric_limits<float>::infinity();
+    }
+    for (int q = 0, k = 0; q < count; ++q) {
+      while (border_[static_cast<std::size_t>(k) + 1] < static_cast<float>(q)) ++k;
+      const int p = place_[static_cast<std::size_t>(k)];
+      f[q * stride] = static_cast<float>((q - p) * (q - p)) + value_[static_cast<std::size_t>(p)];
+    }
+  }
+
+ private:
+  // Where the parabolas over q and p meet.
+  float meeting(int q, int p) const {
+    const float height = value_[static_cast<std::size_t>(q)] - value_[static_cast<std::size_t>(p)];
+    return (height + static_cast<float>(q * q - p * p)) / static_cast<float>(2 * (q - p));
+  }
+
+  std::vector<float> value_;
+  std::vector<int> place_;
+  std::vector<float> border_;
+};
+
+// Squared distances to the nearest zero of the grid.
+void transform(std::vector<float>& grid, int width, int height) {
+  LineTransform line(std::max(width, height));
+  for (int x = 0; x < width; ++x) line.run(grid.data() + x, height, width);
+  for (int y = 0; y < height; ++y) line.run(grid.data() + y * width, width, 1);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> distance_field(std::span<const std::uint8_t> coverage, int width,
+                                         int height, int step, float reach) {
+  std::vector<float> to_inside(coverage.size()), to_outside(coverage.size());
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    const bool inside = coverage[i] >= 128;
+    to_inside[i] = inside ? 0.0f : kFar;
+    to_outside[i] = inside ? kFar : 0.0f;
+  }
+  transform(to_inside, width, height);
+  transform(to_outside, width, height);
+  std::vector<std::uint8_t> field;
+  field.reserve(coverage.size() / static_cast<std::size_t>(step * step));
+  for (int y = step / 2; y < height; y += step) {
+    for (int x = step / 2; x < width; x += step) {
+      const auto i = static_cast<std::size_t>(y * width + x);
+      const float distance = std::sqrt(to_outside[i]) - std::sqrt(to_inside[i]);
+      field.push_back(static_cast<std::uint8_t>(
+          std::lround(std::clamp(128.0f + 127.0f * distance / reach, 0.0f, 255.0f))));
+    }
+  }
+  return field;
+}
+
+}  // namespace client

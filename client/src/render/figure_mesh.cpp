@@ -1,0 +1,160 @@
+#include "render/figure_mesh.h"
+
+#include <algorithm>
+#include <array>
+
+#include "render/mesh_builder.h"
+
+namespace client {
+namespace {
+
+using Part = foosball::ManBox::Part;
+
+const Paint kSuit{glm::vec3(1.0f), 1.0f, 0.48f, 0.0f, 0.0f};
+const Paint kSuitDark{glm::vec3(0.42f), 1.0f, 0.55f, 0.0f, 0.0f};
+const Paint kShell{glm::vec3(0.80f, 0.82f, 0.85f), 0.0f, 0.30f, 0.0f, 0.0f};
+const Paint kPack{glm::vec3(0.42f, 0.45f, 0.50f), 0.0f, 0.45f, 0.2f, 0.0f};
+const Paint kVisor{glm::vec3(0.10f, 0.075f, 0.04f), 0.0f, 0.12f, 0.85f, 0.0f};
+const Paint kSteel{glm::vec3(0.55f, 0.57f, 0.60f), 0.0f, 0.30f, 1.0f, 0.0f};
+const Paint kSole{glm::vec3(0.05f, 0.055f, 0.065f), 0.0f, 0.7f, 0.0f, 0.0f};
+
+struct Extent {
+  glm::vec3 centre{0.0f}, half{0.0f};
+  float bottom() const { return centre.z - half.z; }
+  float top() const { return centre.z + half.z; }
+};
+
+Extent extent_of(std::span<const foosball::ManBox> boxes, Part part) {
+  Extent e;
+  for (const foosball::ManBox& box : boxes) {
+    if (box.part != part) continue;
+    for (int i = 0; i < 3; ++i) {
+      e.centre[i] = static_cast<float>(box.centre[i]);
+      e.half[i] = static_cast<float>(box.half_extents[i]);
+    }
+  }
+  return e;
+}
+
+// Hips, waist, chest, shoulders. Slimmer than its box by the arms' thickness.
+void add_torso(MeshBuilder& b, const Extent& t) {
+  const float w = t.half.y, d = t.half.x, h = 2.0f * t.half.z, z = t.bottom();
+  const auto ring = [&](float share, float width, float depth, float shift) {
+    return LoftRing{
+        {t.centre.x + shift * d, t.centre.y, z + share * h}, {depth * d, width * w}, 2.8f};
+  };
+  b.paint(kSuit);
+  b.loft(std::array{ring(0.00f, 0.60f, 0.60f, 0.0f), ring(0.06f, 0.72f, 0.76f, 0.0f),
+                    ring(0.22f, 0.74f, 0.78f, 0.0f), ring(0.38f, 0.68f, 0.74f, 0.02f),
+                    ring(0.60f, 0.78f, 0.86f, 0.06f), ring(0.80f, 0.86f, 0.86f, 0.04f),
+                    ring(0.92f, 0.78f, 0.70f, 0.0f), ring(1.00f, 0.44f, 0.46f, 0.0f)},
+         18);
+  b.paint(kSuitDark);  // belt
+  b.loft(std::array{ring(0.19f, 0.77f, 0.82f, 0.0f), ring(0.27f, 0.75f, 0.82f, 0.0f)}, 18);
+  b.paint(kShell);  // chest unit
+  b.rounded_box({t.centre.x + 0.86f * d, t.centre.y, z + 0.66f * h},
+                {0.14f * d, 0.34f * w, 0.12f * h}, 0.0012f, 1);
+  b.paint(kPack);  // life support on the back
+  b.rounded_box({t.centre.x - 0.86f * d, t.centre.y, z + 0.66f * h},
+                {0.32f * d, 0.58f * w, 0.27f * h}, 0.0030f);
+}
+
+void add_arms(MeshBuilder& b, const Extent& t) {
+  const float d = t.half.x, h = 2.0f * t.half.z, z = t.bottom();
+  const float arm = std::min(0.20f * t.half.y + 0.0016f, 0.0055f);
+  for (const float side : {-1.0f, 1.0f}) {
+    const float y = t.centre.y + side * (t.half.y - 0.9f * arm);
+    b.paint(kSuit);
+    b.ellipsoid({t.centre.x, y - side * 0.10f * arm, z + 0.85f * h},
+                {0.50f * d, arm * 1.15f, 0.13f * h}, 10, 8);
+    b.loft(
+        std::array{
+            LoftRing{{t.centre.x + 0.16f * d, y, z + 0.30f * h}, {0.26f * d, 0.72f * arm}, 2.2f},
+            LoftRing{{t.centre.x + 0.02f * d, y, z + 0.52f * h}, {0.32f * d, 0.86f * arm}, 2.2f},
+            LoftRing{{t.centre.x, y, z + 0.85f * h}, {0.36f * d, arm}, 2.2f}},
+        10);
+    b.paint(kShell);  // glove
+    b.ellipsoid({t.centre.x + 0.20f * d, y, z + 0.25f * h}, {0.32f * d, 0.9f * arm, 0.085f * h}, 10,
+                8);
+  }
+}
+
+void add_head(MeshBuilder& b, const Extent& head, const Extent& torso) {
+  const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
+  b.paint(kShell);
+  b.ellipsoid(head.centre, r, 20, 14);
+  b.paint(kSuit);  // crest in the team's colour, seen from above
+  b.loft(
+      std::array{LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 0.72f * r.z},
+                          {0.72f * r.x, 0.22f * r.y},
+                          2.5f},
+                 LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 0.98f * r.z},
+                          {0.56f * r.x, 0.20f * r.y},
+                          2.5f},
+                 LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 1.07f * r.z},
+                          {0.34f * r.x, 0.12f * r.y},
+                          2.5f}},
+      12);
+  b.paint(kVisor);
+  b.ellipsoid({head.centre.x + 0.42f * r.x, head.centre.y, head.centre.z + 0.02f * r.z},
+              {0.70f * r.x, 0.80f * r.y, 0.60f * r.z}, 16, 10);
+  b.paint(kSteel);
+  b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
+}
+
+void add_legs(MeshBuilder& b, const Extent& leg, const Extent& torso, const Extent& foot) {
+  const float hip = torso.bottom() + 0.003f, ankle = foot.top() - 0.002f;
+  const float half = 0.5f * leg.half.y, knee = ankle + 0.5f * (hip - ankle);
+  b.paint(kSuit);
+  for (const float side : {-1.0f, 1.0f}) {
+    const float y = leg.centre.y + side * (half + 0.0001f);
+    const auto ring = [&](float z, float width, float depth) {
+      return LoftRing{{leg.centre.x, y, z}, {depth * leg.half.x, width * half}, 2.4f};
+    };
+    b.paint(kSuit);
+    b.loft(std::array{ring(ankle, 0.82f, 0.86f), ring(knee - 0.002f, 0.88f, 0.92f),
+                      ring(hip, 0.99f, 0.99f)},
+           12);
+    b.paint(kSuitDark);  // knee and ankle joints of the suit
+    b.loft(std::array{ring(knee - 0.0028f, 0.90f, 0.93f), ring(knee - 0.0008f, 0.96f, 0.99f),
+                      ring(knee + 0.0012f, 0.92f, 0.95f)},
+           12);
+  }
+}
+
+void add_foot(MeshBuilder& b, const Extent& foot) {
+  const float sole = 0.0035f;
+  b.paint(kShell);
+  b.rounded_box({foot.centre.x, foot.centre.y, foot.centre.z + 0.5f * sole},
+                {foot.half.x, foot.half.y, foot.half.z - 0.5f * sole}, 0.0032f);
+  b.paint(kSuit);  // a band of the team's colour around the boot
+  b.rounded_box({foot.centre.x, foot.centre.y, foot.top() - 0.0045f},
+                {foot.half.x * 0.995f, foot.half.y * 0.995f, 0.0030f}, 0.0012f, 1);
+  b.paint(kSole);
+  b.rounded_box({foot.centre.x, foot.centre.y, foot.bottom() + 0.5f * sole + 0.0005f},
+                {foot.half.x * 0.985f, foot.half.y * 0.985f, 0.5f * sole + 0.0005f}, 0.0010f, 1);
+}
+
+}  // namespace
+
+MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius, float detail) {
+  const Extent torso = extent_of(boxes, Part::torso), head = extent_of(boxes, Part::head);
+  const Extent leg = extent_of(boxes, Part::leg), foot = extent_of(boxes, Part::foot);
+  MeshBuilder b(detail);
+  add_torso(b, torso);
+  add_arms(b, torso);
+  add_head(b, head, torso);
+  add_legs(b, leg, torso, foot);
+  add_foot(b, foot);
+  // The clamp on the rod, as wide as the man, so that no box of the physics is left unseen.
+  b.paint(kSteel);
+  b.transform(axis_along_y());
+  const float r = rod_radius + 0.0022f, w = torso.half.y;
+  b.turned(
+      std::array{ProfilePoint{0.0f, -w}, ProfilePoint{r - 0.001f, -w}, ProfilePoint{r, -w + 0.001f},
+                 ProfilePoint{r, w - 0.001f}, ProfilePoint{r - 0.001f, w}, ProfilePoint{0.0f, w}},
+      14, true);
+  return b.take();
+}
+
+}  // namespace client

@@ -1,0 +1,72 @@
+// Two faces of one typeface as a distance field, and the places of a line's glyphs. No OpenGL here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <unordered_map>
+#include <vector>
+
+struct stbtt_fontinfo;
+
+namespace client {
+
+enum class Face : std::uint8_t { regular, bold };
+enum class Align : std::uint8_t { left, centre, right };
+
+struct Glyph {
+  glm::vec2 uv_low{0.0f}, uv_high{0.0f};  // in the atlas [px]
+  glm::vec2 offset{0.0f}, size{0.0f};     // of the quad from the pen on the base line, y down [em]
+  float advance = 0.0f;                   // [em]
+};
+
+struct PlacedGlyph {
+  glm::vec2 low, high;  // [px], y down
+  glm::vec2 uv_low, uv_high;
+};
+
+struct TextStyle {
+  Face face = Face::regular;
+  float size = 16.0f;    // [px] an em
+  float spacing = 0.0f;  // added between glyphs [em]
+  Align align = Align::left;
+};
+
+class Font {
+ public:
+  // Looks for DejaVu Sans where Debian, other systems and the page keep it; directory, if not
+  // empty, is looked into first. The error says which package to install.
+  static tl::expected<Font, std::string> load(const std::string& directory = {});
+
+  float width(std::string_view utf8, const TextStyle& style) const;
+  // A line with its base line at `at`. Bytes that are not UTF-8, and characters that the face
+  // lacks, show as '?'.
+  std::vector<PlacedGlyph> place(std::string_view utf8, const TextStyle& style,
+                                 const glm::vec2& at) const;
+
+  const std::vector<std::uint8_t>& atlas() const { return atlas_; }
+  const glm::ivec2& atlas_size() const { return atlas_size_; }
+  // Share of the distance field's range that one screen pixel covers at that text size.
+  float softness(float size) const;
+
+ private:
+  using Glyphs = std::unordered_map<std::uint32_t, Glyph>;
+  const Glyph& find(Face face, std::uint32_t code) const;
+  void add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& glyph);
+  bool add_face(Face face, const std::string& path);
+
+  std::array<Glyphs, 2> faces_;
+  std::vector<std::uint8_t> atlas_;
+  glm::ivec2 atlas_size_{1024, 0};
+  glm::ivec2 cursor_{0, 0};
+  int row_height_ = 0;
+};
+
+// The next character of UTF-8 text, which must not be empty; takes it off the front. 0xFFFD for a
+// byte that begins none.
+std::uint32_t next_character(std::string_view& utf8);
+
+}  // namespace client

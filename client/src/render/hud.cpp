@@ -1,0 +1,130 @@
+#include "render/hud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "foosball/table.h"
+#include "render/hud_screens.h"
+#include "render/table_mesh.h"
+
+namespace client {
+namespace {
+
+constexpr std::uint8_t kHeld = 2;  // cabinet::RodStatus::held on the wire
+
+void draw_score(const HudPen& pen, const wire::Snapshot& state) {
+  const float y = 14.0f, half = 196.0f, height = 62.0f;
+  pen.panel({-half, y}, {half, y + height}, 14.0f, kPanel);
+  for (int team = 0; team < 2; ++team) {
+    // The left of the board is the left of the picture: a viewer of team 1 sees the table turned.
+    const float side = (team == 0) == pen.left_is_team_0 ? -1.0f : 1.0f;
+    const auto t = static_cast<std::size_t>(team);
+    const std::string score = std::to_string(state.score[t]);
+    pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
+             kTeamInk[t]);
+    pen.text(kTeamNames[t], {Face::bold, 19.0f, 0.08f, Align::centre}, {side * 137.0f, y + 31.0f},
+             kTeamInk[t]);
+    const auto& spec =
+        foosball::character_spec(std::min<int>(state.character[t], foosball::kCharacters - 1));
+    pen.text(spec.name, {Face::regular, 11.5f, 0.01f, Align::centre}, {side * 137.0f, y + 49.0f},
+             kFaint);
+  }
+  char clock[32];
+  const int seconds = std::max(0, static_cast<int>(std::min(state.play_seconds, 35999.0f)));
+  std::snprintf(clock, sizeof clock, "%d:%02d", seconds / 60, seconds % 60);
+  pen.text(clock, {Face::regular, 14.0f, 0.04f, Align::centre}, {0.0f, y + 38.0f}, kInk);
+}
+
+// Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
+void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+  const auto& table = foosball::table_spec(
+      static_cast<foosball::Layout>(std::min<int>(hud.state->layout, foosball::kLayouts - 1)));
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const auto r = static_cast<std::size_t>(rod);
+    if (hud.state->rods[r].status != kHeld) continue;
+    const float y = hud.state->rods[r].slide + 0.9f * handle_offset(table, rod);
+    const glm::vec3 p = hud.camera.project(
+        {static_cast<float>(table.rods[r].x), y, static_cast<float>(table.rod_height)}, screen);
+    const glm::vec2 at = pen.from_pixels(
+        {std::clamp(p.x, 50.0f * pen.scale, static_cast<float>(screen.x) - 50.0f * pen.scale),
+         std::clamp(p.y, 100.0f * pen.scale, static_cast<float>(screen.y) - 60.0f * pen.scale)});
+    pen.panel(at + glm::vec2(-31, -12), at + glm::vec2(31, 11), 6.0f, {0.22f, 0.15f, 0.02f, 0.88f});
+    pen.text("HELD", {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning);
+  }
+}
+
+void draw_notices(const HudPen& pen, const HudState& hud) {
+  float y = pen.bottom - 22.0f;
+  const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::string& text = hud.notices[hud.notices.size() - 1 - i];
+    const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
+    const float half = 0.5f * pen.width(text, style) + 16.0f;
+    pen.panel({-half, y - 20.0f}, {half, y + 8.0f}, 9.0f, {0.20f, 0.13f, 0.02f, 0.86f});
+    pen.text(text, style, {0.0f, y}, kWarning);
+    y -= 34.0f;
+  }
+}
+
+void draw_connection(const HudPen& pen, const HudState& hud) {
+  const TextStyle style{Face::bold, 25.0f, 0.0f, Align::centre};
+  const float half = std::max(280.0f, 0.5f * pen.width(hud.connection_message, style) + 34.0f);
+  const float y = 0.42f * pen.bottom;
+  pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.03f, 0.04f, 0.07f, 0.90f});
+  pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.95f, 0.65f, 0.20f, 0.75f}, 1.5f);
+  pen.text(hud.connection_message, style, {0.0f, y}, kWarning);
+  pen.text(hud.connection_detail, {Face::regular, 16.0f, 0.0f, Align::centre}, {0.0f, y + 30.0f},
+           kInk);
+}
+
+void draw_corner_texts(const HudPen& pen, const HudState& hud) {
+  const TextStyle small{Face::regular, 13.0f, 0.0f, Align::left};
+  const float x = -pen.half_width + 16.0f;
+  if (hud.fps > 0.0f) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f fps", static_cast<double>(hud.fps));
+    pen.text(text, {Face::regular, 13.0f, 0.0f, Align::right}, {pen.half_width - 16.0f, 26.0f},
+             kFaint);
+  }
+  if (hud.viewer_team < 0) pen.text("watching", small, {x, 26.0f}, kFaint);
+  if (hud.automatic_rod) pen.text("automatic rod (Tab)", small, {x, 26.0f}, kFaint);
+  if (hud.mouse_free && hud.viewer_team >= 0)
+    pen.text("mouse released: click to play, Esc to leave", small, {x, 46.0f}, kFaint);
+}
+
+void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+  const wire::Snapshot& state = *hud.state;
+  switch (static_cast<ScreenKind>(state.screen)) {
+    case ScreenKind::logo:
+      draw_logo(pen, state, hud.viewer_team);
+      return;
+    case ScreenKind::selection:
+      draw_selection(pen, state, hud.viewer_team);
+      return;
+    case ScreenKind::play:
+      break;
+    case ScreenKind::ceremony:
+      draw_ceremony(pen, state);
+      break;
+    case ScreenKind::end:
+      draw_end(pen, state);
+      break;
+  }
+  draw_score(pen, state);
+  draw_held_rods(pen, hud, screen);
+  if (state.paused) draw_paused(pen);
+}
+
+}  // namespace
+
+void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
+  const HudPen pen(ui, screen, hud.viewer_team != 1);
+  if (hud.state != nullptr) draw_match(pen, hud, screen);
+  draw_corner_texts(pen, hud);
+  draw_notices(pen, hud);
+  if (!hud.connection_message.empty()) draw_connection(pen, hud);
+  ui.flush(screen);
+}
+
+}  // namespace client

@@ -1,0 +1,33 @@
+// What is written over the picture: score, clock, screens of the match, notices, the state of the
+// connection.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/ui_batch.h"
+#include "wire/snapshot.h"
+
+namespace client {
+
+inline constexpr std::array<const char*, 2> kTeamNames{"ORION", "VEGA"};
+
+// The screens of a match as the wire numbers them (foosball::Screen).
+enum class ScreenKind : std::uint8_t { logo, selection, play, ceremony, end };
+
+struct HudState {
+  const wire::Snapshot* state = nullptr;  // none yet: nothing was received
+  Camera camera;
+  int viewer_team = -1;            // -1: watches
+  std::string connection_message;  // over all else, while the server is away; empty: it is there
+  std::string connection_detail;
+  std::vector<std::string> notices;  // newest last
+  bool mouse_free = false;           // the pointer is released: say how to take it back
+  bool automatic_rod = false;
+  float fps = 0.0f;  // 0: not shown
+};
+
+void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen);
+
+}  // namespace client

@@ -1,0 +1,24 @@
+// Pixels of the window, and PNG files of them.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace client {
+
+struct Image {
+  glm::ivec2 size{0, 0};
+  std::vector<std::uint8_t> rgb;  // rows from the top
+
+  glm::ivec3 at(int x, int y) const;  // 0..255
+};
+
+// What the bound framebuffer shows. Call before the buffers are swapped.
+Image read_pixels(const glm::ivec2& size);
+tl::expected<void, std::string> write_png(const Image& image, const std::string& path);
+
+}  // namespace client

@@ -1,0 +1,13 @@
+// Colours of the game, in linear light. The teams' two are told apart by hue and by lightness, also
+// by eyes that confuse red and green.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+namespace client {
+
+inline constexpr std::array<glm::vec3, 2> kTeamColour{
+    {{0.86f, 0.23f, 0.025f}, {0.07f, 0.42f, 0.95f}}};
+
+}  // namespace client

@@ -1,0 +1,44 @@
+// Sparks of hits, confetti of goals, and the streak behind a fast ball. For the eye only: nothing
+// here feeds back into play.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+namespace client {
+
+// As particle.vert reads it.
+struct ParticleVertex {
+  glm::vec4 position_radius;  // [m]
+  glm::vec4 light_opacity;
+};
+
+class Particles {
+ public:
+  // strength 0..1; towards: where the sparks prefer to fly, or zero.
+  void spark(const glm::vec3& at, const glm::vec3& towards, const glm::vec3& colour,
+             float strength);
+  void celebrate(const glm::vec3& at, const glm::vec3& colour);
+  void streak(const glm::vec3& ball, const glm::vec3& velocity, float radius, float dt);
+  void step(float dt);  // [s]
+  void clear() { alive_.clear(); }
+  std::size_t count() const { return alive_.size(); }
+  const std::vector<ParticleVertex>& vertices();  // of those alive
+
+ private:
+  struct Particle {
+    glm::vec3 position, velocity, colour;
+    float radius, age, life, gravity;
+  };
+  void add(const Particle& particle);
+  float uniform();  // -1..1, from a small generator of its own
+
+  std::vector<Particle> alive_;
+  std::vector<ParticleVertex> vertices_;
+  std::uint32_t random_ = 0x9E3779B9u;
+};
+
+}  // namespace client

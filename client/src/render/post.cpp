@@ -1,0 +1,84 @@
+#include "render/post.h"
+
+#include <glm/common.hpp>
+
+namespace client {
+
+tl::expected<Post, std::string> Post::create(Quality quality) {
+  Post post;
+  post.quality_ = quality;
+  post.empty_ = GlVertexArray::make();
+  if (quality == Quality::low) return post;
+  const auto build = [&](Program& into, std::string_view name) -> std::string {
+    auto program = Program::build({"fullscreen.vert"}, {"common.glsl", name}, quality);
+    if (!program) return program.error();
+    into = std::move(*program);
+    return {};
+  };
+  for (const std::string& error :
+       {build(post.bright_, "bloom_bright.frag"), build(post.down_, "bloom_down.frag"),
+        build(post.up_, "bloom_up.frag"), build(post.present_, "present.frag")}) {
+    if (!error.empty()) return tl::unexpected(error);
+  }
+  return post;
+}
+
+void Post::resize(const glm::ivec2& screen) {
+  if (screen == screen_) return;
+  screen_ = screen;
+  if (quality_ == Quality::low) {
+    scene_ = Target({.size = glm::max(screen / 2, 1), .format = GL_RGBA8, .depth = true});
+    return;
+  }
+  scene_ = Target({.size = screen, .samples = 4, .depth = true});
+  glm::ivec2 size = screen;
+  for (Target& target : small_) {
+    size = glm::max(size / 2, 1);
+    target = Target({.size = size});
+  }
+  for (std::size_t i = 0; i < bloom_.size(); ++i) bloom_[i] = Target({.size = small_[i].size()});
+}
+
+void Post::pass(const Program& program, const Target& to, GLuint image) const {
+  to.bind();
+  program.use();
+  program.set("u_image", 0);
+  bind_texture(0, GL_TEXTURE_2D, image);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Post::present(const glm::ivec2& screen) {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  scene_.resolve();
+  if (quality_ == Quality::low) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, scene_.framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, scene_.size().x, scene_.size().y, 0, 0, screen.x, screen.y,
+                      GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, screen.x, screen.y);
+    return;
+  }
+  glBindVertexArray(empty_.get());
+  pass(bright_, small_[0], scene_.texture());
+  for (std::size_t i = 1; i < small_.size(); ++i) pass(down_, small_[i], small_[i - 1].texture());
+  GLuint below = small_.back().texture();
+  for (std::size_t i = bloom_.size(); i-- > 0;) {
+    up_.use();
+    up_.set("u_detail", 1);
+    bind_texture(1, GL_TEXTURE_2D, small_[i].texture());
+    pass(up_, bloom_[i], below);
+    below = bloom_[i].texture();
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, screen.x, screen.y);
+  present_.use();
+  present_.set("u_image", 0);
+  present_.set("u_bloom", 1);
+  bind_texture(0, GL_TEXTURE_2D, scene_.texture());
+  bind_texture(1, GL_TEXTURE_2D, below);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace client

@@ -1,0 +1,43 @@
+// A linked shader program and its uniforms by name.
+#pragma once
+
+#include <glm/fwd.hpp>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+#include <vector>
+
+#include "render/gl_handle.h"
+#include "render/quality.h"
+
+namespace client {
+
+class Program {
+ public:
+  // Concatenates the named shader files (shared parts first) of each stage. The error is the
+  // driver's log with the files' names.
+  static tl::expected<Program, std::string> build(std::initializer_list<std::string_view> vertex,
+                                                  std::initializer_list<std::string_view> fragment,
+                                                  Quality quality);
+
+  void use() const { glUseProgram(handle_.get()); }
+  // Each sets a uniform of the program in use; a name the shader does not have is ignored (the
+  // compiler may have optimised it away).
+  void set(std::string_view name, int value) const;
+  void set(std::string_view name, float value) const;
+  void set(std::string_view name, const glm::vec2& value) const;
+  void set(std::string_view name, const glm::vec3& value) const;
+  void set(std::string_view name, const glm::vec4& value) const;
+  void set(std::string_view name, const glm::mat3& value) const;
+  void set(std::string_view name, const glm::mat4& value) const;
+
+ private:
+  GLint location(std::string_view name) const;
+
+  GlProgram handle_;
+  std::vector<std::pair<std::string, GLint>> uniforms_;
+};
+
+}  // namespace client

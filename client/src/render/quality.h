@@ -1,0 +1,11 @@
+// How much a frame may cost. High: full resolution, 4 samples a pixel, soft shadows, bloom. Low:
+// half resolution, no post pass: for software OpenGL and old laptops.
+#pragma once
+
+#include <cstdint>
+
+namespace client {
+
+enum class Quality : std::uint8_t { low, high };
+
+}  // namespace client

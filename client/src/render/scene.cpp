@@ -1,0 +1,271 @@
+#include "render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "render/figure_mesh.h"
+#include "render/mesh_builder.h"
+#include "render/palette.h"
+#include "render/table_mesh.h"
+
+namespace client {
+namespace {
+
+const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.38f, -0.30f, 0.90f));
+const glm::vec3 kKeyColour{3.5f, 3.35f, 3.1f};
+const glm::vec3 kHeldColour{0.95f, 0.62f, 0.08f};
+constexpr float kLightReach = 1.0f;  // [m]: the table fits into the light's box
+constexpr std::uint8_t kHeld = 2;    // cabinet::RodStatus::held on the wire
+
+glm::vec3 vec(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
+glm::quat quat(const std::array<float, 4>& q) {
+  return {q[3], q[0], q[1], q[2]};
+}
+
+glm::mat4 pose(const wire::PoseVelocity& body) {
+  glm::mat4 m = glm::mat4_cast(quat(body.orientation));
+  m[3] = glm::vec4(vec(body.position), 1.0f);
+  return m;
+}
+
+// The key light's camera: a box around the table.
+glm::mat4 light_matrix() {
+  const glm::mat4 view = glm::lookAt(2.0f * kKeyDirection, glm::vec3(0), glm::vec3(0, 1, 0));
+  return glm::ortho(-kLightReach, kLightReach, -0.72f * kLightReach, 0.72f * kLightReach, 1.0f,
+                    3.0f) *
+         view;
+}
+
+const glm::mat4 kTextureFromClip{
+    {0.5f, 0, 0, 0}, {0, 0.5f, 0, 0}, {0, 0, 0.5f, 0}, {0.5f, 0.5f, 0.5f, 1}};
+
+}  // namespace
+
+float Scene::drawn_ball_radius(const foosball::TableSpec& table, float height) {
+  const auto radius = static_cast<float>(table.ball_radius);
+  const float above = std::max(height - radius, 0.0f);
+  return radius * (1.0f + std::min(1.6f * above, 0.45f));
+}
+
+tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality) {
+  std::unique_ptr<Scene> scene(new Scene(quality));
+  if (const std::string error = scene->build_programs(); !error.empty())
+    return tl::unexpected(error);
+  auto sky = Sky::create(quality);
+  if (!sky) return tl::unexpected(sky.error());
+  scene->sky_ = std::move(*sky);
+  auto post = Post::create(quality);
+  if (!post) return tl::unexpected(post.error());
+  scene->post_ = std::move(*post);
+  scene->shadow_ = ShadowTarget(quality == Quality::high ? 2048 : 1024);
+  scene->light_matrix_ = light_matrix();
+  scene->build_static_meshes();
+  scene->use_layout(foosball::Layout::tournament);
+  return scene;
+}
+
+std::string Scene::build_programs() {
+  struct Wanted {
+    Program* program;
+    std::initializer_list<std::string_view> vertex, fragment;
+  };
+  const Wanted wanted[] = {
+      {&solid_, {"solid.vert"}, {"common.glsl", "lighting.glsl", "solid.frag"}},
+      {&depth_, {"depth.vert"}, {"depth.frag"}},
+      {&field_, {"field.vert"}, {"common.glsl", "lighting.glsl", "field.frag"}},
+      {&ball_, {"ball.vert"}, {"common.glsl", "lighting.glsl", "ball.frag"}},
+      {&glass_, {"glass.vert"}, {"common.glsl", "glass.frag"}},
+      {&particle_, {"particle.vert"}, {"common.glsl", "particle.frag"}},
+  };
+  for (const Wanted& w : wanted) {
+    auto program = Program::build(w.vertex, w.fragment, quality_);
+    if (!program) return program.error();
+    *w.program = std::move(*program);
+  }
+  return {};
+}
+
+void Scene::build_static_meshes() {
+  const float detail = quality_ == Quality::high ? 1.0f : 0.6f;
+  const auto rod_radius =
+      static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
+  for (std::size_t c = 0; c < kKinds; ++c) {
+    figure_meshes_[c] =
+        GpuMesh(figure_mesh(foosball::man_boxes(static_cast<int>(c)), rod_radius, detail));
+  }
+  MeshBuilder ball(detail);
+  ball.ellipsoid(glm::vec3(0), glm::vec3(1), 32, 20);
+  ball_mesh_ = GpuMesh(ball.take());
+  particle_array_ = GlVertexArray::make();
+  particle_buffer_ = GlBuffer::make();
+  glBindVertexArray(particle_array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, particle_buffer_.get());
+  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(ParticleVertex), nullptr);
+  glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(ParticleVertex),
+                        reinterpret_cast<const void*>(sizeof(glm::vec4)));
+  glEnableVertexAttribArray(0);
+  glEnableVertexAttribArray(1);
+  glBindVertexArray(0);
+}
+
+void Scene::use_layout(foosball::Layout layout) {
+  const foosball::TableSpec& table = foosball::table_spec(layout);
+  if (table_ == &table) return;
+  table_ = &table;
+  const float detail = quality_ == Quality::high ? 1.0f : 0.6f;
+  table_mesh_ = GpuMesh(table_mesh(table, detail));
+  table_mesh_.set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
+  glass_mesh_ = GpuMesh(glass_mesh(table));
+  field_mesh_ = GpuMesh(field_mesh(table));
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    rod_meshes_[static_cast<std::size_t>(rod)] = GpuMesh(rod_mesh(table, rod, detail));
+  }
+}
+
+void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) {
+  const auto glow = [&](std::size_t rod) {
+    if (static_cast<int>(rod) != view.active_rod) return 0.0f;
+    return 0.30f + 0.08f * std::sin(4.0f * view.time);
+  };
+  const auto tint = [&](std::size_t rod) {
+    const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
+    return state.rods[rod].status == kHeld ? glm::mix(team, kHeldColour, 0.35f) : team;
+  };
+  for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
+    const foosball::RodSpec& spec = table_->rods[rod];
+    glm::mat4 m = glm::rotate(glm::mat4(1.0f), state.rods[rod].angle, glm::vec3(0, 1, 0));
+    m[3] = {static_cast<float>(spec.x), state.rods[rod].slide,
+            static_cast<float>(table_->rod_height), 1.0f};
+    rod_meshes_[rod].set_instances(std::array{make_instance(m, tint(rod), glow(rod))});
+  }
+  for (auto& men : men_) men.clear();
+  static const glm::mat4 kFacingBack =
+      glm::rotate(glm::mat4(1.0f), glm::radians(180.0f), glm::vec3(0, 0, 1));
+  for (const wire::ManState& man : state.men) {
+    const std::size_t rod = std::min<std::size_t>(man.rod, foosball::kRods - 1);
+    const auto team = static_cast<std::size_t>(table_->rods[rod].team);
+    const std::size_t kind = std::min<std::size_t>(state.character[team], kKinds - 1);
+    const glm::mat4 m = team == 1 ? pose(man.body) * kFacingBack : pose(man.body);
+    men_[kind].push_back(make_instance(m, tint(rod), glow(rod)));
+  }
+  for (std::size_t kind = 0; kind < kKinds; ++kind) figure_meshes_[kind].set_instances(men_[kind]);
+}
+
+void Scene::draw_solids(const Program& program) const {
+  program.use();
+  table_mesh_.draw();
+  for (const GpuMesh& rod : rod_meshes_) rod.draw();
+  for (const GpuMesh& figures : figure_meshes_) figures.draw();
+}
+
+void Scene::draw_shadows() const {
+  shadow_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 2.0f);
+  depth_.use();
+  depth_.set("u_light_matrix", light_matrix_);
+  draw_solids(depth_);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Scene::light(const Program& program, const SceneView& view) const {
+  program.use();
+  program.set("u_view_projection", view.camera.view_projection);
+  program.set("u_shadow_matrix", kTextureFromClip * light_matrix_);
+  program.set("u_eye", view.camera.eye);
+  program.set("u_key_direction", kKeyDirection);
+  program.set("u_key_colour", kKeyColour);
+  program.set("u_shadow_map", 1);
+  program.set("u_sky", 2);
+}
+
+void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const {
+  light(field_, view);
+  field_.set("u_half_field", 0.5f * glm::vec2(table_->length, table_->width));
+  field_.set("u_goal_width", static_cast<float>(table_->goal_width));
+  field_.set("u_team_colour[0]", kTeamColour[0]);
+  field_.set("u_team_colour[1]", kTeamColour[1]);
+  const auto radius = static_cast<float>(table_->ball_radius);
+  field_.set("u_ball", glm::vec4(vec(state.ball.position), state.ball_in_play ? radius : 0.0f));
+  glm::vec4 lane(0.0f);
+  if (view.active_rod >= 0 && view.active_rod < foosball::kRods) {
+    lane = {static_cast<float>(table_->rods[static_cast<std::size_t>(view.active_rod)].x),
+            0.85f + 0.15f * std::sin(4.0f * view.time), 0.0f, 0.0f};
+  }
+  field_.set("u_active_rod", lane);
+  field_mesh_.draw();
+}
+
+void Scene::draw_ball(const wire::Snapshot& state) const {
+  if (!state.ball_in_play) return;
+  const float radius = drawn_ball_radius(*table_, state.ball.position[2]);
+  ball_.set("u_model", pose(state.ball) * glm::scale(glm::mat4(1.0f), glm::vec3(radius)));
+  ball_mesh_.draw();
+}
+
+void Scene::draw_glass(const SceneView& view) const {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glass_.use();
+  glass_.set("u_view_projection", view.camera.view_projection);
+  glass_.set("u_eye", view.camera.eye);
+  glass_.set("u_top", static_cast<float>(table_->wall_height));
+  glass_mesh_.draw();
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void Scene::draw_particles(const SceneView& view, Particles& particles, float height) {
+  const std::vector<ParticleVertex>& vertices = particles.vertices();
+  if (vertices.empty()) return;
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDepthMask(GL_FALSE);
+  particle_.use();
+  particle_.set("u_view_projection", view.camera.view_projection);
+  particle_.set("u_pixels_per_unit", 0.5f * height * view.camera.projection[1][1]);
+  glBindVertexArray(particle_array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, particle_buffer_.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(ParticleVertex)),
+               vertices.data(), GL_STREAM_DRAW);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices.size()));
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
+                 const glm::ivec2& screen) {
+  use_layout(state.layout == 0 ? foosball::Layout::paper : foosball::Layout::tournament);
+  post_.resize(screen);
+  place_instances(state, view);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_CULL_FACE);
+  draw_shadows();
+
+  post_.scene().bind();
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
+  bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
+  light(solid_, view);
+  draw_solids(solid_);
+  light(ball_, view);
+  draw_ball(state);
+  draw_field(state, view);
+  const auto height = static_cast<float>(post_.scene().size().y);
+  sky_.draw(view.camera, height / 720.0f, view.time);
+  draw_glass(view);
+  draw_particles(view, particles, height);
+  glDisable(GL_CULL_FACE);
+  post_.present(screen);
+}
+
+}  // namespace client

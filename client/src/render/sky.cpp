@@ -1,0 +1,122 @@
+#include "render/sky.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <random>
+#include <vector>
+
+#include "render/target.h"
+
+namespace client {
+namespace {
+
+constexpr float kLimb = -0.683f;  // cosine of the planet's radius in sky_bake.frag, downwards
+
+struct Star {
+  glm::vec4 direction_brightness;
+  glm::vec3 colour;
+};
+
+// Columns right, up, outwards of each face, in the order and with the orientation of OpenGL.
+const glm::mat3 kFaces[6] = {
+    {{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
+    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
+    {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+};
+
+}  // namespace
+
+tl::expected<Sky, std::string> Sky::create(Quality quality) {
+  auto bake = Program::build({"fullscreen.vert"}, {"common.glsl", "sky_bake.frag"}, quality);
+  auto background = Program::build({"fullscreen.vert"}, {"common.glsl", "sky.frag"}, quality);
+  auto star = Program::build({"star.vert"}, {"common.glsl", "star.frag"}, quality);
+  for (const auto* program : {&bake, &background, &star}) {
+    if (!*program) return tl::unexpected(program->error());
+  }
+  Sky sky;
+  sky.background_ = std::move(*background);
+  sky.star_ = std::move(*star);
+  sky.empty_ = GlVertexArray::make();
+  sky.bake(*bake, quality == Quality::high ? 512 : 256);
+  sky.scatter_stars(quality == Quality::high ? 1800 : 900);
+  return sky;
+}
+
+void Sky::bake(const Program& bake, int face_size) {
+  cube_ = GlTexture::make();
+  bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
+  const int levels = 1 + static_cast<int>(std::log2(face_size));
+  glTexStorage2D(GL_TEXTURE_CUBE_MAP, levels, GL_RGBA8, face_size, face_size);
+  glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  GlFramebuffer framebuffer = GlFramebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
+  glViewport(0, 0, face_size, face_size);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  bake.use();
+  glBindVertexArray(empty_.get());
+  for (GLenum face = 0; face < 6; ++face) {
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                           GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, cube_.get(), 0);
+    bake.set("u_face", kFaces[face]);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glGenerateMipmap(GL_TEXTURE_CUBE_MAP);
+}
+
+// Few bright ones and many faint, from a fixed seed; cool and warm tints.
+void Sky::scatter_stars(int count) {
+  std::mt19937 random(20240229);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  std::vector<Star> stars;
+  for (int i = 0; i < count; ++i) {
+    const float z = 2.0f * unit(random) - 1.0f, turn = glm::two_pi<float>() * unit(random);
+    if (z < kLimb) continue;  // the planet hides it
+    const float r = std::sqrt(1.0f - z * z), brightness = std::pow(unit(random), 5.0f),
+                warm = unit(random);
+    stars.push_back({{r * std::cos(turn), r * std::sin(turn), z, brightness},
+                     glm::mix(glm::vec3(0.65f, 0.80f, 1.0f), glm::vec3(1.0f, 0.86f, 0.70f), warm)});
+  }
+  star_count_ = static_cast<GLsizei>(stars.size());
+  stars_ = GlVertexArray::make();
+  star_buffer_ = GlBuffer::make();
+  glBindVertexArray(stars_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, star_buffer_.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(stars.size() * sizeof(Star)), stars.data(),
+               GL_STATIC_DRAW);
+  glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Star), nullptr);
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Star),
+                        reinterpret_cast<const void*>(sizeof(glm::vec4)));
+  glEnableVertexAttribArray(0);
+  glEnableVertexAttribArray(1);
+  glBindVertexArray(0);
+}
+
+void Sky::draw(const Camera& camera, float pixel_scale, float time) const {
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_FALSE);
+  background_.use();
+  bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
+  background_.set("u_sky", 0);
+  background_.set("u_inverse_view_projection", glm::inverse(camera.view_projection));
+  glBindVertexArray(empty_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+
+  star_.use();
+  star_.set("u_view_projection", camera.projection * glm::mat4(glm::mat3(camera.view)));
+  star_.set("u_pixel_scale", pixel_scale);
+  star_.set("u_time", time);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBindVertexArray(stars_.get());
+  glDrawArrays(GL_POINTS, 0, star_count_);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+}
+
+}  // namespace client

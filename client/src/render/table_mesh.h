@@ -1,0 +1,24 @@
+// The table, its glass and its rods, from foosball::TableSpec. World frame (foosball/table.h).
+#pragma once
+
+#include "foosball/table.h"
+#include "render/mesh_data.h"
+
+namespace client {
+
+// Thickness of the side walls and length of a rod beyond its outermost reach [m].
+inline constexpr float kWallThickness = 0.034f;
+inline constexpr float kEndMargin = 0.045f;
+inline constexpr float kSolidWallHeight = 0.050f;
+
+MeshData table_mesh(const foosball::TableSpec& table, float detail);
+// Upper half of the side walls, drawn blended.
+MeshData glass_mesh(const foosball::TableSpec& table);
+// The surface between the walls.
+MeshData field_mesh(const foosball::TableSpec& table);
+// One rod in its own frame: origin on the axis, y along it, handle on its team's side.
+MeshData rod_mesh(const foosball::TableSpec& table, int rod, float detail);
+// From the middle of a rod to the middle of its handle, along y, signed [m].
+float handle_offset(const foosball::TableSpec& table, int rod);
+
+}  // namespace client

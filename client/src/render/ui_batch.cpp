@@ -1,0 +1,83 @@
+#include "render/ui_batch.h"
+
+#include <cstddef>
+
+#include "render/target.h"
+
+namespace client {
+
+tl::expected<UiBatch, std::string> UiBatch::create(Font font) {
+  auto program = Program::build({"ui.vert"}, {"ui.frag"}, Quality::high);
+  if (!program) return tl::unexpected(program.error());
+  UiBatch batch;
+  batch.program_ = std::move(*program);
+  batch.font_ = std::move(font);
+  batch.atlas_ = GlTexture::make();
+  bind_texture(0, GL_TEXTURE_2D, batch.atlas_.get());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  const glm::ivec2 size = batch.font_.atlas_size();
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE,
+               batch.font_.atlas().data());
+  for (const GLenum key : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, key, GL_LINEAR);
+  for (const GLenum key : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, key, GL_CLAMP_TO_EDGE);
+  batch.array_ = GlVertexArray::make();
+  batch.buffer_ = GlBuffer::make();
+  glBindVertexArray(batch.array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, batch.buffer_.get());
+  const auto attribute = [](GLuint index, GLint count, std::size_t offset) {
+    glVertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
+    glEnableVertexAttribArray(index);
+  };
+  attribute(0, 2, offsetof(Vertex, position));
+  attribute(1, 2, offsetof(Vertex, uv));
+  attribute(2, 4, offsetof(Vertex, colour));
+  attribute(3, 4, offsetof(Vertex, shape));
+  glBindVertexArray(0);
+  return batch;
+}
+
+void UiBatch::quad(const glm::vec2& low, const glm::vec2& high, const glm::vec2& uv_low,
+                   const glm::vec2& uv_high, const Colour& colour, const glm::vec4& shape) {
+  const Vertex a{low, uv_low, colour, shape}, c{high, uv_high, colour, shape};
+  const Vertex b{{high.x, low.y}, {uv_high.x, uv_low.y}, colour, shape};
+  const Vertex d{{low.x, high.y}, {uv_low.x, uv_high.y}, colour, shape};
+  vertices_.insert(vertices_.end(), {a, b, c, a, c, d});
+}
+
+void UiBatch::text(std::string_view utf8, const TextStyle& style, const glm::vec2& at,
+                   const Colour& colour, float glow) {
+  const float softness = font_.softness(style.size);
+  for (const PlacedGlyph& g : font_.place(utf8, style, at)) {
+    quad(g.low, g.high, g.uv_low, g.uv_high, colour, {0.0f, softness, glow, 0.0f});
+  }
+}
+
+void UiBatch::panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
+                    float outline) {
+  const glm::vec2 half = 0.5f * (high - low);
+  quad(low, high, -half, half, colour, {std::max(corner, 0.01f), half.x, half.y, outline});
+}
+
+void UiBatch::flush(const glm::ivec2& screen) {
+  if (!vertices_.empty()) {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
+    program_.use();
+    program_.set("u_screen", glm::vec2(screen));
+    program_.set("u_glyphs", 0);
+    bind_texture(0, GL_TEXTURE_2D, atlas_.get());
+    glBindVertexArray(array_.get());
+    glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(Vertex)),
+                 vertices_.data(), GL_STREAM_DRAW);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
+    glDisable(GL_BLEND);
+  }
+  vertices_.clear();
+}
+
+}  // namespace client

@@ -1,0 +1,48 @@
+// Text and panels of a frame, gathered and drawn with one call over the scene.
+#pragma once
+
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "render/font.h"
+#include "render/gl_handle.h"
+#include "render/program.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace client {
+
+using Colour = glm::vec4;  // as the screen shows it (sRGB), with opacity
+
+class UiBatch {
+ public:
+  static tl::expected<UiBatch, std::string> create(Font font);
+
+  const Font& font() const { return font_; }
+  // glow 0..1: a dark halo that lifts the text off what lies behind it.
+  void text(std::string_view utf8, const TextStyle& style, const glm::vec2& at,
+            const Colour& colour, float glow = 0.55f);
+  void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
+             float outline = 0.0f);
+  // Draws to the bound framebuffer and forgets.
+  void flush(const glm::ivec2& screen);
+
+ private:
+  struct Vertex {
+    glm::vec2 position, uv;
+    glm::vec4 colour, shape;
+  };
+  void quad(const glm::vec2& low, const glm::vec2& high, const glm::vec2& uv_low,
+            const glm::vec2& uv_high, const Colour& colour, const glm::vec4& shape);
+
+  Font font_;
+  Program program_;
+  GlTexture atlas_;
+  GlVertexArray array_;
+  GlBuffer buffer_;
+  std::vector<Vertex> vertices_;
+};
+
+}  // namespace client

@@ -1,0 +1,89 @@
+#include "sound/player.h"
+
+#include <AL/al.h>
+#include <AL/alc.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace client {
+namespace {
+
+constexpr std::size_t kVoices = 16;  // more at once are not told apart; the oldest is taken over
+
+}  // namespace
+
+struct SoundPlayer::Impl {
+  ALCdevice* device = nullptr;
+  ALCcontext* context = nullptr;
+  std::array<ALuint, kSounds> buffers{};
+  std::array<ALuint, kVoices> voices{};
+  std::size_t next = 0;
+  bool made = false;
+
+  ~Impl() {
+    if (made) {
+      alDeleteSources(static_cast<ALsizei>(voices.size()), voices.data());
+      alDeleteBuffers(static_cast<ALsizei>(buffers.size()), buffers.data());
+    }
+    alcMakeContextCurrent(nullptr);
+    if (context != nullptr) alcDestroyContext(context);
+    if (device != nullptr) alcCloseDevice(device);
+  }
+};
+
+SoundPlayer::SoundPlayer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SoundPlayer::~SoundPlayer() = default;
+
+tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::open() {
+  auto impl = std::make_unique<Impl>();
+  impl->device = alcOpenDevice(nullptr);
+  if (impl->device == nullptr) {
+    return tl::unexpected(std::string(
+        "No audio device could be opened: playing on without sound (--mute says so beforehand)."));
+  }
+  impl->context = alcCreateContext(impl->device, nullptr);
+  if (impl->context == nullptr || !alcMakeContextCurrent(impl->context)) {
+    return tl::unexpected(
+        std::string("The audio device gives no OpenAL context: playing on without sound."));
+  }
+  alGenBuffers(static_cast<ALsizei>(impl->buffers.size()), impl->buffers.data());
+  alGenSources(static_cast<ALsizei>(impl->voices.size()), impl->voices.data());
+  impl->made = true;
+  for (std::size_t i = 0; i < impl->buffers.size(); ++i) {
+    const auto samples = synthesise(static_cast<Sound>(i));
+    alBufferData(impl->buffers[i], AL_FORMAT_MONO16, samples.data(),
+                 static_cast<ALsizei>(samples.size() * sizeof samples[0]), kSampleRate);
+  }
+  if (alGetError() != AL_NO_ERROR)
+    return tl::unexpected(std::string("OpenAL has no room for the sounds: playing on without."));
+  return std::unique_ptr<SoundPlayer>(new SoundPlayer(std::move(impl)));
+}
+
+void SoundPlayer::set_listener(const glm::vec3& eye, const glm::vec3& at) {
+  const glm::vec3 forward = glm::normalize(at - eye);
+  const float orientation[6] = {forward.x, forward.y, forward.z, 0, 0, 1};
+  alListener3f(AL_POSITION, eye.x, eye.y, eye.z);
+  alListenerfv(AL_ORIENTATION, orientation);
+}
+
+void SoundPlayer::play(Sound sound, float volume, const glm::vec3& at) {
+  const ALuint voice = impl_->voices[impl_->next];
+  impl_->next = (impl_->next + 1) % kVoices;
+  alSourceStop(voice);
+  alSourcei(voice, AL_BUFFER, static_cast<ALint>(impl_->buffers[static_cast<std::size_t>(sound)]));
+  alSourcef(voice, AL_GAIN, std::clamp(volume, 0.0f, 1.0f));
+  // A quarter of a semitone either way, so that a rally does not sound like a machine.
+  alSourcef(voice, AL_PITCH, 0.97f + 0.02f * static_cast<float>(impl_->next % 4));
+  alSource3f(voice, AL_POSITION, at.x, at.y, at.z);
+  alSourcePlay(voice);
+}
+
+float volume_of_impulse(float impulse) {
+  // The ball weighs 26 g: 0.25 N s sends it off at nearly 10 m/s.
+  return std::clamp(std::sqrt(std::max(impulse, 0.0f) / 0.25f), 0.0f, 1.0f);
+}
+
+}  // namespace client

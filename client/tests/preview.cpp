@@ -1,0 +1,110 @@
+// For whoever works on the picture: draws scripted moments without a server and writes them as PNG.
+//   client_preview DIRECTORY [low|high] [WxH]
+#include <GLES3/gl3.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "app/window.h"
+#include "render/hud.h"
+#include "render/image.h"
+#include "render/scene.h"
+#include "scripted_scene.h"
+
+namespace client {
+namespace {
+
+struct Shot {
+  const char* name;
+  double seconds;
+  std::uint8_t screen;
+  int team;
+};
+constexpr Shot kShots[] = {
+    {"logo", 0.4, 0, 0},    {"selection", 1.0, 1, 0}, {"play-1", 0.35, 2, 0},
+    {"play-2", 1.62, 2, 1}, {"play-3", 2.4, 2, 0},    {"ceremony", 0.7, 3, 0},
+    {"end", 1.0, 4, 0},     {"lost", 3.0, 2, 0},      {"held", 4.1, 2, 0}};
+
+int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
+  auto window = Window::open({.size = size, .title = "preview"});
+  if (!window) {
+    std::fprintf(stderr, "%s\n", window.error().sentence.c_str());
+    return 4;
+  }
+  const auto now = [] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  };
+  const double begin = now();
+  auto scene = Scene::create(quality);
+  auto font = Font::load();
+  const double font_done = now();
+  auto ui = font ? UiBatch::create(std::move(*font)) : tl::unexpected(font.error());
+  if (!scene || !ui) {
+    std::fprintf(stderr, "%s%s\n", scene ? "" : scene.error().c_str(),
+                 ui ? "" : ui.error().c_str());
+    return 1;
+  }
+  glFinish();
+  std::printf("set up in %.0f ms (font at %.0f)\n", 1e3 * (now() - begin),
+              1e3 * (font_done - begin));
+  for (const Shot& shot : kShots) {
+    wire::Snapshot state = scripted_play(shot.seconds);
+    state.screen = shot.screen;
+    state.ball_in_play = shot.screen == 2;
+    state.confirmed = {true, false};
+    if (std::strcmp(shot.name, "held") == 0) state.rods[3].status = state.rods[5].status = 2;
+    const SceneView view{
+        player_camera({.team = shot.team, .closeness = shot.screen == 1 ? 0.62f : 0.0f}, size),
+        shot.screen == 2 ? (shot.team == 0 ? 3 : 4) : -1, 1.0f};
+    HudState hud;
+    hud.state = &state;
+    hud.camera = view.camera;
+    hud.viewer_team = shot.team;
+    if (std::strcmp(shot.name, "lost") == 0) {
+      hud.connection_message = "Physics server lost: waiting at 127.0.0.1:4750";
+      hud.connection_detail = "The scene stands as it was last heard.";
+    }
+    if (std::strcmp(shot.name, "held") == 0) hud.notices = {"cabinet unplugged: rods 4, 6 hold"};
+    Particles particles;
+    if (shot.screen == 2) {
+      const auto& b = state.ball;
+      for (int i = 0; i < 4; ++i) {
+        particles.streak({b.position[0], b.position[1], b.position[2]}, {6, 3, 0}, 0.017f, 0.016f);
+        particles.step(0.016f);
+      }
+      particles.spark({b.position[0], b.position[1], b.position[2]}, {1, 0, 0}, {1.2f, 0.9f, 0.5f},
+                      0.7f);
+      particles.step(0.05f);
+    }
+    if (shot.screen == 3) {
+      particles.celebrate({-0.6f, 0, 0.06f}, {0.9f, 0.4f, 0.1f});
+      for (int i = 0; i < 30; ++i) particles.step(0.016f);
+    }
+    double best = 1e9;
+    for (int i = 0; i < 4; ++i) {
+      const double start = now();
+      (*scene)->draw(state, view, particles, size);
+      draw_hud(*ui, hud, size);
+      glFinish();
+      best = std::min(best, now() - start);
+    }
+    const auto wrote = write_png(read_pixels(size), directory + "/" + shot.name + ".png");
+    std::printf("%s: %.1f ms%s\n", shot.name, 1e3 * best, wrote ? "" : wrote.error().c_str());
+    window->swap();
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace client
+
+int main(int argc, char** argv) {
+  const client::Quality quality =
+      argc > 2 && std::strcmp(argv[2], "low") == 0 ? client::Quality::low : client::Quality::high;
+  glm::ivec2 size{1280, 720};
+  if (argc > 3) std::sscanf(argv[3], "%dx%d", &size.x, &size.y);
+  return client::run(argc > 1 ? argv[1] : ".", quality, size);
+}
