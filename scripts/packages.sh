@@ -70,7 +70,7 @@ packages_install() {
 
   echo "To be installed from Debian, and why:"
   packages_table | awk -v missing=" ${missing//$'\n'/ } " \
-    'index(missing, " " $2 " ") { name = $2; sub(/^[^ ]+ +[^ ]+ +/, ""); printf "  %-20s %s\n", name, $0 }'
+    'index(missing, " " $2 " ") { name = $2; sub(/^[^ ]+ +[^ ]+ +/, ""); printf "  %-21s %s\n", name, $0 }'
   command="apt-get install --no-install-recommends ${missing//$'\n'/ }"
   if [[ $EUID -ne 0 ]]; then
     if ! command -v sudo >/dev/null; then
