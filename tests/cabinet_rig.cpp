@@ -4,10 +4,11 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <stdexcept>
-
-#include "wire/control.h"
+#include <utility>
 
 namespace end_to_end {
 namespace {
@@ -26,19 +27,21 @@ void require(bool held, const char* what) {
   if (!held) throw std::runtime_error(what);
 }
 
-// A device of 64-byte reports; the other end is where the simulator's reports go.
-std::unique_ptr<cabinet::DeviceSource> report_device(std::vector<int>& writing_ends) {
+}  // namespace
+
+void CabinetRig::connect_cable(Cable& cable) {
   int ends[2];
   require(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) == 0,
           "socketpair failed");
-  writing_ends.push_back(ends[0]);
+  cable = {ends[0], ends[1]};
+}
+
+std::unique_ptr<cabinet::DeviceSource> CabinetRig::device_on(Cable& cable) {
   cabinet::DeviceOptions options;
   options.framing = cabinet::DeviceFraming::report;
   return std::make_unique<cabinet::DeviceSource>(
-      options, [reading = ends[1]]() mutable { return std::exchange(reading, -1); });
+      options, [&cable] { return std::exchange(cable.reading, -1); });
 }
-
-}  // namespace
 
 CabinetRig::CabinetRig(foosball::Layout layout) {
   server::ServerOptions options;
@@ -48,14 +51,19 @@ CabinetRig::CabinetRig(foosball::Layout layout) {
   auto created = server::Server::create(std::move(options));
   require(created.has_value(), "the server does not start");
   server_ = std::move(*created);
-  server_->add_device(report_device(report_ends_));
-  tap_ = report_device(report_ends_);
+  connect_cable(to_server_);
+  connect_cable(to_tap_);
+  server_->add_device(device_on(to_server_));
+  tap_ = device_on(to_tap_);
   join();
   while (!sim_.all_enabled()) step();
 }
 
 CabinetRig::~CabinetRig() {
-  for (const int end : report_ends_) close(end);
+  for (const Cable& cable : {to_server_, to_tap_}) {
+    if (cable.writing >= 0) close(cable.writing);
+    if (cable.reading >= 0) close(cable.reading);
+  }
   if (udp_ >= 0) close(udp_);
   if (tcp_ >= 0) close(tcp_);
 }
@@ -80,16 +88,8 @@ void CabinetRig::join() {
   require(send(tcp_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
           "cannot say Hello");
 
-  wire::ControlReader reader;
   wire::ControlMessage message;
-  while (reader.next(message) != wire::ControlReader::Status::message) {
-    pollfd ready{tcp_, POLLIN, 0};
-    require(poll(&ready, 1, kDeadlineMs) == 1, "no Welcome in time");
-    std::byte buffer[4096];
-    const ssize_t got = recv(tcp_, buffer, sizeof buffer, 0);
-    require(got > 0, "the server closed the connection");
-    reader.push({buffer, static_cast<std::size_t>(got)});
-  }
+  require(next_message(kDeadlineMs, message), "no Welcome in time");
   require(std::holds_alternative<wire::Welcome>(message), "not welcome");
   // The tick learns of a new listener through a queue: the first snapshot says that it has.
   for (int i = 0; i < kDeadlineMs && first_; ++i) {
@@ -105,6 +105,39 @@ void CabinetRig::join() {
   require(!first_, "no snapshot after joining");
 }
 
+// False when there is none by the deadline.
+bool CabinetRig::next_message(int deadline_ms, wire::ControlMessage& message) {
+  for (;;) {
+    const auto status = reader_.next(message);
+    if (status == wire::ControlReader::Status::message) return true;
+    require(status == wire::ControlReader::Status::need_more, "the server's bytes are broken");
+    pollfd ready{tcp_, POLLIN, 0};
+    if (poll(&ready, 1, deadline_ms) != 1) return false;
+    std::byte buffer[4096];
+    const ssize_t got = recv(tcp_, buffer, sizeof buffer, 0);
+    require(got > 0, "the server closed the connection");
+    reader_.push({buffer, static_cast<std::size_t>(got)});
+  }
+}
+
+std::vector<wire::Notice> CabinetRig::notices() {
+  std::vector<wire::Notice> found;
+  wire::ControlMessage message;
+  while (next_message(0, message)) {
+    if (const auto* notice = std::get_if<wire::Notice>(&message)) found.push_back(*notice);
+  }
+  return found;
+}
+
+void CabinetRig::unplug() {
+  close(to_server_.writing);
+  to_server_.writing = -1;
+}
+
+void CabinetRig::plug_in() {
+  connect_cable(to_server_);
+}
+
 bool CabinetRig::receive(wire::Snapshot& snapshot) {
   pollfd ready{udp_, POLLIN, 0};
   if (poll(&ready, 1, kDeadlineMs) != 1) return false;
@@ -115,8 +148,9 @@ bool CabinetRig::receive(wire::Snapshot& snapshot) {
 
 void CabinetRig::forward_reports() {
   for (const firmware_sim::Report& report : sim_.take_reports()) {
-    for (const int end : report_ends_) {
-      require(send(end, report.bytes.data(), report.bytes.size(), 0) ==
+    for (const int end : {to_server_.writing, to_tap_.writing}) {
+      if (end < 0) continue;
+      require(send(end, report.bytes.data(), report.bytes.size(), MSG_NOSIGNAL) ==
                   static_cast<ssize_t>(report.bytes.size()),
               "a report was not taken");
     }

@@ -3,9 +3,6 @@
 // the simulator's; every exchange is awaited, none is timed.
 #pragma once
 
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -13,6 +10,7 @@
 #include "cabinet/device_source.h"
 #include "firmware_sim/cabinet_sim.h"
 #include "server/server.h"
+#include "wire/control.h"
 #include "wire/snapshot.h"
 
 namespace end_to_end {
@@ -28,21 +26,37 @@ class CabinetRig {
   const wire::Snapshot& step();
 
   firmware_sim::CabinetSim& cabinet() { return sim_; }
+  // Pulls the cabinet's plug out of the server, and puts it back in.
+  void unplug();
+  void plug_in();
+  // What the server has told a person since the last call.
+  std::vector<wire::Notice> notices();
+
   // A second reader of the same reports: what the PC made of the counts, before the physics.
   const cabinet::DeviceSource& tap() const { return *tap_; }
   // Ticks without a snapshot, or with one for another tick, since the listener joined.
   int snapshots_missed() const { return missed_; }
 
  private:
+  // A cable for 64-byte reports: where the simulator writes and where a device reads; -1:
+  // unplugged.
+  struct Cable {
+    int writing = -1, reading = -1;
+  };
+
+  static void connect_cable(Cable& cable);
+  static std::unique_ptr<cabinet::DeviceSource> device_on(Cable& cable);
   void join();
+  bool next_message(int deadline_ms, wire::ControlMessage& message);
   bool receive(wire::Snapshot& snapshot);
   void forward_reports();
 
   firmware_sim::CabinetSim sim_{firmware_sim::Board::mega32u4};
+  Cable to_server_, to_tap_;  // before what reads from them
   std::unique_ptr<server::Server> server_;
   std::unique_ptr<cabinet::DeviceSource> tap_;
-  std::vector<int> report_ends_;  // where simulated reports are written
   int udp_ = -1, tcp_ = -1;
+  wire::ControlReader reader_;
   wire::Snapshot last_;
   bool first_ = true;
   int missed_ = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
 
 #include "cabinet_rig.h"
 #include "foosball/table.h"
@@ -80,6 +81,65 @@ TEST(CabinetToSnapshot, MouseThreeMovesRodThreeAndNoOther) {
       "from the last PS/2 packet to the first snapshot with 40 mm +-0.5 and 90 degrees +-1: %d "
       "ticks\n",
       first_sign_ticks, settled_ticks);
+}
+
+constexpr std::uint8_t kHeld = static_cast<std::uint8_t>(cabinet::RodStatus::held);
+constexpr std::uint8_t kLive = static_cast<std::uint8_t>(cabinet::RodStatus::live);
+
+// Steps until every rod has the status; the ticks it took, or -1 after most.
+int ticks_until(CabinetRig& rig, std::uint8_t status, int most) {
+  for (int tick = 1; tick <= most; ++tick) {
+    const wire::Snapshot& now = rig.step();
+    if (std::all_of(now.rods.begin(), now.rods.end(),
+                    [&](const wire::RodSnapshot& rod) { return rod.status == status; })) {
+      return tick;
+    }
+  }
+  return -1;
+}
+
+// The next notice that names the cabinet; it travels by another thread than the tick's.
+std::string notice_of_cabinet(CabinetRig& rig) {
+  for (int tick = 0; tick < 2000; ++tick) {
+    rig.step();
+    for (const wire::Notice& notice : rig.notices()) {
+      if (notice.text.find("cabinet") != std::string::npos) return notice.text;
+    }
+  }
+  return {};
+}
+
+TEST(CabinetToSnapshot, AnUnpluggedCabinetHoldsItsRodsIsNamedAndComesBackWithoutAJump) {
+  CabinetRig rig(foosball::Layout::tournament);
+  rig.cabinet().mouse(3).move(slide_counts(0.03), spin_counts(1.0));
+  for (int ms = 0; ms < 500; ++ms) rig.step();
+  const wire::Snapshot before = rig.step();
+  ASSERT_NEAR(before.rods[3].slide, 0.03, 0.0005);
+  rig.notices();
+
+  rig.unplug();
+  const int noticed = ticks_until(rig, kHeld, 1000);
+  ASSERT_GE(noticed, 0) << "the server never noticed";
+  EXPECT_LE(noticed, 100);
+  EXPECT_NE(notice_of_cabinet(rig), "") << "no client was told which device is gone";
+  rig.cabinet().mouse(3).move(slide_counts(-0.05), 0);  // a hand goes on pulling
+  for (int ms = 0; ms < 1000; ++ms) rig.step();
+  EXPECT_NEAR(rig.step().rods[3].slide, before.rods[3].slide, 0.0005);
+
+  rig.plug_in();
+  const int back = ticks_until(rig, kLive, 5000);
+  ASSERT_GE(back, 0) << "it never came back";
+  EXPECT_LE(back, 2000);
+  EXPECT_NE(notice_of_cabinet(rig), "") << "no client was told that it is back";
+  for (int ms = 0; ms < 300; ++ms) {
+    const wire::RodSnapshot& rod = rig.step().rods[3];
+    ASSERT_NEAR(rod.slide, before.rods[3].slide, 0.0005) << "it jumped";
+    ASSERT_NEAR(rod.angle, before.rods[3].angle, kPi / 180) << "it jumped";
+  }
+  rig.cabinet().mouse(3).move(slide_counts(0.01), 0);
+  for (int ms = 0; ms < 300; ++ms) rig.step();
+  EXPECT_NEAR(rig.step().rods[3].slide, before.rods[3].slide + 0.01, 0.0005);
+  std::printf("unplugged: held after %d ticks; plugged in again: live after %d\n", noticed, back);
 }
 
 TEST(CabinetToSnapshot, EightMiceAtOnceLoseNoCountInTenSeconds) {
