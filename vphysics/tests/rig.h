@@ -1,0 +1,120 @@
+// Small worlds that several tests build.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "vphysics/world.h"
+
+namespace vp::test {
+
+// The value of a call that must succeed.
+template <class T>
+T must(const Expected<T>& result) {
+  if (!result) ADD_FAILURE() << result.error().message;
+  return result.value();
+}
+inline void must(const Expected<void>& result) {
+  if (!result) ADD_FAILURE() << result.error().message;
+}
+
+inline BodyId add_fixed(World& world, const Shape& shape, const Material& material,
+                        const SE3& pose = {}) {
+  BodyDesc desc;
+  desc.motion = Motion::fixed;
+  desc.T_world_body = pose;
+  const BodyId body = must(world.create_body(desc));
+  ColliderDesc collider;
+  collider.shape = shape;
+  collider.material = material;
+  must(world.add_collider(body, collider));
+  return body;
+}
+
+inline BodyId add_ground(World& world, const Material& material, const Vec3& normal = {0, 0, 1}) {
+  const Vec3 n = (1.0 / norm(normal)) * normal;
+  const Vec3 t = std::fabs(n.x) < 0.9 ? cross(n, Vec3{1, 0, 0}) : cross(n, Vec3{0, 1, 0});
+  const Vec3 x = (1.0 / norm(t)) * t;
+  const Mat3 R = n == Vec3{0, 0, 1} ? Mat3::identity() : Mat3{x, cross(n, x), n};
+  return add_fixed(world, HalfSpace{}, material, SE3(R, {}));
+}
+
+struct Part {
+  Shape shape = Sphere{0.1};
+  Material material;
+  double density = 1000.0;
+  SE3 pose;
+  se3 velocity;
+  bool continuous = false;
+};
+inline BodyId add_dynamic(World& world, const Part& part) {
+  BodyDesc desc;
+  desc.T_world_body = part.pose;
+  desc.velocity = part.velocity;
+  desc.inertia = solid_inertia(part.shape, part.density);
+  desc.continuous = part.continuous;
+  const BodyId body = must(world.create_body(desc));
+  ColliderDesc collider;
+  collider.shape = part.shape;
+  collider.material = part.material;
+  must(world.add_collider(body, collider));
+  return body;
+}
+
+// A foosball rod along y, its axis at height h: a cylindrical joint, z of the joint frame along y.
+inline LinkDesc rod_link(double x, double height) {
+  LinkDesc link;
+  link.joint = JointKind::cylindrical;
+  link.T_parent_joint = SE3(Mat3{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {x, 0, height});
+  link.inertia = Inertia(1.5, Vec3{0.2, 0.2, 0.0015});
+  link.limit[0] = {-0.12, 0.12};
+  return link;
+}
+
+// The boxes of a man in the rod's frame (z along the rod, y up, x fore and aft): foot, leg, torso, head.
+struct ManPart {
+  Vec3 centre, half;
+};
+inline constexpr ManPart kMan[4] = {{{0, -0.0665, 0}, {0.011, 0.0095, 0.011}},
+                                    {{0, -0.04, 0}, {0.007, 0.02, 0.008}},
+                                    {{0, 0.0, 0}, {0.010, 0.022, 0.013}},
+                                    {{0, 0.033, 0}, {0.009, 0.011, 0.009}}};
+
+struct Rod {
+  ArticulationId articulation;
+  BodyId body;
+};
+inline Rod add_rod(World& world, double x, double height, int men, double spacing,
+                   const Material& material) {
+  const ArticulationId articulation =
+      must(world.create_articulation(ArticulationDesc{{rod_link(x, height)}}));
+  const BodyId body = world.link_body(articulation, 0);
+  for (int man = 0; man < men; ++man) {
+    const double along = spacing * (man - 0.5 * (men - 1));
+    for (const ManPart& part : kMan) {
+      ColliderDesc collider;
+      collider.shape = Box{part.half};
+      collider.T_body_shape = SE3(part.centre + Vec3{0, 0, along});
+      collider.material = material;
+      collider.filter = {2, 1};
+      must(world.add_collider(body, collider));
+    }
+  }
+  return {articulation, body};
+}
+
+inline constexpr double kBallRadius = 0.01727;
+inline constexpr double kBallDensity = 1100.0;  // 24 g
+
+inline BodyId add_ball(World& world, const Vec3& position, const Vec3& velocity,
+                       const Material& material) {
+  Part part;
+  part.shape = Sphere{kBallRadius};
+  part.density = kBallDensity;
+  part.material = material;
+  part.pose = SE3(position);
+  part.velocity = {{}, velocity};
+  part.continuous = true;
+  return add_dynamic(world, part);
+}
+
+}  // namespace vp::test
