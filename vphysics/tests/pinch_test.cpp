@@ -14,7 +14,9 @@ constexpr double kTick = 0.001;
 const Material kWood{0.3, 0.6, 0.0};
 const Material kPlastic{0.4, 0.5, 0.0005};
 
-BodyId add_field(World& world) { return add_ground(world, kWood); }
+BodyId add_field(World& world) {
+  return add_ground(world, kWood);
+}
 
 // The man's foot presses the ball against a wall at x = -(ball) behind it.
 TEST(Pinch, ADrivenRodIsStoppedByABallAtAWall) {
@@ -44,7 +46,8 @@ TEST(Pinch, ADrivenRodIsStoppedByABallAtAWall) {
   EXPECT_LT(world.joint_position(rod.articulation, 0, 1), 0.6);  // the ball is in the way
 }
 
-// The sole comes down on the ball: torque turns into a force of hundreds of newtons at small angles.
+// The sole comes down on the ball: torque turns into a force of hundreds of newtons at small
+// angles.
 TEST(Pinch, ABallUnderAFootStaysAboveTheField) {
   for (const double target : {-0.3, -0.1, 0.0, 0.1, 0.3}) {
     World world;

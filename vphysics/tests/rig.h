@@ -40,10 +40,10 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
 
 struct Part {
   Shape shape = Sphere{0.1};
-  Material material;
+  Material material{};
   double density = 1000.0;
-  SE3 pose;
-  se3 velocity;
+  SE3 pose{};
+  se3 velocity{};
   bool continuous = false;
 };
 inline BodyId add_dynamic(World& world, const Part& part) {
@@ -70,7 +70,8 @@ inline LinkDesc rod_link(double x, double height) {
   return link;
 }
 
-// The boxes of a man in the rod's frame (z along the rod, y up, x fore and aft): foot, leg, torso, head.
+// The boxes of a man in the rod's frame (z along the rod, y up, x fore and aft): foot, leg, torso,
+// head.
 struct ManPart {
   Vec3 centre, half;
 };

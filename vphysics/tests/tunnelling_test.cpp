@@ -35,7 +35,8 @@ TEST(TunnellingCheck, SeesAChordThroughABoxAndNoOther) {
   EXPECT_FALSE(crosses({-1, 0, 0}, {-0.02, 0, 0}, h));
 }
 
-// Half extents less this: chords of a curved path cut a little, and a pressed ball gives by the slop.
+// Half extents less this: chords of a curved path cut a little, and a pressed ball gives by the
+// slop.
 constexpr double kShrink = 0.001;
 constexpr double kTick = 0.001;
 
@@ -78,7 +79,8 @@ void shoot(Random& random, bool turning, Outcome& outcome) {
   const auto in_the_way = [&](const ManPart& p) {
     return distance_to(inverse_times(pose, start), p) < kBallRadius + 0.001;
   };
-  while (std::any_of(std::begin(kMan), std::end(kMan), in_the_way)) start = start - 0.02 * direction;
+  while (std::any_of(std::begin(kMan), std::end(kMan), in_the_way))
+    start = start - 0.02 * direction;
   const BodyId ball = add_ball(world, start, speed * direction, material);
 
   Vec3 before = inverse_times(world.pose(rod.body), start);
@@ -113,9 +115,13 @@ void run_shots(std::uint64_t seed, bool turning, int shots) {
   EXPECT_LT(outcome.deepest, 0.0005);
 }
 
-TEST(Tunnelling, NoBallPassesThroughAMan) { run_shots(11, false, SHOTS); }
+TEST(Tunnelling, NoBallPassesThroughAMan) {
+  run_shots(11, false, SHOTS);
+}
 
-TEST(Tunnelling, NoBallPassesThroughATurningMan) { run_shots(12, true, SHOTS); }
+TEST(Tunnelling, NoBallPassesThroughATurningMan) {
+  run_shots(12, true, SHOTS);
+}
 
 }  // namespace
 }  // namespace vp::test

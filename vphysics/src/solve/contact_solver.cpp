@@ -18,15 +18,16 @@ namespace {
 
 // Changes of speed below this [m/s] end the iteration: a thousandth of what gravity adds in 0.1 ms.
 constexpr double kConverged = 1e-7;
-// With so few contacts more rounds cost nothing, and a light ball between heavy men needs them: the
-// error shrinks by M / (M + m) a round.
-constexpr std::size_t kFewContacts = 8;
-constexpr int kRoundsForFew = 8;
+// With few contacts more rounds cost little, and a light ball between heavy men needs them: the error
+// shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts / contacts,
+// at most kMostRounds times.
+constexpr std::size_t kFewContacts = 64;
+constexpr std::size_t kMostRounds = 8;
 // Share of the penetration beyond the slop that one solve takes out, the most it takes out [m], and
 // its rounds. A larger share makes stacks nervous.
 constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
-constexpr int kCorrectionRounds = 6;
+constexpr int kCorrectionRounds = 8;
 
 Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactPoint& p) {
   return b.v + cross(b.w, p.arm_b) - a.v - cross(a.w, p.arm_a);
@@ -68,6 +69,9 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, ContactConstrain
     p.tangent_mass[0] = p.tangent_mass[2] = m;
     p.tangent_mass[1] = 0.0;
   }
+  const double largest =
+      0.5 * (trace + std::sqrt((k11 - k22) * (k11 - k22) + 4.0 * k12 * k12));
+  p.slide_mass = largest > 0.0 ? 1.0 / largest : 0.0;
 }
 
 // The largest row sum bounds the largest eigenvalue; for a ball it is equal to it.
@@ -112,16 +116,23 @@ void warm_start(const StepContext& s) {
   }
 }
 
+// Sticking: the impulse that stops the point, by the whole block. Sliding: a gradient step, projected
+// on the disc, with one mass for both directions: only so does friction settle opposite to the
+// velocity, since the block turns what it multiplies.
 void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p) {
   const Vec3 u = relative_velocity(a, b, p);
   const double u0 = dot(c.tangent[0], u), u1 = dot(c.tangent[1], u);
   double p0 = p.tangent_impulse[0] - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
   double p1 = p.tangent_impulse[1] - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
   const double most = c.friction * p.normal_impulse;
-  const double size = std::sqrt(p0 * p0 + p1 * p1);
-  if (size > most) {
-    p0 *= most / size;
-    p1 *= most / size;
+  if (p0 * p0 + p1 * p1 > most * most) {
+    p0 = p.tangent_impulse[0] - p.slide_mass * u0;
+    p1 = p.tangent_impulse[1] - p.slide_mass * u1;
+    const double size = std::sqrt(p0 * p0 + p1 * p1);
+    if (size > most) {
+      p0 *= most / size;
+      p1 *= most / size;
+    }
   }
   apply(a, b, p,
         (p0 - p.tangent_impulse[0]) * c.tangent[0] + (p1 - p.tangent_impulse[1]) * c.tangent[1]);
@@ -159,23 +170,32 @@ double solve_joint(SolverBody& body, JointRow& row) {
   return std::fabs(change);
 }
 
-double one_round(const StepContext& s) {
+double solve_contact(const StepContext& s, ContactConstraint& c) {
+  SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
+  double change = 0.0;
+  if (c.rolling_mass > 0.0) solve_rolling(a, b, c);
+  for (int i = 0; i < c.count; ++i) solve_friction(a, b, c, c.points[i]);
+  for (int i = 0; i < c.count; ++i) change = std::max(change, solve_normal(a, b, c, c.points[i]));
+  return change;
+}
+
+// Every other round goes the other way, so that a load runs up a stack as fast as down it.
+double one_round(const StepContext& s, bool forward) {
   double change = 0.0;
   for (JointRow& row : s.joints) change = std::max(change, solve_joint(s.bodies[row.body], row));
-  for (ContactConstraint& c : s.contacts) {
-    SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
-    if (c.rolling_mass > 0.0) solve_rolling(a, b, c);
-    for (int i = 0; i < c.count; ++i) solve_friction(a, b, c, c.points[i]);
-    for (int i = 0; i < c.count; ++i) change = std::max(change, solve_normal(a, b, c, c.points[i]));
+  const std::size_t n = s.contacts.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    change = std::max(change, solve_contact(s, s.contacts[forward ? i : n - 1 - i]));
   }
   return change;
 }
 
 void iterate(const StepContext& s) {
-  const int rounds = s.iterations * (s.contacts.size() <= kFewContacts ? kRoundsForFew : 1);
-  for (int i = 0; i < rounds; ++i) {
+  const std::size_t contacts = std::max<std::size_t>(1, s.contacts.size());
+  const int more = static_cast<int>(std::clamp<std::size_t>(kFewContacts / contacts, 1, kMostRounds));
+  for (int i = 0; i < s.iterations * more; ++i) {
     // Friction reads the normal impulses of the round before: two quiet rounds are needed.
-    if (one_round(s) < kConverged && i > 0) break;
+    if (one_round(s, i % 2 == 0) < kConverged && i > 0) break;
   }
 }
 
@@ -196,7 +216,8 @@ bool set_bounce_targets(const StepContext& s) {
 void correct_positions(const StepContext& s) {
   for (int round = 0; round < kCorrectionRounds; ++round) {
     bool any = false;
-    for (ContactConstraint& c : s.contacts) {
+    for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+      ContactConstraint& c = s.contacts[round % 2 == 0 ? k : s.contacts.size() - 1 - k];
       SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
       for (int i = 0; i < c.count; ++i) {
         ContactPoint& p = c.points[i];

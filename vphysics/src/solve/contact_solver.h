@@ -32,6 +32,7 @@ struct ContactPoint {
   Vec3 arm_a, arm_b;  // from the bodies' points to the contact
   double normal_mass;
   double tangent_mass[3];  // inverse of the 2x2 tangent block: 11, 12, 22
+  double slide_mass;       // inverse of the block's largest eigenvalue
   double approach;         // speed of approach before the solve, >= 0 when approaching
   double target;           // least normal speed after it
   // Impulses; what they hold before the solve is the warm start.
