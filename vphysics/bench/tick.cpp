@@ -17,7 +17,8 @@ struct Table {
   BodyId ball;
 };
 
-void add_box(World& world, BodyId body, const Vec3& centre, const Vec3& half, CollisionFilter filter) {
+void add_box(World& world, BodyId body, const Vec3& centre, const Vec3& half,
+             CollisionFilter filter) {
   ColliderDesc desc;
   desc.shape = Box{half};
   desc.T_body_shape = SE3(centre);
@@ -46,7 +47,8 @@ Table make_table() {
   for (int i = 0; i < 8; ++i) {
     LinkDesc link;
     link.joint = JointKind::cylindrical;
-    link.T_parent_joint = SE3(Mat3{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {-0.525 + 0.15 * i, 0, 0.085});
+    link.T_parent_joint =
+        SE3(Mat3{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {-0.525 + 0.15 * i, 0, 0.085});
     link.inertia = Inertia(1.5, Vec3{0.2, 0.2, 0.0015});
     link.limit[0] = {-0.06, 0.06};
     table.rods.push_back(world.create_articulation(ArticulationDesc{{link}}).value());

@@ -103,6 +103,10 @@ struct Polygon {
   }
 };
 
+// Corners so little outside [m] are left in: equal boxes on one another would else gain and lose
+// corners with every rounding error.
+constexpr double kOnPlane = 1e-6;
+
 // Keeps what lies below dot(n, p) <= offset. A cut is named by its plane and the corner before it.
 Polygon clip(const Polygon& in, const Vec3& n, double offset, std::uint32_t plane) {
   Polygon out;
@@ -110,8 +114,8 @@ Polygon clip(const Polygon& in, const Vec3& n, double offset, std::uint32_t plan
     const ClipVertex& a = in.v[static_cast<std::size_t>(i)];
     const ClipVertex& b = in.v[static_cast<std::size_t>((i + 1) % in.count)];
     const double da = dot(n, a.p) - offset, db = dot(n, b.p) - offset;
-    if (da <= 0.0) out.add(a);
-    if ((da <= 0.0) != (db <= 0.0)) {
+    if (da <= kOnPlane) out.add(a);
+    if ((da <= kOnPlane) != (db <= kOnPlane)) {
       out.add({a.p + (da / (da - db)) * (b.p - a.p), (a.feature & 3u) | (4u << plane)});
     }
   }

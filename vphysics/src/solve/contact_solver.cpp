@@ -18,10 +18,10 @@ namespace {
 
 // Changes of speed below this [m/s] end the iteration: a thousandth of what gravity adds in 0.1 ms.
 constexpr double kConverged = 1e-7;
-// With few contacts more rounds cost little, and a light ball between heavy men needs them: the error
-// shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts / contacts,
-// at most kMostRounds times.
-constexpr std::size_t kFewContacts = 64;
+// With few contacts more rounds cost little, and a light ball between heavy men needs them: the
+// error shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts /
+// contacts, at most kMostRounds times.
+constexpr std::size_t kFewContacts = 32;
 constexpr std::size_t kMostRounds = 8;
 // Share of the penetration beyond the slop that one solve takes out, the most it takes out [m], and
 // its rounds. A larger share makes stacks nervous.
@@ -69,8 +69,7 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, ContactConstrain
     p.tangent_mass[0] = p.tangent_mass[2] = m;
     p.tangent_mass[1] = 0.0;
   }
-  const double largest =
-      0.5 * (trace + std::sqrt((k11 - k22) * (k11 - k22) + 4.0 * k12 * k12));
+  const double largest = 0.5 * (trace + std::sqrt((k11 - k22) * (k11 - k22) + 4.0 * k12 * k12));
   p.slide_mass = largest > 0.0 ? 1.0 / largest : 0.0;
 }
 
@@ -116,9 +115,9 @@ void warm_start(const StepContext& s) {
   }
 }
 
-// Sticking: the impulse that stops the point, by the whole block. Sliding: a gradient step, projected
-// on the disc, with one mass for both directions: only so does friction settle opposite to the
-// velocity, since the block turns what it multiplies.
+// Sticking: the impulse that stops the point, by the whole block. Sliding: a gradient step,
+// projected on the disc, with one mass for both directions: only so does friction settle opposite
+// to the velocity, since the block turns what it multiplies.
 void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p) {
   const Vec3 u = relative_velocity(a, b, p);
   const double u0 = dot(c.tangent[0], u), u1 = dot(c.tangent[1], u);
@@ -192,7 +191,8 @@ double one_round(const StepContext& s, bool forward) {
 
 void iterate(const StepContext& s) {
   const std::size_t contacts = std::max<std::size_t>(1, s.contacts.size());
-  const int more = static_cast<int>(std::clamp<std::size_t>(kFewContacts / contacts, 1, kMostRounds));
+  const int more =
+      static_cast<int>(std::clamp<std::size_t>(kFewContacts / contacts, 1, kMostRounds));
   for (int i = 0; i < s.iterations * more; ++i) {
     // Friction reads the normal impulses of the round before: two quiet rounds are needed.
     if (one_round(s, i % 2 == 0) < kConverged && i > 0) break;

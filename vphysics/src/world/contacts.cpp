@@ -13,12 +13,24 @@ const PairRecord* lookup(const std::vector<PairRecord>& sorted, std::uint64_t ke
   return it != sorted.end() && it->key == key ? &*it : nullptr;
 }
 
-const PairPoint* point_of(const PairRecord& record, std::uint32_t feature) {
+// The old point of the same features; or, since features change names when edges pass over one
+// another, the nearest old point within reach.
+const PairPoint* point_of(const PairRecord& record, const collide::ManifoldPoint& p, double reach) {
+  const PairPoint* nearest = nullptr;
+  double least = reach * reach;
   for (std::uint32_t i = 0; i < record.count; ++i) {
-    if (record.points[i].feature == feature) return &record.points[i];
+    if (record.points[i].feature == p.feature) return &record.points[i];
+    const Vec3 d = record.points[i].position - p.position;
+    if (dot(d, d) < least) {
+      least = dot(d, d);
+      nearest = &record.points[i];
+    }
   }
-  return nullptr;
+  return nearest;
 }
+
+// How far a contact point may have moved in a step to be the same [contact slops].
+constexpr double kSamePoint = 20.0;
 
 }  // namespace
 
@@ -60,7 +72,7 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
     p.position = m.points[i].position;
     p.separation = m.points[i].separation;
     p.feature = m.points[i].feature;
-    const PairPoint* old = last ? point_of(*last, p.feature) : nullptr;
+    const PairPoint* old = last ? point_of(*last, m.points[i], kSamePoint * desc.contact_slop) : nullptr;
     p.normal_impulse = old ? old->normal_impulse : 0.0;
     p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
     p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
@@ -223,11 +235,11 @@ void World::Impl::remember_impulses() {
     record.rolling = c.rolling_impulse;
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
-      record.points[i] = {
-          p.feature, p.normal_impulse,
-          p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]};
-      // A bounce carries nothing on.
-      if (p.target > 0.0) record.points[i] = {p.feature, 0.0, {}};
+      record.points[i] = {p.feature, 0.0, {}, p.position};
+      if (p.target > 0.0) continue;  // a bounce carries nothing on
+      record.points[i].normal_impulse = p.normal_impulse;
+      record.points[i].friction =
+          p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1];
     }
   }
 }

@@ -89,6 +89,7 @@ struct PairPoint {
   std::uint32_t feature;
   double normal_impulse;
   Vec3 friction;  // world frame
+  Vec3 position;  // world frame
 };
 
 // What is remembered of a pair of colliders from step to step.

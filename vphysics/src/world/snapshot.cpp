@@ -56,6 +56,7 @@ void put(Sink& sink, const PairRecord& r) {
     sink.word(p.feature);
     put(sink, p.normal_impulse);
     put(sink, p.friction);
+    put(sink, p.position);
   }
 }
 
@@ -139,6 +140,7 @@ void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
     p.normal_impulse = in.bounded();
     in.check(p.normal_impulse >= 0.0);
     p.friction = in.vector();
+    p.position = in.vector();
   }
 }
 
@@ -209,7 +211,7 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
         "restore: a snapshot of another world; build this one by the same sequence of calls");
   }
   const std::uint64_t count = in.word();
-  constexpr std::size_t kRecord = 26 * sizeof(std::uint64_t);
+  constexpr std::size_t kRecord = 38 * sizeof(std::uint64_t);
   if (count > bytes.size() / kRecord)
     return bad("restore: more contacts announced than bytes follow");
 

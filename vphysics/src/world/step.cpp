@@ -35,6 +35,17 @@ void World::Impl::begin_step(double dt) {
   counters = {};
   events.clear();
   next_records.clear();
+  // Room for what a busy step needs, so that the first busy one need not take it from the heap.
+  const std::size_t room = 64 + 2 * colliders.size();
+  events.reserve(room);
+  records.reserve(room);
+  next_records.reserve(room);
+  body_pairs.reserve(room);
+  discrete_pairs.reserve(room);
+  swept_pairs.reserve(room);
+  discrete_contacts.reserve(room);
+  contacts.reserve(room);
+  joint_rows.reserve(6 * articulations.size());
   bounds.resize(n);
   movable.resize(n);
   motions.resize(n);

@@ -1,0 +1,213 @@
+// Rods: joints in reduced coordinates, their motors and stops.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rig.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kDt = 0.001;
+
+struct OneJoint {
+  World world;
+  ArticulationId id;
+  BodyId body;
+};
+OneJoint make_joint(const LinkDesc& link, const Vec3& gravity = {}) {
+  OneJoint joint{World({.gravity = gravity}), {}, {}};
+  joint.id = must(joint.world.create_articulation(ArticulationDesc{{link}}));
+  joint.body = joint.world.link_body(joint.id, 0);
+  return joint;
+}
+LinkDesc link_of(JointKind kind) {
+  LinkDesc link;
+  link.joint = kind;
+  link.inertia = Inertia(2.0, Vec3{0.1, 0.1, 0.02});
+  return link;
+}
+
+TEST(Drive, ReachesItsTargetAndStays) {
+  OneJoint j = make_joint(rod_link(0, 0));
+  must(j.world.set_drive(j.id, 0, 0, {0.05, 0.0, 3e4, 500.0, 400.0}));
+  must(j.world.set_drive(j.id, 0, 1, {1.2, 0.0, 60.0, 0.6, 20.0}));
+  for (int i = 0; i < 1000; ++i) must(j.world.step(kDt));
+  EXPECT_NEAR(j.world.joint_position(j.id, 0, 0), 0.05, 1e-6);
+  EXPECT_NEAR(j.world.joint_position(j.id, 0, 1), 1.2, 1e-6);
+  EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 0.0, 1e-5);
+}
+
+// Whatever the gains, no step changes the momentum by more than max_force * dt.
+TEST(Drive, NeverExceedsItsForce) {
+  for (const double stiffness : {1e2, 1e6, 1e12}) {
+    OneJoint j = make_joint(link_of(JointKind::prismatic));
+    const double most = 3.0;
+    double before = 0.0;
+    for (int i = 0; i < 500; ++i) {
+      must(j.world.set_drive(j.id, 0, 0, {i / 100 % 2 ? 1.0 : -1.0, 0.0, stiffness, 10.0, most}));
+      must(j.world.step(kDt));
+      const double now = j.world.joint_velocity(j.id, 0, 0);
+      ASSERT_LE(std::fabs(now - before) * 2.0, most * kDt * (1 + 1e-9));
+      before = now;
+    }
+  }
+}
+
+TEST(Drive, AnyStiffnessIsStable) {
+  for (const double stiffness : {1.0, 1e4, 1e8, 1e15}) {
+    OneJoint j = make_joint(link_of(JointKind::revolute));
+    must(j.world.set_drive(j.id, 0, 0, {0.5, 0.0, stiffness, 0.0, 1e12}));
+    double farthest = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      must(j.world.step(kDt));
+      farthest = std::max(farthest, std::fabs(j.world.joint_position(j.id, 0, 0)));
+    }
+    EXPECT_LT(farthest, 1.01) << stiffness;
+  }
+}
+
+// Held against a wall, a motor presses with k (target - q), no more and no less: seen as the
+// impulse of the contact.
+TEST(Drive, PressesWithItsSpringForce) {
+  OneJoint j = make_joint(link_of(JointKind::prismatic));
+  ColliderDesc box;
+  box.shape = Box{{0.1, 0.1, 0.1}};
+  must(j.world.add_collider(j.body, box));
+  const BodyId load = add_dynamic(
+      j.world, {.shape = Box{{0.1, 0.1, 0.1}}, .density = 100.0, .pose = SE3(Vec3{0, 0, 0.2})});
+  add_fixed(j.world, Box{{1, 1, 0.1}}, {}, SE3(Vec3{0, 0, 0.4}));
+  const double k = 1e4, target = 0.01;
+  must(j.world.set_drive(j.id, 0, 0, {target, 0.0, k, 300.0, 1e3}));
+  for (int i = 0; i < 2000; ++i) must(j.world.step(kDt));
+  const double q = j.world.joint_position(j.id, 0, 0);
+  EXPECT_LT(std::fabs(q), 4e-4);
+  EXPECT_NEAR(j.world.pose(load).position().z, 0.2, 4e-4);
+  // Take the wall's side away: the load leaves with the impulse the motor gives in one step.
+  EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 0.0, 1e-4);
+}
+
+TEST(Limit, HoldsAgainstAMotor) {
+  for (const double target : {-1.0, 1.0}) {
+    LinkDesc link = link_of(JointKind::cylindrical);
+    link.limit[0] = {-0.1, 0.2};
+    link.limit[1] = {-0.3, 0.5};
+    OneJoint j = make_joint(link);
+    must(j.world.set_drive(j.id, 0, 0, {target, 0.0, 1e5, 10.0, 1e4}));
+    must(j.world.set_drive(j.id, 0, 1, {target, 0.0, 1e4, 1.0, 1e3}));
+    for (int i = 0; i < 1000; ++i) {
+      must(j.world.step(kDt));
+      const double slide = j.world.joint_position(j.id, 0, 0);
+      const double angle = j.world.joint_position(j.id, 0, 1);
+      ASSERT_GE(slide, -0.1 - 1e-9);
+      ASSERT_LE(slide, 0.2 + 1e-9);
+      ASSERT_GE(angle, -0.3 - 1e-9);
+      ASSERT_LE(angle, 0.5 + 1e-9);
+    }
+    EXPECT_NEAR(j.world.joint_position(j.id, 0, 0), target < 0 ? -0.1 : 0.2, 1e-6);
+    EXPECT_NEAR(j.world.joint_position(j.id, 0, 1), target < 0 ? -0.3 : 0.5, 1e-6);
+  }
+}
+
+// A link whose centre of mass lies 0.2 m from a horizontal axis: T = 2 pi sqrt(I / (m g l)) for
+// small swings.
+TEST(Pendulum, SwingsWithItsPeriod) {
+  LinkDesc link;
+  link.joint = JointKind::revolute;
+  link.T_parent_joint = SE3(Mat3{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {});
+  const double l = 0.2, m = 1.5;
+  link.inertia = Inertia(m, Vec3{0.01, 0.01, 0.01}).Xform(SE3(Vec3{0, l, 0}));  // centre at y = -l
+  OneJoint j = make_joint(link, {0, 0, -9.81});
+  must(j.world.set_joint_state(j.id, 0, 0, 0.02, 0.0));
+  const double expected = 2 * kPi * std::sqrt((0.01 + m * l * l) / (m * 9.81 * l));
+  double previous = 0.02, first = 0.0, last = 0.0;
+  int crossings = 0;
+  for (int i = 1; i <= 10000; ++i) {
+    must(j.world.step(kDt));
+    const double q = j.world.joint_position(j.id, 0, 0);
+    ASSERT_LT(std::fabs(q), 0.0205);
+    if (previous > 0.0 && q <= 0.0) {
+      last = i * kDt;
+      if (crossings++ == 0) first = last;
+    }
+    previous = q;
+  }
+  ASSERT_GT(crossings, 5);
+  EXPECT_NEAR((last - first) / (crossings - 1), expected, 0.002 * expected);
+}
+
+TEST(Joint, DampingAndArmatureEnterAsWritten) {
+  LinkDesc link = link_of(JointKind::prismatic);  // mass 2
+  link.armature[0] = 3.0;
+  link.joint_damping[0] = 10.0;  // rate 10 / 5 per second
+  OneJoint j = make_joint(link);
+  must(j.world.set_joint_state(j.id, 0, 0, 0.0, 1.0));
+  for (int i = 0; i < 1000; ++i) must(j.world.step(kDt));
+  EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), std::exp(-2.0), 1e-3);
+}
+
+// However hard it is hit, a link stays on its axis.
+TEST(Joint, NeverComesApart) {
+  OneJoint j = make_joint(rod_link(0.0, 0.5), {0, 0, -9.81});
+  ColliderDesc box;
+  box.shape = Box{{0.05, 0.05, 0.05}};
+  box.T_body_shape = SE3(Vec3{0.1, 0, 0});
+  must(j.world.add_collider(j.body, box));
+  for (int i = 0; i < 300; ++i) {
+    if (i % 50 == 0) {
+      add_dynamic(j.world, {.shape = Sphere{0.05},
+                            .density = 8000,
+                            .pose = SE3(Vec3{-0.1, 0.02, 1.0 + i * 0.01}),
+                            .velocity = {{}, {0, 0, -10}}});
+    }
+    must(j.world.apply_impulse(j.body, {100, 0.1, -200}, {0.2, 0, 0.5}));
+    must(j.world.step(kDt));
+    const SE3 T = j.world.pose(j.body);
+    ASSERT_EQ(T.position().x, 0.0);
+    ASSERT_NEAR(T.position().z, 0.5, 1e-15);
+    ASSERT_NEAR(T.rotation().cz.y, 1.0, 1e-15);
+  }
+}
+
+TEST(Joint, AnImpulseActsThroughTheReducedInertia) {
+  OneJoint j = make_joint(link_of(JointKind::cylindrical));
+  must(j.world.apply_impulse(j.body, {0, 3, 4}, {0.5, 0, 0}));
+  EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 4.0 / 2.0, 1e-15);
+  EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 1), 0.5 * 3 / 0.02, 1e-12);
+}
+
+TEST(Joint, AFixedLinkDoesNotMove) {
+  LinkDesc link = link_of(JointKind::fixed);
+  link.T_parent_joint = SE3(Vec3{1, 2, 3});
+  OneJoint j = make_joint(link, {0, 0, -9.81});
+  for (int i = 0; i < 100; ++i) must(j.world.step(kDt));
+  EXPECT_EQ(j.world.pose(j.body), SE3(Vec3{1, 2, 3}));
+}
+
+// A free rod struck by a ball: angular momentum about the rod's axis and momentum along it stay.
+TEST(Joint, ABallAndAFreeRodExchangeMomentum) {
+  World world({.gravity = {}});
+  const Material bouncy{0.2, 0.7, 0.0};
+  const Rod rod = add_rod(world, 0.0, 0.09, 1, 0.0, bouncy);
+  const BodyId ball = add_ball(world, {0.1, 0.005, 0.09 - 0.0665}, {-8, 0.5, 0}, bouncy);
+  const Inertia J = solid_inertia(Sphere{kBallRadius}, kBallDensity);
+  const auto about_axis = [&] {
+    const SE3 T = world.pose(ball);
+    const Vec3 v = T.rotate(world.velocity(ball).v), w = T.rotate(world.velocity(ball).w);
+    const Vec3 L = J.rotational().xx * w + J.mass() * cross(T.position() - Vec3{0, 0, 0.09}, v);
+    return L.y + 0.0015 * world.joint_velocity(rod.articulation, 0, 1);
+  };
+  const auto along = [&] {
+    const SE3 T = world.pose(ball);
+    return J.mass() * T.rotate(world.velocity(ball).v).y +
+           1.5 * world.joint_velocity(rod.articulation, 0, 0);
+  };
+  const double L = about_axis(), p = along();
+  for (int i = 0; i < 25; ++i) must(world.step(kDt));
+  EXPECT_GT(std::fabs(world.joint_velocity(rod.articulation, 0, 1)), 1.0);
+  EXPECT_NEAR(about_axis(), L, 1e-4 * std::fabs(L));  // the position correction may move the arm
+  EXPECT_NEAR(along(), p, 1e-9);
+}
+
+}  // namespace
+}  // namespace vp::test

@@ -1,0 +1,151 @@
+// Snapshot, restore, and the same bits everywhere.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "random.h"
+#include "rig.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kDt = 0.001;
+
+// A scene with everything in it: rods driven at random, a fast ball, boxes, capsules, a turning
+// kinematic plate, a sensor.
+struct Scene {
+  World world;
+  std::vector<Rod> rods;
+  std::vector<BodyId> bodies;
+};
+Scene make_scene() {
+  Scene s;
+  const Material m{0.4, 0.5, 2e-4};
+  add_ground(s.world, m);
+  for (const double x : {-0.3, 0.3}) {
+    add_fixed(s.world, Box{{0.02, 0.4, 0.1}}, m, SE3(Vec3{x, 0, 0.1}));
+    add_fixed(s.world, Box{{0.4, 0.02, 0.1}}, m, SE3(Vec3{0, x, 0.1}));
+  }
+  for (const double x : {-0.15, 0.0, 0.15}) s.rods.push_back(add_rod(s.world, x, 0.09, 3, 0.15, m));
+  s.bodies.push_back(add_ball(s.world, {0.05, 0.02, 0.03}, {8, 5, 0}, m));
+  for (int i = 0; i < 4; ++i) {
+    Part part{.shape = Box{{0.02, 0.03, 0.02}},
+              .material = m,
+              .pose = SE3(Vec3{0.07, 0.2, 0.05 + 0.06 * i})};
+    if (i == 3) part.shape = Capsule{0.02, 0.02};
+    s.bodies.push_back(add_dynamic(s.world, part));
+  }
+  BodyDesc plate;
+  plate.motion = Motion::kinematic;
+  plate.T_world_body = SE3(Vec3{0, -0.2, 0.02});
+  plate.velocity = {{0, 0, 3}, {0.01, 0, 0}};
+  const BodyId body = must(s.world.create_body(plate));
+  ColliderDesc box;
+  box.shape = Box{{0.05, 0.01, 0.02}};
+  must(s.world.add_collider(body, box));
+  return s;
+}
+void drive(Scene& s, Random& random) {
+  for (const Rod& rod : s.rods) {
+    must(s.world.set_drive(rod.articulation, 0, 0, {random.uniform(-0.1, 0.1), 0, 2e4, 300, 300}));
+    must(s.world.set_drive(rod.articulation, 0, 1, {random.uniform(-2, 2), 0, 100, 0.8, 20}));
+  }
+}
+void play(Scene& s, Random& random, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
+    if (i % 50 == 0) drive(s, random);
+    must(s.world.step(kDt));
+  }
+}
+
+// Two seconds of the scene. The constant is the same for g++ and clang++, at -O0 and -O3: a change
+// of it is a change of results and belongs into the changelog.
+TEST(Determinism, GoldenHashOfAScene) {
+  Scene s = make_scene();
+  Random random(41);
+  play(s, random, 2000);
+  EXPECT_EQ(s.world.state_hash(), 15396137561478563295u);
+}
+
+TEST(Determinism, TheSameCallsGiveTheSameBits) {
+  Scene a = make_scene(), b = make_scene();
+  Random ra(42), rb(42);
+  for (int i = 0; i < 20; ++i) {
+    play(a, ra, 50);
+    play(b, rb, 50);
+    ASSERT_EQ(a.world.state_hash(), b.world.state_hash());
+  }
+}
+
+TEST(Snapshot, RestoredStepsToTheSameBits) {
+  Scene s = make_scene();
+  Random random(43);
+  play(s, random, 300);
+  std::vector<std::byte> bytes;
+  s.world.snapshot(bytes);
+  Scene other = make_scene();  // never stepped
+  must(other.world.restore(bytes));
+  EXPECT_EQ(other.world.state_hash(), s.world.state_hash());
+  Random r1 = random, r2 = random;
+  play(s, r1, 500);
+  play(other, r2, 500);
+  EXPECT_EQ(other.world.state_hash(), s.world.state_hash());
+}
+
+// Roll back one tick every tick: nothing outside the snapshot may matter.
+TEST(Snapshot, RollingBackEveryTickChangesNothing) {
+  Scene straight = make_scene(), rolled = make_scene();
+  Random r1(44), r2(44);
+  std::vector<std::byte> bytes;
+  for (int i = 0; i < 400; ++i) {
+    if (i % 50 == 0) drive(straight, r1), drive(rolled, r2);
+    bytes.clear();
+    rolled.world.snapshot(bytes);
+    must(rolled.world.step(kDt));
+    must(rolled.world.step(0.003));
+    must(rolled.world.restore(bytes));
+    must(rolled.world.step(kDt));
+    must(straight.world.step(kDt));
+    ASSERT_EQ(straight.world.state_hash(), rolled.world.state_hash()) << i;
+  }
+}
+
+TEST(Restore, RefusesEveryTruncationAndEveryFlippedByte) {
+  Scene s = make_scene();
+  Random random(45);
+  play(s, random, 200);
+  std::vector<std::byte> bytes;
+  s.world.snapshot(bytes);
+  play(s, random, 10);
+  const std::uint64_t before = s.world.state_hash();
+  const auto refused = [&](std::span<const std::byte> b) {
+    const auto result = s.world.restore(b);
+    return !result && result.error().code == Errc::bad_data && s.world.state_hash() == before;
+  };
+  for (std::size_t n = 0; n < bytes.size(); n += 1 + n / 64) {
+    ASSERT_TRUE(refused(std::span(bytes).first(n))) << n;
+  }
+  for (std::size_t i = 0; i < bytes.size(); i += 1 + i / 64) {
+    std::vector<std::byte> bad = bytes;
+    bad[i] ^= std::byte{0x10};
+    ASSERT_TRUE(refused(bad)) << i;
+  }
+  std::vector<std::byte> longer = bytes;
+  longer.resize(bytes.size() + 8);
+  EXPECT_TRUE(refused(longer));
+  must(s.world.restore(bytes));
+}
+
+TEST(Restore, RefusesASnapshotOfAnotherWorld) {
+  Scene s = make_scene();
+  std::vector<std::byte> bytes;
+  s.world.snapshot(bytes);
+  World empty;
+  EXPECT_FALSE(empty.restore(bytes));
+  add_ball(s.world, {0, 0, 1}, {}, {});
+  EXPECT_FALSE(s.world.restore(bytes));
+}
+
+}  // namespace
+}  // namespace vp::test

@@ -1,0 +1,304 @@
+// The world's calls: what they refuse, what they report, what they find.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "rig.h"
+#include "vphysics/assert.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kBad[] = {kNaN, kInf, -kInf, 1e300};
+
+// Refused with a sentence, and nothing has changed.
+template <class Call>
+void expect_refused(World& world, Call call, Errc code = Errc::invalid_argument) {
+  const std::uint64_t before = world.state_hash();
+  const auto result = call();
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().code, code);
+  EXPECT_GT(result.error().message.size(), 15u);
+  EXPECT_EQ(world.state_hash(), before);
+}
+
+TEST(CreateBody, RefusesWhatIsNoBody) {
+  World world;
+  BodyDesc good;
+  good.inertia = Inertia(1.0, Vec3{1, 1, 1});
+  ASSERT_TRUE(world.create_body(good));
+  const auto refused = [&](auto change) {
+    BodyDesc desc = good;
+    change(desc);
+    expect_refused(world, [&] { return world.create_body(desc); });
+  };
+  for (const double bad : kBad) {
+    refused([&](BodyDesc& d) { d.T_world_body = SE3(Vec3{0, bad, 0}); });
+    refused([&](BodyDesc& d) { d.velocity.w.x = bad; });
+    refused([&](BodyDesc& d) { d.inertia = Inertia(bad, Vec3{1, 1, 1}); });
+    refused([&](BodyDesc& d) { d.inertia = Inertia(1.0, Vec3{1, bad, 1}); });
+    refused([&](BodyDesc& d) { d.linear_damping = bad; });
+  }
+  refused([](BodyDesc& d) { d.T_world_body = SE3({{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}); });
+  refused([](BodyDesc& d) { d.T_world_body = SE3({{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}); });
+  refused([](BodyDesc& d) { d.inertia = Inertia(); });
+  refused([](BodyDesc& d) { d.inertia = Inertia(1.0, Vec3{1, -1, 1}); });
+  refused([](BodyDesc& d) { d.angular_damping = -1.0; });
+}
+
+TEST(AddCollider, RefusesWhatIsNoShape) {
+  World world;
+  const BodyId body = add_dynamic(world, {});
+  const auto refused = [&](auto change, Errc code = Errc::invalid_argument) {
+    ColliderDesc desc;
+    change(desc);
+    expect_refused(
+        world, [&] { return world.add_collider(body, desc); }, code);
+  };
+  for (const double bad : {kNaN, kInf, -1.0, 0.0}) {
+    refused([&](ColliderDesc& d) { d.shape = Sphere{bad}; });
+    refused([&](ColliderDesc& d) { d.shape = Box{{1, bad, 1}}; });
+    refused([&](ColliderDesc& d) { d.shape = Capsule{bad, 1}; });
+  }
+  refused([&](ColliderDesc& d) { d.shape = Capsule{1, -1}; });
+  refused([&](ColliderDesc& d) { d.shape = HalfSpace{}; });
+  refused([&](ColliderDesc& d) { d.material.friction = -1; });
+  refused([&](ColliderDesc& d) { d.material.restitution = 1.5; });
+  refused([&](ColliderDesc& d) { d.material.restitution = kNaN; });
+  refused([&](ColliderDesc& d) { d.material.rolling_friction = kNaN; });
+  refused([&](ColliderDesc& d) { d.T_body_shape = SE3(Vec3{kNaN, 0, 0}); });
+
+  Part fast;
+  fast.continuous = true;
+  const BodyId ball = add_dynamic(world, fast);
+  ColliderDesc box;
+  box.shape = Box{{1, 1, 1}};
+  expect_refused(
+      world, [&] { return world.add_collider(ball, box); }, Errc::unsupported);
+}
+
+TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
+  World world;
+  expect_refused(world, [&] { return world.create_articulation({}); });
+  LinkDesc link = rod_link(0, 0);
+  expect_refused(
+      world,
+      [&] {
+        return world.create_articulation({{link, link}});
+      },
+      Errc::unsupported);
+  const auto refused = [&](auto change) {
+    LinkDesc bad = link;
+    change(bad);
+    expect_refused(world, [&] { return world.create_articulation({{bad}}); });
+  };
+  refused([](LinkDesc& l) { l.parent = 0; });
+  refused([](LinkDesc& l) { l.inertia = Inertia(); });
+  refused([](LinkDesc& l) { l.inertia = Inertia(1.0, Vec3{1, 1, 0}); });
+  refused([](LinkDesc& l) { l.armature[1] = -1; });
+  refused([](LinkDesc& l) { l.limit[0] = {1, 2}; });
+  refused([](LinkDesc& l) { l.limit[1] = {kNaN, 2}; });
+  const ArticulationId id = must(world.create_articulation({{link}}));
+  expect_refused(world, [&] { return world.set_drive(id, 0, 2, {}); });
+  expect_refused(world, [&] { return world.set_drive(id, 1, 0, {}); });
+  expect_refused(world, [&] { return world.set_drive({}, 0, 0, {}); });
+  expect_refused(world, [&] { return world.set_drive(id, 0, 0, {kNaN, 0, 1, 1, 1}); });
+  expect_refused(world, [&] { return world.set_drive(id, 0, 0, {0, 0, -1, 1, 1}); });
+  expect_refused(world,
+                 [&] { return world.set_joint_state(id, 0, 0, 0.5, 0); });  // beyond its limit
+  expect_refused(world, [&] { return world.set_joint_state(id, 0, 1, 0, kInf); });
+  const BodyId body = world.link_body(id, 0);
+  expect_refused(world, [&] { return world.set_pose(body, {}); });
+  expect_refused(world, [&] { return world.set_velocity(body, {}); });
+  expect_refused(world, [&] { return world.destroy_body(body); });
+  EXPECT_FALSE(world.link_body(id, 1));
+}
+
+TEST(Step, RefusesATimeThatIsNone) {
+  World world;
+  for (const double dt : {0.0, -0.001, 0.11, kNaN, kInf}) {
+    expect_refused(world, [&] { return world.step(dt); });
+  }
+}
+
+TEST(Ids, OfTheDestroyedAreStaleForever) {
+  World world;
+  const BodyId first = add_dynamic(world, {});
+  must(world.destroy_body(first));
+  const BodyId second = add_dynamic(world, {});
+  EXPECT_EQ(first.index, second.index);
+  EXPECT_FALSE(world.contains(first));
+  EXPECT_TRUE(world.contains(second));
+  EXPECT_FALSE(world.contains({}));
+  EXPECT_FALSE(world.contains({77, 1}));
+  expect_refused(world, [&] { return world.destroy_body(first); });
+  expect_refused(world, [&] { return world.set_pose(first, {}); });
+  expect_refused(world, [&] { return world.add_collider(first, {}); });
+  expect_refused(world, [&] { return world.apply_impulse(first, {1, 0, 0}, {}); });
+  expect_refused(world, [&] { return world.apply_impulse(second, {kNaN, 0, 0}, {}); });
+}
+
+TEST(Assertions, OfACallersMistakeReachTheHandler) {
+#if defined(VP_ASSERTIONS) || !defined(NDEBUG)
+  static int assertions = 0;
+  const AssertHandler before =
+      set_assert_handler([](const char*, const char*, int) { ++assertions; });
+  World world;
+  (void)world.pose(BodyId{3, 1});
+  (void)world.velocity(BodyId{});
+  (void)world.joint_position({}, 0, 0);
+  set_assert_handler(before);
+  EXPECT_EQ(assertions, 3);
+#else
+  World world;
+  EXPECT_EQ(world.pose(BodyId{3, 1}), SE3{});  // off: a harmless answer
+#endif
+}
+
+TEST(Step, StopsWhatLeavesTheRangeOfNumbers) {
+  World world;
+  const BodyId body = add_dynamic(world, {});
+  must(world.set_velocity(body, {{}, {9.9e8, 0, 0}}));
+  must(world.set_pose(body, SE3(Vec3{9.99e8, 0, 0})));
+  bool told = false;
+  for (int i = 0; i < 100; ++i) told |= must(world.step(0.1)).non_finite;
+  EXPECT_TRUE(told);
+  EXPECT_TRUE(is_finite(world.pose(body).position()));
+}
+
+std::vector<ContactEvent::Kind> kinds(const std::vector<ContactEvent>& events) {
+  std::vector<ContactEvent::Kind> out;
+  for (const ContactEvent& e : events) out.push_back(e.kind);
+  return out;
+}
+
+TEST(Events, OfABounceAreBeginHitEnd) {
+  World world;
+  const Material bouncy{0.0, 0.5, 0.0};
+  add_ground(world, bouncy);
+  add_ball(world, {0, 0, kBallRadius + 0.05}, {0, 0, -2}, bouncy);
+  std::vector<ContactEvent> events;
+  for (int i = 0; i < 40; ++i) {
+    must(world.step(0.001));
+    for (const ContactEvent& e : world.contact_events()) {
+      EXPECT_GE(e.time, 0.0);
+      EXPECT_LE(e.time, 0.001);
+      EXPECT_LT(e.a.index, e.b.index);
+      events.push_back(e);
+    }
+  }
+  using K = ContactEvent::Kind;
+  ASSERT_EQ(kinds(events), (std::vector<K>{K::begin, K::hit, K::end}));
+  const double mass = solid_inertia(Sphere{kBallRadius}, kBallDensity).mass();
+  EXPECT_NEAR(events[1].approach_speed, std::sqrt(4 + 2 * 9.81 * 0.05), 0.01);
+  EXPECT_NEAR(events[1].impulse, 1.5 * mass * events[1].approach_speed, 1e-6);
+  EXPECT_NEAR(events[1].point.z, 0.0, 2e-4);
+  EXPECT_NEAR(events[1].normal.z, 1.0, 1e-12);  // from the ground to the ball
+}
+
+TEST(Events, OfRestAreOneBegin) {
+  World world;
+  add_ground(world, {});
+  add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}}, .pose = SE3(Vec3{0, 0, 0.1})});
+  int begins = 0, others = 0;
+  for (int i = 0; i < 500; ++i) {
+    must(world.step(0.001));
+    for (const ContactEvent& e : world.contact_events()) {
+      ++(e.kind == ContactEvent::Kind::begin ? begins : others);
+    }
+  }
+  EXPECT_EQ(begins, 1);
+  EXPECT_EQ(others, 0);
+}
+
+// A ball at 25 m/s is inside a plate of 1 mm for less than a step, and is still seen.
+TEST(Sensor, SeesABallThatIsThroughWithinAStep) {
+  World world({.gravity = {}});
+  BodyDesc fixed;
+  fixed.motion = Motion::fixed;
+  const BodyId goal = must(world.create_body(fixed));
+  ColliderDesc plate;
+  plate.shape = Box{{0.0005, 0.2, 0.2}};
+  plate.sensor = true;
+  plate.user_data = 42;
+  must(world.add_collider(goal, plate));
+  const BodyId ball = add_ball(world, {-0.1005, 0, 0}, {45, 0, 0}, {});
+  std::vector<ContactEvent> events;
+  for (int i = 0; i < 10; ++i) {
+    must(world.step(0.001));
+    for (const ContactEvent& e : world.contact_events()) events.push_back(e);
+  }
+  using K = ContactEvent::Kind;
+  ASSERT_EQ(kinds(events), (std::vector<K>{K::begin, K::end}));
+  EXPECT_TRUE(events[0].sensor);
+  EXPECT_EQ(events[0].user_data_a, 42u);
+  EXPECT_EQ(events[0].impulse, 0.0);
+  EXPECT_EQ(world.velocity(ball).v, (Vec3{45, 0, 0}));
+}
+
+TEST(Filter, LetsPassWhatIsNotInTheMask) {
+  World world({.gravity = {}});
+  BodyDesc fixed;
+  fixed.motion = Motion::fixed;
+  const BodyId wall = must(world.create_body(fixed));
+  ColliderDesc box;
+  box.shape = Box{{0.1, 1, 1}};
+  box.filter = {2, 4};
+  must(world.add_collider(wall, box));
+  const BodyId ball = add_ball(world, {-0.5, 0, 0}, {10, 0, 0}, {});
+  for (int i = 0; i < 100; ++i) must(world.step(0.001));
+  EXPECT_NEAR(world.pose(ball).position().x, 0.5, 1e-9);
+}
+
+TEST(RayCast, FindsTheNearestSurface) {
+  World world;
+  add_fixed(world, Box{{1, 1, 1}}, {}, SE3(Vec3{5, 0, 0}));
+  const BodyId near = add_fixed(world, Sphere{1}, {}, SE3(Vec3{3, 0, 0}));
+  const auto hit = world.ray_cast({0, 0, 0}, {2, 0, 0}, 10.0);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->distance, 2.0, 1e-8);
+  EXPECT_EQ(hit->body, near);
+  EXPECT_NEAR(hit->normal.x, -1.0, 1e-9);
+  EXPECT_NEAR(hit->point.x, 2.0, 1e-8);
+  EXPECT_NEAR(world.sphere_cast({0, 0, 0}, 0.5, {1, 0, 0}, 10.0)->distance, 1.5, 1e-8);
+  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, 1.9));
+  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {-1, 0, 0}, 10));
+  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {0, 0, 0}, 10));
+  EXPECT_FALSE(world.ray_cast({kNaN, 0, 0}, {1, 0, 0}, 10));
+  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, kInf));
+  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, 10, {1, 0}));
+}
+
+TEST(OverlapSphere, FindsInOrderOfCreation) {
+  World world;
+  const BodyId gone = add_fixed(world, Sphere{1}, {});
+  add_fixed(world, Sphere{1}, {}, SE3(Vec3{1, 0, 0}));
+  must(world.destroy_body(gone));
+  add_fixed(world, Sphere{1}, {}, SE3(Vec3{-1, 0, 0}));  // takes the free slot, but is younger
+  add_fixed(world, Sphere{1}, {}, SE3(Vec3{9, 0, 0}));
+  std::vector<ColliderId> found;
+  world.overlap_sphere({0, 0, 0}, 0.5, found);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].index, 2u);
+  EXPECT_EQ(found[1].index, 1u);
+}
+
+TEST(ImpactLimit, HoldsWhatWouldMeetAndSaysSo) {
+  WorldDesc desc;
+  desc.max_impacts_per_step = 0;
+  World world(desc);
+  add_ground(world, {0.0, 1.0, 0.0});
+  const BodyId ball = add_ball(world, {0, 0, kBallRadius + 0.005}, {0, 0, -20}, {0.0, 1.0, 0.0});
+  const StepStatus status = must(world.step(0.001));
+  EXPECT_TRUE(status.impact_limit);
+  EXPECT_NEAR(status.time_held, 0.001, 1e-12);
+  EXPECT_EQ(world.pose(ball).position().z, kBallRadius + 0.005);
+}
+
+}  // namespace
+}  // namespace vp::test
