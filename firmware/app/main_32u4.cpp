@@ -35,9 +35,9 @@ int main() {
     }
     const uint32_t now_us = firmware::micros();
     g_mice.poll(now_us);
-    g_usb.poll(now_us);
+    g_usb.poll();
     // Enumeration first: the mice would fill counters that nobody reads.
     g_mice.allow_streaming(g_usb.configured());
-    if (g_usb.wants_report(now_us)) report(now_us);
+    if (g_usb.wants_report()) report(now_us);
   }
 }

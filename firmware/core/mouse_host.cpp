@@ -21,25 +21,32 @@ void MouseHost::poll(uint32_t now_us) {
   turn_ = static_cast<uint8_t>((turn_ + 1) % kMice);
 }
 
+template <uint8_t MOUSE>
+FIRMWARE_INLINE void MouseHost::take_edge(const Edges& edges) {
+  const uint8_t mask = static_cast<uint8_t>(1u << MOUSE);
+  if ((edges.fell & mask) == 0) return;
+  const uint8_t bit = static_cast<uint8_t>(edges.data & mask);
+  const uint8_t gap = links_[MOUSE].gap_before(edges.tick);
+  if (!links_[MOUSE].data_bit(gap, bit)) other_bit(links_[MOUSE], gap, bit);
+}
+
 void MouseHost::take_edges() {
-  const uint16_t now_ms = now_ms_;
   Edges edges;
   while (lines_.pop(edges)) {
-    MouseLink* link = links_;
-    uint8_t fell = edges.fell, data = edges.data;
-    if ((fell & 0x0F) == 0) {
-      link += 4;
-      fell = static_cast<uint8_t>(fell >> 4);
-      data = static_cast<uint8_t>(data >> 4);
-    }
-    for (; fell != 0; fell = static_cast<uint8_t>(fell >> 1), ++link) {
-      if ((fell & 1) != 0) {
-        const MouseLink::Event event = link->edge(edges.tick, data & 1, now_ms);
-        if (event != MouseLink::kNone) note(static_cast<uint8_t>(link - links_), event);
-      }
-      data = static_cast<uint8_t>(data >> 1);
-    }
+    take_edge<0>(edges);
+    take_edge<1>(edges);
+    take_edge<2>(edges);
+    take_edge<3>(edges);
+    take_edge<4>(edges);
+    take_edge<5>(edges);
+    take_edge<6>(edges);
+    take_edge<7>(edges);
   }
+}
+
+void MouseHost::other_bit(MouseLink& link, uint8_t gap, uint8_t bit) {
+  const MouseLink::Event event = link.other_bit(gap, bit, now_ms_);
+  if (event != MouseLink::kNone) note(link.mouse(), event);
 }
 
 void MouseHost::note(uint8_t mouse, MouseLink::Event event) {

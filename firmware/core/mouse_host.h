@@ -36,12 +36,16 @@ class MouseHost {
   // Mice that are not there at power-on hold the others back for so long: a self-test may take 750
   // ms.
   static const uint16_t kWaitForAllMs = 1500;
-  // 160 us: an eighth of what the ring holds, and a turn for each link every 1.3 ms.
-  static const uint8_t kTurnTicks = 8;
+  // 200 us: a sixth of what the ring holds, and a turn for each link every 1.6 ms.
+  static const uint8_t kTurnTicks = 10;
 
  private:
-  // Apart from poll(), so that the compiler has all registers for it.
+  // Apart from poll(), so that the compiler has all registers for it; one copy of take_edge() for
+  // each mouse, so that testing a bit takes two cycles: a loop took a tenth of the processor.
   void take_edges() __attribute__((noinline));
+  template <uint8_t MOUSE>
+  FIRMWARE_INLINE void take_edge(const Edges& edges);
+  void other_bit(MouseLink& link, uint8_t gap, uint8_t bit) __attribute__((noinline));
   void note(uint8_t mouse, MouseLink::Event event);
   void open_gate();
   void count_errors(uint8_t errors);

@@ -19,8 +19,8 @@ bool passed(uint16_t now_ms, uint16_t deadline_ms) {
 
 }  // namespace
 
-MouseLink::Event MouseLink::on_received(Ps2Receiver::Event event, uint16_t now_ms) {
-  switch (event) {
+MouseLink::Event MouseLink::other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms) {
+  switch (receiver_.other_bit(gap, bit)) {
     case Ps2Receiver::kNone:
       return kNone;
     case Ps2Receiver::kByte:

@@ -37,14 +37,14 @@ class MouseLink {
 
   MouseLink(Ps2Lines& lines, uint8_t mouse) : lines_(lines), mouse_(mouse) {}
 
-  // A falling edge of this mouse's clock.
-  Event edge(uint8_t tick, uint8_t bit, uint16_t now_ms) {
-    const Ps2Receiver::Event event = receiver_.edge(tick, bit);
-    return event == Ps2Receiver::kNone ? kNone : on_received(event, now_ms);
-  }
+  // A falling edge of this mouse's clock, in the parts that Ps2Receiver gives it.
+  uint8_t gap_before(uint8_t tick) { return receiver_.gap_before(tick); }
+  bool data_bit(uint8_t gap, uint8_t bit) { return receiver_.data_bit(gap, bit); }
+  Event other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms);
   // Timeouts and the next command; at least every 4 ms. now_ms wraps.
   Event step(uint8_t tick, uint16_t now_ms, bool gate_open);
 
+  uint8_t mouse() const { return mouse_; }
   State state() const { return state_; }
   // Enabled and answering, as far as is known.
   bool present() const { return present_; }
@@ -62,7 +62,6 @@ class MouseLink {
   static const uint8_t kTries = 3;          // of each command
 
  private:
-  Event on_received(Ps2Receiver::Event event, uint16_t now_ms);
   Event on_byte(uint8_t value, bool good, uint16_t now_ms);
   Event on_stream_byte(uint8_t value, bool good, uint16_t now_ms);
   void on_reply(uint8_t value, uint16_t now_ms);

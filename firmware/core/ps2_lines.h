@@ -44,13 +44,14 @@ class Ps2Lines {
     const uint8_t now =
         static_cast<uint8_t>((clock & clock_again) | (before & (clock | clock_again)));
     level_ = now;
-    uint8_t fell = static_cast<uint8_t>(before & ~now & ~clock_low_);
+    uint8_t fell = static_cast<uint8_t>(before & ~now);
     if (fell == 0) return;
     const uint8_t asked = static_cast<uint8_t>(fell & sending_);
     if (asked != 0) {
       data_low_ = static_cast<uint8_t>((data_low_ & ~asked) | (asked & ~planes_[0]));
       drive(data_low_);
-      prepare_next(asked, data);
+      asked_ = asked;
+      prepare_next(data);
       fell = static_cast<uint8_t>(fell & ~asked);
     }
     if (fell != 0) push(fell, data);
@@ -108,46 +109,46 @@ class Ps2Lines {
     head_ = next;
   }
 
-  // Plane I and those behind it move up by one for the mice asked. Unrolled by the compiler: with
-  // the addresses constant the interrupt saves four registers less, every time.
+  // What follows runs for an answer only, a few hundred times in a mouse's life, but every register
+  // it uses is saved at every sample: so asked_ lies in memory, and addresses are constant.
+
+  // Plane I and those behind it move up by one for the mice asked.
   template <uint8_t I>
-  FIRMWARE_INLINE void move_planes(uint8_t asked, Index<I>) {
-    planes_[I] = static_cast<uint8_t>(planes_[I] ^ ((planes_[I] ^ planes_[I + 1]) & asked));
-    move_planes(asked, Index<I + 1>());
+  FIRMWARE_INLINE void move_planes(Index<I>) {
+    planes_[I] = static_cast<uint8_t>(planes_[I] ^ ((planes_[I] ^ planes_[I + 1]) & asked_));
+    move_planes(Index<I + 1>());
   }
-  FIRMWARE_INLINE void move_planes(uint8_t, Index<kPlanes - 1>) {}
+  FIRMWARE_INLINE void move_planes(Index<kPlanes - 1>) {}
 
-  // Counts down, a bit of every mouse's counter in each plane. Returns the mice that were at 0.
-  FIRMWARE_INLINE uint8_t count_down(uint8_t asked) {
-    uint8_t borrow = asked;
-    left_[0] = static_cast<uint8_t>(left_[0] ^ borrow);
-    borrow = static_cast<uint8_t>(borrow & left_[0]);
-    left_[1] = static_cast<uint8_t>(left_[1] ^ borrow);
-    borrow = static_cast<uint8_t>(borrow & left_[1]);
-    left_[2] = static_cast<uint8_t>(left_[2] ^ borrow);
-    borrow = static_cast<uint8_t>(borrow & left_[2]);
-    left_[3] = static_cast<uint8_t>(left_[3] ^ borrow);
-    return static_cast<uint8_t>(borrow & left_[3]);
+  // Counts down, a bit of every mouse's counter in each plane. asked_ becomes those that were at 0.
+  template <uint8_t I>
+  FIRMWARE_INLINE void count_down(Index<I>) {
+    left_[I] = static_cast<uint8_t>(left_[I] ^ asked_);
+    asked_ = static_cast<uint8_t>(asked_ & left_[I]);
+    count_down(Index<I + 1>());
   }
+  FIRMWARE_INLINE void count_down(Index<kCounterPlanes>) {}
 
-  FIRMWARE_INLINE void prepare_next(uint8_t asked, uint8_t data) {
-    move_planes(asked, Index<0>());
-    const uint8_t ended = count_down(asked);
-    if (ended == 0) return;
+  FIRMWARE_INLINE void prepare_next(uint8_t data) {
+    move_planes(Index<0>());
+    count_down(Index<0>());
     // These had sent all: the data line is now the mouse's acknowledge.
-    sending_ = static_cast<uint8_t>(sending_ & ~ended);
-    acknowledged_ = static_cast<uint8_t>(acknowledged_ | (ended & ~data));
+    sending_ = static_cast<uint8_t>(sending_ & ~asked_);
+    acknowledged_ = static_cast<uint8_t>(acknowledged_ | (asked_ & ~data));
   }
 
   // Written by the interrupt; by the polling side only while sampling is held.
   volatile uint8_t tick_ = 0;
-  uint8_t level_ = 0xFF;  // the clocks as last believed
+  uint8_t level_ = 0xFF;  // the clocks as last believed; low for those we hold: that is no edge
   volatile uint8_t clock_low_ = 0;
   volatile uint8_t data_low_ = 0;
   volatile uint8_t sending_ = 0;
   volatile uint8_t acknowledged_ = 0;
-  uint8_t planes_[kPlanes] = {};  // bit i of the first: what mouse i gets at its next falling edge
-  uint8_t left_[kCounterPlanes] = {};  // bits left to present, least significant plane first
+  volatile uint8_t asked_ = 0;  // mice whose bit is being prepared
+  volatile uint8_t planes_[kPlanes] =
+      {};  // bit i of the first: what mouse i gets at its next falling edge
+  volatile uint8_t left_[kCounterPlanes] =
+      {};  // bits left to present, least significant plane first
 
   // One writer each: head_ the interrupt, tail_ the polling side.
   volatile uint8_t head_ = 0;

@@ -4,11 +4,11 @@ namespace firmware {
 
 namespace {
 
-uint8_t odd_ones(uint8_t value) {
+bool odd_ones(uint8_t value) {
   value = static_cast<uint8_t>(value ^ (value >> 4));
   value = static_cast<uint8_t>(value ^ (value >> 2));
   value = static_cast<uint8_t>(value ^ (value >> 1));
-  return value & 1;
+  return (value & 1) != 0;
 }
 
 }  // namespace
@@ -18,7 +18,19 @@ Ps2Receiver::Event Ps2Receiver::fail() {
   return kFramingError;
 }
 
-Ps2Receiver::Event Ps2Receiver::unusual(uint8_t gap, uint8_t bit) {
+Ps2Receiver::Event Ps2Receiver::other_bit(uint8_t gap, uint8_t bit) {
+  if (gap <= kBitGap) {
+    if (count_ == kParity) {
+      parity_ = bit;
+      count_ = kStop;
+      return kNone;
+    }
+    if (count_ == kStop) return finish(bit != 0);
+  }
+  return start(gap, bit != 0);
+}
+
+Ps2Receiver::Event Ps2Receiver::start(uint8_t gap, bool bit) {
   Event broken = kNone;
   if (gap > kPacketGap) quiet_ = true;
   if (gap > kBitGap || idle_) {
@@ -26,31 +38,22 @@ Ps2Receiver::Event Ps2Receiver::unusual(uint8_t gap, uint8_t bit) {
     count_ = kStart;
     idle_ = false;
   }
-  switch (count_) {
-    case kStart:
-      if (bit != 0) return fail();
-      after_gap_ = quiet_;
-      quiet_ = false;
-      count_ = 1;
-      return broken;
-    case kParity:
-      parity_ = bit;
-      count_ = kStop;
-      return kNone;
-    case kStop:
-      return finish(bit != 0);
-    default:
-      // Hunting, and more than one stray edge: this is a byte whose start was missed, so no packet
-      // begins here.
-      quiet_ = false;
-      return kNone;
+  if (count_ == kHunting) {
+    // More than one stray edge: this is a byte whose start was missed, so no packet begins here.
+    quiet_ = false;
+    return kNone;
   }
+  if (bit) return fail();
+  after_gap_ = quiet_;
+  quiet_ = false;
+  count_ = 1;
+  return broken;
 }
 
 Ps2Receiver::Event Ps2Receiver::finish(bool stop) {
   if (!stop) return fail();
   count_ = kStart;
-  return odd_ones(shift_) != parity_ ? kByte : kParityError;
+  return odd_ones(shift_) != (parity_ != 0) ? kByte : kParityError;
 }
 
 Ps2Receiver::Event Ps2Receiver::sweep(uint8_t tick) {

@@ -59,7 +59,7 @@ void UsbDevice::on_bus_reset() {
   UECFG1X = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank
 }
 
-void UsbDevice::poll(uint32_t now_us) {
+void UsbDevice::poll() {
   if (!attached_) {
     attach();
     return;
@@ -68,10 +68,7 @@ void UsbDevice::poll(uint32_t now_us) {
   serve_control();
   if (configuration_ == 0) return;
   UENUM = kReportEndpoint;
-  if (report_pending_ && (UEINTX & _BV(TXINI)) != 0) {
-    report_pending_ = false;
-    taken_us_ = now_us;
-  }
+  if ((UEINTX & _BV(TXINI)) != 0) report_pending_ = false;
 }
 
 void UsbDevice::serve_control() {
@@ -227,11 +224,6 @@ void UsbDevice::configure(uint8_t configuration) {
   UECFG1X = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank: two would age a report
   UERST = _BV(kReportEndpoint);
   UERST = 0;
-}
-
-bool UsbDevice::wants_report(uint32_t now_us) const {
-  return configuration_ != 0 && !halted_ && !report_pending_ &&
-         now_us - taken_us_ >= kReportDelayUs;
 }
 
 void UsbDevice::send_report(const uint8_t* report) {

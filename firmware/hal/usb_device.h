@@ -12,19 +12,16 @@ namespace firmware {
 class UsbDevice {
  public:
   void start();
-  void poll(uint32_t now_us);
+  void poll();
 
   // The host has chosen the configuration and reads reports.
   bool configured() const { return configuration_ != 0; }
-  // A report handed over now is the one the host takes next. True only kReportDelayUs after the
-  // host took the last: the later a report is made, the fresher it is when the next poll comes.
-  bool wants_report(uint32_t now_us) const;
+  // The host has taken the last report. The next is made at once, not just before it is asked for: with
+  // all mice talking, making one may take most of the millisecond.
+  bool wants_report() const { return configuration_ != 0 && !halted_ && !report_pending_; }
   // report: wire::kDeviceReportBytes, which stay where they are: GET_REPORT reads them again.
   void send_report(const uint8_t* report);
 
-  // The host polls every 1000 us; with all mice talking, the loop notices up to 150 us late that a
-  // report was taken, and another 300 us go into making one and handing it over.
-  static const uint16_t kReportDelayUs = 200;
 
  private:
   struct Setup {
@@ -57,7 +54,6 @@ class UsbDevice {
   uint8_t configuration_ = 0;
   uint8_t idle_ = 0;
   bool report_pending_ = false;  // in the endpoint, not yet taken
-  uint32_t taken_us_ = 0;
 };
 
 }  // namespace firmware
