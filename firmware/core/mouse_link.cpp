@@ -57,7 +57,6 @@ MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t no
   switch (parser_.byte(value, good, receiver_.after_gap())) {
     case PacketParser::kMovement:
       heard_ms_ = now_ms;
-      put_off_ = 0;
       return kMovement;
     case PacketParser::kResync:
       return kResync;
@@ -137,20 +136,10 @@ void MouseLink::give_up(uint16_t now_ms) {
   present_ = false;
   asking_ = false;
   tries_ = 0;
-  put_off_ = 0;
   deadline_ms_ = static_cast<uint16_t>(now_ms + kRetryMs);
 }
 
 void MouseLink::send_command(uint16_t now_ms) {
-  // A packet that began just before the clock was taken has to be let through: after a command the
-  // mouse would not send it again, and its counts would be lost.
-  if (asking_ && receiver_.busy() && put_off_ < kTries) {
-    ++put_off_;
-    lines_.release(mouse_);
-    receiver_.reset();
-    stream(now_ms);
-    return;
-  }
   receiver_.reset();
   lines_.send(mouse_, command_);
   state_ = kSend;
@@ -177,7 +166,7 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
 }
 
 MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) {
-  // While the clock is held, a byte cut off must stay known: send_command() looks at it.
+  // A byte that our holding the clock cut off is no error.
   if (state_ != kInhibit && receiver_.sweep(tick) == Ps2Receiver::kFramingError) {
     parser_.lose();
     return kError;

@@ -85,7 +85,6 @@ class MouseLink {
   uint8_t script_at_ = 0;
   uint8_t command_ = 0;
   uint8_t tries_ = 0;
-  uint8_t put_off_ = 0;  // times EB gave way to a packet that had just begun
   uint8_t last_byte_ = 0;
   uint8_t since_tick_ = 0;
   uint16_t deadline_ms_ = 0;  // kAbsent: the next attempt

@@ -16,12 +16,11 @@ class UsbDevice {
 
   // The host has chosen the configuration and reads reports.
   bool configured() const { return configuration_ != 0; }
-  // The host has taken the last report. The next is made at once, not just before it is asked for: with
-  // all mice talking, making one may take most of the millisecond.
+  // The host has taken the last report. The next is made at once, not just before it is asked for:
+  // with all mice talking, making one may take most of the millisecond.
   bool wants_report() const { return configuration_ != 0 && !halted_ && !report_pending_; }
   // report: wire::kDeviceReportBytes, which stay where they are: GET_REPORT reads them again.
   void send_report(const uint8_t* report);
-
 
  private:
   struct Setup {

@@ -42,7 +42,7 @@ struct Frames {
 class Cabinet {
  public:
   explicit Cabinet(Board board, const CabinetOptions& options = {})
-      : board_(board), sim(board, options) {}
+      : sim(board, options), board_(board) {}
 
   // The frames since the last call.
   Frames take() {
@@ -93,6 +93,8 @@ class Cabinet {
 
   const wire::DeviceFrame& last() const { return last_; }
 
+  CabinetSim sim;
+
  private:
   static void add(const std::uint8_t* bytes, std::size_t size, Frames& frames) {
     wire::DeviceFrame frame{};
@@ -120,9 +122,6 @@ class Cabinet {
   Board board_;
   std::vector<std::uint8_t> pending_;
   wire::DeviceFrame last_{};
-
- public:
-  CabinetSim sim;
 };
 
 // Where the mice should be, as the frame counts: 16 bits that wrap.

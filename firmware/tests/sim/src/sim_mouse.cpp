@@ -66,6 +66,12 @@ void SimMouse::drop_stop() {
 void SimMouse::lose_byte() {
   fault_ = Fault::lose_byte;
 }
+void SimMouse::misread_command() {
+  misreads_ = true;
+}
+void SimMouse::lose_announcement() {
+  announcement_lost_ = true;
+}
 void SimMouse::spike(std::uint64_t width_ns) {
   spike_width_ns_ = width_ns;
 }
@@ -114,7 +120,7 @@ void SimMouse::step(std::uint64_t now_ns, bool host_clock_low, bool host_data_lo
       break;
     case Phase::self_test:
       outgoing_.clear();
-      outgoing_.push_back({{0xAA, 0x00}});
+      if (!std::exchange(announcement_lost_, false)) outgoing_.push_back({{0xAA, 0x00}});
       after(now_ns, 0, Phase::idle);
       at_idle(now_ns, host_clock_low, host_data_low);
       break;
@@ -238,12 +244,18 @@ void SimMouse::end_command_byte(std::uint64_t now_ns) {
   // d0..d7, parity, stop
   const auto value = static_cast<std::uint8_t>(taken_ & 0xFF);
   const bool parity = (taken_ >> 8 & 1) != 0, stop = (taken_ >> 9 & 1) != 0;
-  if (!stop || odd_ones(value) == parity) return answer({0xFE}, now_ns);
+  if (!stop || odd_ones(value) == parity || std::exchange(misreads_, false))
+    return answer({0xFE}, now_ns);
   commands_.push_back(value);
   obey(value, now_ns);
 }
 
 void SimMouse::answer(std::vector<std::uint8_t> bytes, std::uint64_t now_ns) {
+  // By the book, movement counts as reported once it has been sent.
+  if (!outgoing_.empty() && outgoing_.front().movement) {
+    pending_slide_ += outgoing_.front().slide;
+    pending_spin_ += outgoing_.front().spin;
+  }
   outgoing_.clear();  // a command discards what was waiting to be sent
   outgoing_.push_back({std::move(bytes)});
   byte_at_ = 0;

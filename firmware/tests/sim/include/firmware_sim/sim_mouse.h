@@ -42,6 +42,8 @@ class SimMouse {
   void flip_parity();                  // a packet byte has wrong parity
   void drop_stop();                    // a packet byte has stop bit 0
   void lose_byte();                    // the second byte of a packet is not sent
+  void misread_command();              // the next command gets FE for an answer
+  void lose_announcement();            // the next AA 00 is not sent
   void spike(std::uint64_t width_ns);  // the clock is pulled low as soon as the mouse is idle
 
   // ---- what it did
@@ -126,6 +128,7 @@ class SimMouse {
   std::uint8_t argument_of_ = 0;
   std::vector<std::uint8_t> commands_;
   bool reset_after_answer_ = false;
+  bool misreads_ = false, announcement_lost_ = false;
 
   bool enabled_ = false;
   bool remote_ = false;
