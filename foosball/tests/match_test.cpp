@@ -1,0 +1,438 @@
+// The match as a step function: every transition of its screens, by rods alone and by commands;
+// serve, goals, dead ball, ball out, win.
+#include "foosball/match.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "../src/match_save.h"
+
+namespace foosball {
+namespace {
+
+constexpr Rules kQuick{.goals_to_win = 5,
+                       .max_goals = 8,
+                       .dead_ball_seconds = 1.0,
+                       .ceremony_seconds = 0.7,
+                       .end_seconds = 0.8};
+
+class MatchTest : public testing::Test {
+ protected:
+  explicit MatchTest(Layout layout = Layout::tournament) : desc{layout, 7, kQuick} {
+    match = std::make_unique<Match>(*Match::create(desc));
+    for (RodTarget& rod : input.rods) rod.live = true;
+  }
+
+  const MatchView& view() const { return match->view(); }
+  const TableSpec& table() const { return table_spec(desc.layout); }
+
+  void step() {
+    input.commands = commands;
+    match->step(input);
+    commands.clear();
+    events.insert(events.end(), match->events().begin(), match->events().end());
+  }
+  void run(double seconds) {
+    for (int i = 0; i < std::lround(seconds / kTick); ++i) step();
+  }
+  void command(Command::Kind kind, int team = 0, int value = 0) {
+    commands.push_back({kind, static_cast<std::uint8_t>(team), static_cast<std::uint8_t>(value)});
+    step();
+  }
+  long count(EventKind kind) const {
+    return std::count_if(events.begin(), events.end(),
+                         [kind](const Event& event) { return event.kind == kind; });
+  }
+
+  // A hand moves one rod: to where, in how long.
+  void move(int rod, double slide, double angle, double seconds) {
+    RodTarget& hand = input.rods[rod];
+    const RodTarget from = hand;
+    const int ticks = static_cast<int>(std::lround(seconds / kTick));
+    for (int i = 1; i <= ticks; ++i) {
+      hand.slide = from.slide + (slide - from.slide) * i / ticks;
+      hand.angle = from.angle + (angle - from.angle) * i / ticks;
+      hand.slide_rate = (slide - from.slide) / seconds;
+      hand.angle_rate = (angle - from.angle) / seconds;
+      step();
+    }
+    hand.slide_rate = hand.angle_rate = 0.0;
+    run(0.05);
+  }
+  void push(int rod) {
+    const int team = table().rods[rod].team;
+    run(0.01);  // a stroke begins at rest
+    move(rod, push_sign(team) * 0.06, input.rods[rod].angle, 0.15);
+    move(rod, 0.0, input.rods[rod].angle, 0.15);
+  }
+
+  void start_by_commands() {
+    command(Command::Kind::push, 0);
+    command(Command::Kind::push, 0);
+    command(Command::Kind::push, 1);
+    ASSERT_EQ(view().screen, Screen::play);
+  }
+
+  // The match goes on from a state arranged by the test, as from any saved one.
+  void arrange(const std::function<void(MatchState&, TableWorld&)>& change) {
+    std::vector<std::byte> bytes;
+    match->snapshot(bytes);
+    auto saved = load_match(desc, bytes);
+    ASSERT_TRUE(saved);
+    change(saved->state, *saved->world);
+    bytes.clear();
+    save_match(desc, saved->state, *saved->world, bytes);
+    ASSERT_TRUE(match->restore(bytes));
+  }
+  // A ball on its way, that two men have touched.
+  void shoot(const vp::Vec3& from, const vp::Vec3& velocity, int toucher = 0) {
+    arrange([&](MatchState& state, TableWorld& world) {
+      state.ball_in_play = true;
+      state.ball_parked = false;
+      state.touched = 0b11;
+      state.last_toucher = toucher;
+      state.dead_ball.reset(from);
+      world.set_ball(from, velocity);
+    });
+  }
+  void shoot_goal(int scorer) {
+    shoot({attack_sign(scorer) * 0.56, 0.08, 0.0174}, {attack_sign(scorer) * 5.0, 0.0, 0.0});
+    run(0.1);
+  }
+
+  MatchDesc desc;
+  std::unique_ptr<Match> match;
+  TickInput input;
+  std::vector<Command> commands;
+  std::vector<Event> events;
+};
+
+// --- screens by rods alone -----------------------------------------------------------------------
+
+TEST_F(MatchTest, APushOfAnyRodLeavesTheLogo) {
+  for (int rod = 0; rod < kRods; ++rod) {
+    match = std::make_unique<Match>(*Match::create(desc));
+    input.rods[rod] = {0, 0, 0, 0, true};
+    ASSERT_EQ(view().screen, Screen::logo);
+    push(rod);
+    EXPECT_EQ(view().screen, Screen::selection) << rod;
+    EXPECT_FALSE(view().confirmed[0] || view().confirmed[1]) << "one push is one wish";
+  }
+}
+
+TEST_F(MatchTest, SpinningAnyRodOfATeamChoosesItsCharacterAndOnlyItsOwn) {
+  command(Command::Kind::push);
+  const double third = 2.0 * vp::kPi / 3.0 + 0.05;
+  for (int rod = 0; rod < kRods; ++rod) {
+    const int team = table().rods[rod].team;
+    const auto before = view().character;
+    const double forward = -attack_sign(team);
+    move(rod, 0.0, forward * third, 0.3);
+    EXPECT_EQ(view().character[team], (before[team] + 1) % kCharacters) << rod;
+    EXPECT_EQ(view().character[1 - team], before[1 - team]) << rod;
+    move(rod, 0.0, 0.0, 0.3);
+    EXPECT_EQ(view().character[team], before[team]) << "and back";
+  }
+}
+
+TEST_F(MatchTest, BothTeamsPushToConfirmAndPlayBegins) {
+  push(0);
+  push(3);
+  EXPECT_TRUE(view().confirmed[0]);
+  EXPECT_EQ(view().screen, Screen::selection) << "the other team still chooses";
+  const int chosen = view().character[0];
+  move(3, 0.0, 3.0, 0.3);
+  EXPECT_EQ(view().character[0], chosen) << "confirmed is confirmed";
+  push(7);
+  EXPECT_EQ(view().screen, Screen::play);
+}
+
+TEST_F(MatchTest, TheMenTakeOnTheChosenCharacterAndTheRodsStayInTheHands) {
+  command(Command::Kind::push);
+  move(5, -0.05, 1.0, 0.3);
+  command(Command::Kind::choose_character, 0, 2);
+  command(Command::Kind::push, 0);
+  command(Command::Kind::push, 1);
+  EXPECT_EQ(view().character[0], 2);
+  EXPECT_NEAR(view().rods[5].slide, -0.05, 1e-4);
+  EXPECT_NEAR(view().rods[5].angle, 1.0, 1e-3);
+  arrange([](MatchState& state, TableWorld&) {
+    EXPECT_EQ(state.built[0], 2);
+    EXPECT_EQ(state.built[1], 1);
+  });
+}
+
+TEST_F(MatchTest, RodsNeverWaitForAMenu) {
+  const Screen screens[] = {Screen::logo, Screen::selection, Screen::play, Screen::ceremony,
+                            Screen::end};
+  for (const Screen screen : screens) {
+    arrange([&](MatchState& state, TableWorld&) {
+      state.screen = screen;
+      state.screen_ticks = 0;
+    });
+    move(1, -0.04, 0.5 * vp::kPi, 0.2);
+    EXPECT_NEAR(view().rods[1].slide, -0.04, 0.0005) << static_cast<int>(screen);
+    EXPECT_NEAR(view().rods[1].angle, 0.5 * vp::kPi, vp::kPi / 180.0);
+    move(1, 0.0, 0.0, 0.2);
+  }
+}
+
+TEST_F(MatchTest, APushShortensTheCeremonyAndTheEnd) {
+  start_by_commands();
+  shoot_goal(0);
+  ASSERT_EQ(view().screen, Screen::ceremony);
+  run(0.5);
+  push(0);
+  EXPECT_EQ(view().screen, Screen::play);
+  arrange([](MatchState& state, TableWorld&) { state.score = {4, 0}; });
+  shoot_goal(0);
+  ASSERT_EQ(view().screen, Screen::end);
+  run(0.5);
+  push(7);
+  EXPECT_EQ(view().screen, Screen::logo);
+}
+
+// --- screens by commands and by time -------------------------------------------------------------
+
+TEST_F(MatchTest, CommandsWorkTheScreensAsRodsDo) {
+  command(Command::Kind::push, 1);
+  EXPECT_EQ(view().screen, Screen::selection);
+  command(Command::Kind::choose_character, 1, 0);
+  EXPECT_EQ(view().character[1], 0);
+  command(Command::Kind::push, 1);
+  EXPECT_TRUE(view().confirmed[1]);
+  EXPECT_FALSE(view().confirmed[0]);
+  command(Command::Kind::push, 0);
+  EXPECT_EQ(view().screen, Screen::play);
+  command(Command::Kind::restart);
+  EXPECT_EQ(view().screen, Screen::logo);
+  EXPECT_EQ(count(EventKind::screen), 3);
+}
+
+TEST_F(MatchTest, WishesOutOfRangeAreIgnored) {
+  command(Command::Kind::push, 2);
+  EXPECT_EQ(view().screen, Screen::logo);
+  command(Command::Kind::push, 0);
+  command(Command::Kind::choose_character, 0, 3);
+  command(Command::Kind::choose_character, 255, 0);
+  commands.push_back({static_cast<Command::Kind>(200), 0, 0});
+  step();
+  EXPECT_EQ(view().character[0], 1);
+  EXPECT_EQ(view().screen, Screen::selection);
+}
+
+TEST_F(MatchTest, PauseStopsTimeAndOnlyDuringPlay) {
+  command(Command::Kind::pause, 0, 1);
+  EXPECT_FALSE(view().paused) << "nothing to pause at the logo";
+  start_by_commands();
+  run(0.6);
+  command(Command::Kind::pause, 0, 1);
+  ASSERT_TRUE(view().paused);
+  const MatchView before = view();
+  run(0.5);
+  EXPECT_EQ(view().play_seconds, before.play_seconds);
+  EXPECT_EQ(view().ball_position, before.ball_position);
+  command(Command::Kind::pause, 0, 0);
+  EXPECT_FALSE(view().paused);
+  EXPECT_GT(view().play_seconds, before.play_seconds);
+}
+
+TEST_F(MatchTest, CeremonyAndEndPassByThemselves) {
+  start_by_commands();
+  arrange([](MatchState& state, TableWorld&) { state.score = {3, 3}; });
+  shoot_goal(1);
+  ASSERT_EQ(view().screen, Screen::ceremony);
+  run(kQuick.ceremony_seconds);
+  EXPECT_EQ(view().screen, Screen::play);
+  shoot_goal(1);
+  ASSERT_EQ(view().screen, Screen::end);
+  EXPECT_EQ(count(EventKind::match_won), 1);
+  run(kQuick.end_seconds);
+  EXPECT_EQ(view().screen, Screen::logo);
+  EXPECT_EQ(view().score, (std::array<int, 2>{0, 0}));
+}
+
+// --- play ----------------------------------------------------------------------------------------
+
+TEST_F(MatchTest, TheBallIsServedToTheMidfieldWithinItsReach) {
+  start_by_commands();
+  EXPECT_FALSE(view().ball_in_play);
+  run(0.6);
+  ASSERT_TRUE(view().ball_in_play);
+  ASSERT_EQ(count(EventKind::serve), 1);
+  const int server = std::find_if(events.begin(), events.end(), [](const Event& event) {
+                       return event.kind == EventKind::serve;
+                     })->team;
+  const RodSpec& rod = table().rods[rods_of_team(table(), server)[2]];
+  EXPECT_NEAR(view().ball_position.x, rod.x + attack_sign(server) * 0.034, 0.005);
+}
+
+TEST_F(MatchTest, TheServeWaitsWhileMenFillThePlace) {
+  start_by_commands();
+  // The server's men hang; whatever the slide, the ball finds room that is not inside a man.
+  for (int i = 0; i < 40; ++i) {
+    arrange([&](MatchState& state, TableWorld& world) {
+      state.ball_in_play = false;
+      state.ball_parked = true;
+      state.serve_in = 0;
+      for (int rod = 0; rod < kRods; ++rod) {
+        state.hold[rod].live = true;  // the hand has just let go of it, here:
+        const double swing = 0.15 * ((i * 7 + rod * 5) % 40) - 3.0;
+        world.set_rod(
+            rod, {table().rods[rod].slide_limit * 0.05 * ((i * 3 + rod) % 40 - 20), swing, 0, 0});
+      }
+    });
+    for (int rod = 0; rod < kRods; ++rod) input.rods[rod].live = false;
+    run(0.05);
+    if (!view().ball_in_play) continue;
+    EXPECT_LT(vp::norm(view().ball_velocity), 0.3) << "nothing throws it off its place";
+  }
+}
+
+TEST_F(MatchTest, AGoalAtEachEndCountsForTheTeamThatAttacksIt) {
+  start_by_commands();
+  for (int scorer = 0; scorer < kTeams; ++scorer) {
+    arrange([](MatchState& state, TableWorld&) {
+      state.screen = Screen::play;
+      state.score = {};
+    });
+    shoot_goal(scorer);
+    EXPECT_EQ(view().score[scorer], 1);
+    EXPECT_EQ(view().score[1 - scorer], 0);
+    EXPECT_EQ(view().last_scorer, scorer);
+    EXPECT_EQ(view().screen, Screen::ceremony);
+    EXPECT_FALSE(view().ball_in_play);
+  }
+  EXPECT_EQ(count(EventKind::goal), 2);
+}
+
+TEST_F(MatchTest, AnOwnGoalCountsForTheOther) {
+  start_by_commands();
+  shoot({-0.56, 0.08, 0.0174}, {-5.0, 0.0, 0.0}, /*toucher=*/0);
+  run(0.1);
+  EXPECT_EQ(view().score[1], 1);
+}
+
+TEST_F(MatchTest, InAndOutCounts) {
+  start_by_commands();
+  // At 15 m/s the ball is in, off the back of the box and out again within some ticks.
+  shoot({0.58, 0.07, 0.0174}, {15.0, 0.0, 0.0});
+  run(0.3);
+  EXPECT_EQ(view().score[0], 1);
+  EXPECT_EQ(count(EventKind::goal), 1) << "once";
+}
+
+TEST_F(MatchTest, AShotStraightFromTheServeIsNoGoal) {
+  start_by_commands();
+  run(0.6);
+  arrange([](MatchState& state, TableWorld& world) {
+    ASSERT_TRUE(state.served);
+    state.touched = 0b1;
+    world.set_ball({0.56, 0.08, 0.0174}, {5.0, 0.0, 0.0});
+  });
+  run(0.1);
+  EXPECT_EQ(view().score, (std::array<int, 2>{0, 0}));
+  EXPECT_EQ(count(EventKind::dead_ball), 1);
+  run(0.6);
+  EXPECT_TRUE(view().ball_in_play) << "served again";
+}
+
+TEST_F(MatchTest, TheSideThatConcededServes) {
+  for (int scorer = 0; scorer < kTeams; ++scorer) {
+    command(Command::Kind::restart);
+    start_by_commands();
+    shoot_goal(scorer);
+    events.clear();
+    run(kQuick.ceremony_seconds + 0.6);
+    ASSERT_EQ(count(EventKind::serve), 1);
+    EXPECT_EQ(view().ball_position.x > 0.0, scorer == 0);
+  }
+}
+
+TEST_F(MatchTest, ADeadBallGoesToTheNearestDefence) {
+  start_by_commands();
+  for (RodTarget& rod : input.rods) rod.angle = 1.4;  // out of the way
+  run(0.6);
+  events.clear();
+  shoot({0.45, 0.0, 0.0173}, {});
+  run(3.0);
+  EXPECT_GE(count(EventKind::dead_ball), 1);
+  const auto serve = std::find_if(events.begin(), events.end(), [](const Event& event) {
+    return event.kind == EventKind::serve;
+  });
+  ASSERT_NE(serve, events.end());
+  EXPECT_EQ(serve->team, 1);
+  EXPECT_NEAR(serve->point.x, 0.375 - 0.034, 0.02);
+}
+
+TEST_F(MatchTest, ABallOffTheTableGoesToTheOpponentsDefence) {
+  start_by_commands();
+  shoot({0.0, 0.2, 0.2}, {0.0, 6.0, 1.0}, /*toucher=*/0);
+  run(0.7);
+  EXPECT_EQ(count(EventKind::ball_out), 1);
+  ASSERT_TRUE(view().ball_in_play);
+  EXPECT_NEAR(view().ball_position.x, 0.375 - 0.034, 0.01) << "team 1's two-man rod";
+}
+
+// --- rods ----------------------------------------------------------------------------------------
+
+TEST_F(MatchTest, ARodThatIsNotLiveIsHeldWhereItWas) {
+  move(2, 0.05, 0.8, 0.2);
+  input.rods[2] = {-0.1, 99.0, 5.0, 5.0, false};
+  run(0.5);
+  EXPECT_NEAR(view().rods[2].slide, 0.05, 0.0005);
+  EXPECT_NEAR(view().rods[2].angle, 0.8, 0.01);
+}
+
+TEST_F(MatchTest, ATargetThatIsNoNumberCountsAsNotLive) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  move(4, -0.03, -0.5, 0.2);
+  const RodTarget good = input.rods[4];
+  for (const double bad : {kNan, kInf, -kInf}) {
+    for (int field = 0; field < 4; ++field) {
+      input.rods[4] = good;
+      input.rods[4].slide = field == 0 ? bad : good.slide;
+      input.rods[4].angle = field == 1 ? bad : good.angle;
+      input.rods[4].slide_rate = field == 2 ? bad : 0.0;
+      input.rods[4].angle_rate = field == 3 ? bad : 0.0;
+      run(0.02);
+      EXPECT_NEAR(view().rods[4].slide, -0.03, 0.001);
+      EXPECT_NEAR(view().rods[4].angle, -0.5, 0.02);
+    }
+  }
+}
+
+TEST_F(MatchTest, AbsurdButFiniteTargetsMoveARodNoFurtherAndNoFasterThanAHandCould) {
+  input.rods[6] = {1e300, 1e6, -1e300, 1e300, true};
+  run(0.5);
+  EXPECT_LE(std::fabs(view().rods[6].slide), table().rods[6].slide_limit + 1e-4);
+  EXPECT_LT(std::fabs(view().rods[6].angle_rate), 320.0);
+  input.rods[6].angle = -1e300;
+  run(0.1);
+  EXPECT_TRUE(std::isfinite(view().rods[6].angle));
+}
+
+TEST(MatchCreate, RefusesRulesThatCannotBePlayed) {
+  const auto refused = [](const std::function<void(MatchDesc&)>& change) {
+    MatchDesc desc;
+    change(desc);
+    const auto match = Match::create(desc);
+    return !match && match.error().code == vp::Errc::invalid_argument;
+  };
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.rules.goals_to_win = 0; }));
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.rules.max_goals = 4; }));
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.rules.max_goals = 1000; }));
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.rules.ceremony_seconds = -1.0; }));
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.rules.end_seconds = std::nan(""); }));
+  EXPECT_TRUE(refused([](MatchDesc& d) { d.layout = static_cast<Layout>(9); }));
+  EXPECT_FALSE(refused([](MatchDesc&) {}));
+}
+
+}  // namespace
+}  // namespace foosball
