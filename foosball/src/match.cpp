@@ -15,7 +15,7 @@ namespace {
 constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // A push in the same breath as the goal is the end of the shot, not a wish to go on.
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
-// A ball that meets something at less than about 0.1 m/s is neither heard nor felt.
+// A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.
 constexpr double kLeastHit = 0.003;  // [N s]
 constexpr std::size_t kMaxEventsPerStep = 128;
 
@@ -60,8 +60,8 @@ struct Match::Impl {
 
   void apply(const Command& command);
   void drive_rods(const RodTargets& targets);
-  void watch_ball();
-  void note_contacts();
+  void watch_ball(const vp::Vec3& velocity_before);
+  void note_contacts(const vp::Vec3& velocity_before);
   void judge_ball();
   void score_goal(int team);
   void put_in_play();
@@ -97,8 +97,9 @@ void Match::Impl::step(const TickInput& input) {
   if (!state.paused) {
     drive_rods(input.rods);
     if (state.ball_parked) world->park_ball();
+    const vp::Vec3 velocity_before = world->ball().velocity;
     const bool sane = world->step();
-    watch_ball();
+    watch_ball(velocity_before);
     if (!sane && state.ball_in_play) serve_from(rod_of(state.last_server, Line::midfield), 0.0);
     read_gestures();
     run_screen();
@@ -144,13 +145,16 @@ void Match::Impl::drive_rods(const RodTargets& targets) {
 
 // --- the ball ------------------------------------------------------------------------------------
 
-void Match::Impl::watch_ball() {
+void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
   if (!state.ball_in_play) return;
-  note_contacts();
+  note_contacts(velocity_before);
   judge_ball();
 }
 
-void Match::Impl::note_contacts() {
+void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
+  // A ball pressed against something has contacts without end, and none of them is a hit.
+  const vp::Vec3 change = world->ball().velocity - velocity_before;
+  const bool felt = table().ball_mass * vp::norm(change) >= kLeastHit;
   for (const BallContact& contact : world->contacts()) {
     const Tag& other = contact.other;
     const bool man = other.what == Tag::What::man;
@@ -162,7 +166,7 @@ void Match::Impl::note_contacts() {
       state.touched |= std::uint64_t{1} << (other.rod * kMaxMenOnRod + other.man);
       state.last_toucher = team;
     }
-    if (contact.kind != vp::ContactEvent::Kind::hit || contact.impulse < kLeastHit) continue;
+    if (!felt || contact.kind != vp::ContactEvent::Kind::hit) continue;
     const EventKind kind = man                             ? EventKind::man_hit
                            : other.what == Tag::What::wall ? EventKind::wall_hit
                                                            : EventKind::field_hit;

@@ -281,8 +281,8 @@ void TableWorld::let_field_sag() {
   for (const RodSpec& rod : table_.rods) {
     if (std::fabs(rod.x - ball.x) < std::fabs(nearest)) nearest = rod.x - ball.x;
   }
-  const bool between_rods = std::fabs(ball.x) < table_.rods[kRods - 1].x;
-  if (!between_rods || std::fabs(nearest) < tuning::kSagFrom) return;
+  const bool before_line = std::fabs(ball.x) < 0.5 * table_.length + table_.ball_radius;
+  if (!before_line || std::fabs(nearest) < tuning::kSagFrom) return;
   const double impulse = table_.ball_mass * tuning::kSagAcceleration * kTick;
   must(world_.apply_impulse(ball_, {std::copysign(impulse, nearest), 0.0, 0.0}, ball));
 }

@@ -1,0 +1,109 @@
+// Two computer players make a match worth watching; and what a tick of it costs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "foosball/computer_player.h"
+#include "foosball/match.h"
+
+namespace foosball {
+namespace {
+
+struct Tally {
+  double minutes = 0.0;  // of play
+  std::array<int, kEventKinds> events{};
+  int shots = 0;  // the ball became faster than 4 m/s
+  std::vector<double> tick_us;
+
+  double per_minute(EventKind kind) const {
+    return events[static_cast<std::size_t>(kind)] / minutes;
+  }
+};
+
+// Plays until the time is over or, if asked, until a match is won.
+void play(Layout layout, std::uint64_t seed, double skill, int ticks, bool until_won,
+          Tally& tally) {
+  MatchDesc desc;
+  desc.layout = layout;
+  desc.seed = seed;
+  Match match = *Match::create(desc);
+  ComputerPlayer home({.team = 0, .seed = 2 * seed, .skill = skill});
+  ComputerPlayer away({.team = 1, .seed = 2 * seed + 1, .skill = skill});
+  TickInput input;
+  bool fast = false;
+  for (int tick = 0; tick < ticks; ++tick) {
+    home.play(match.view(), input.rods);
+    away.play(match.view(), input.rods);
+    const auto before = std::chrono::steady_clock::now();
+    match.step(input);
+    const std::chrono::duration<double, std::micro> cost =
+        std::chrono::steady_clock::now() - before;
+    const MatchView& view = match.view();
+    if (view.screen == Screen::play) {
+      tally.minutes += kTick / 60.0;
+      tally.tick_us.push_back(cost.count());
+    }
+    const bool now_fast = view.ball_in_play && vp::norm(view.ball_velocity) > 4.0;
+    tally.shots += now_fast && !fast ? 1 : 0;
+    fast = now_fast;
+    for (const Event& event : match.events()) {
+      ++tally.events[static_cast<std::size_t>(event.kind)];
+      if (until_won && event.kind == EventKind::match_won) return;
+    }
+  }
+}
+
+class Exhibition : public testing::TestWithParam<Layout> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, Exhibition, testing::Values(Layout::paper, Layout::tournament));
+
+TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
+  Tally tally;
+  tally.tick_us.reserve(600000);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    play(GetParam(), seed, 0.9, 45000, false, tally);
+  }
+  std::sort(tally.tick_us.begin(), tally.tick_us.end());
+  const std::size_t n = tally.tick_us.size();
+  std::printf(
+      "%.1f minutes: a minute has %.1f shots, %.2f goals, %.2f dead balls, %.2f balls out, %.0f "
+      "hits "
+      "by men; a tick takes p50 %.1f us, p99 %.1f us\n",
+      tally.minutes, tally.shots / tally.minutes, tally.per_minute(EventKind::goal),
+      tally.per_minute(EventKind::dead_ball), tally.per_minute(EventKind::ball_out),
+      tally.per_minute(EventKind::man_hit), tally.tick_us[n / 2], tally.tick_us[n * 99 / 100]);
+  EXPECT_GT(tally.shots / tally.minutes, 15.0);
+  EXPECT_GT(tally.per_minute(EventKind::goal), 3.0);
+  EXPECT_LT(tally.per_minute(EventKind::goal), 10.0);
+  EXPECT_LT(tally.per_minute(EventKind::dead_ball), 1.0);
+  EXPECT_LT(tally.per_minute(EventKind::ball_out), 3.0);
+}
+
+TEST_P(Exhibition, OfTwentySecondsShowsShots) {
+  int with_goal = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Tally tally;
+    play(GetParam(), seed, 0.9, 20000, false, tally);
+    EXPECT_GE(tally.shots, 3) << "seed " << seed;
+    with_goal += tally.per_minute(EventKind::goal) > 0.0 ? 1 : 0;
+  }
+  std::printf("a goal in %d of 8\n", with_goal);
+  EXPECT_GE(with_goal, 4);
+}
+
+TEST_P(Exhibition, AMatchToFiveIsWonWithinSomeMinutes) {
+  for (const double skill : {0.6, 0.9}) {
+    Tally tally;
+    play(GetParam(), 11, skill, 900000, true, tally);
+    std::printf("skill %.1f: won after %.1f minutes of play\n", skill, tally.minutes);
+    EXPECT_EQ(tally.events[static_cast<std::size_t>(EventKind::match_won)], 1);
+    EXPECT_GT(tally.minutes, 0.3);
+  }
+}
+
+}  // namespace
+}  // namespace foosball
