@@ -106,6 +106,8 @@ class BitReader {
     while (held_ < bits) {
       if (failed_ || at_ == in_.size()) {
         failed_ = true;
+        window_ = 0;
+        held_ = 0;
         return 0;
       }
       window_ |= static_cast<std::uint64_t>(in_[at_++]) << held_;
@@ -120,7 +122,7 @@ class BitReader {
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
   std::uint64_t window_ = 0;  // the held_ lowest bits are still to be read; the others are 0
-  int held_ = 0;              // < 8 between calls, until a failure
+  int held_ = 0;              // < 8 between calls
   bool failed_ = false;
 };
 

@@ -77,7 +77,8 @@ void Lister::add_fixed(const Fixed& f, int components) {
       number(f.low()) + ".." + number(f.high()) + " by 2^" + std::to_string(std::ilogb(f.step));
   const std::string kind = std::string(f.is_signed ? "fixed" : "unsigned fixed") +
                            (components > 1 ? " x" + std::to_string(components) : "");
-  add(f.name, kind.c_str(), static_cast<std::uint64_t>(f.bits * components), range, f.unit,
+  add(f.name, kind.c_str(),
+      static_cast<std::uint64_t>(f.bits) * static_cast<std::uint64_t>(components), range, f.unit,
       f.meaning);
 }
 
@@ -87,7 +88,7 @@ void Lister::wrapped(const Wrapped& f, double) {
 }
 
 void Lister::rotation(const Rotation& f, const std::array<float, 4>&) {
-  add(f.name, "rotation", static_cast<std::uint64_t>(2 + 3 * f.bits), "by " + number(f.step()), "",
+  add(f.name, "rotation", 2 + 3 * static_cast<std::uint64_t>(f.bits), "by " + number(f.step()), "",
       f.meaning);
 }
 
