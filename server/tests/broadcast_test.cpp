@@ -1,0 +1,227 @@
+// Snapshots and input datagrams on real sockets.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <random>
+
+#include "lockstep.h"
+
+namespace server {
+namespace {
+
+// Takes n snapshots; each must be the next one.
+void expect_in_order(ProbeClient& client, int n) {
+  std::uint64_t last = 0;
+  for (int i = 0; i < n; ++i) {
+    const auto snapshot = client.snapshot();
+    ASSERT_TRUE(snapshot) << i;
+    if (last != 0) {
+      ASSERT_EQ(snapshot->tick, last + 1);
+    }
+    last = snapshot->tick;
+  }
+}
+
+TEST(Broadcast, SendsEveryListenerASnapshotForEveryTickInOrder) {
+  Lockstep table([](ServerOptions& o) { o.computer = {true, true}; });
+  std::vector<ProbeClient> listeners;
+  for (int i = 0; i < 10; ++i) {
+    listeners.emplace_back(table.port());
+    ASSERT_TRUE(listeners.back().join());
+  }
+  table.tick(500);
+  for (ProbeClient& listener : listeners) expect_in_order(listener, 500);
+  EXPECT_EQ(table->counters().snapshots_sent, 5000u);
+  EXPECT_EQ(table->counters().send_errors, 0u);
+  EXPECT_LE(table->counters().snapshot_bytes, 5000u * wire::kMaxDatagram);
+}
+
+TEST(Broadcast, StopsForWhoHasLeft) {
+  Lockstep table;
+  ProbeClient stays(table.port()), goes(table.port());
+  ASSERT_TRUE(stays.join());
+  ASSERT_TRUE(goes.join());
+  table.tick(3);
+  expect_in_order(goes, 3);
+  goes.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  while (wait_readable(goes.udp(), 0)) goes.snapshot(0);
+  const std::uint64_t before = table->counters().snapshots_sent;
+  table.tick(5);
+  EXPECT_EQ(table->counters().snapshots_sent, before + 5);
+  EXPECT_FALSE(wait_readable(goes.udp(), 0));
+}
+
+TEST(Broadcast, ListenerIsInStepFromTheTickAfterItsWelcome) {
+  Lockstep table;
+  table.tick(100);
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.join());
+  table.tick();
+  const auto snapshot = client.snapshot();
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ(snapshot->tick, 101u);
+}
+
+TEST(Broadcast, ReachesAMulticastGroupOnLoopback) {
+  const Endpoint group{"239.255.77.1", 47531};
+  Lockstep table([&](ServerOptions& o) { o.network.multicast = group; });
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in any{};
+  any.sin_family = AF_INET;
+  any.sin_port = htons(group.port);
+  ASSERT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&any), sizeof any), 0);
+  ip_mreq membership{};
+  ::inet_pton(AF_INET, group.address.c_str(), &membership.imr_multiaddr);
+  membership.imr_interface.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
+
+  ProbeClient client(table.port());
+  const auto welcome = client.join();
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->multicast, group.address);
+  EXPECT_EQ(welcome->multicast_port, group.port);
+  table.tick();
+  ASSERT_TRUE(wait_readable(fd, ProbeClient::kPatienceMs));
+  std::array<std::byte, 1500> bytes;
+  const ssize_t size = ::recv(fd, bytes.data(), bytes.size(), 0);
+  wire::Snapshot snapshot;
+  EXPECT_TRUE(wire::decode_snapshot({bytes.data(), static_cast<std::size_t>(size)}, snapshot));
+  EXPECT_EQ(snapshot.session, Lockstep::kSession);
+  EXPECT_FALSE(wait_readable(client.udp(), 0));  // not twice
+  ::close(fd);
+}
+
+class InputTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto answer = player.join(0);
+    ASSERT_TRUE(answer);
+    welcome = *answer;
+    table.tick();
+  }
+  wire::InputDatagram input(std::uint32_t sequence, float slide) const {
+    wire::InputDatagram in;
+    in.session = welcome.session;
+    in.token = welcome.token;
+    in.sequence = sequence;
+    in.rods[0] = {true, slide, 0.0, 0.0f, 0.0f};
+    in.rods[7] = {true, slide, 0.0, 0.0f, 0.0f};  // the other team's
+    return in;
+  }
+  // A datagram on loopback is there when sendto() returns.
+  const InputCounters counters() {
+    table.tick();
+    return table->counters().input;
+  }
+  Lockstep table;
+  ProbeClient player{table.port()};
+  wire::Welcome welcome;
+};
+
+TEST_F(InputTest, IsInTheSnapshotOfTheVeryNextTick) {
+  table.tick(10);
+  while (wait_readable(player.udp(), 0)) player.snapshot(0);
+  ASSERT_TRUE(player.send_input(input(1, 0.02f)));
+  table.tick();
+  const auto snapshot = player.snapshot();
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ(snapshot->rods[0].status, 1);  // live
+  EXPECT_EQ(snapshot->rods[0].source, 2);  // a client
+  EXPECT_GT(snapshot->rods[0].slide_rate, 0.0f);
+  EXPECT_EQ(snapshot->rods[7].source, 0);
+  table.tick(1000);
+  EXPECT_NEAR(table->match().view().rods[0].slide, 0.02, 5e-4);
+  EXPECT_NEAR(table->match().view().rods[7].slide, 0.0, 5e-4);
+}
+
+TEST_F(InputTest, CountsAndIgnoresWhatIsOldOrSentTwice) {
+  player.send_input(input(5, 0.01f));
+  player.send_input(input(4, 0.02f));
+  player.send_input(input(5, 0.02f));
+  const InputCounters c = counters();
+  EXPECT_EQ(c.accepted, 1u);
+  EXPECT_EQ(c.stale, 2u);
+}
+
+TEST_F(InputTest, CountsAndIgnoresStrangersAndWatchers) {
+  ProbeClient watcher(table.port());
+  const auto watching = watcher.join();
+  ASSERT_TRUE(watching);
+  table.tick();
+  wire::InputDatagram wrong_token = input(1, 0.1f);
+  wrong_token.token ^= 1;
+  wire::InputDatagram wrong_session = input(2, 0.1f);
+  wrong_session.session ^= 1;
+  wire::InputDatagram a_watchers = input(3, 0.1f);
+  a_watchers.token = watching->token;
+  for (const auto& in : {wrong_token, wrong_session, a_watchers}) player.send_input(in);
+  const InputCounters c = counters();
+  EXPECT_EQ(c.foreign, 3u);
+  EXPECT_EQ(c.accepted, 0u);
+}
+
+TEST_F(InputTest, CountsEveryTruncationTurnedBitAndOversize) {
+  std::array<std::byte, wire::kMaxInputDatagram> good;
+  const std::size_t size = wire::encode_input(input(1, 0.02f), good);
+  std::uint64_t bad = 0;
+  for (std::size_t cut = 0; cut < size; cut += 3, ++bad) {
+    player.send_datagram(std::span(good).first(cut));
+  }
+  for (std::size_t bit = 0; bit < size * 8; bit += 13, ++bad) {
+    auto turned = good;
+    turned[bit / 8] ^= std::byte(1u << bit % 8);
+    player.send_datagram(std::span(turned).first(size));
+    if (bad % 50 == 0) table.tick();
+  }
+  const std::vector<std::byte> oversized(1400, std::byte{0x5A});
+  player.send_datagram(oversized);
+  ++bad;
+  table.tick(4);  // a tick takes only so many
+  EXPECT_EQ(counters().bad, bad);
+  EXPECT_EQ(counters().accepted, 0u);
+}
+
+TEST_F(InputTest, HoldsTheRodsWhenThePlayerVanishesAndLetsTheNextOneTakeThem) {
+  player.send_input(input(1, 0.02f));
+  table.tick(200);
+  const double where = table->match().view().rods[0].slide;
+  player.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
+  table.tick(200);
+  EXPECT_NEAR(table->match().view().rods[0].slide, where, 1e-3);
+
+  ProbeClient next(table.port());
+  const auto again = next.join(0);
+  ASSERT_TRUE(again);
+  table.tick();
+  wire::InputDatagram in = input(1, -0.02f);
+  in.token = again->token;
+  next.send_input(in);
+  EXPECT_EQ(counters().accepted, 2u);
+}
+
+TEST(ComputerPlayers, PlayATeamThatNoPersonHasAndOnlyThen) {
+  Lockstep table([](ServerOptions& o) { o.computer = {false, true}; });
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  const auto source_of_rod_7 = [&] {
+    while (wait_readable(watcher.udp(), 0)) watcher.snapshot(0);
+    table.tick();
+    return watcher.snapshot().value_or(wire::Snapshot{}).rods[7].source;
+  };
+  EXPECT_EQ(source_of_rod_7(), 3);  // computer
+  {
+    ProbeClient player(table.port());
+    ASSERT_TRUE(player.join(1));
+    EXPECT_EQ(source_of_rod_7(), 0);  // its player has not moved yet: the rods hold
+  }
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  EXPECT_EQ(source_of_rod_7(), 3);
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,274 @@
+// The control port on real sockets: who may join, what a stranger can do, what clients are told.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "lockstep.h"
+
+namespace server {
+namespace {
+
+using Code = wire::Refusal::Code;
+
+std::vector<std::byte> bytes_of(const wire::ControlMessage& message) {
+  std::vector<std::byte> bytes;
+  wire::encode_control(message, bytes);
+  return bytes;
+}
+
+// The server lives and takes a new client.
+void expect_alive(Lockstep& table) {
+  ProbeClient client(table.port());
+  EXPECT_TRUE(client.join().has_value());
+  table.tick();
+  EXPECT_TRUE(client.snapshot().has_value());
+}
+
+TEST(Control, WelcomesAClientWithItsSessionAndPorts) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  const auto welcome = client.join(1);
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->session, Lockstep::kSession);
+  EXPECT_EQ(welcome->udp_port, table.port());
+  EXPECT_EQ(welcome->team, 1);
+  EXPECT_NE(welcome->token, 0u);
+  table.tick();
+  EXPECT_EQ(table->clients(), 1);
+}
+
+TEST(Control, RefusesAnotherVersionAndAnotherLayout) {
+  Lockstep table;
+  for (const bool version : {true, false}) {
+    ProbeClient client(table.port());
+    wire::Hello hello = client.hello();
+    if (version) hello.version = wire::kControlVersion + 1;
+    if (!version) hello.snapshot_layout ^= 1;
+    client.say(hello);
+    const auto refusal = client.hear_a<wire::Refusal>();
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->code, version ? Code::version : Code::layout);
+    EXPECT_NE(refusal->reason.find("use the same release"), std::string::npos);
+    EXPECT_TRUE(client.sees_close());
+  }
+  EXPECT_EQ(table->counters().control.refused, 2u);
+  expect_alive(table);
+}
+
+TEST(Control, GivesATeamToOneClientUntilItLeaves) {
+  Lockstep table;
+  ProbeClient first(table.port()), second(table.port());
+  ASSERT_TRUE(first.join(0));
+  second.say(second.hello(0));
+  const auto refusal = second.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::team_taken);
+
+  first.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ProbeClient third(table.port());
+  const auto welcome = third.join(0);
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->team, 0);
+}
+
+TEST(Control, RefusesATeamThatDoesNotExist) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  client.say(client.hello(2));
+  EXPECT_TRUE(client.sees_close());
+  EXPECT_EQ(table->counters().control.bad_messages, 1u);
+  expect_alive(table);
+}
+
+TEST(Control, ClosesAnOversizedMessageBeforeItsBodyComes) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  const std::array<std::byte, 4> length{std::byte{1}, std::byte{0}, std::byte{1}, std::byte{0}};
+  client.send_raw(length);  // 65537 bytes announced
+  const auto refusal = client.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::bad_message);
+  EXPECT_TRUE(client.sees_close());
+  EXPECT_EQ(table->counters().control.bad_messages, 1u);
+  expect_alive(table);
+}
+
+// Random bytes, and every Hello with one bit turned: each connection ends or was a Hello after all.
+TEST(Control, SurvivesGarbageAndTurnedBits) {
+  Lockstep table([](ServerOptions& o) { o.limits.hello_us = 20'000; });
+  std::mt19937 random(3);
+  for (int i = 0; i < 60; ++i) {
+    ProbeClient client(table.port());
+    ASSERT_TRUE(client.connected());
+    std::vector<std::byte> bytes = bytes_of(client.hello());
+    if (i % 2 == 0) {
+      for (std::byte& b : bytes) b = std::byte(random());
+    } else {
+      bytes[random() % bytes.size()] ^= std::byte(1u << random() % 8);
+    }
+    client.send_raw(bytes);
+    const auto answer = client.hear();
+    if (!answer || !std::holds_alternative<wire::Welcome>(*answer)) {
+      EXPECT_TRUE(client.sees_close()) << i;
+    }
+  }
+  const ControlCounters c = table->counters().control;
+  EXPECT_EQ(c.joined + c.refused + c.bad_messages + c.timed_out, 60u);
+  EXPECT_GE(c.bad_messages, 30u);
+  expect_alive(table);
+}
+
+TEST(Control, CountsAHelloThatIsCutShort) {
+  Lockstep table;
+  const std::size_t whole = bytes_of(ProbeClient(table.port()).hello()).size();
+  std::uint64_t cut = 0;
+  for (std::size_t size = 1; size < whole; size += 7, ++cut) {
+    ProbeClient client(table.port());
+    const auto bytes = bytes_of(client.hello());
+    client.send_raw(std::span(bytes).first(size));
+    client.leave();
+  }
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.bad_messages == cut; }));
+  expect_alive(table);
+}
+
+TEST(Control, DropsWhoSaysNothing) {
+  Lockstep table([](ServerOptions& o) { o.limits.hello_us = 30'000; });
+  ProbeClient silent(table.port());
+  EXPECT_TRUE(silent.sees_close());
+  EXPECT_EQ(table->counters().control.timed_out, 1u);
+  expect_alive(table);
+}
+
+TEST(Control, DropsWhoSpeaksOutOfPlace) {
+  Lockstep table;
+  ProbeClient early(table.port());
+  early.say(wire::Ping{1});
+  EXPECT_TRUE(early.sees_close());
+  ProbeClient twice(table.port());
+  ASSERT_TRUE(twice.join());
+  twice.say(twice.hello());
+  EXPECT_TRUE(twice.sees_close());
+  EXPECT_EQ(table->counters().control.bad_messages, 2u);
+  EXPECT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
+}
+
+TEST(Control, CapsConnectionsInAllAndPerAddress) {
+  Lockstep table([](ServerOptions& o) {
+    o.limits.connections = 4;
+    o.limits.per_local_address = 3;
+  });
+  std::vector<ProbeClient> inside;
+  for (int i = 0; i < 3; ++i) {
+    inside.emplace_back(table.port());
+    ASSERT_TRUE(inside.back().join());
+  }
+  ProbeClient greedy(table.port());
+  const auto too_many = greedy.hear_a<wire::Refusal>();
+  ASSERT_TRUE(too_many);
+  EXPECT_NE(too_many->reason.find("from your address"), std::string::npos);
+
+  ProbeClient neighbour(table.port(), "127.0.0.2");
+  EXPECT_TRUE(neighbour.join());
+  ProbeClient late(table.port(), "127.0.0.3");
+  const auto full = late.hear_a<wire::Refusal>();
+  ASSERT_TRUE(full);
+  EXPECT_EQ(full->code, Code::full);
+  EXPECT_EQ(table->counters().control.refused, 2u);
+}
+
+TEST(Control, AnswersAPing) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.join());
+  client.say(wire::Ping{77});
+  const auto pong = client.hear_a<wire::Pong>();
+  ASSERT_TRUE(pong);
+  EXPECT_EQ(pong->id, 77u);
+}
+
+// It asks and asks and never reads an answer: dropped once its share of memory is full.
+TEST(Control, DropsAClientThatDoesNotRead) {
+  Lockstep table([](ServerOptions& o) { o.limits.unsent_bytes = 8 * 1024; });
+  ProbeClient slow(table.port());
+  ASSERT_TRUE(slow.join(0));
+  std::vector<std::byte> pings;
+  for (std::uint64_t i = 0; i < 1000; ++i) wire::encode_control(wire::Ping{i}, pings);
+  while (slow.send_raw(pings)) {
+  }
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.slow_dropped == 1; }));
+  EXPECT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
+  expect_alive(table);
+}
+
+TEST(Control, HandsWishesToTheMatchAndCountsThoseThatAreNotAllowed) {
+  Lockstep table;
+  ProbeClient player(table.port());
+  ASSERT_TRUE(player.join(0));
+  using Kind = foosball::Command::Kind;
+  player.say(wire::Wish{static_cast<std::uint8_t>(Kind::push), 1, 0});  // the other team's
+  player.say(wire::Wish{static_cast<std::uint8_t>(Kind::push), 0, 0});
+  EXPECT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  const ControlCounters c = table->counters().control;
+  EXPECT_EQ(c.wishes, 1u);
+  EXPECT_EQ(c.wishes_dropped, 1u);
+}
+
+TEST(Control, LetsAWatcherAtThisMachineWish) {
+  Lockstep table;
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::push), 1, 0});
+  EXPECT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+}
+
+TEST(Control, TellsEveryoneANoticeAndThoseWhoJoinLaterUntilItIsCleared) {
+  Lockstep table;
+  ProbeClient first(table.port());
+  ASSERT_TRUE(first.join());
+  table->warn(Server::Topic::overload, "slow");
+  const auto told = first.hear_a<wire::Notice>();
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->text, "slow");
+
+  ProbeClient second(table.port());
+  ASSERT_TRUE(second.join());
+  EXPECT_EQ(second.hear_a<wire::Notice>().value_or(wire::Notice{}).text, "slow");
+
+  table->clear(Server::Topic::overload, "fast again");
+  const auto cleared = first.hear_a<wire::Notice>();
+  ASSERT_TRUE(cleared);
+  EXPECT_EQ(cleared->level, wire::Notice::Level::cleared);
+  ProbeClient third(table.port());
+  ASSERT_TRUE(third.join());
+  third.say(wire::Ping{1});
+  const auto answer = third.hear();  // no notice in between
+  ASSERT_TRUE(answer);
+  EXPECT_TRUE(std::holds_alternative<wire::Pong>(*answer));
+}
+
+TEST(Control, SaysByeBeforeItEnds) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.join());
+  table->finish("closing time");
+  const auto bye = client.hear_a<wire::Bye>();
+  ASSERT_TRUE(bye);
+  EXPECT_EQ(bye->reason, "closing time");
+  EXPECT_TRUE(client.sees_close());
+}
+
+TEST(Control, SaysWhichPortIsInUseAndWhatToDo) {
+  Lockstep table;
+  Lockstep second([&](ServerOptions& o) { o.network.port = table.port(); });
+  ASSERT_FALSE(second.started());
+  EXPECT_EQ(second.error().kind, StartError::Kind::port_taken);
+  EXPECT_NE(second.error().sentence.find(std::to_string(table.port())), std::string::npos);
+  EXPECT_NE(second.error().sentence.find("--port"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace server

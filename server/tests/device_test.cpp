@@ -1,0 +1,136 @@
+// A cabinet's controller on a socket pair: from its report to the snapshot, unplugged and back.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "lockstep.h"
+#include "wire/device_frame.h"
+
+namespace server {
+namespace {
+
+class Controller {
+ public:
+  ~Controller() { unplug(); }
+
+  cabinet::DeviceOpener opener() {
+    return [this] { return std::exchange(pc_end_, -1); };
+  }
+  void plug_in() {
+    std::array<int, 2> ends{-1, -1};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    own_end_ = ends[0];
+    pc_end_ = ends[1];
+  }
+  void unplug() {
+    if (own_end_ >= 0) ::close(own_end_);
+    if (pc_end_ >= 0) ::close(pc_end_);
+    own_end_ = pc_end_ = -1;
+  }
+  // One report; rod 2 has moved on by so many counts.
+  void report(int slide_counts) {
+    frame_.present = 0xFF;
+    ++frame_.sequence;
+    frame_.time_us += 1000;
+    frame_.slide[2] = static_cast<std::uint16_t>(frame_.slide[2] + slide_counts);
+    std::array<std::uint8_t, wire::kDeviceReportBytes> bytes{};
+    wire::encode_device_frame(frame_, bytes.data());
+    ASSERT_EQ(::send(own_end_, bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t{64});
+  }
+
+ private:
+  int own_end_ = -1, pc_end_ = -1;
+  wire::DeviceFrame frame_{};
+};
+
+class DeviceTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    controller.plug_in();
+    cabinet::DeviceOptions options;
+    options.name = "cabinet test";
+    options.framing = cabinet::DeviceFraming::report;
+    table->add_device(std::make_unique<cabinet::DeviceSource>(options, controller.opener()));
+    ASSERT_TRUE(watcher.join());
+  }
+  // A report before each tick.
+  void run(int ticks, int counts = 0) {
+    for (int i = 0; i < ticks; ++i) {
+      controller.report(counts);
+      table.tick();
+    }
+  }
+  wire::Snapshot next_snapshot() {
+    while (wait_readable(watcher.udp(), 0)) watcher.snapshot(0);
+    table.tick();
+    return watcher.snapshot().value_or(wire::Snapshot{});
+  }
+  Controller controller;  // outlives the server
+  Lockstep table;
+  ProbeClient watcher{table.port()};
+};
+
+// One tick from a report to the snapshot: the one it arrived before.
+TEST_F(DeviceTest, AReportIsInTheSnapshotOfTheTickItArrivedBefore) {
+  run(20);
+  EXPECT_FLOAT_EQ(next_snapshot().rods[2].slide, 0.0f);
+  controller.report(8);  // a millimetre
+  const wire::Snapshot shown = next_snapshot();
+  EXPECT_EQ(shown.rods[2].source, 1);
+  EXPECT_EQ(shown.rods[2].status, 1);
+  EXPECT_GT(shown.rods[2].slide_rate, 0.0f);
+}
+
+TEST_F(DeviceTest, TheRodArrivesWhereTheSensorSays) {
+  run(20);
+  run(40, 8);  // 40 mm
+  run(1000);
+  EXPECT_NEAR(table->match().view().rods[2].slide, 0.040, 0.0005);
+  EXPECT_NEAR(table->match().view().rods[3].slide, 0.0, 0.0005);
+}
+
+TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
+  run(20);
+  run(40, 8);
+  run(500);
+  const double where = table->match().view().rods[2].slide;
+  controller.unplug();
+  const std::int64_t from = table.now_us();
+  while (next_snapshot().rods[2].status != 2 && table.now_us() < from + 1'000'000) {
+  }
+  EXPECT_LE(table.now_us() - from, 100'000);
+  const auto notice = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(notice);
+  EXPECT_EQ(notice->text, "cabinet test unplugged: its rods hold");
+  table.tick(300);
+  EXPECT_NEAR(table->match().view().rods[2].slide, where, 0.0005);
+
+  controller.plug_in();
+  const std::int64_t back_from = table.now_us();
+  double farthest = 0.0;
+  while (next_snapshot().rods[2].status != 1 && table.now_us() < back_from + 3'000'000) {
+    controller.report(0);
+    farthest = std::max(farthest, std::abs(table->match().view().rods[2].slide - where));
+  }
+  EXPECT_LE(table.now_us() - back_from, 2'000'000);
+  const auto back = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->level, wire::Notice::Level::cleared);
+  EXPECT_LT(farthest, 0.0005);  // no jump
+}
+
+TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
+  Lockstep table;
+  cabinet::DeviceOptions options;
+  options.name = "cabinet nowhere";
+  table->add_device(std::make_unique<cabinet::DeviceSource>(options, [] { return -1; }));
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  table.tick(1100);
+  const auto notice = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(notice);
+  EXPECT_NE(notice->text.find("cabinet nowhere is not there"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,74 @@
+// A server whose ticks the test counts out itself, with real sockets on loopback.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "probe_client.h"
+#include "server/server.h"
+
+namespace server {
+
+inline std::string temp_path(const std::string& name) {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  return testing::TempDir() + "sf_" + test->test_suite_name() + "_" + test->name() + "_" +
+         std::to_string(::getpid()) + "_" + name;
+}
+
+class Lockstep {
+ public:
+  static constexpr std::uint64_t kSession = 0x5E5510;
+
+  explicit Lockstep(const std::function<void(ServerOptions&)>& change = [](ServerOptions&) {}) {
+    ServerOptions options;
+    options.session = kSession;
+    options.random = [token = std::uint64_t{1000}]() mutable { return ++token; };
+    options.log = [this](LogLevel, const std::string& text) {
+      const std::lock_guard guard(mutex_);
+      log_ += text + "\n";
+    };
+    change(options);
+    auto made = Server::create(std::move(options));
+    if (made) {
+      server_ = std::move(*made);
+    } else {
+      error_ = made.error();
+    }
+  }
+
+  Server& operator*() { return *server_; }
+  Server* operator->() { return server_.get(); }
+  bool started() const { return server_ != nullptr; }
+  const StartError& error() const { return error_; }
+  std::uint16_t port() const { return server_->port(); }
+  std::int64_t now_us() const { return now_us_; }
+
+  void tick(int count = 1) {
+    for (int i = 0; i < count; ++i) server_->tick(now_us_ += 1000);
+  }
+  // Ticks until the condition holds: for what another thread has to hand on first.
+  bool tick_until(const std::function<bool()>& condition, int max_ms = 5000) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(max_ms);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      tick();
+    }
+    return true;
+  }
+  std::string log() {
+    const std::lock_guard guard(mutex_);
+    return log_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string log_;
+  StartError error_{};
+  std::int64_t now_us_ = 1'000'000;
+  std::unique_ptr<Server> server_;  // last: its threads log until it has gone
+};
+
+}  // namespace server

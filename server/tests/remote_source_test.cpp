@@ -1,0 +1,66 @@
+#include "remote_source.h"
+
+#include <gtest/gtest.h>
+
+namespace server {
+namespace {
+
+using cabinet::RodStatus;
+
+class RemoteSourceTest : public testing::Test {
+ protected:
+  static wire::InputDatagram input(std::uint32_t sequence, float slide) {
+    wire::InputDatagram in;
+    in.sequence = sequence;
+    for (auto& rod : in.rods) rod = {true, slide, 0.5, 0.25f, 2.0f};
+    return in;
+  }
+  const foosball::TableSpec& table = foosball::table_spec(foosball::Layout::tournament);
+  RemoteSource source{table, 0};
+};
+
+TEST_F(RemoteSourceTest, DrivesTheRodsOfItsTeamOnly) {
+  ASSERT_TRUE(source.accept(input(1, 0.03f), 1000));
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const bool own = table.rods[rod].team == 0;
+    EXPECT_EQ(source.rods()[rod].status, own ? RodStatus::live : RodStatus::absent) << rod;
+  }
+}
+
+TEST_F(RemoteSourceTest, DropsWhatIsOlderOrTheSame) {
+  ASSERT_TRUE(source.accept(input(10, 0.01f), 1000));
+  EXPECT_FALSE(source.accept(input(10, 0.02f), 2000));
+  EXPECT_FALSE(source.accept(input(9, 0.02f), 2000));
+  ASSERT_TRUE(source.accept(input(13, 0.03f), 3000));
+  EXPECT_EQ(source.counters().stale, 2u);
+  EXPECT_EQ(source.counters().lost, 2u);
+  EXPECT_FLOAT_EQ(static_cast<float>(source.rods()[0].slide), 0.03f);
+}
+
+TEST_F(RemoteSourceTest, GoesOnWhenTheSequenceWraps) {
+  ASSERT_TRUE(source.accept(input(0xFFFFFFFFu, 0.01f), 1000));
+  EXPECT_TRUE(source.accept(input(0, 0.02f), 2000));
+  EXPECT_EQ(source.counters().lost, 0u);
+}
+
+TEST_F(RemoteSourceTest, HoldsItsRodsAfterSilenceAndGoesOnWithTheNextWord) {
+  ASSERT_TRUE(source.accept(input(1, 0.03f), 1000));
+  source.poll(1000 + RemoteSource::kSilenceUs - 1);
+  EXPECT_EQ(source.rods()[0].status, RodStatus::live);
+  source.poll(1000 + RemoteSource::kSilenceUs);
+  EXPECT_EQ(source.rods()[0].status, RodStatus::held);
+  EXPECT_FLOAT_EQ(static_cast<float>(source.rods()[0].slide), 0.03f);
+  EXPECT_EQ(source.rods()[0].angle_rate, 0.0);
+  ASSERT_TRUE(source.accept(input(2, 0.04f), 400'000));
+  EXPECT_EQ(source.rods()[0].status, RodStatus::live);
+}
+
+TEST_F(RemoteSourceTest, TakesANewClientsSequenceFromItsStart) {
+  ASSERT_TRUE(source.accept(input(500, 0.03f), 1000));
+  source.reset();
+  EXPECT_EQ(source.rods()[0].status, RodStatus::absent);
+  EXPECT_TRUE(source.accept(input(1, 0.01f), 2000));
+}
+
+}  // namespace
+}  // namespace server
