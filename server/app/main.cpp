@@ -157,8 +157,9 @@ int main(int argc, char** argv) {
   const auto options = app::parse(argc, argv);
   if (!options) {
     const app::Leave& leave = options.error();
-    std::fputs(leave.text.c_str(), leave.exit_code == 0 ? stdout : stderr);
-    return leave.exit_code;
+    if (leave.exit_code != server::kExitOk) return fail(leave.exit_code, leave.text);
+    std::fputs(leave.text.c_str(), stdout);
+    return server::kExitOk;
   }
   const server::Log log = make_log(options->quiet);
   auto server = [&] {

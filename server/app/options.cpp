@@ -134,7 +134,7 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     return tl::unexpected(Leave{server::kExitOk, cli.help()});
   } catch (const CLI::ParseError& error) {
     return tl::unexpected(
-        Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options\n"});
+        Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options"});
   }
   translate(options, raw);
   return options;

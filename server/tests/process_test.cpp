@@ -1,0 +1,241 @@
+// The real programs: options, signals, ports, kill -9.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "lockstep.h"
+#include "process.h"
+
+namespace server {
+namespace {
+
+std::vector<std::string> serve(std::vector<std::string> options) {
+  options.insert(options.begin(), SERVER_BINARY);
+  return options;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// A server at any free port, which it says in its log.
+class RunningServer {
+ public:
+  explicit RunningServer(std::vector<std::string> options) : process_(with_port(options)) {
+    const std::string said = "listening at 127.0.0.1:";
+    EXPECT_TRUE(process_.says(said) && process_.says("memory ")) << process_.output();
+    const auto at = process_.output().find(said) + said.size();
+    port_ = static_cast<std::uint16_t>(std::atoi(process_.output().c_str() + at));
+  }
+  std::uint16_t port() const { return port_; }
+  Process* operator->() { return &process_; }
+
+ private:
+  static std::vector<std::string> with_port(std::vector<std::string> options) {
+    options.insert(options.begin(), {SERVER_BINARY, "--port", "0"});
+    return options;
+  }
+  Process process_;
+  std::uint16_t port_ = 0;
+};
+
+TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
+  const std::vector<std::vector<std::string>> bad = {
+      {"--port", "70000"},
+      {"--port", "http"},
+      {"--listen", "everywhere"},
+      {"--multicast", "10.0.0.1:99"},
+      {"--multicast", "239.1.1.1"},
+      {"--layout", "round"},
+      {"--team0", "ghost"},
+      {"--seed", "-1x"},
+      {"--seconds", "0"},
+      {"--seconds", "nan"},
+      {"--fast"},
+      {"--calibration", "/nowhere.json"},
+      {"--device", "carrier-pigeon:1"},
+      {"--device", "file:/nowhere.bin"},
+      {"--device", "serial:/dev/ttyNone", "--calibration", "/nowhere.json"},
+      {"--replay", "/nowhere.sfr"},
+      {"--record", "/nowhere/match.sfr"},
+      {"--ready-file", "/nowhere/ready"},
+      {"--what"},
+      {"leftover"},
+  };
+  for (std::vector<std::string> options : bad) {
+    options.insert(options.begin(), {"--quiet"});
+    if (options[1] != "--port") options.insert(options.begin(), {"--port", "0"});
+    Process process(serve(options));
+    EXPECT_EQ(process.wait(), 2) << options.back() << ": " << process.output();
+    const std::string& said = process.output();
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_EQ(said.rfind("space-foosball-server: ", 0), 0u) << said;
+  }
+}
+
+TEST(ServerProgram, ExplainsItself) {
+  Process process(serve({"--help"}));
+  EXPECT_EQ(process.wait(), 0);
+  for (const char* option :
+       {"--port", "--listen", "--multicast", "--record", "--replay", "--seed"}) {
+    EXPECT_NE(process.output().find(option), std::string::npos) << option;
+  }
+}
+
+TEST(ServerProgram, SaysWhichPortIsInUseAndExitsWith3) {
+  Lockstep table;
+  Process process(serve({"--port", std::to_string(table.port())}));
+  EXPECT_EQ(process.wait(), 3);
+  EXPECT_NE(process.output().find("port " + std::to_string(table.port()) + " on 127.0.0.1 is "),
+            std::string::npos)
+      << process.output();
+  EXPECT_NE(process.output().find("--port"), std::string::npos);
+}
+
+TEST(ServerProgram, EndsCleanlyOnSigtermWithASummaryAndItsFigures) {
+  const std::string ready = temp_path("ready"), stats = temp_path("stats.json");
+  RunningServer server({"--ready-file", ready, "--stats-file", stats, "--team0", "computer"});
+  EXPECT_EQ(text_of(ready), "port=" + std::to_string(server.port()) + "\n");
+  ProbeClient client(server.port());
+  ASSERT_TRUE(client.join());
+  ASSERT_TRUE(client.snapshot());
+  server->kill(SIGTERM);
+  EXPECT_TRUE(client.hear_a<wire::Bye>());
+  EXPECT_EQ(server->wait(), 0) << server->output();
+  for (const char* line : {"score ", "ticks ", "lateness ", "tick cost ", "snapshots "}) {
+    EXPECT_NE(server->output().find(line), std::string::npos) << line;
+  }
+  const std::string figures = text_of(stats);
+  for (const char* key :
+       {"\"score0\": 0", "\"ticks_missed\"", "\"late_p99_us\"", "\"tick_p99_us\""}) {
+    EXPECT_NE(figures.find(key), std::string::npos) << figures;
+  }
+  std::remove(ready.c_str());
+  std::remove(stats.c_str());
+}
+
+TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
+  RunningServer server({"--exit-when-empty"});
+  {
+    ProbeClient client(server.port());
+    ASSERT_TRUE(client.join());
+    ASSERT_TRUE(client.snapshot());
+  }
+  EXPECT_EQ(server->wait(), 0);
+  EXPECT_NE(server->output().find("everybody has left"), std::string::npos);
+}
+
+// A player in a process of its own.
+[[noreturn]] void play_until_killed(std::uint16_t port, int say_ready) {
+  ProbeClient player(port);
+  const bool in_step = player.join(0) && player.snapshot();
+  const char ready = in_step ? 'y' : 'n';
+  if (::write(say_ready, &ready, 1) != 1) ::_exit(1);
+  ::pause();
+  ::_exit(0);
+}
+
+TEST(ServerProgram, PlaysOnWhenAClientIsKilledAndTheNextIsInStepWithinASecond) {
+  RunningServer server({"--team0", "computer", "--team1", "computer"});
+  std::array<int, 2> ends{-1, -1};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t victim = ::fork();
+  if (victim == 0) play_until_killed(server.port(), ends[1]);
+  char ready = 0;
+  ASSERT_EQ(::read(ends[0], &ready, 1), 1);
+  ASSERT_EQ(ready, 'y');
+
+  ::kill(victim, SIGKILL);
+  ::waitpid(victim, nullptr, 0);
+  const auto from = std::chrono::steady_clock::now();
+  std::optional<wire::Welcome> welcome;
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+  };
+  // Its team may take the server a moment to release.
+  while (!welcome && seconds() < 5.0) welcome = ProbeClient(server.port()).join(0);
+  ASSERT_TRUE(welcome);
+  ProbeClient next(server.port());
+  ASSERT_TRUE(next.join());
+  const auto first = next.snapshot(), second = next.snapshot();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(second->tick, first->tick + 1);
+  EXPECT_LT(seconds(), 1.0);  // measured 0.003
+  RecordProperty("seconds", std::to_string(seconds()));
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(ServerProgram, ReplaysWhatItRecorded) {
+  const std::string path = temp_path("match.sfr");
+  Process recorded(serve({"--port", "0", "--seconds", "1.5", "--seed", "9", "--team0", "computer",
+                          "--team1", "computer", "--layout", "paper", "--record", path}));
+  ASSERT_EQ(recorded.wait(), 0) << recorded.output();
+  Process headless({REPLAY_BINARY, path, "--restore-at", "700"});
+  EXPECT_EQ(headless.wait(), 0) << headless.output();
+  EXPECT_NE(headless.output().find("ticks    1500\n"), std::string::npos) << headless.output();
+  EXPECT_NE(headless.output().find("the replay is the match that was played"), std::string::npos);
+  Process shown(serve({"--port", "0", "--replay", path, "--fast"}));
+  EXPECT_EQ(shown.wait(), 0) << shown.output();
+  EXPECT_NE(shown.output().find("the replay is the match that was played"), std::string::npos);
+  Process stopped({REPLAY_BINARY, path, "--until", "100"});
+  EXPECT_EQ(stopped.wait(), 0);
+  Process beyond({REPLAY_BINARY, path, "--restore-at", "100000"});
+  EXPECT_EQ(beyond.wait(), 2);
+  std::remove(path.c_str());
+}
+
+// A replay whose recorded hash is another one: said, and a non-zero exit of both programs.
+TEST(ServerProgram, SaysThatAReplayDiffers) {
+  const std::string path = temp_path("match.sfr");
+  std::vector<std::byte> bytes;
+  wire::JournalEncoder encoder;
+  encoder.add(wire::JournalHeader{}, bytes);
+  for (std::uint64_t tick = 0; tick < 10; ++tick) {
+    encoder.add(wire::JournalTick{tick, {}, {}}, bytes);
+  }
+  encoder.add(wire::JournalEnd{10, 1234}, bytes);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<long>(bytes.size()));
+  Process headless({REPLAY_BINARY, path});
+  EXPECT_EQ(headless.wait(), 1);
+  EXPECT_NE(headless.output().find("differs"), std::string::npos);
+  Process shown(serve({"--port", "0", "--replay", path}));
+  EXPECT_EQ(shown.wait(), 1);
+  EXPECT_NE(shown.output().find("differs"), std::string::npos);
+  std::remove(path.c_str());
+}
+
+TEST(ServerProgram, LeavesAReadableJournalWhenItIsKilled) {
+  const std::string path = temp_path("match.sfr");
+  RunningServer server({"--team0", "computer", "--team1", "computer", "--record", path});
+  ProbeClient client(server.port());
+  ASSERT_TRUE(client.join());
+  for (std::uint64_t tick = 0; tick < 300;) {
+    const auto snapshot = client.snapshot();
+    ASSERT_TRUE(snapshot);
+    tick = snapshot->tick;
+  }
+  server->kill(SIGKILL);
+  EXPECT_EQ(server->wait(), -SIGKILL);
+  EXPECT_TRUE(client.sees_close());
+
+  Process headless({REPLAY_BINARY, path});
+  EXPECT_EQ(headless.wait(), 4) << headless.output();
+  EXPECT_NE(headless.output().find("stops early"), std::string::npos) << headless.output();
+  const auto at = headless.output().find("ticks    ");
+  ASSERT_NE(at, std::string::npos);
+  // All but the last record of up to 64 ticks, and what the writer had not yet been given.
+  EXPECT_GE(std::atoi(headless.output().c_str() + at + 9), 300 - 2 * 64);
+  std::remove(path.c_str());
+}
+
+}  // namespace
+}  // namespace server
