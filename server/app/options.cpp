@@ -46,6 +46,13 @@ std::string check_seconds(const std::string& text) {
   return ok ? "" : "\"" + text + "\" is no number of seconds between 0.001 and 1000000";
 }
 
+std::string check_seed(const std::string& text) {
+  std::uint64_t value = 0;
+  const bool ok = text.find_first_not_of("0123456789") == std::string::npos &&
+                  CLI::detail::lexical_cast(text, value);
+  return ok ? "" : "\"" + text + "\" is no whole number below 2^64";
+}
+
 struct Raw {
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast;
   double seconds = 0.0;
@@ -56,7 +63,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   const CLI::IsMember player({"human", "computer"});
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  cli.add_option("--seed", o.match.seed, "of the match and the computer players");
+  cli.add_option("--seed", o.match.seed, "of the match and the computer players")
+      ->check(check_seed);
   cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);

@@ -24,8 +24,8 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
                 " is already in use: stop the program that has it (ss -lntup lists "
                 "them), or choose another port with --port (0 takes any free one)"};
   }
-  return {StartError::Kind::failed, "cannot listen at port " + where + ": " + error.reason +
-                                        "; choose an address of this machine with --listen"};
+  return {StartError::Kind::bad_option, "cannot listen at port " + where + ": " + error.reason +
+                                            "; choose an address of this machine with --listen"};
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--port", "70000"},
       {"--port", "http"},
       {"--listen", "everywhere"},
+      {"--listen", "192.0.2.1"},  // of no machine: RFC 5737
       {"--multicast", "10.0.0.1:99"},
       {"--multicast", "239.1.1.1"},
       {"--layout", "round"},
