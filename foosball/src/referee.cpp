@@ -63,17 +63,6 @@ int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server) {
   return (last_server == 0 ? rods0 : rods1)[kMidfield];
 }
 
-bool within_reach(const TableSpec& table, const vp::Vec3& ball) {
-  for (const RodSpec& rod : table.rods) {
-    if (std::fabs(ball.x - rod.x) > kReach) continue;
-    for (int man = 0; man < rod.men; ++man) {
-      const double slide = ball.y - man_offset(rod, man);
-      if (std::fabs(slide) <= rod.slide_limit + table.ball_radius) return true;
-    }
-  }
-  return false;
-}
-
 void DeadBallWatch::reset(const vp::Vec3& ball) {
   anchor_ = ball;
   ticks_here_ = 0;

@@ -26,9 +26,6 @@ std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& sco
 // by the team that served last.
 int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server);
 
-// Whether any man of any rod, however it slides and turns, can touch a ball at rest here.
-bool within_reach(const TableSpec& table, const vp::Vec3& ball);
-
 // Watches for a ball that nobody plays on.
 class DeadBallWatch {
  public:

