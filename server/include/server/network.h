@@ -20,7 +20,7 @@ struct NetworkOptions {
   int receive_buffer_bytes = 1 << 20;
 };
 
-// Limits against strangers on the control port; notes on each in docs/decisions/ and
+// Limits against strangers on the control port; see docs/decisions/0010 and
 // control_server.h.
 struct ControlLimits {
   int connections = 32;                   // in all
