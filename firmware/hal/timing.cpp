@@ -1,7 +1,9 @@
 #include "hal/timing.h"
 
 #include <avr/interrupt.h>
+#include <avr/power.h>
 #include <avr/sleep.h>
+#include <avr/wdt.h>
 
 namespace firmware {
 
@@ -26,6 +28,12 @@ void drive_lines(uint8_t clock_low, uint8_t data_low) {
 }
 
 void start_sampling() {
+  // Boards differ in what their fuses and boot loaders leave behind: a Teensy 2.0 starts at 2 MHz,
+  // and a boot loader that ends by a watchdog reset leaves the watchdog running.
+  MCUSR = 0;
+  wdt_disable();
+  clock_prescale_set(clock_div_1);
+
   BOARD_CLOCK_PORT = 0;
   BOARD_DATA_PORT = 0;
   drive_lines(0, 0);

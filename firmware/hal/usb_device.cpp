@@ -34,6 +34,8 @@ void clear_endpoint_flags(uint8_t flags) {
 }  // namespace
 
 void UsbDevice::start() {
+  UDCON = _BV(DETACH);  // a boot loader may have been on the bus
+  USBCON = 0;
   UHWCON = _BV(UVREGE);
   USBCON = _BV(USBE) | _BV(FRZCLK);
   PLLCSR = _BV(PINDIV) | _BV(PLLE);  // 16 MHz crystal to 48 MHz
