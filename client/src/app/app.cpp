@@ -40,6 +40,8 @@ class App {
   std::string use_quality(Quality quality);
   void hear(std::int64_t now);
   void follow_connection();
+  void say_when_in_step(std::int64_t now);
+  void await_first_snapshot();
   void take_input(std::int64_t now);
   void draw(float dt);
   HudState hud(const Camera& camera) const;
@@ -62,6 +64,7 @@ class App {
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
+  std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
   glm::ivec2 size_{1, 1};
   double seconds_ = 0.0;
 };
@@ -89,6 +92,7 @@ std::string App::start(int& exit_code) {
       log_warning(sounds.error());
     }
   }
+  awaiting_since_ = now_us();
   auto connection = Connection::open(options_.connection);
   if (!connection) return connection.error();
   connection_ = std::move(*connection);
@@ -123,6 +127,7 @@ void App::follow_connection() {
   }
   if (status_.joins == joins_seen_) return;
   joins_seen_ = status_.joins;
+  if (awaiting_since_ == 0) awaiting_since_ = now_us();
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   player_.reset();
   if (status_.welcome.team < foosball::kTeams) {
@@ -130,6 +135,13 @@ void App::follow_connection() {
     player_ =
         std::make_unique<PlayerInput>(status_.welcome.team, static_cast<foosball::Layout>(layout));
   }
+}
+
+void App::say_when_in_step(std::int64_t now) {
+  if (awaiting_since_ == 0 || status_.link != Link::joined) return;
+  log_info("in step with the match after " + std::to_string((now - awaiting_since_) / 1000) +
+           " ms");
+  awaiting_since_ = 0;
 }
 
 void App::hear(std::int64_t now) {
@@ -211,10 +223,18 @@ void App::judge_quality() {
   }
 }
 
+// A picture is worth a slow frame: it is drawn in high quality, unless another was asked for.
 std::string App::take_screenshot() {
+  const Quality usual = scene_->quality();
+  const bool better = !options_.quality && usual != Quality::high;
+  if (better) {
+    if (std::string error = use_quality(Quality::high); !error.empty()) return error;
+    draw(0.0f);
+  }
   const auto wrote = write_png(read_pixels(size_), options_.screenshot);
   if (wrote) log_info("picture written to " + options_.screenshot);
-  return wrote ? std::string() : wrote.error();
+  const std::string error = better ? use_quality(usual) : std::string();
+  return wrote ? error : wrote.error();
 }
 
 bool App::leaving(double seconds) const {
@@ -222,7 +242,19 @@ bool App::leaving(double seconds) const {
          (options_.seconds && seconds >= *options_.seconds);
 }
 
+// The first picture may take long to draw, while the driver compiles shaders: it should show the
+// match already, if the server answers at once.
+void App::await_first_snapshot() {
+  constexpr double kPatience = 0.25;  // [s]; a server on this machine answers within 10 ms
+  constexpr double kLook = 0.002;
+  for (double waited = 0.0; waited < kPatience && !sample_.any; waited += kLook) {
+    window_->wait(kLook);
+    hear(now_us());
+  }
+}
+
 int App::loop() {
+  await_first_snapshot();
   const std::int64_t began = now_us();
   std::int64_t before = began;
   bool shot = options_.screenshot.empty();
@@ -242,6 +274,7 @@ int App::loop() {
       failure = take_screenshot();
     }
     window_->swap();
+    if (sample_.any && !sample_.starving) say_when_in_step(now_us());
     meter_.end(now_us());
     judge_quality();
   }

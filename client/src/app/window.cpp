@@ -196,6 +196,10 @@ glm::ivec2 Window::size() const {
   return size;
 }
 
+void Window::wait(double seconds) {
+  glfwWaitEventsTimeout(seconds);
+}
+
 void Window::swap() {
   glfwSwapBuffers(impl_->handle);
 }

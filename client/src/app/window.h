@@ -36,6 +36,7 @@ class Window {
   void swap();              // shows the frame; waits for the display's refresh
   // What happened since the last call, mouse motion summed up.
   InputEvents poll();
+  void wait(double seconds);  // until the window has news, at most so long
   bool captured() const;
   // Name of the driver's renderer, for the log and the choice of quality.
   std::string renderer() const;
