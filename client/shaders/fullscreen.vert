@@ -4,5 +4,5 @@ out vec2 v_uv;
 void main() {
   vec2 p = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   v_uv = 0.5 * p + 0.5;
-  gl_Position = vec4(p, 1.0, 1.0);  // at the far plane: a sky stays behind
+  gl_Position = vec4(p, 0.0, 1.0);
 }

@@ -1,11 +1,8 @@
-in vec2 v_uv;
+in vec3 v_ray;
 uniform samplerCube u_sky;
-uniform mat4 u_inverse_view_projection;
 out vec4 o_colour;
 
 void main() {
-  vec4 far = u_inverse_view_projection * vec4(2.0 * v_uv - 1.0, 1.0, 1.0);
-  vec4 near = u_inverse_view_projection * vec4(2.0 * v_uv - 1.0, -1.0, 1.0);
-  vec3 c = textureLod(u_sky, far.xyz / far.w - near.xyz / near.w, 0.0).rgb;
+  vec3 c = textureLod(u_sky, v_ray, 0.0).rgb;
   o_colour = scene_output(c * c, 1.0);
 }

@@ -49,8 +49,10 @@ void add_torso(MeshBuilder& b, const Extent& t) {
                     ring(0.60f, 0.78f, 0.86f, 0.06f), ring(0.80f, 0.86f, 0.86f, 0.04f),
                     ring(0.92f, 0.78f, 0.70f, 0.0f), ring(1.00f, 0.44f, 0.46f, 0.0f)},
          18);
-  b.paint(kSuitDark);  // belt
-  b.loft(std::array{ring(0.19f, 0.77f, 0.82f, 0.0f), ring(0.27f, 0.75f, 0.82f, 0.0f)}, 18);
+  if (b.fine()) {
+    b.paint(kSuitDark);  // belt
+    b.loft(std::array{ring(0.19f, 0.77f, 0.82f, 0.0f), ring(0.27f, 0.75f, 0.82f, 0.0f)}, 18);
+  }
   b.paint(kShell);  // chest unit
   b.rounded_box({t.centre.x + 0.86f * d, t.centre.y, z + 0.66f * h},
                 {0.14f * d, 0.34f * w, 0.12f * h}, 0.0012f, 1);
@@ -65,8 +67,9 @@ void add_arms(MeshBuilder& b, const Extent& t) {
   for (const float side : {-1.0f, 1.0f}) {
     const float y = t.centre.y + side * (t.half.y - 0.9f * arm);
     b.paint(kSuit);
-    b.ellipsoid({t.centre.x, y - side * 0.10f * arm, z + 0.85f * h},
-                {0.50f * d, arm * 1.15f, 0.13f * h}, 10, 8);
+    if (b.fine())
+      b.ellipsoid({t.centre.x, y - side * 0.10f * arm, z + 0.85f * h},
+                  {0.50f * d, arm * 1.15f, 0.13f * h}, 10, 8);
     b.loft(
         std::array{
             LoftRing{{t.centre.x + 0.16f * d, y, z + 0.30f * h}, {0.26f * d, 0.72f * arm}, 2.2f},
@@ -74,8 +77,9 @@ void add_arms(MeshBuilder& b, const Extent& t) {
             LoftRing{{t.centre.x, y, z + 0.85f * h}, {0.36f * d, arm}, 2.2f}},
         10);
     b.paint(kShell);  // glove
-    b.ellipsoid({t.centre.x + 0.20f * d, y, z + 0.25f * h}, {0.32f * d, 0.9f * arm, 0.085f * h}, 10,
-                8);
+    if (b.fine())
+      b.ellipsoid({t.centre.x + 0.20f * d, y, z + 0.25f * h}, {0.32f * d, 0.9f * arm, 0.085f * h},
+                  10, 8);
   }
 }
 
@@ -98,6 +102,7 @@ void add_head(MeshBuilder& b, const Extent& head, const Extent& torso) {
   b.paint(kVisor);
   b.ellipsoid({head.centre.x + 0.42f * r.x, head.centre.y, head.centre.z + 0.02f * r.z},
               {0.70f * r.x, 0.80f * r.y, 0.60f * r.z}, 16, 10);
+  if (!b.fine()) return;
   b.paint(kSteel);
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
 }
@@ -115,6 +120,7 @@ void add_legs(MeshBuilder& b, const Extent& leg, const Extent& torso, const Exte
     b.loft(std::array{ring(ankle, 0.82f, 0.86f), ring(knee - 0.002f, 0.88f, 0.92f),
                       ring(hip, 0.99f, 0.99f)},
            12);
+    if (!b.fine()) continue;
     b.paint(kSuitDark);  // knee and ankle joints of the suit
     b.loft(std::array{ring(knee - 0.0028f, 0.90f, 0.93f), ring(knee - 0.0008f, 0.96f, 0.99f),
                       ring(knee + 0.0012f, 0.92f, 0.95f)},

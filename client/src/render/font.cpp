@@ -66,6 +66,10 @@ std::uint32_t next_character(std::string_view& utf8) {
 tl::expected<Font, std::string> Font::load(const std::string& directory) {
   std::vector<std::string> directories(kDirectories.begin(), kDirectories.end());
   if (!directory.empty()) directories.insert(directories.begin(), directory);
+  return load_from(directories);
+}
+
+tl::expected<Font, std::string> Font::load_from(const std::vector<std::string>& directories) {
   for (const std::string& place : directories) {
     Font font;
     if (!font.add_face(Face::regular, place + "/" + kFiles[0])) continue;

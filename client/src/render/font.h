@@ -40,6 +40,8 @@ class Font {
   // Looks for DejaVu Sans where Debian, other systems and the page keep it; directory, if not
   // empty, is looked into first. The error says which package to install.
   static tl::expected<Font, std::string> load(const std::string& directory = {});
+  // The same, in these places only.
+  static tl::expected<Font, std::string> load_from(const std::vector<std::string>& directories);
 
   float width(std::string_view utf8, const TextStyle& style) const;
   // A line with its base line at `at`. Bytes that are not UTF-8, and characters that the face

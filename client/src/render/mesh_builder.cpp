@@ -67,12 +67,14 @@ void MeshBuilder::cap(std::span<const glm::vec3> ring, const glm::vec3& normal) 
 
 void MeshBuilder::rounded_box(const glm::vec3& centre, const glm::vec3& half, float bevel,
                               int steps) {
-  steps = std::max(1, static_cast<int>(std::lround(static_cast<float>(steps) * detail_)));
+  // Coarse boxes have no bevel: four corners a side, each with that side's normal.
+  steps = fine() ? steps : 0;
   const float b = std::min({bevel, half.x * 0.98f, half.y * 0.98f, half.z * 0.98f});
   const glm::vec3 core = half - b;
   // Along each edge of the cube: the bevel's steps, the flat, the bevel again. The tangent spaces
   // the steps evenly over the quarter circle.
   const auto lines = [&](float h) {
+    if (steps == 0) return std::vector<float>{-h, h};
     std::vector<float> t;
     for (int i = 0; i <= steps; ++i) {
       const float share = static_cast<float>(i) / static_cast<float>(steps);
@@ -93,8 +95,10 @@ void MeshBuilder::rounded_box(const glm::vec3& centre, const glm::vec3& half, fl
           p[u] = pu;
           p[w] = pw;
           const glm::vec3 inner = glm::clamp(p, -core, core);
-          const glm::vec3 normal = glm::normalize(p - inner);
-          vertex(centre + inner + normal * b, normal);
+          glm::vec3 normal{0.0f};
+          normal[axis] = side;
+          if (steps > 0) normal = glm::normalize(p - inner);
+          vertex(steps > 0 ? centre + inner + normal * b : centre + p, normal);
         }
       }
       const auto columns = static_cast<std::uint32_t>(us.size());

@@ -29,6 +29,9 @@ class MeshBuilder {
   // detail: 1 for a close look, 0.5 where vertices are dear.
   explicit MeshBuilder(float detail = 1.0f) : detail_(detail) {}
 
+  // Trimmings that few pixels show are left out of a coarse mesh.
+  bool fine() const { return detail_ > 0.5f; }
+
   void paint(const Paint& paint) { paint_ = paint; }
   void transform(const glm::mat4& T_mesh_solid) { transform_ = T_mesh_solid; }  // rigid
 

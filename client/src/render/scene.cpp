@@ -91,7 +91,7 @@ std::string Scene::build_programs() {
 }
 
 void Scene::build_static_meshes() {
-  const float detail = quality_ == Quality::high ? 1.0f : 0.6f;
+  const float detail = quality_ == Quality::high ? 1.0f : 0.4f;
   const auto rod_radius =
       static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
   for (std::size_t c = 0; c < kKinds; ++c) {
@@ -117,7 +117,7 @@ void Scene::use_layout(foosball::Layout layout) {
   const foosball::TableSpec& table = foosball::table_spec(layout);
   if (table_ == &table) return;
   table_ = &table;
-  const float detail = quality_ == Quality::high ? 1.0f : 0.6f;
+  const float detail = quality_ == Quality::high ? 1.0f : 0.4f;
   table_mesh_ = GpuMesh(table_mesh(table, detail));
   table_mesh_.set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
   glass_mesh_ = GpuMesh(glass_mesh(table));

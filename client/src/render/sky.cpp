@@ -30,7 +30,7 @@ const glm::mat3 kFaces[6] = {
 
 tl::expected<Sky, std::string> Sky::create(Quality quality) {
   auto bake = Program::build({"fullscreen.vert"}, {"common.glsl", "sky_bake.frag"}, quality);
-  auto background = Program::build({"fullscreen.vert"}, {"common.glsl", "sky.frag"}, quality);
+  auto background = Program::build({"sky.vert"}, {"common.glsl", "sky.frag"}, quality);
   auto star = Program::build({"star.vert"}, {"common.glsl", "star.frag"}, quality);
   for (const auto* program : {&bake, &background, &star}) {
     if (!*program) return tl::unexpected(program->error());
@@ -102,7 +102,9 @@ void Sky::draw(const Camera& camera, float pixel_scale, float time) const {
   background_.use();
   bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
   background_.set("u_sky", 0);
-  background_.set("u_inverse_view_projection", glm::inverse(camera.view_projection));
+  const glm::mat3 from_view = glm::transpose(glm::mat3(camera.view));
+  background_.set("u_ray", glm::mat3(from_view[0] / camera.projection[0][0],
+                                     from_view[1] / camera.projection[1][1], -from_view[2]));
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 

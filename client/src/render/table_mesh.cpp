@@ -105,6 +105,7 @@ void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
                 y1 = half < 0 ? -goal - 0.022f : s.outer_y - 0.028f;
     b.paint(kPlate);
     box(0.024f, s.end - 0.024f, y0, y1, s.wall - 0.003f, s.wall + 0.0022f, 0.002f);
+    if (!b.fine()) continue;
     b.paint(kBolt);
     for (const float x : {0.036f, s.end - 0.036f}) {
       for (const float y : {y0 + 0.012f, y1 - 0.012f})

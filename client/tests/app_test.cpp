@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/frame_meter.h"
+#include "app/options.h"
+#include "app/view_motion.h"
+#include "render/particles.h"
+#include "scripted_scene.h"
+#include "sound/player.h"
+
+namespace client {
+namespace {
+
+tl::expected<Options, Leave> parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "space-foosball");
+  return parse_options(static_cast<int>(words.size()), words.data());
+}
+
+TEST(Options, AreTakenAsGiven) {
+  const auto o = parse({"--server", "table.local:9000", "--team", "watch", "--size", "800x600",
+                        "--quality", "low", "--seconds", "3.5", "--screenshot", "a.png", "--mute"});
+  ASSERT_TRUE(o);
+  EXPECT_EQ(o->connection.host, "table.local");
+  EXPECT_EQ(o->connection.port, 9000);
+  EXPECT_EQ(o->connection.team, wire::kWatchOnly);
+  EXPECT_EQ(o->size, glm::ivec2(800, 600));
+  EXPECT_EQ(o->quality, Quality::low);
+  EXPECT_EQ(o->seconds, 3.5);
+  EXPECT_TRUE(o->mute);
+}
+
+TEST(Options, BadOnesAreOneSentenceAndExitCodeTwo) {
+  const std::vector<std::vector<const char*>> bad{
+      {"--server", "host:0"},  {"--server", "host:65536"}, {"--server", "a:b:1"},
+      {"--server", ""},        {"--server", "h:12x"},      {"--team", "2"},
+      {"--size", "1280"},      {"--size", "0x0"},          {"--size", "99999x100"},
+      {"--quality", "best"},   {"--seconds", "-1"},        {"--nonsense"},
+      {"--screenshot-at", "1"}};
+  for (const auto& words : bad) {
+    const auto o = parse(words);
+    ASSERT_FALSE(o) << words[0] << " " << (words.size() > 1 ? words[1] : "");
+    EXPECT_EQ(o.error().exit_code, 2);
+    EXPECT_FALSE(o.error().text.empty());
+  }
+}
+
+TEST(Options, HelpIsNoError) {
+  const auto o = parse({"--help"});
+  ASSERT_FALSE(o);
+  EXPECT_EQ(o.error().exit_code, 0);
+  EXPECT_NE(o.error().text.find("--screenshot"), std::string::npos);
+}
+
+TEST(FrameMeter, CallsSlowWhatIsSlowOnAverageAfterLoading) {
+  FrameMeter meter;
+  std::int64_t now = 1'000'000;
+  const auto frame = [&](std::int64_t cost) {
+    meter.begin(now);
+    meter.end(now + cost);
+    now += cost;
+  };
+  for (int i = 0; i < 5; ++i) frame(900'000);  // loading
+  for (int i = 0; i < 20; ++i) frame(16'000);
+  EXPECT_FALSE(meter.too_slow());
+  for (int i = 0; i < 19; ++i) frame(60'000);
+  EXPECT_FALSE(meter.too_slow());
+  frame(60'000);
+  EXPECT_TRUE(meter.too_slow());
+  EXPECT_EQ(meter.frames(), 45u);
+  EXPECT_NEAR(meter.rate(), 1.0 / 0.060, 1.0);
+}
+
+TEST(Sounds, AreHeardEndInSilenceAndNeverClip) {
+  for (int i = 0; i < kSounds; ++i) {
+    const auto samples = synthesise(static_cast<Sound>(i));
+    ASSERT_GT(samples.size(), static_cast<std::size_t>(kSampleRate / 20)) << i;
+    int peak = 0;
+    for (const std::int16_t s : samples) peak = std::max(peak, std::abs(static_cast<int>(s)));
+    EXPECT_GT(peak, 25'000) << i;
+    EXPECT_LT(peak, 32'767) << i;
+    EXPECT_LT(std::abs(static_cast<int>(samples.back())), 200) << i;
+    double early = 0, late = 0;
+    const std::size_t tenth = samples.size() / 10;
+    for (std::size_t k = 0; k < tenth; ++k) {
+      early += std::abs(static_cast<double>(samples[k]));
+      late += std::abs(static_cast<double>(samples[samples.size() - 1 - k]));
+    }
+    EXPECT_LT(late, 0.25 * early) << i;
+  }
+}
+
+TEST(Sounds, HarderHitsAreLouderUpToFull) {
+  EXPECT_EQ(volume_of_impulse(0), 0.0f);
+  EXPECT_LT(volume_of_impulse(0.01f), volume_of_impulse(0.1f));
+  EXPECT_EQ(volume_of_impulse(5), 1.0f);
+}
+
+TEST(Particles, DieAndNeverGrowBeyondTheirBound) {
+  Particles particles;
+  for (int i = 0; i < 100; ++i) particles.celebrate({0, 0, 0}, {1, 1, 1});
+  EXPECT_GT(particles.count(), 100u);
+  EXPECT_LE(particles.count(), 600u);
+  for (int i = 0; i < 300; ++i) particles.step(0.016f);
+  EXPECT_EQ(particles.count(), 0u);
+}
+
+TEST(ViewMotion, IsGentleAndComesToRest) {
+  ViewMotion motion;
+  wire::Snapshot scene = scripted_play(0);
+  CameraView last = motion.step(&scene, 0, 0.016f);
+  for (int i = 0; i < 600; ++i) {
+    scene.ball.position[0] = i % 2 == 0 ? 0.6f : -0.6f;  // the wildest rally
+    const CameraView view = motion.step(&scene, 0, 0.016f);
+    EXPECT_LT(std::abs(view.lean.x - last.lean.x), 0.003f);
+    last = view;
+  }
+  EXPECT_EQ(last.orbit, 0.0f);
+}
+
+TEST(Camera, PutsTheOwnGoalOnTheLeftForEitherTeam) {
+  const glm::ivec2 screen{1280, 720};
+  for (const int team : {0, 1}) {
+    CameraView view;
+    view.team = team;
+    const Camera camera = player_camera(view, screen);
+    const float own = team == 0 ? -0.6f : 0.6f;
+    EXPECT_LT(camera.project({own, 0, 0}, screen).x, 400);
+    EXPECT_GT(camera.project({-own, 0, 0}, screen).x, 880);
+    // Away from the person is up in the picture.
+    const float away = team == 0 ? 0.3f : -0.3f;
+    EXPECT_LT(camera.project({0, away, 0}, screen).y, camera.project({0, -away, 0}, screen).y);
+  }
+}
+
+TEST(Camera, ShowsTheWholeFieldInNarrowWindowsToo) {
+  for (const glm::ivec2 screen :
+       {glm::ivec2(1280, 720), glm::ivec2(800, 800), glm::ivec2(2560, 1080)}) {
+    const Camera camera = player_camera({}, screen);
+    for (const float x : {-0.6f, 0.6f}) {
+      for (const float y : {-0.34f, 0.34f}) {
+        const glm::vec3 p = camera.project({x, y, 0}, screen);
+        EXPECT_TRUE(p.x > 0 && p.x < static_cast<float>(screen.x) && p.y > 0 &&
+                    p.y < static_cast<float>(screen.y));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace client

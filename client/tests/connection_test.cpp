@@ -1,0 +1,209 @@
+// The connection against real sockets: joining, bad bytes, silence, loss and return.
+#include "client/connection.h"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <functional>
+
+#include "client/clock.h"
+#include "scripted_scene.h"
+#include "scripted_server.h"
+
+namespace client {
+namespace {
+
+// Looks again and again until it holds; the wait is for another thread's event, with a far
+// deadline.
+bool eventually(const std::function<bool()>& holds) {
+  const std::int64_t deadline = now_us() + 10'000'000;
+  while (!holds()) {
+    if (now_us() > deadline) return false;
+    poll(nullptr, 0, 1);
+  }
+  return true;
+}
+
+ConnectionOptions options_for(std::uint16_t port) {
+  ConnectionOptions options;
+  options.port = port;
+  options.team = 0;
+  options.name = "tester";
+  return options;
+}
+
+wire::Snapshot snapshot(std::uint64_t session, std::uint64_t tick) {
+  wire::Snapshot s = scripted_play(static_cast<double>(tick) * 1e-3);
+  s.session = session;
+  s.tick = tick;
+  s.sequence = tick + 1;
+  return s;
+}
+
+class ConnectionTest : public ::testing::Test {
+ protected:
+  void open() {
+    auto opened = Connection::open(options_for(server.port()));
+    ASSERT_TRUE(opened) << opened.error();
+    connection = std::move(*opened);
+  }
+  void join(std::uint64_t session) {
+    ASSERT_TRUE(server.welcome(session));
+    ASSERT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
+  }
+  bool hears(std::uint64_t session, std::uint64_t tick) {
+    const auto before = connection->counters().received;
+    return eventually([&] {
+      server.send_snapshot(snapshot(session, tick++));
+      return connection->counters().received > before;
+    });
+  }
+  ScriptedServer server;
+  std::unique_ptr<Connection> connection;
+};
+
+TEST_F(ConnectionTest, SaysHelloWithItsLayoutAndPortAndHearsSnapshots) {
+  open();
+  join(42);
+  EXPECT_EQ(server.hello().snapshot_layout, wire::snapshot_layout_hash());
+  EXPECT_EQ(server.hello().team, 0);
+  EXPECT_EQ(server.hello().name, "tester");
+  EXPECT_NE(server.hello().udp_port, 0);
+  EXPECT_TRUE(hears(42, 0));
+  EXPECT_TRUE(connection->sample(now_us()).any);
+}
+
+TEST_F(ConnectionTest, BadForeignAndRepeatedDatagramsAreEachCounted) {
+  open();
+  join(42);
+  ASSERT_TRUE(hears(42, 0));
+  const std::vector<std::byte> noise(300, std::byte{0x5A}), oversized(4000, std::byte{1});
+  server.send_datagram(noise);
+  server.send_datagram({});
+  server.send_datagram(oversized);
+  server.send_snapshot(snapshot(7, 5000));
+  server.send_snapshot(snapshot(42, 0));
+  EXPECT_TRUE(eventually([&] {
+    const SnapshotCounters c = connection->counters();
+    return c.bad == 3 && c.foreign == 1 && c.old == 1;
+  }));
+  EXPECT_EQ(connection->status().link, Link::joined);
+}
+
+TEST_F(ConnectionTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
+  open();
+  ASSERT_TRUE(server.accept());
+  const std::vector<std::byte> nonsense(64, std::byte{0xFF});  // a length far above the cap
+  server.send_bytes(nonsense);
+  EXPECT_TRUE(
+      eventually([&] { return connection->status().detail == "it sends what is no message"; }));
+  join(42);
+}
+
+TEST_F(ConnectionTest, SilenceIsNoticedAndTheServersReturnToo) {
+  open();
+  join(42);
+  ASSERT_TRUE(hears(42, 0));
+  const std::int64_t silent_since = now_us();
+  ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
+  EXPECT_GE(now_us() - silent_since, 450'000);
+  EXPECT_TRUE(connection->sample(now_us()).any);  // the last scene stands
+  ASSERT_TRUE(server.welcome(42));                // the next attempt, answered
+  EXPECT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
+  EXPECT_TRUE(hears(42, 1000));
+}
+
+TEST_F(ConnectionTest, AServerThatDiesAndReturnsWithANewSessionIsJoinedAgain) {
+  const std::uint16_t port = server.port();
+  open();
+  join(42);
+  ASSERT_TRUE(hears(42, 9000));
+  server.drop_client();
+  ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
+  ASSERT_EQ(server.port(), port);
+  join(43);
+  EXPECT_TRUE(hears(43, 0));
+  EXPECT_TRUE(eventually([&] { return connection->sample(now_us()).state.session == 43; }));
+  EXPECT_EQ(connection->status().joins, 2u);
+  server.send_snapshot(snapshot(42, 9100));  // a straggler of the dead one
+  EXPECT_TRUE(eventually([&] { return connection->counters().foreign == 1; }));
+}
+
+TEST_F(ConnectionTest, ARefusalIsKeptForTheScreen) {
+  open();
+  ASSERT_TRUE(server.accept());
+  ASSERT_TRUE(server.next_message());
+  wire::Refusal refusal;
+  refusal.code = wire::Refusal::Code::team_taken;
+  refusal.reason = "Team 0 is taken: join with --team 1.";
+  server.send(refusal);
+  EXPECT_TRUE(eventually([&] { return connection->status().link == Link::refused; }));
+  EXPECT_EQ(connection->status().detail, refusal.reason);
+}
+
+TEST_F(ConnectionTest, NoticesStandUntilCleared) {
+  open();
+  join(42);
+  wire::Notice notice;
+  notice.level = wire::Notice::Level::warning;
+  notice.topic = 9;
+  notice.text = "cabinet unplugged: rods 1-8 hold";
+  server.send(notice);
+  ASSERT_TRUE(eventually([&] { return connection->notices().size() == 1; }));
+  EXPECT_EQ(connection->notices()[0].text, notice.text);
+  notice.level = wire::Notice::Level::cleared;
+  server.send(notice);
+  EXPECT_TRUE(eventually([&] { return connection->notices().empty(); }));
+}
+
+TEST_F(ConnectionTest, InputsCarrySessionAndTokenCountUpAndAreRepeated) {
+  open();
+  join(42);
+  std::array<wire::InputRod, 8> rods{};
+  rods[3] = {true, 0.02f, 1.0f, 0.5f, 4.0f};
+  connection->drive(rods);
+  const auto first = server.next_input();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->session, 42u);
+  EXPECT_EQ(first->token, 11u);
+  EXPECT_TRUE(first->rods[3].driven);
+  EXPECT_FALSE(first->rods[2].driven);
+  EXPECT_NEAR(first->rods[3].slide, 0.02f, 1e-4f);
+  const auto again = server.next_input();  // nobody moved: at least 20 a second all the same
+  ASSERT_TRUE(again);
+  EXPECT_GT(again->sequence, first->sequence);
+  EXPECT_NEAR(again->rods[3].slide, 0.02f, 1e-4f);
+  EXPECT_EQ(again->rods[3].slide_rate, 0.0f);
+}
+
+TEST_F(ConnectionTest, WishesAndGoodByeReachTheServer) {
+  open();
+  join(42);
+  connection->wish({2, 0, 1});
+  const auto wish = server.next_message();
+  ASSERT_TRUE(wish && std::holds_alternative<wire::Wish>(*wish));
+  EXPECT_EQ(std::get<wire::Wish>(*wish).kind, 2);
+  connection.reset();
+  const auto bye = server.next_message();
+  EXPECT_TRUE(bye && std::holds_alternative<wire::Bye>(*bye));
+}
+
+TEST_F(ConnectionTest, APingIsAnswered) {
+  open();
+  join(42);
+  server.send(wire::Ping{99});
+  const auto pong = server.next_message();
+  ASSERT_TRUE(pong && std::holds_alternative<wire::Pong>(*pong));
+  EXPECT_EQ(std::get<wire::Pong>(*pong).id, 99u);
+}
+
+TEST(Connection, AnUnknownHostIsOneSentence) {
+  ConnectionOptions options;
+  options.host = "no such host";
+  const auto connection = Connection::open(options);
+  ASSERT_FALSE(connection);
+  EXPECT_NE(connection.error().find("--server HOST:PORT"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace client

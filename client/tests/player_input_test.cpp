@@ -1,0 +1,102 @@
+#include "client/player_input.h"
+
+#include <gtest/gtest.h>
+
+#include "scripted_scene.h"
+
+namespace client {
+namespace {
+
+constexpr std::int64_t kFrame = 16'667;  // [us]
+
+class PlayerInputTest : public ::testing::TestWithParam<int> {};
+
+TEST_P(PlayerInputTest, AwayFromThePersonSlidesAwayAndToTheRightSwingsFeetToTheOtherGoal) {
+  const int team = GetParam();
+  PlayerInput player(team, foosball::Layout::tournament);
+  wire::Snapshot scene = scripted_play(0.0);
+  for (auto& rod : scene.rods) rod.slide = rod.angle = 0;
+  player.update({}, &scene, kFrame);
+  InputEvents events;
+  events.mouse_forward = 40;
+  events.mouse_right = 20;
+  player.update(events, &scene, 2 * kFrame);
+  const auto rod = player.rods()[static_cast<std::size_t>(player.active_rod())];
+  EXPECT_TRUE(rod.driven);
+  EXPECT_GT(rod.slide * foosball::push_sign(team), 0.005);
+  // A positive angle swings the feet towards -x (foosball/table.h).
+  EXPECT_GT(-rod.angle * foosball::attack_sign(team), 0.05);
+}
+
+TEST_P(PlayerInputTest, DrivesTheOwnFourRodsOnlyAndTakesThemOverWhereTheyAre) {
+  const int team = GetParam();
+  PlayerInput player(team, foosball::Layout::tournament);
+  const wire::Snapshot scene = scripted_play(0.7);
+  player.update({}, &scene, kFrame);
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(player.rods()[i].driven, table.rods[i].team == team) << i;
+    if (table.rods[i].team == team) {
+      EXPECT_NEAR(player.rods()[i].slide, scene.rods[i].slide, 1e-6);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BothTeams, PlayerInputTest, ::testing::Values(0, 1));
+
+TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
+  const auto lines = foosball::rods_of_team(foosball::table_spec(foosball::Layout::tournament), 1);
+  PlayerInput player(1, foosball::Layout::tournament);
+  for (int line = 0; line < 4; ++line) {
+    InputEvents events;
+    events.choose_line = line;
+    player.update(events, nullptr, (line + 1) * kFrame);
+    EXPECT_EQ(player.active_rod(), lines[static_cast<std::size_t>(line)]);
+  }
+}
+
+TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
+  PlayerInput player(0, foosball::Layout::tournament);
+  wire::Snapshot scene = scripted_play(0);
+  InputEvents events;
+  events.push = true;
+  scene.screen = 0;
+  player.update(events, &scene, kFrame);
+  ASSERT_EQ(player.wishes().size(), 1u);
+  EXPECT_EQ(player.wishes()[0].kind, 0);
+  scene.screen = 2;
+  player.update(events, &scene, 2 * kFrame);
+  EXPECT_TRUE(player.wishes().empty());
+}
+
+TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
+  PlayerInput player(0, foosball::Layout::tournament);
+  wire::Snapshot scene = scripted_play(0);
+  InputEvents events;
+  events.toggle_pause = true;
+  player.update(events, &scene, kFrame);
+  ASSERT_EQ(player.wishes().size(), 1u);
+  EXPECT_EQ(player.wishes()[0].value, 1);
+  scene.paused = true;
+  player.update(events, &scene, 2 * kFrame);
+  ASSERT_EQ(player.wishes().size(), 1u);
+  EXPECT_EQ(player.wishes()[0].value, 0);
+}
+
+TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
+  PlayerInput player(0, foosball::Layout::tournament);
+  wire::Snapshot scene = scripted_play(0);
+  scene.screen = 1;
+  scene.character = {0, 0};
+  InputEvents events;
+  events.key_spin = 1;
+  player.update(events, &scene, kFrame);
+  ASSERT_EQ(player.wishes().size(), 1u);
+  EXPECT_EQ(player.wishes()[0].kind, 1);
+  EXPECT_EQ(player.wishes()[0].value, 1);
+  player.update(events, &scene, 2 * kFrame);
+  EXPECT_TRUE(player.wishes().empty());
+}
+
+}  // namespace
+}  // namespace client

@@ -1,0 +1,221 @@
+// Opens the real window, draws scripted moments and looks at the pixels. Needs a display.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "app/window.h"
+#include "render/hud.h"
+#include "render/image.h"
+#include "render/scene.h"
+#include "scripted_scene.h"
+
+namespace client {
+namespace {
+
+constexpr glm::ivec2 kSize{960, 540};
+
+class RenderTest : public ::testing::TestWithParam<Quality> {
+ protected:
+  static void SetUpTestSuite() {
+    WindowOptions options;
+    options.size = kSize;
+    auto opened = Window::open(options);
+    ASSERT_TRUE(opened) << opened.error().sentence;
+    window = std::make_unique<Window>(std::move(*opened));
+  }
+  static void TearDownTestSuite() { window.reset(); }
+
+  void SetUp() override {
+    ASSERT_TRUE(window);
+    auto made = Scene::create(GetParam());
+    ASSERT_TRUE(made) << made.error();
+    scene = std::move(*made);
+    auto font = Font::load();
+    ASSERT_TRUE(font) << font.error();
+    auto batch = UiBatch::create(std::move(*font));
+    ASSERT_TRUE(batch) << batch.error();
+    ui = std::make_unique<UiBatch>(std::move(*batch));
+    camera = player_camera({}, kSize);
+  }
+  void TearDown() override {
+    scene.reset();
+    ui.reset();
+  }
+
+  Image draw(const wire::Snapshot& state, bool with_hud = false, const std::string& message = {}) {
+    SceneView view;
+    view.camera = camera;
+    Particles none;
+    scene->draw(state, view, none, kSize);
+    if (with_hud) {
+      HudState hud;
+      hud.state = &state;
+      hud.camera = camera;
+      hud.connection_message = message;
+      draw_hud(*ui, hud, kSize);
+    }
+    const Image image = read_pixels(kSize);
+    // For a person to look at after a failure.
+    if (const char* directory = std::getenv("CLIENT_TEST_PICTURES")) {
+      static int count = 0;
+      (void)write_png(image,
+                      std::string(directory) + "/render-" + std::to_string(count++) + ".png");
+    }
+    window->swap();
+    return image;
+  }
+
+  glm::ivec2 pixel_of(const std::array<float, 3>& p) const {
+    const glm::vec3 at = camera.project({p[0], p[1], p[2]}, kSize);
+    return {static_cast<int>(at.x), static_cast<int>(at.y)};
+  }
+
+  static glm::vec3 mean(const Image& image, glm::ivec2 low, glm::ivec2 high) {
+    glm::vec3 sum(0.0f);
+    for (int y = low.y; y < high.y; ++y) {
+      for (int x = low.x; x < high.x; ++x) sum += glm::vec3(image.at(x, y));
+    }
+    return sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
+  }
+
+  // How many pixels around differ clearly between two pictures.
+  static int changed(const Image& a, const Image& b, glm::ivec2 centre, int radius) {
+    int count = 0;
+    for (int y = std::max(0, centre.y - radius); y < std::min(kSize.y, centre.y + radius); ++y) {
+      for (int x = std::max(0, centre.x - radius); x < std::min(kSize.x, centre.x + radius); ++x) {
+        const glm::ivec3 d = glm::abs(a.at(x, y) - b.at(x, y));
+        count += d.r + d.g + d.b > 60;
+      }
+    }
+    return count;
+  }
+
+  static std::unique_ptr<Window> window;
+  std::unique_ptr<Scene> scene;
+  std::unique_ptr<UiBatch> ui;
+  Camera camera;
+};
+std::unique_ptr<Window> RenderTest::window;
+
+TEST_P(RenderTest, TheFieldIsTealWhereNothingStandsOnIt) {
+  wire::Snapshot state = scripted_play(0.35);
+  state.ball_in_play = false;
+  const Image image = draw(state);
+  // Between the rods, off the markings, out of every shadow's reach at this moment's light.
+  for (const std::array<float, 3>& p :
+       {std::array{0.05f, -0.24f, 0.0f}, std::array{-0.30f, 0.20f, 0.0f}}) {
+    const glm::ivec2 at = pixel_of(p);
+    const glm::vec3 c = mean(image, at - 3, at + 3);
+    EXPECT_GT(c.g, c.r + 15) << c.r << " " << c.g << " " << c.b;
+    EXPECT_GT(c.b, c.r + 15);
+    EXPECT_GT(c.g, 45);
+    EXPECT_LT(c.g, 190);
+  }
+}
+
+TEST_P(RenderTest, TheBallIsWhereItsPixelsAre) {
+  for (const double moment : {0.35, 1.62, 2.4}) {
+    wire::Snapshot with = scripted_play(moment);
+    with.ball.position = {0.05f + 0.2f * static_cast<float>(moment), -0.24f, 0.0173f};
+    wire::Snapshot without = with;
+    without.ball_in_play = false;
+    const glm::ivec2 at = pixel_of(with.ball.position);
+    const Image image = draw(with), empty = draw(without);
+    EXPECT_GT(changed(image, empty, at, 8), 60) << moment;
+    const glm::vec3 c = mean(image, at - 5, at + 5);
+    EXPECT_GT(std::min({c.r, c.g, c.b}), 75.0f) << moment;  // white with dark patches, on dark teal
+    EXPECT_LT(changed(image, empty, {kSize.x / 8, kSize.y / 2}, 30), 5);
+  }
+}
+
+TEST_P(RenderTest, MenAreAtTheirPlacesInTheirTeamsColours) {
+  for (const double moment : {0.35, 1.62, 2.4}) {
+    wire::Snapshot state = scripted_play(moment);
+    state.ball_in_play = false;
+    wire::Snapshot nobody = state;
+    nobody.men.clear();
+    const Image image = draw(state), empty = draw(nobody);
+    const auto& table = foosball::table_spec(foosball::Layout::tournament);
+    for (const wire::ManState& man : state.men) {
+      const glm::ivec2 at = pixel_of(man.body.position);
+      if (at.y < 70) continue;
+      EXPECT_GT(changed(image, empty, at, 14), 40)
+          << moment << " rod " << int{man.rod} << " man " << int{man.man};
+      int orange = 0, blue = 0;
+      for (int y = at.y - 20; y < at.y + 20; ++y) {
+        for (int x = at.x - 20; x < at.x + 20; ++x) {
+          const glm::ivec3 c = image.at(x, y), before = empty.at(x, y);
+          if (c == before) continue;
+          orange += c.r > c.b + 40;
+          blue += c.b > c.r + 60;
+        }
+      }
+      const bool first_team = table.rods[man.rod].team == 0;
+      EXPECT_GT(first_team ? orange : blue, 8)
+          << moment << " rod " << int{man.rod} << " man " << int{man.man};
+    }
+  }
+}
+
+TEST_P(RenderTest, AManThatMovesLeavesHisPlace) {
+  wire::Snapshot here = scripted_play(0.0), there = here;
+  here.ball_in_play = there.ball_in_play = false;
+  for (auto* s : {&here, &there}) {
+    for (auto& rod : s->rods) rod.slide = rod.angle = 0;
+  }
+  there.rods[3].slide = 0.06f;
+  place_men(here);
+  place_men(there);
+  const Image a = draw(here), b = draw(there);
+  const wire::ManState &moved = here.men[8], &still = here.men[4];
+  ASSERT_EQ(moved.rod, 3);
+  ASSERT_EQ(still.rod, 2);
+  EXPECT_GT(changed(a, b, pixel_of(moved.body.position), 14), 60);
+  EXPECT_EQ(changed(a, b, pixel_of(still.body.position), 6), 0);
+}
+
+TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
+  const wire::Snapshot state = scripted_play(0.35);
+  const Image plain = draw(state), scored = draw(state, true);
+  EXPECT_GT(changed(plain, scored, {kSize.x / 2, 36}, 40), 700);
+  // Orange figures left of the middle, blue ones right of it.
+  const glm::vec3 left = mean(scored, {kSize.x / 2 - 60, 18}, {kSize.x / 2 - 25, 52});
+  const glm::vec3 right = mean(scored, {kSize.x / 2 + 25, 18}, {kSize.x / 2 + 60, 52});
+  EXPECT_GT(left.r, left.b + 10);
+  EXPECT_GT(right.b, right.r + 10);
+  const Image lost = draw(state, true, "Physics server lost: waiting at 127.0.0.1:7531");
+  EXPECT_GT(changed(scored, lost, {kSize.x / 2, static_cast<int>(0.42f * kSize.y)}, 60), 2000);
+}
+
+TEST_P(RenderTest, EveryScreenHasItsWords) {
+  for (std::uint8_t screen = 0; screen < 5; ++screen) {
+    wire::Snapshot state = scripted_play(0.35);
+    state.screen = screen;
+    state.ball_in_play = false;
+    const Image plain = draw(state), written = draw(state, true);
+    EXPECT_GT(changed(plain, written, kSize / 2, kSize.x), 1500) << int{screen};
+  }
+}
+
+TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
+  wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);
+  state.ball_in_play = false;
+  ASSERT_EQ(state.men.size(), 32u);
+  wire::Snapshot nobody = state;
+  nobody.men.clear();
+  const Image image = draw(state), empty = draw(nobody);
+  for (const wire::ManState& man : state.men) {
+    const glm::ivec2 at = pixel_of(man.body.position);
+    EXPECT_GT(changed(image, empty, at, 14), 40)
+        << "rod " << int{man.rod} << " man " << int{man.man};
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BothQualities, RenderTest, ::testing::Values(Quality::low, Quality::high),
+                         [](const auto& which) {
+                           return which.param == Quality::low ? "low" : "high";
+                         });
+
+}  // namespace
+}  // namespace client

@@ -1,0 +1,46 @@
+// A server for tests: real sockets on loopback, worked step by step by the test itself.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "wire/control.h"
+#include "wire/input_datagram.h"
+#include "wire/snapshot.h"
+
+namespace client {
+
+class ScriptedServer {
+ public:
+  explicit ScriptedServer(std::uint16_t port = 0);  // 0: any
+  ~ScriptedServer();
+  std::uint16_t port() const { return port_; }
+
+  // Each waits until it happened, at most kPatience; false or nothing after that.
+  static constexpr std::chrono::milliseconds kPatience{10'000};
+  bool accept();
+  std::optional<wire::ControlMessage> next_message();
+  std::optional<wire::InputDatagram> next_input();
+
+  void send(const wire::ControlMessage& message);
+  void send_bytes(std::span<const std::byte> bytes);
+  void send_snapshot(const wire::Snapshot& snapshot);  // to the port of the client's Hello
+  void send_datagram(std::span<const std::byte> bytes);
+  void drop_client();
+
+  // Accepts, reads the Hello and answers with a Welcome; false if any of it fails.
+  bool welcome(std::uint64_t session, std::uint64_t token = 11, std::uint8_t team = 0);
+  const wire::Hello& hello() const { return hello_; }
+
+ private:
+  int listener_ = -1, client_ = -1, udp_ = -1;
+  std::uint16_t port_ = 0, udp_port_ = 0;
+  wire::ControlReader reader_;
+  wire::Hello hello_;
+};
+
+}  // namespace client
