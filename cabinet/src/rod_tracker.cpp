@@ -36,7 +36,7 @@ constexpr int kStraysOfNewRun = 4;
 // RateFilter's figures for PS/2 at 200 reports a second: a report spans 5 ms, and seen through 4 ms
 // frames two lie at most 8 ms apart.
 constexpr std::int64_t kReportUs = 5'000;
-constexpr std::int64_t kRateHoldUs = 12'000;
+constexpr std::int64_t kRateHoldUs = 9'000;
 
 std::int32_t elapsed_us(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
   return static_cast<std::int32_t>(to.time_us - from.time_us);
