@@ -113,8 +113,8 @@ struct ContactEvent {
 struct StepStatus {
   bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it
                               // and what it touches were held for the rest of the step
-  bool non_finite = false;  // a body left the range of numbers and was stopped where it was
-  double time_held = 0.0;   // the part of dt lost to impact_limit [s]
+  bool non_finite = false;    // a body left the range of numbers and was stopped where it was
+  double time_held = 0.0;     // the part of dt lost to impact_limit [s]
 };
 
 struct StepCounters {

@@ -72,7 +72,8 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
     p.position = m.points[i].position;
     p.separation = m.points[i].separation;
     p.feature = m.points[i].feature;
-    const PairPoint* old = last ? point_of(*last, m.points[i], kSamePoint * desc.contact_slop) : nullptr;
+    const PairPoint* old =
+        last ? point_of(*last, m.points[i], kSamePoint * desc.contact_slop) : nullptr;
     p.normal_impulse = old ? old->normal_impulse : 0.0;
     p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
     p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
