@@ -168,7 +168,7 @@ TEST(ServerProgram, PlaysOnWhenAClientIsKilledAndTheNextIsInStepWithinASecond) {
   const auto first = next.snapshot(), second = next.snapshot();
   ASSERT_TRUE(first && second);
   EXPECT_EQ(second->tick, first->tick + 1);
-  EXPECT_LT(seconds(), 1.0);  // measured 0.003
+  EXPECT_LT(seconds(), 1.0);  // measured: 0.0016 to 0.0037 in 20 runs
   RecordProperty("seconds", std::to_string(seconds()));
   ::close(ends[0]);
   ::close(ends[1]);

@@ -73,7 +73,7 @@ TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
     const auto& w = man.body.angular_velocity;
     const vp::Vec3 said =
         vp::Vec3{v[0], v[1], v[2]} + vp::cross(vp::Vec3{w[0], w[1], w[2]}, before.rotate(foot));
-    EXPECT_LT(vp::norm(moved - said), 1e-3);  // measured 2e-5: float and the difference itself
+    EXPECT_LT(vp::norm(moved - said), 1e-3);  // measured 1.4e-5
   }
 }
 
