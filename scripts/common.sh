@@ -10,10 +10,11 @@ seconds_since() { # seconds_since EPOCHREALTIME: with one decimal
   awk -v a="$1" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.1f", b - a }'
 }
 
-# Nobody should have to compile the same file twice: ccache is used where it is installed.
+# Nobody should have to compile the same file twice: ccache is used where it is installed, and what it
+# keeps serves every checkout.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 launcher_flags() {
   command -v ccache >/dev/null || return 0
-  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
   echo "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache"
 }
 
