@@ -81,10 +81,6 @@ IMPURE = re.compile(
     r'^(chrono|ctime|time\.h|random|fstream|iostream|cstdio|stdio\.h|filesystem|thread|mutex|future|'
     r'condition_variable|unistd\.h|fcntl\.h|sys/.*|arpa/.*|netinet/.*|poll\.h|pthread\.h|asio.*|'
     r'spdlog/.*|GLFW/.*|GLES.*|AL/.*|unordered_map|unordered_set)$')
-# Exceptions, each with its reason.
-ALLOWED = {
-    ('vphysics/src/assert.cpp', 'cstdio'): 'a failed assertion says where, before it aborts',
-}
 PURE = ENGINE | {'table', 'foosball'}
 
 SOURCES = ('.h', '.hpp', '.c', '.cpp', '.inl')
@@ -189,7 +185,7 @@ def check(root):
                 broken = rule_broken(source, target)
             else:
                 broken = None
-                if layer_of(source) in PURE and IMPURE.match(name) and (source, name) not in ALLOWED:
+                if layer_of(source) in PURE and IMPURE.match(name):
                     broken = f'<{name}> in layer "{layer_of(source)}", which is pure simulation: ' \
                              'no clock, file, socket, thread, generator or unordered container'
             if broken:

@@ -1,23 +1,22 @@
 #include "vphysics/assert.h"
 
-#include <cstdio>
 #include <cstdlib>
 
 namespace vp {
 namespace {
 
-void write_and_abort(const char* condition, const char* file, int line) {
-  std::fprintf(stderr, "%s:%d: VP_ASSERT(%s) failed\n", file, line, condition);
+// The engine prints nothing: a debugger stops here with all three in the frame.
+void stop(const char*, const char*, int) {
   std::abort();
 }
 
-AssertHandler g_handler = write_and_abort;
+AssertHandler g_handler = stop;
 
 }  // namespace
 
 AssertHandler set_assert_handler(AssertHandler handler) {
   const AssertHandler before = g_handler;
-  g_handler = handler ? handler : write_and_abort;
+  g_handler = handler ? handler : stop;
   return before;
 }
 

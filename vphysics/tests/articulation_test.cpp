@@ -1,6 +1,7 @@
 // Rods: joints in reduced coordinates, their motors and stops.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "rig.h"
@@ -76,15 +77,25 @@ TEST(Drive, PressesWithItsSpringForce) {
   must(j.world.add_collider(j.body, box));
   const BodyId load = add_dynamic(
       j.world, {.shape = Box{{0.1, 0.1, 0.1}}, .density = 100.0, .pose = SE3(Vec3{0, 0, 0.2})});
-  add_fixed(j.world, Box{{1, 1, 0.1}}, {}, SE3(Vec3{0, 0, 0.4}));
+  const SE3 behind(Vec3{0, 0, 0.4});
+  const BodyId wall = add_fixed(j.world, Box{{1, 1, 0.1}}, {}, behind);
   const double k = 1e4, target = 0.01;
   must(j.world.set_drive(j.id, 0, 0, {target, 0.0, k, 300.0, 1e3}));
   for (int i = 0; i < 2000; ++i) must(j.world.step(kDt));
   const double q = j.world.joint_position(j.id, 0, 0);
   EXPECT_LT(std::fabs(q), 4e-4);
   EXPECT_NEAR(j.world.pose(load).position().z, 0.2, 4e-4);
-  // Take the wall's side away: the load leaves with the impulse the motor gives in one step.
   EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 0.0, 1e-4);
+  // A new wall in the place of the old one: the event of their first touch tells the impulse.
+  must(j.world.destroy_body(wall));
+  add_fixed(j.world, Box{{1, 1, 0.1}}, {}, behind);
+  must(j.world.step(kDt));
+  const auto events = j.world.contact_events();
+  const auto begin = std::find_if(events.begin(), events.end(), [](const ContactEvent& e) {
+    return e.kind == ContactEvent::Kind::begin;
+  });
+  ASSERT_NE(begin, events.end());
+  EXPECT_NEAR(begin->impulse / kDt, k * (target - q), 0.01 * k * target);
 }
 
 TEST(Limit, HoldsAgainstAMotor) {

@@ -1,7 +1,6 @@
 // VP_ASSERT(condition): a caller's mistake, caught where it is made. On unless NDEBUG is defined
 // and VP_ASSERTIONS is not (Debug and RelWithDebInfo of this project's build). What happens then
-// can be replaced: a test counts, an editor shows; the default writes one line to stderr and
-// aborts.
+// can be replaced: a test counts, an editor shows; the default aborts.
 #pragma once
 
 namespace vp {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "world/impl.h"
+#include "world/validate.h"
 
 namespace vp {
 namespace {
@@ -233,14 +234,19 @@ void World::Impl::remember_impulses() {
   for (const solve::ContactConstraint& c : contacts) {
     PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b));
     record.count = static_cast<std::uint32_t>(c.count);
-    record.rolling = c.rolling_impulse;
+    // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
+    record.rolling = in_range(c.rolling_impulse) ? c.rolling_impulse : Vec3{};
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
-      record.points[i] = {p.feature, 0.0, {}, p.position};
+      record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};
       if (p.target > 0.0) continue;  // a bounce carries nothing on
       record.points[i].normal_impulse = p.normal_impulse;
       record.points[i].friction =
           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1];
+      PairPoint& kept = record.points[i];
+      if (!in_range(kept.normal_impulse) || !in_range(kept.friction) || !in_range(kept.position)) {
+        kept = {p.feature, 0.0, {}, {}};
+      }
     }
   }
 }

@@ -95,7 +95,13 @@ void World::Impl::integrate_forces(double dt) {
 
 bool World::Impl::stop_if_out_of_range(std::uint32_t index) {
   Body& body = bodies[index];
-  if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
+  bool fine = in_range(body.w) && in_range(body.v) && in_range(body.T.position());
+  if (body.is_link) {
+    for (const JointAxis& axis : articulations[body.articulation].axes) {
+      fine = fine && in_range(axis.q) && std::isfinite(axis.drive_impulse);
+    }
+  }
+  if (fine) return false;
   status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
