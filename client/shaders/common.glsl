@@ -12,7 +12,14 @@ vec3 decode_light(vec3 e) {
 vec3 tone_map(vec3 c) {
   c *= 0.92;
   c = clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
+#ifdef LOW_QUALITY
+  // The sRGB curve from three roots, which cost far less than a power in software; the coefficients
+  // are a fit, off by less than 0.005.
+  vec3 s1 = sqrt(c), s2 = sqrt(s1), s3 = sqrt(s2);
+  return clamp(0.662002687 * s1 + 0.684122060 * s2 - 0.323583601 * s3 - 0.0225411470 * c, 0.0, 1.0);
+#else
   return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+#endif
 }
 
 // Half a step of noise against banding in the dark sky.

@@ -37,13 +37,13 @@ void main() {
   vec2 p = v_position.xy;
   vec2 band = abs(fract(p / vec2(0.150, 2.0) + 0.25) - 0.5);
   float mown = smoothstep(0.245, 0.255, band.x);
-  vec3 turf = mix(vec3(0.0060, 0.050, 0.062), vec3(0.0085, 0.064, 0.078), mown);
+  vec3 turf = mix(vec3(0.0045, 0.040, 0.052), vec3(0.0065, 0.053, 0.067), mown);
   float towards = smoothstep(0.35, 1.0, abs(p.x) / u_half_field.x);
   turf += u_team_colour[p.x > 0.0 ? 1 : 0] * 0.014 * towards;
   float edge = min(u_half_field.x - abs(p.x), u_half_field.y - abs(p.y));
   float m = markings(p);
 
-  Surface s = Surface(mix(turf, vec3(0.52, 0.66, 0.70), 0.86 * m), 0.72, 0.0);
+  Surface s = Surface(mix(turf, vec3(0.52, 0.66, 0.70), 0.86 * m), 0.88, 0.0);
   float occlusion = mix(0.45, 1.0, smoothstep(0.0, 0.05, edge));
   float contact = 1.0;
   if (u_ball.w > 0.0) {

@@ -16,10 +16,12 @@ struct Surface {
   float metal;
 };
 
+float shadow_bias(float cosine) { return 0.0006 + 0.0016 * (1.0 - cosine); }
+
+// Beyond the map's edge nothing casts: its border compares as far away.
 float key_visibility(vec3 shadow_position, float cosine) {
   vec3 p = shadow_position;
-  if (any(greaterThan(abs(p - 0.5), vec3(0.5)))) return 1.0;
-  p.z -= 0.0006 + 0.0016 * (1.0 - cosine);
+  p.z -= shadow_bias(cosine);
 #ifdef LOW_QUALITY
   return texture(u_shadow_map, p);
 #else
@@ -40,38 +42,54 @@ vec3 specular_lobe(Surface s, vec3 n, vec3 v, vec3 l, vec3 f0) {
   float a = s.roughness * s.roughness, a2 = a * a;
   float d = nh * nh * (a2 - 1.0) + 1.0;
   float visibility = 0.5 / max(mix(2.0 * nl * nv, nl + nv, a), 0.001);
-  vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
+  float away = 1.0 - vh, away2 = away * away;
+  vec3 fresnel = f0 + (1.0 - f0) * away2 * away2 * away;
   return fresnel * (a2 / (kPi * d * d)) * visibility * nl;
 }
 
 // The sky alone would leave metal black: two soft panels of light hang over the table.
 vec3 mirror_image(vec3 r, float roughness) {
-  vec3 sky = textureLod(u_sky, r, roughness * 6.0).rgb;
-  sky *= sky * 1.6;
   float soft = 0.05 + 0.6 * roughness;
   float panel = smoothstep(0.35 - soft, 0.35 + soft, r.z) * (1.0 - smoothstep(0.22, 0.22 + soft, abs(r.x + 0.28)));
   panel *= 1.0 - 0.85 * roughness;
   vec3 hall = mix(vec3(0.030, 0.042, 0.060), vec3(0.12, 0.15, 0.20), smoothstep(-0.5, 0.7, r.z));
-  return sky + hall + panel * vec3(1.75, 1.85, 2.0);
+  vec3 image = hall + panel * vec3(1.75, 1.85, 2.0);
+#ifndef LOW_QUALITY
+  vec3 sky = textureLod(u_sky, r, roughness * 6.0).rgb;
+  image += sky * sky * 1.6;
+#endif
+  return image;
 }
 
-vec3 shade(Surface s, vec3 position, vec3 n, vec3 shadow_position, float occlusion) {
+float fifth(float x) { return x * x * x * x * x; }
+
+// What a surface sends to the eye: of the key light, if no shadow lies on it, and of all else.
+struct Lit {
+  vec3 key;
+  vec3 rest;
+};
+
+Lit light_surface(Surface s, vec3 position, vec3 n, float occlusion) {
+#ifdef LOW_QUALITY
+  s.roughness = max(s.roughness, 0.45);  // found at corners, a narrow highlight would fill whole faces
+#endif
   vec3 v = normalize(u_eye - position);
   vec3 f0 = mix(vec3(0.04), s.albedo, s.metal);
   vec3 diffuse = s.albedo * (1.0 - s.metal);
   float cosine = max(dot(n, u_key_direction), 0.0);
-  float lit = cosine > 0.0 ? key_visibility(shadow_position, cosine) : 0.0;
-
-  vec3 light = u_key_colour * lit * (diffuse / kPi * cosine + specular_lobe(s, n, v, u_key_direction, f0));
   vec3 fill = normalize(vec3(-u_key_direction.xy, 0.35));
-  light += kFillColour * diffuse * max(dot(n, fill), 0.0) * 0.5;
-  light += diffuse * mix(kGroundAmbient, kSkyAmbient, 0.5 + 0.5 * n.z) * occlusion;
-
-  float rim = pow(1.0 - max(dot(n, v), 0.0), 5.0);
+  float rim = fifth(1.0 - max(dot(n, v), 0.0));
   vec3 reflected = f0 + (max(vec3(1.0 - s.roughness), f0) - f0) * rim;
-#ifdef LOW_QUALITY
-  // One fetch of the sky a pixel is dear in software: only metal and glass mirror it.
-  if (s.metal < 0.5 && s.roughness > 0.25) return light + reflected * vec3(0.12, 0.15, 0.20) * occlusion;
-#endif
-  return light + reflected * mirror_image(reflect(-v, n), s.roughness) * occlusion;
+
+  Lit lit;
+  lit.key = u_key_colour * (diffuse / kPi * cosine + specular_lobe(s, n, v, u_key_direction, f0));
+  lit.rest = kFillColour * diffuse * max(dot(n, fill), 0.0) * 0.5;
+  lit.rest += diffuse * mix(kGroundAmbient, kSkyAmbient, 0.5 + 0.5 * n.z) * occlusion;
+  lit.rest += reflected * mirror_image(reflect(-v, n), s.roughness) * occlusion;
+  return lit;
+}
+
+vec3 shade(Surface s, vec3 position, vec3 n, vec3 shadow_position, float occlusion) {
+  Lit lit = light_surface(s, position, n, occlusion);
+  return lit.rest + lit.key * key_visibility(shadow_position, max(dot(n, u_key_direction), 0.0));
 }

@@ -50,7 +50,8 @@ vec3 planet(vec3 d, vec3 sky) {
   vec2 around = normalize(d.xy + vec2(1e-5, 0.0));
   float lit = 0.20 + 0.80 * smoothstep(-0.9, 0.9, -around.x);
   vec3 air = vec3(0.07, 0.24, 0.46) * lit;
-  if (inside < 0.0) return sky + air * 0.85 * exp(inside * 30.0);
+  vec3 glow = sky + air * 0.85 * exp(min(inside, 0.0) * 30.0);
+  if (inside < -0.006) return glow;
   float r = angle / radius;
   vec3 n = vec3(around * r, sqrt(max(1.0 - r * r, 0.0)));
   float clouds = fbm(n * 3.2 + 1.4 * fbm(n * 5.0 + 9.0));
@@ -60,7 +61,8 @@ vec3 planet(vec3 d, vec3 sky) {
   ground += vec3(0.018, 0.024, 0.032) * smoothstep(0.48, 0.80, clouds);
   float city = land * smoothstep(0.74, 0.90, noise(n * 26.0)) * smoothstep(0.55, 0.9, noise(n * 90.0));
   vec3 c = ground * (0.45 + 2.4 * day) + vec3(0.16, 0.10, 0.045) * city * (1.0 - smoothstep(0.45, 0.7, clouds));
-  return c + air * 0.55 * exp(-inside * 11.0);
+  c += air * 0.55 * exp(-max(inside, 0.0) * 11.0);
+  return mix(glow, c, smoothstep(-0.004, 0.004, inside));  // two texels wide: no stairs
 }
 
 void main() {

@@ -9,21 +9,38 @@ layout(location = 6) in vec4 i_row2;
 layout(location = 7) in vec4 i_tint;      // linear rgb; a: glow of the active rod
 uniform mat4 u_view_projection;
 uniform mat4 u_shadow_matrix;
+out vec3 v_shadow;
+#ifdef LOW_QUALITY
+out vec3 v_key;
+out vec3 v_rest;
+#else
 out vec3 v_position;
 out vec3 v_normal;
-out vec3 v_shadow;
-flat out float v_glow;
 out vec3 v_albedo;
 out vec4 v_material;
+flat out float v_glow;
+#endif
 
 void main() {
   vec4 p = vec4(a_position, 1.0);
-  v_position = vec3(dot(i_row0, p), dot(i_row1, p), dot(i_row2, p));
-  v_normal = vec3(dot(i_row0.xyz, a_normal), dot(i_row1.xyz, a_normal), dot(i_row2.xyz, a_normal));
-  v_shadow = (u_shadow_matrix * vec4(v_position, 1.0)).xyz;
+  vec3 position = vec3(dot(i_row0, p), dot(i_row1, p), dot(i_row2, p));
+  vec3 normal = vec3(dot(i_row0.xyz, a_normal), dot(i_row1.xyz, a_normal), dot(i_row2.xyz, a_normal));
   vec3 albedo = a_albedo.rgb * a_albedo.rgb;
-  v_albedo = mix(albedo, albedo * i_tint.rgb, a_albedo.a);
+  albedo = mix(albedo, albedo * i_tint.rgb, a_albedo.a);
+  v_shadow = (u_shadow_matrix * vec4(position, 1.0)).xyz;
+  gl_Position = u_view_projection * vec4(position, 1.0);
+#ifdef LOW_QUALITY
+  // Software OpenGL pays for every operation on every pixel: the light is found at the corners, only
+  // its shadow at each pixel.
+  Lit lit = light_solid(position, normalize(normal), albedo, a_material, i_tint.a);
+  v_shadow.z -= shadow_bias(max(dot(normalize(normal), u_key_direction), 0.0));
+  v_key = lit.key;
+  v_rest = lit.rest;
+#else
+  v_position = position;
+  v_normal = normal;
+  v_albedo = albedo;
   v_material = a_material;
   v_glow = i_tint.a;
-  gl_Position = u_view_projection * vec4(v_position, 1.0);
+#endif
 }

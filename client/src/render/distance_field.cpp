@@ -65,10 +65,13 @@ void transform(std::vector<float>& grid, int width, int height) {
 std::vector<std::uint8_t> distance_field(std::span<const std::uint8_t> coverage, int width,
                                          int height, int step, float reach) {
   std::vector<float> to_inside(coverage.size()), to_outside(coverage.size());
+  // A pixel that the outline crosses tells by its coverage how far from its middle the outline
+  // runs.
+  const auto squared = [](float d) { return d > 0.0f ? d * d : 0.0f; };
   for (std::size_t i = 0; i < coverage.size(); ++i) {
-    const bool inside = coverage[i] >= 128;
-    to_inside[i] = inside ? 0.0f : kFar;
-    to_outside[i] = inside ? kFar : 0.0f;
+    const float covered = static_cast<float>(coverage[i]) / 255.0f;
+    to_inside[i] = coverage[i] == 0 ? kFar : squared(0.5f - covered);
+    to_outside[i] = coverage[i] == 255 ? kFar : squared(covered - 0.5f);
   }
   transform(to_inside, width, height);
   transform(to_outside, width, height);

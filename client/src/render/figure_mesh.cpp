@@ -13,6 +13,7 @@ using Part = foosball::ManBox::Part;
 const Paint kSuit{glm::vec3(1.0f), 1.0f, 0.48f, 0.0f, 0.0f};
 const Paint kSuitDark{glm::vec3(0.42f), 1.0f, 0.55f, 0.0f, 0.0f};
 const Paint kShell{glm::vec3(0.80f, 0.82f, 0.85f), 0.0f, 0.30f, 0.0f, 0.0f};
+const Paint kHelmet{glm::vec3(0.88f, 0.89f, 0.91f), 0.38f, 0.28f, 0.0f, 0.0f};
 const Paint kPack{glm::vec3(0.42f, 0.45f, 0.50f), 0.0f, 0.45f, 0.2f, 0.0f};
 const Paint kVisor{glm::vec3(0.10f, 0.075f, 0.04f), 0.0f, 0.12f, 0.85f, 0.0f};
 const Paint kSteel{glm::vec3(0.55f, 0.57f, 0.60f), 0.0f, 0.30f, 1.0f, 0.0f};
@@ -85,7 +86,7 @@ void add_arms(MeshBuilder& b, const Extent& t) {
 
 void add_head(MeshBuilder& b, const Extent& head, const Extent& torso) {
   const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
-  b.paint(kShell);
+  b.paint(kHelmet);
   b.ellipsoid(head.centre, r, 20, 14);
   b.paint(kSuit);  // crest in the team's colour, seen from above
   b.loft(

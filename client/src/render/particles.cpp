@@ -34,7 +34,7 @@ void Particles::celebrate(const glm::vec3& at, const glm::vec3& colour) {
   for (int i = 0; i < 220; ++i) {
     const glm::vec3 scatter{0.55f * uniform(), 0.55f * uniform(), 0.75f + 0.45f * uniform()};
     const glm::vec3 paper = i % 3 == 0 ? glm::vec3(0.9f) : colour;
-    add({at + 0.03f * scatter, 1.15f * scatter, paper, 0.0042f + 0.0016f * uniform(), 0.0f,
+    add({at + 0.03f * scatter, 1.15f * scatter, paper, 0.0065f + 0.0025f * uniform(), 0.0f,
          1.5f + 0.6f * uniform(), -1.1f});
   }
 }

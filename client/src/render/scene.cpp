@@ -14,7 +14,7 @@
 namespace client {
 namespace {
 
-const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.38f, -0.30f, 0.90f));
+const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.42f, -0.04f, 0.90f));
 const glm::vec3 kKeyColour{3.5f, 3.35f, 3.1f};
 const glm::vec3 kHeldColour{0.95f, 0.62f, 0.08f};
 constexpr float kLightReach = 1.0f;  // [m]: the table fits into the light's box
@@ -62,7 +62,7 @@ tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality)
   auto post = Post::create(quality);
   if (!post) return tl::unexpected(post.error());
   scene->post_ = std::move(*post);
-  scene->shadow_ = ShadowTarget(quality == Quality::high ? 2048 : 1024);
+  scene->shadow_ = quality == Quality::high ? ShadowTarget(2048, true) : ShadowTarget(1024, false);
   scene->light_matrix_ = light_matrix();
   scene->build_static_meshes();
   scene->use_layout(foosball::Layout::tournament);
@@ -75,7 +75,9 @@ std::string Scene::build_programs() {
     std::initializer_list<std::string_view> vertex, fragment;
   };
   const Wanted wanted[] = {
-      {&solid_, {"solid.vert"}, {"common.glsl", "lighting.glsl", "solid.frag"}},
+      {&solid_,
+       {"lighting.glsl", "solid.glsl", "solid.vert"},
+       {"common.glsl", "lighting.glsl", "solid.glsl", "solid.frag"}},
       {&depth_, {"depth.vert"}, {"depth.frag"}},
       {&field_, {"field.vert"}, {"common.glsl", "lighting.glsl", "field.frag"}},
       {&ball_, {"ball.vert"}, {"common.glsl", "lighting.glsl", "ball.frag"}},

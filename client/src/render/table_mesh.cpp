@@ -12,12 +12,12 @@ namespace {
 using foosball::TableSpec;
 
 const Paint kBody{{0.028f, 0.036f, 0.052f}, 0.0f, 0.38f, 0.25f, 0.0f};
-const Paint kRail{{0.040f, 0.050f, 0.066f}, 0.0f, 0.42f, 0.2f, 0.0f};
-const Paint kPlate{{0.016f, 0.020f, 0.027f}, 0.0f, 0.30f, 0.1f, 0.0f};
+const Paint kRail{{0.040f, 0.050f, 0.066f}, 0.0f, 0.58f, 0.1f, 0.0f};
+const Paint kPlate{{0.014f, 0.018f, 0.025f}, 0.0f, 0.50f, 0.0f, 0.0f};
 const Paint kBolt{{0.45f, 0.47f, 0.50f}, 0.0f, 0.3f, 1.0f, 0.0f};
 const Paint kWall{{0.040f, 0.052f, 0.070f}, 0.0f, 0.50f, 0.0f, 0.0f};
 const Paint kPocket{{0.012f, 0.015f, 0.020f}, 0.0f, 0.8f, 0.0f, 0.0f};
-const Paint kCorner{{0.020f, 0.092f, 0.112f}, 0.0f, 0.5f, 0.0f, 0.0f};
+const Paint kCorner{{0.012f, 0.066f, 0.082f}, 0.0f, 0.8f, 0.0f, 0.0f};
 const Paint kBearing{{0.10f, 0.11f, 0.13f}, 0.0f, 0.35f, 0.7f, 0.0f};
 const Paint kChrome{{0.80f, 0.82f, 0.85f}, 0.0f, 0.17f, 1.0f, 0.0f};
 const Paint kRubber{{0.020f, 0.021f, 0.024f}, 0.0f, 0.75f, 0.0f, 0.0f};

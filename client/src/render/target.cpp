@@ -66,11 +66,11 @@ void Target::resolve() const {
                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-ShadowTarget::ShadowTarget(int size)
+ShadowTarget::ShadowTarget(int size, bool smooth)
     : size_(size), texture_(GlTexture::make()), framebuffer_(GlFramebuffer::make()) {
   bind_texture(0, GL_TEXTURE_2D, texture_.get());
   glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, size, size);
-  set_filter(GL_TEXTURE_2D, GL_LINEAR);
+  set_filter(GL_TEXTURE_2D, smooth ? GL_LINEAR : GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());

@@ -36,7 +36,8 @@ class Target {
 class ShadowTarget {
  public:
   ShadowTarget() = default;
-  explicit ShadowTarget(int size);
+  // smooth: compared at four texels and mixed; else at the nearest.
+  ShadowTarget(int size, bool smooth);
   void bind() const;
   GLuint texture() const { return texture_.get(); }
 
