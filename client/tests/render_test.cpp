@@ -24,23 +24,30 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     ASSERT_TRUE(opened) << opened.error().sentence;
     window = std::make_unique<Window>(std::move(*opened));
   }
-  static void TearDownTestSuite() { window.reset(); }
+  static void TearDownTestSuite() {
+    scenes = {};
+    ui.reset();
+    window.reset();
+  }
 
+  // Made once for all tests of a quality: setting up takes longer than drawing.
   void SetUp() override {
     ASSERT_TRUE(window);
-    auto made = Scene::create(GetParam());
-    ASSERT_TRUE(made) << made.error();
-    scene = std::move(*made);
-    auto font = Font::load();
-    ASSERT_TRUE(font) << font.error();
-    auto batch = UiBatch::create(std::move(*font));
-    ASSERT_TRUE(batch) << batch.error();
-    ui = std::make_unique<UiBatch>(std::move(*batch));
+    std::unique_ptr<Scene>& shared = scenes[static_cast<std::size_t>(GetParam())];
+    if (!shared) {
+      auto made = Scene::create(GetParam());
+      ASSERT_TRUE(made) << made.error();
+      shared = std::move(*made);
+    }
+    scene = shared.get();
+    if (!ui) {
+      auto font = Font::load();
+      ASSERT_TRUE(font) << font.error();
+      auto batch = UiBatch::create(std::move(*font));
+      ASSERT_TRUE(batch) << batch.error();
+      ui = std::make_unique<UiBatch>(std::move(*batch));
+    }
     camera = player_camera({}, kSize);
-  }
-  void TearDown() override {
-    scene.reset();
-    ui.reset();
   }
 
   Image draw(const wire::Snapshot& state, bool with_hud = false, const std::string& message = {}) {
@@ -92,11 +99,14 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
   }
 
   static std::unique_ptr<Window> window;
-  std::unique_ptr<Scene> scene;
-  std::unique_ptr<UiBatch> ui;
+  static std::array<std::unique_ptr<Scene>, 2> scenes;  // by quality
+  static std::unique_ptr<UiBatch> ui;
+  Scene* scene = nullptr;
   Camera camera;
 };
 std::unique_ptr<Window> RenderTest::window;
+std::array<std::unique_ptr<Scene>, 2> RenderTest::scenes;
+std::unique_ptr<UiBatch> RenderTest::ui;
 
 TEST_P(RenderTest, TheFieldIsTealWhereNothingStandsOnIt) {
   wire::Snapshot state = scripted_play(0.35);

@@ -64,6 +64,7 @@ class App {
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
+  std::int64_t picture_us_ = 0;      // spent on the screenshot: no part of the frame rate
   std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
   glm::ivec2 size_{1, 1};
   double seconds_ = 0.0;
@@ -106,7 +107,6 @@ std::string App::start(int& exit_code) {
 }
 
 std::string App::use_quality(Quality quality) {
-  scene_.reset();  // before the new one: both at once are too much for a small GPU
   auto scene = Scene::create(quality);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
@@ -271,7 +271,9 @@ int App::loop() {
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
+      const std::int64_t pause = now_us();
       failure = take_screenshot();
+      picture_us_ = now_us() - pause;
     }
     window_->swap();
     if (sample_.any && !sample_.starving) say_when_in_step(now_us());
@@ -286,7 +288,8 @@ int App::loop() {
 
 void App::say_figures(double seconds) const {
   const SnapshotCounters c = connection_->counters();
-  const double rate = seconds > 0 ? static_cast<double>(meter_.frames()) / seconds : 0;
+  const double drawing = seconds - 1e-6 * static_cast<double>(picture_us_);
+  const double rate = drawing > 0 ? static_cast<double>(meter_.frames()) / drawing : 0;
   char text[640];
   std::snprintf(
       text, sizeof text,
