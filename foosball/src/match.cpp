@@ -17,7 +17,6 @@ constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
 // A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.
 constexpr double kLeastHit = 0.003;  // [N s]
-constexpr std::size_t kMaxEventsPerStep = 128;
 
 std::uint64_t ticks(double seconds) {
   return static_cast<std::uint64_t>(seconds / kTick + 0.5);
@@ -53,6 +52,7 @@ struct Match::Impl {
   std::unique_ptr<TableWorld> world;
   MatchView view;
   std::vector<Event> events;
+  std::uint64_t events_dropped = 0;
 
   const TableSpec& table() const { return world->table(); }
 
@@ -79,7 +79,11 @@ struct Match::Impl {
   void rebuild_world();
   void reset_gestures();
   void emit(const Event& event) {
-    if (events.size() < kMaxEventsPerStep) events.push_back(event);
+    if (events.size() < kMaxEventsPerStep) {
+      events.push_back(event);
+    } else {
+      ++events_dropped;
+    }
   }
   void emit(EventKind kind, int team = 0, double value = 0.0) {
     emit(Event{kind, static_cast<std::uint8_t>(team), 0, 0, value, world->ball().pose.position()});
@@ -155,14 +159,14 @@ void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
   // A ball pressed against something has contacts without end, and none of them is a hit.
   const vp::Vec3 change = world->ball().velocity - velocity_before;
   const bool felt = table().ball_mass * vp::norm(change) >= kLeastHit;
-  for (const BallContact& contact : world->contacts()) {
+  for (const vp::ContactEvent& event : world->contacts()) {
+    const BallContact contact = ball_contact(event);
     const Tag& other = contact.other;
     const bool man = other.what == Tag::What::man;
     const int team = man ? table().rods[other.rod].team : 0;
     if (man) {
-      if (contact.kind == vp::ContactEvent::Kind::begin) ++state.touching;
-      if (contact.kind == vp::ContactEvent::Kind::end) --state.touching;
-      state.touching = std::clamp(state.touching, 0, kMaxTouching);
+      state.touching.set(other.rod, other.man, other.part,
+                         contact.kind != vp::ContactEvent::Kind::end);
       state.touched |= std::uint64_t{1} << (other.rod * kMaxMenOnRod + other.man);
       state.last_toucher = team;
     }
@@ -188,9 +192,9 @@ void Match::Impl::judge_ball() {
     emit(EventKind::ball_out, state.last_toucher);
     return serve_from(rod_of(opponent(state.last_toucher), Line::defence), kServeDelay);
   }
-  bool touched = state.touching > 0;
-  for (const BallContact& contact : world->contacts()) {
-    touched = touched || contact.other.what == Tag::What::man;
+  bool touched = state.touching.any();
+  for (const vp::ContactEvent& event : world->contacts()) {
+    touched = touched || ball_contact(event).other.what == Tag::What::man;
   }
   if (state.dead_ball.update(table(), desc.rules, ball, touched)) {
     emit(EventKind::dead_ball);
@@ -230,7 +234,7 @@ void Match::Impl::put_in_play() {
   if (state.served) state.last_server = rod.team;
   state.last_toucher = rod.team;
   state.touched = 0;
-  state.touching = 0;
+  state.touching.clear();
   state.dead_ball.reset(place);
   emit(EventKind::serve, rod.team);
 }
@@ -370,6 +374,7 @@ void Match::Impl::refresh_view() {
   view.screen_seconds = static_cast<double>(state.screen_ticks) * kTick;
   view.play_seconds = static_cast<double>(state.play_ticks) * kTick;
   view.last_scorer = state.last_scorer;
+  view.events_dropped = events_dropped;
   view.ball_in_play = state.ball_in_play;
   view.ball_position = ball.pose.position();
   view.ball_velocity = ball.velocity;

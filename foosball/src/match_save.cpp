@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31'30'4d'42'46'53;  // "SFBM01"
+constexpr std::uint64_t kMagic = 0x32'30'4d'42'46'53;  // "SFBM02"
 
 template <class Archive, class Count, class Desc, class State>
 void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {

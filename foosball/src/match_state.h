@@ -31,7 +31,7 @@ struct MatchState {
   int last_toucher = 0;        // team
   bool served = false;         // from a midfield: two men must touch before a goal counts
   std::uint64_t touched = 0;   // men that touched since the ball was put in play: bit rod * 5 + man
-  int touching = 0;            // parts of men in contact with the ball now
+  BallTouches touching;        // the parts of men in contact with the ball now
   DeadBallWatch dead_ball;
 
   // The rods: where each is held while no hand is on it.
@@ -44,10 +44,9 @@ struct MatchState {
   static void visit(Archive& archive, Self& self);
 };
 
-// Scores, and a count of parts in contact, that fit a byte and no match reaches.
+// A score that fits a byte and no match reaches.
 inline constexpr int kMaxScore = 99;
 inline constexpr double kMaxDuration = 3600.0;  // [s]
-inline constexpr int kMaxTouching = 200;
 // A rod turned further than this [rad] has been held by nobody: two million revolutions.
 inline constexpr double kMaxAngle = 1e7;
 
@@ -74,7 +73,7 @@ void MatchState::visit(Archive& archive, Self& self) {
   archive.choice(self.last_toucher, kTeams);
   archive.flag(self.served);
   archive.count(self.touched);
-  archive.choice(self.touching, kMaxTouching + 1);
+  BallTouches::visit(archive, self.touching);
   DeadBallWatch::visit(archive, self.dead_ball);
 
   for (int rod = 0; rod < kRods; ++rod) {

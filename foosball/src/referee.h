@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "foosball/match.h"
@@ -25,6 +26,27 @@ std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& sco
 // Where a dead ball is put back: at the nearest defence; between the midfields it is served again,
 // by the team that served last.
 int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server);
+
+// Which parts of men touch the ball, by part and not by count: a contact whose beginning or end was
+// not seen (the ball was put elsewhere) leaves nothing wrong about the others.
+class BallTouches {
+ public:
+  void clear() { parts_ = {}; }
+  // What the tag of a part names: rod < kRods, man < kMaxMenOnRod, part < kManParts.
+  void set(int rod, int man, int part, bool touches) {
+    const std::uint64_t bit = std::uint64_t{1} << (rod * kMaxMenOnRod + man);
+    parts_[part] = touches ? parts_[part] | bit : parts_[part] & ~bit;
+  }
+  bool any() const { return parts_ != decltype(parts_){}; }
+
+  template <class Archive, class Self>
+  static void visit(Archive& archive, Self& self) {
+    for (auto& part : self.parts_) archive.count(part);
+  }
+
+ private:
+  std::array<std::uint64_t, kManParts> parts_{};  // bit rod * 5 + man
+};
 
 // Watches for a ball that nobody plays on.
 class DeadBallWatch {

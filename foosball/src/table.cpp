@@ -86,8 +86,7 @@ constexpr std::array<CharacterSpec, kCharacters> kCharacterSpecs{{
     {"small and fat", 0.030, 0.022, 0.044, 0.030, 0.038, 0.0700, 0.085, 0.70, 0.58},
 }};
 
-constexpr int kPartsOfMan = 4;
-using ManBoxes = std::array<ManBox, kPartsOfMan>;
+using ManBoxes = std::array<ManBox, kManParts>;
 
 // A box centred on the axis' vertical plane, between two heights in the man's frame.
 ManBox slab(ManBox::Part part, double width, double depth, double bottom, double top) {

@@ -26,13 +26,14 @@ struct BallState {
   vp::Vec3 velocity, spin;  // world
 };
 
-// The ball met something during the last step.
+// A contact as the ball sees it.
 struct BallContact {
   Tag other;
   vp::ContactEvent::Kind kind;
   double impulse;
   vp::Vec3 point;
 };
+BallContact ball_contact(const vp::ContactEvent& event);
 
 class TableWorld {
  public:
@@ -60,7 +61,8 @@ class TableWorld {
 
   // One kTick. False if the world had to stop something that had left the range of numbers.
   bool step();
-  std::span<const BallContact> contacts() const { return contacts_; }
+  // All that the ball met in the last step, read where the world keeps it: none can be left out.
+  std::span<const vp::ContactEvent> contacts() const { return world_.contact_events(); }
   const vp::StepStatus& status() const { return status_; }
   const vp::StepCounters& counters() const { return world_.counters(); }
 
@@ -83,7 +85,6 @@ class TableWorld {
   vp::BodyId fixed_;
   vp::BodyId ball_;
   std::array<vp::ArticulationId, kRods> rods_{};
-  std::vector<BallContact> contacts_;
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };

@@ -370,6 +370,35 @@ TEST_F(MatchTest, ADeadBallGoesToTheNearestDefence) {
   EXPECT_NEAR(serve->point.x, 0.375 - 0.034, 0.02);
 }
 
+TEST_F(MatchTest, AContactWhoseEndIsNeverSeenDoesNotOutliveTheNextServe) {
+  start_by_commands();
+  for (RodTarget& rod : input.rods) rod.angle = 1.4;
+  run(0.6);
+  shoot({0.30, 0.0, 0.0173}, {});
+  arrange([](MatchState& state, TableWorld&) { state.touching.set(2, 1, 0, true); });
+  const auto touching = [&] {
+    bool any = false;
+    arrange([&](MatchState& state, TableWorld&) { any = state.touching.any(); });
+    return any;
+  };
+  EXPECT_TRUE(touching());
+  events.clear();
+  shoot({0.0, 1.0, 0.5}, {});  // off the table: served again
+  run(1.0);
+  EXPECT_EQ(count(EventKind::serve), 1);
+  EXPECT_FALSE(touching());
+}
+
+TEST_F(MatchTest, EventsBeyondTheBoundOfAStepAreCounted) {
+  constexpr std::size_t kWishes = kMaxEventsPerStep + 72;
+  commands.assign(kWishes, {Command::Kind::restart});  // a screen event each
+  step();
+  EXPECT_EQ(events.size(), kMaxEventsPerStep);
+  EXPECT_EQ(view().events_dropped, 72u);
+  step();
+  EXPECT_EQ(view().events_dropped, 72u);
+}
+
 TEST_F(MatchTest, ABallOffTheTableGoesToTheOpponentsDefence) {
   start_by_commands();
   shoot({0.0, 0.2, 0.2}, {0.0, 6.0, 1.0}, /*toucher=*/0);

@@ -64,6 +64,24 @@ TEST(DeadBallPlace, IsTheNearestDefenceOrTheServersMidfieldBetweenTheMidfields) 
   }
 }
 
+TEST(BallTouches, AnEndWithoutABeginningLeavesTheOthersTouching) {
+  BallTouches touches;
+  touches.set(3, 2, 0, true);
+  touches.set(3, 2, 1, false);
+  touches.set(0, 0, 0, false);
+  EXPECT_TRUE(touches.any());
+  touches.set(3, 2, 0, false);
+  EXPECT_FALSE(touches.any());
+}
+
+TEST(BallTouches, APartThatBeganTwiceEndsOnce) {
+  BallTouches touches;
+  touches.set(kRods - 1, kMaxMenOnRod - 1, kManParts - 1, true);
+  touches.set(kRods - 1, kMaxMenOnRod - 1, kManParts - 1, true);
+  touches.set(kRods - 1, kMaxMenOnRod - 1, kManParts - 1, false);
+  EXPECT_FALSE(touches.any());
+}
+
 // Ticks until the watch calls a ball at rest dead, at most limit.
 int ticks_until_dead(const vp::Vec3& ball, bool touched, int limit) {
   DeadBallWatch watch;

@@ -125,7 +125,8 @@ class ShotGallery {
       const vp::Vec3 from = world_.ball().pose.position();
       world_.step();
       ++report_.ticks;
-      for (const BallContact& contact : world_.contacts()) {
+      for (const vp::ContactEvent& event : world_.contacts()) {
+        const BallContact contact = ball_contact(event);
         if (contact.kind != vp::ContactEvent::Kind::hit) continue;
         ++(contact.other.what == Tag::What::man ? report_.man_hits : report_.table_hits);
       }

@@ -3,6 +3,8 @@
 //
 // Screens (paper, sections 5 and 5.1) are worked with the rods themselves: push any rod of a team
 // to start, spin it to choose a character, push to confirm. See docs/rules.md.
+//
+// Threads: a Match is used by one thread at a time; different matches are independent.
 #pragma once
 
 #include <array>
@@ -68,8 +70,9 @@ struct Event {
   std::uint8_t rod = 0;   // man_hit
   std::uint8_t man = 0;   // man_hit
   double value = 0.0;
-  vp::Vec3 point;  // world [m]
+  vp::Vec3 point;  // in the table's frame (foosball/table.h) [m]: a hit's contact, else the ball
 };
+inline constexpr std::size_t kMaxEventsPerStep = 128;  // MatchView::events_dropped counts the rest
 
 struct Rules {
   int goals_to_win = 5;  // "to 5, last game by two, max 8" (ITSF)
@@ -104,14 +107,21 @@ struct MatchView {
   double play_seconds = 0.0;             // match clock [s]
   int last_scorer = 0;                   // team, on ceremony and end
   bool ball_in_play = false;
-  vp::Vec3 ball_position, ball_velocity;  // world
-  vp::SE3 ball_pose;
-  vp::Vec3 ball_spin;  // world [rad/s]
+  vp::Vec3 ball_position, ball_velocity;  // table's frame [m], [m/s]
+  vp::SE3 ball_pose;                      // T_table_ball
+  vp::Vec3 ball_spin;                     // table's frame [rad/s]
+  // By TableSpec::rods. In the table's frame for both teams: slide along +y, angle right-handed
+  // about +y, 0 with the men hanging, full turns counted.
   std::array<RodState, kRods> rods{};
+  // Since create(): not of the match's state, so neither saved, restored nor hashed.
+  std::uint64_t events_dropped = 0;
 };
 
 class Match {
  public:
+  // Refuses with Errc::invalid_argument what cannot be played: a layout that is none, goals not
+  // 1 <= goals_to_win <= max_goals <= 99, a duration that is not above 0 and at most 3600 s (NaN
+  // included). Any seed will do.
   static vp::Expected<Match> create(const MatchDesc& desc);
   ~Match();
   Match(Match&&) noexcept;
@@ -121,7 +131,11 @@ class Match {
   const MatchView& view() const;
   std::span<const Event> events() const;  // of the last step
 
+  // Appends the whole state: rules, screens, world. Refuses nothing.
   void snapshot(std::vector<std::byte>& bytes) const;
+  // Refuses with Errc::bad_data, and is then unchanged: bytes that are truncated, corrupt or of
+  // another version, and a match of another layout or other rules than this one's. The seed may
+  // differ. events() is empty afterwards; view() is that of the saved match.
   vp::Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;
 

@@ -64,7 +64,8 @@ struct ManBox {
   vp::Vec3 half_extents;  // [m]
   enum class Part : std::uint8_t { foot, leg, torso, head } part;
 };
-std::span<const ManBox> man_boxes(int character);
+inline constexpr int kManParts = 4;
+std::span<const ManBox> man_boxes(int character);  // kManParts of them
 
 struct RodSpec {
   int team;

@@ -62,20 +62,20 @@ constexpr int degrees_of_freedom(JointKind kind) {
   return kind == JointKind::fixed ? 0 : kind == JointKind::cylindrical ? 2 : 1;
 }
 
-// Hard stops of one coordinate.
+// Hard stops of one coordinate. Units: of a slide | of an angle.
 struct JointLimit {
-  double lower = -1e30;
-  double upper = 1e30;
+  double lower = -1e30;  // [m] | [rad]
+  double upper = 1e30;   // [m] | [rad]
 };
 
 // A motor: force = clamp(stiffness (position - q) + damping (velocity - qdot), +-max_force),
-// integrated implicitly, so that any stiffness is stable. Units N or N m for max_force.
+// integrated implicitly, so that any stiffness is stable. Units: of a slide | of an angle.
 struct JointDrive {
-  double position = 0.0;
-  double velocity = 0.0;
-  double stiffness = 0.0;
-  double damping = 0.0;
-  double max_force = 0.0;  // 0: no motor
+  double position = 0.0;   // [m] | [rad]
+  double velocity = 0.0;   // [m/s] | [rad/s]
+  double stiffness = 0.0;  // [N/m] | [N m/rad]
+  double damping = 0.0;    // [N s/m] | [N m s/rad]
+  double max_force = 0.0;  // [N] | [N m]; 0: no motor
 };
 
 struct LinkDesc {
@@ -128,7 +128,8 @@ struct RayHit {
   BodyId body;
   std::uint64_t user_data;
   double distance;  // along the unit direction [m]
-  Vec3 point, normal;
+  Vec3 point;       // on the collider's surface, world frame [m]
+  Vec3 normal;      // unit, out of the collider, world frame
 };
 
 class World {
