@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod_desk.h"
+#include "wire/enums.h"
 #include "wire/limits.h"
 
 namespace server {
@@ -19,6 +21,37 @@ static_assert(wire::kMenOnRod == foosball::kMaxMenOnRod);
 static_assert(wire::kRodStatusCount == static_cast<unsigned>(cabinet::RodStatus::held) + 1);
 
 namespace {
+
+template <class Wire, class Own>
+constexpr bool same(Wire wire, Own own) {
+  return static_cast<unsigned>(wire) == static_cast<unsigned>(own);
+}
+static_assert(same(wire::Screen::logo, foosball::Screen::logo));
+static_assert(same(wire::Screen::selection, foosball::Screen::selection));
+static_assert(same(wire::Screen::play, foosball::Screen::play));
+static_assert(same(wire::Screen::ceremony, foosball::Screen::ceremony));
+static_assert(same(wire::Screen::end, foosball::Screen::end));
+static_assert(same(wire::EventKind::man_hit, foosball::EventKind::man_hit));
+static_assert(same(wire::EventKind::wall_hit, foosball::EventKind::wall_hit));
+static_assert(same(wire::EventKind::field_hit, foosball::EventKind::field_hit));
+static_assert(same(wire::EventKind::goal, foosball::EventKind::goal));
+static_assert(same(wire::EventKind::serve, foosball::EventKind::serve));
+static_assert(same(wire::EventKind::dead_ball, foosball::EventKind::dead_ball));
+static_assert(same(wire::EventKind::ball_out, foosball::EventKind::ball_out));
+static_assert(same(wire::EventKind::screen, foosball::EventKind::screen));
+static_assert(same(wire::EventKind::match_won, foosball::EventKind::match_won));
+static_assert(same(wire::WishKind::push, foosball::Command::Kind::push));
+static_assert(same(wire::WishKind::choose_character, foosball::Command::Kind::choose_character));
+static_assert(same(wire::WishKind::pause, foosball::Command::Kind::pause));
+static_assert(same(wire::WishKind::restart, foosball::Command::Kind::restart));
+static_assert(same(wire::RodStatus::absent, cabinet::RodStatus::absent));
+static_assert(same(wire::RodStatus::live, cabinet::RodStatus::live));
+static_assert(same(wire::RodStatus::held, cabinet::RodStatus::held));
+static_assert(same(wire::RodSource::none, RodDriver::none));
+static_assert(same(wire::RodSource::cabinet, RodDriver::cabinet));
+static_assert(same(wire::RodSource::client, RodDriver::client));
+static_assert(same(wire::RodSource::computer, RodDriver::computer));
+static_assert(same(wire::RodSource::replay, RodDriver::replay));
 
 std::uint32_t milliseconds(double seconds) {
   return static_cast<std::uint32_t>(std::llround(std::clamp(seconds, 0.0, 4.0e6) * 1000.0));

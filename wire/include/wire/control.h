@@ -53,7 +53,8 @@ struct Refusal {
 
 // Client to server: a foosball::Command.
 struct Wish {
-  std::uint8_t kind = 0, team = 0, value = 0;
+  std::uint8_t kind = 0;  // WishKind (wire/enums.h)
+  std::uint8_t team = 0, value = 0;
 };
 
 // Either way; the other answers with the same id.

@@ -3,16 +3,18 @@
 // enumerations, which wire does not know; the server, which knows both, asserts that they agree.
 #pragma once
 
+#include "wire/enums.h"
+
 namespace wire {
 
 inline constexpr unsigned kTeamCount = 2;
-inline constexpr unsigned kLayoutCount = 2;       // foosball::Layout
-inline constexpr unsigned kScreenCount = 5;       // foosball::Screen
-inline constexpr unsigned kCharacterCount = 3;    // foosball::CharacterSpec
-inline constexpr unsigned kEventKindCount = 9;    // foosball::EventKind
-inline constexpr unsigned kCommandKindCount = 4;  // foosball::Command::Kind
+inline constexpr unsigned kLayoutCount = 2;  // foosball::Layout
+inline constexpr unsigned kScreenCount = number(Screen::end) + 1;
+inline constexpr unsigned kCharacterCount = 3;  // foosball::CharacterSpec
+inline constexpr unsigned kEventKindCount = number(EventKind::match_won) + 1;
+inline constexpr unsigned kCommandKindCount = number(WishKind::restart) + 1;
 inline constexpr unsigned kMenOnRod = 5;
-inline constexpr unsigned kRodStatusCount = 3;  // cabinet::RodStatus
-inline constexpr unsigned kRodSourceCount = 5;  // RodSnapshot::source
+inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
+inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 
 }  // namespace wire

@@ -33,24 +33,25 @@ struct ManState {
 struct RodSnapshot {
   float slide = 0, angle = 0;  // as simulated [m], [rad] (unbounded, 24 bit at 1/65536 turn)
   float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
-  std::uint8_t status = 0;               // cabinet::RodStatus: absent, live, held
-  std::uint8_t source = 0;               // 0 none, 1 cabinet, 2 client, 3 computer, 4 replay
+  std::uint8_t status = 0;               // RodStatus (wire/enums.h)
+  std::uint8_t source = 0;               // RodSource
 };
 
 struct EventSnapshot {
   std::uint32_t id =
       0;  // counts up; an event is repeated in 8 snapshots, so that a loss shows it still
-  std::uint8_t kind = 0, team = 0, rod = 0, man = 0;
+  std::uint8_t kind = 0;  // EventKind
+  std::uint8_t team = 0, rod = 0, man = 0;
   float value = 0;
   std::array<float, 3> point{};
 };
 
 struct Snapshot {
   std::uint64_t session = 0;
-  std::uint64_t sequence = 0;     // of the datagram
-  std::uint64_t tick = 0;         // of the simulation
-  std::int64_t send_time_us = 0;  // server's monotonic clock
-  std::uint8_t layout = 0, screen = 0;
+  std::uint64_t sequence = 0;           // of the datagram
+  std::uint64_t tick = 0;               // of the simulation
+  std::int64_t send_time_us = 0;        // server's monotonic clock
+  std::uint8_t layout = 0, screen = 0;  // foosball::Layout, Screen
   bool paused = false, ball_in_play = false;
   std::array<std::uint8_t, 2> score{};
   std::array<std::uint8_t, 2> character{};
