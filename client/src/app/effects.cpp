@@ -3,22 +3,12 @@
 #include <algorithm>
 
 #include "render/palette.h"
+#include "wire/enums.h"
 
 namespace client {
 namespace {
 
-// foosball::EventKind as the wire numbers it.
-enum class Kind : std::uint8_t {
-  man_hit,
-  wall_hit,
-  field_hit,
-  goal,
-  serve,
-  dead_ball,
-  ball_out,
-  screen,
-  match_won
-};
+using Kind = wire::EventKind;
 
 constexpr float kAudible = 0.004f;  // [N s]: less is rolling, not hitting
 constexpr float kStrong = 0.20f;    // [N s]: a hard shot

@@ -2,12 +2,10 @@
 
 #include <cmath>
 
+#include "wire/enums.h"
+
 namespace client {
 namespace {
-
-constexpr std::uint8_t kLogo = 0, kSelection = 1, kPlay = 2;  // foosball::Screen on the wire
-constexpr std::uint8_t kPush = 0, kChooseCharacter = 1,
-                       kPause = 2;  // foosball::Command::Kind on the wire
 
 cabinet::HandOptions hand_options(int team, const foosball::TableSpec& table) {
   cabinet::HandOptions options;
@@ -61,12 +59,16 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
 void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot* scene) {
   wishes_.clear();
   const auto team = static_cast<std::uint8_t>(team_);
-  const std::uint8_t screen = scene != nullptr ? scene->screen : kLogo;
-  if ((events.push || events.pad_push) && screen != kPlay) wishes_.push_back({kPush, team, 0});
-  if ((events.toggle_pause || events.pad_pause) && scene != nullptr && screen == kPlay) {
-    wishes_.push_back({kPause, team, static_cast<std::uint8_t>(scene->paused ? 0 : 1)});
+  const auto screen =
+      scene != nullptr ? static_cast<wire::Screen>(scene->screen) : wire::Screen::logo;
+  if ((events.push || events.pad_push) && screen != wire::Screen::play)
+    wishes_.push_back({number(wire::WishKind::push), team, 0});
+  if ((events.toggle_pause || events.pad_pause) && scene != nullptr &&
+      screen == wire::Screen::play) {
+    wishes_.push_back(
+        {number(wire::WishKind::pause), team, static_cast<std::uint8_t>(scene->paused ? 0 : 1)});
   }
-  if (scene != nullptr && screen == kSelection) choose_character(events, *scene);
+  if (scene != nullptr && screen == wire::Screen::selection) choose_character(events, *scene);
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
 }
 
@@ -82,8 +84,8 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
     wanted =
         ((now + steps) % foosball::kCharacters + foosball::kCharacters) % foosball::kCharacters;
   if (wanted == now) return;
-  wishes_.push_back(
-      {kChooseCharacter, static_cast<std::uint8_t>(team_), static_cast<std::uint8_t>(wanted)});
+  wishes_.push_back({number(wire::WishKind::choose_character), static_cast<std::uint8_t>(team_),
+                     static_cast<std::uint8_t>(wanted)});
 }
 
 std::array<wire::InputRod, 8> PlayerInput::rods() const {

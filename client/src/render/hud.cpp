@@ -11,8 +11,6 @@
 namespace client {
 namespace {
 
-constexpr std::uint8_t kHeld = 2;  // cabinet::RodStatus::held on the wire
-
 void draw_score(const HudPen& pen, const wire::Snapshot& state) {
   const float y = 14.0f, half = 196.0f, height = 62.0f;
   pen.panel({-half, y}, {half, y + height}, 14.0f, kPanel);
@@ -42,7 +40,7 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
       static_cast<foosball::Layout>(std::min<int>(hud.state->layout, foosball::kLayouts - 1)));
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const auto r = static_cast<std::size_t>(rod);
-    if (hud.state->rods[r].status != kHeld) continue;
+    if (hud.state->rods[r].status != number(wire::RodStatus::held)) continue;
     const float y = hud.state->rods[r].slide + 0.9f * handle_offset(table, rod);
     const glm::vec3 p = hud.camera.project(
         {static_cast<float>(table.rods[r].x), y, static_cast<float>(table.rod_height)}, screen);

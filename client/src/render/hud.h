@@ -7,14 +7,14 @@
 
 #include "render/camera.h"
 #include "render/ui_batch.h"
+#include "wire/enums.h"
 #include "wire/snapshot.h"
 
 namespace client {
 
 inline constexpr std::array<const char*, 2> kTeamNames{"ORION", "VEGA"};
 
-// The screens of a match as the wire numbers them (foosball::Screen).
-enum class ScreenKind : std::uint8_t { logo, selection, play, ceremony, end };
+using ScreenKind = wire::Screen;
 
 struct HudState {
   const wire::Snapshot* state = nullptr;  // none yet: nothing was received

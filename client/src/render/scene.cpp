@@ -10,6 +10,7 @@
 #include "render/mesh_builder.h"
 #include "render/palette.h"
 #include "render/table_mesh.h"
+#include "wire/enums.h"
 
 namespace client {
 namespace {
@@ -18,7 +19,6 @@ const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.42f, -0.04f, 0.90f))
 const glm::vec3 kKeyColour{3.5f, 3.35f, 3.1f};
 const glm::vec3 kHeldColour{0.95f, 0.62f, 0.08f};
 constexpr float kLightReach = 1.0f;  // [m]: the table fits into the light's box
-constexpr std::uint8_t kHeld = 2;    // cabinet::RodStatus::held on the wire
 
 glm::vec3 vec(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
@@ -136,7 +136,9 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
-    return state.rods[rod].status == kHeld ? glm::mix(team, kHeldColour, 0.35f) : team;
+    return state.rods[rod].status == number(wire::RodStatus::held)
+               ? glm::mix(team, kHeldColour, 0.35f)
+               : team;
   };
   for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
     const foosball::RodSpec& spec = table_->rods[rod];
