@@ -2,7 +2,7 @@
 """Runs clang-tidy on the sources that a change touches, newest first, until the time is up.
 
 With a base (CHECK_BASE, or where this branch left main) the sources changed since are looked at; on
-main itself, where there is no base, all of them in the order of their last change. A run has 150 s
+main itself, where there is no base, all of them in the order of their last change. A run has 100 s
 (SF_TIDY_SECONDS), since one source takes 5 to 20; what was left out is said. --all takes its time.
 """
 import argparse
@@ -59,7 +59,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--build', default='build/clang', help='the folder with compile_commands.json')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 150),
+    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 100),
                         help='seconds after which no further source is begun')
     parser.add_argument('--all', action='store_true', help='every source, however long it takes')
     args = parser.parse_args()
