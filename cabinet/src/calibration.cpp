@@ -23,7 +23,6 @@ constexpr std::size_t kMostBytes = 64 * 1024;
 // Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
 // of 16 mm a count along the surface turns by 1 / 8 mm. A file may lie 100 times outside.
 constexpr double kLeastMetres = 1e-3 / 472 / 100, kMostMetres = 1e-3 * 100;
-constexpr double kRodRadius = 0.008;
 // Sine of the angle between the two rows (1 for a square sensor): below this slide and spin can not
 // be told apart.
 constexpr double kLeastSine = 0.01;

@@ -1,14 +1,20 @@
 // "serial:/dev/ttyACM0" and its kin: from an address a person types to an open source.
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cabinet/device_source.h"
+#include "line_keeper.h"
+#include "raw_line.h"
 
 namespace cabinet {
 namespace {
@@ -55,6 +61,79 @@ std::string objection(const std::string& text, const Address& address) {
   return {};
 }
 
+// An attempt costs the poller nothing, and the device is in its hands at the second.
+constexpr std::int64_t kReopenUs = 100'000;
+
+std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path) {
+  auto keeper = std::make_shared<LineKeeper>([path] {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (fd >= 0 && isatty(fd) != 0) make_raw(fd);
+    return fd;
+  });
+  options.reopen_us = kReopenUs;
+  options.opener_sets_line = true;
+  return std::make_unique<DeviceSource>(
+      std::move(options), [keeper] { return keeper->take(); },
+      [keeper](int fd) { keeper->close(fd); });
+}
+
+constexpr std::size_t kMostRecordingBytes = std::size_t{64} << 20;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+bool write_all(int fd, const char* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(fd, bytes, size);
+    if (written <= 0) return false;
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+// The whole recording, to be read from the start; empty: all is well.
+std::string copy_to_memory(const std::string& text, const std::string& path, int memory) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0 || memory < 0) return text + ": " + std::strerror(errno) + "; try again.";
+  std::vector<char> piece(std::size_t{1} << 20);
+  std::size_t total = 0;
+  while (true) {
+    const ssize_t size = ::read(file.get(), piece.data(), piece.size());
+    if (size == 0) break;
+    total += size > 0 ? static_cast<std::size_t>(size) : 0;
+    if (total > kMostRecordingBytes) {
+      return text + ": longer than 64 MiB; cut the recording into shorter ones.";
+    }
+    if (size < 0 || !write_all(memory, piece.data(), static_cast<std::size_t>(size))) {
+      return text + ": " + std::strerror(errno) + "; check the disk and the free memory.";
+    }
+  }
+  ::lseek(memory, 0, SEEK_SET);
+  return {};
+}
+
+// The opener keeps a descriptor of its own, so that the poller's close() frees nothing.
+tl::expected<std::unique_ptr<DeviceSource>, std::string> recording_source(DeviceOptions options,
+                                                                          const std::string& path) {
+  auto memory = std::make_shared<Descriptor>(::memfd_create("recording", MFD_CLOEXEC));
+  const std::string sentence = copy_to_memory(options.name, path, memory->get());
+  if (!sentence.empty()) return tl::unexpected(sentence);
+  return std::make_unique<DeviceSource>(
+      std::move(options), [memory] { return ::fcntl(memory->get(), F_DUPFD_CLOEXEC, 0); });
+}
+
 }  // namespace
 
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
@@ -70,9 +149,8 @@ tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
   options.framing = parsed->scheme == Scheme::hid ? DeviceFraming::report : DeviceFraming::cobs;
   options.calibration = calibration;
   options.slide_limit = slide_limit;
-  return std::make_unique<DeviceSource>(options, [path = parsed->path] {
-    return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  });
+  if (parsed->scheme == Scheme::file) return recording_source(std::move(options), parsed->path);
+  return line_source(std::move(options), parsed->path);
 }
 
 }  // namespace cabinet

@@ -3,13 +3,13 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <utility>
 
 #include "frame_reader.h"
+#include "raw_line.h"
 #include "rod_tracker.h"
 
 namespace cabinet {
@@ -20,18 +20,6 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
-
-// Raw bytes at 1 Mbaud; a read of nothing is EAGAIN (VMIN 1), so that 0 only ever means hang-up.
-void make_raw(int fd) {
-  termios line{};
-  if (tcgetattr(fd, &line) != 0) return;
-  cfmakeraw(&line);
-  line.c_cflag |= CLOCAL | CREAD;
-  line.c_cc[VMIN] = 1;
-  line.c_cc[VTIME] = 0;
-  cfsetspeed(&line, B1000000);
-  tcsetattr(fd, TCSANOW, &line);
-}
 
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
@@ -52,9 +40,10 @@ Packing packing_of_recording(int fd) {
 }  // namespace
 
 struct DeviceSource::Impl {
-  Impl(DeviceOptions with, DeviceOpener opener)
+  Impl(DeviceOptions with, DeviceOpener opener, DeviceCloser closer)
       : options(std::move(with)),
         open(std::move(opener)),
+        close(std::move(closer)),
         tracker(options.calibration, options.slide_limit) {}
   ~Impl() { close_device(); }
 
@@ -68,6 +57,7 @@ struct DeviceSource::Impl {
 
   DeviceOptions options;
   DeviceOpener open;
+  DeviceCloser close;
   RodTracker tracker;
   FrameReader reader;
   SourceCounters counters;
@@ -108,14 +98,14 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
   } else if (options.framing == DeviceFraming::report) {
     packing = keeps_message_bounds(fd, about) ? Packing::report_message : Packing::report_stream;
   }
-  if (isatty(fd) != 0) make_raw(fd);
+  if (!options.opener_sets_line && isatty(fd) != 0) make_raw(fd);
   reader.reset(packing);
   tracker.forget_base();
   heard = pending = false;
 }
 
 void DeviceSource::Impl::close_device() {
-  if (fd >= 0) ::close(fd);
+  if (fd >= 0) close(fd);
   fd = -1;
 }
 
@@ -173,8 +163,9 @@ void DeviceSource::Impl::take_in(std::int64_t now_us) {
   take_frames(now_us);
 }
 
-DeviceSource::DeviceSource(DeviceOptions options, DeviceOpener open)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(open))) {}
+DeviceSource::DeviceSource(DeviceOptions options, DeviceOpener open, DeviceCloser close)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(open),
+                                   close ? std::move(close) : DeviceCloser(::close))) {}
 
 DeviceSource::~DeviceSource() = default;
 

@@ -13,7 +13,6 @@ namespace {
 // of counts no longer names one motion. 3.7 s at 8 counts/mm, 0.75 s at 1000 dpi, 63 ms at 12000
 // cpi.
 constexpr double kFastestSurface = 1.1;            // [m/s] of a rod: 140 rad/s on 16 mm
-constexpr double kRodRadius = 0.008;               // [m]
 constexpr std::int64_t kLongestGapUs = 2'000'000;  // a hand does other things in longer
 constexpr std::int64_t kShortestGapUs = 50'000;    // a dozen lost frames are never a new run
 
@@ -30,6 +29,10 @@ std::int64_t longest_gap_us(const Calibration& calibration) {
 
 // A restarted micro-controller is believed when it has been up for less than this ...
 constexpr std::uint32_t kBootUs = 10'000'000;
+// ... or when nothing was accepted for longer than kLongestGapUs of the host's clock: over half an
+// hour the device's clock, seen as a signed difference, looks turned back. Over so much of it the
+// difference says nothing, not even that a frame follows.
+constexpr std::int64_t kHalfClockUs = std::int64_t{1} << 31;
 // ... and so many frames followed each other: fewer could be a late duplicate.
 constexpr int kStraysOfNewRun = 4;
 
@@ -79,18 +82,19 @@ void RodTracker::hold() {
 
 // A frame that does not follow the last accepted one is a late duplicate, or the first of another
 // run (a restart, or a gap too long to trust). The latter shows in frames that follow each other.
-bool RodTracker::starts_new_run(const wire::DeviceFrame& frame) {
+bool RodTracker::starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us) {
   const bool in_row = strays_ > 0 && sequence_step(stray_, frame) == 1 && follows(stray_, frame);
   strays_ = in_row ? strays_ + 1 : 1;
   stray_ = frame;
-  const bool later = elapsed_us(last_, frame) > longest_gap_us_;
+  const bool later = elapsed_us(last_, frame) > longest_gap_us_ || silent_us > kLongestGapUs;
   return strays_ >= kStraysOfNewRun && (later || frame.time_us < kBootUs);
 }
 
 bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t now_us,
                         SourceCounters& counters) {
-  if (have_last_ && !follows(last_, frame)) {
-    if (!starts_new_run(frame)) {
+  const std::int64_t silent_us = now_us - accepted_us_;
+  if (have_last_ && (silent_us > kHalfClockUs || !follows(last_, frame))) {
+    if (!starts_new_run(frame, silent_us)) {
       ++counters.stale;
       return false;
     }
@@ -109,6 +113,7 @@ bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t now_us,
   counters.line_errors += frame.quality;
   for (int rod = 0; rod < kRods; ++rod) advance(rod, frame, now_us);
   last_ = frame;
+  accepted_us_ = now_us;
   have_last_ = true;
   return true;
 }

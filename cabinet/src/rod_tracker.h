@@ -32,7 +32,7 @@ class RodTracker {
 
  private:
   bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const;
-  bool starts_new_run(const wire::DeviceFrame& frame);
+  bool starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us);
   void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us);
 
   Calibration calibration_;
@@ -42,6 +42,7 @@ class RodTracker {
   std::array<RateFilter, kRods> rates_;
   wire::DeviceFrame last_{};
   bool have_last_ = false;
+  std::int64_t accepted_us_ = 0;     // the host's clock at last_
   std::array<bool, kRods> based_{};  // last_ holds counts from which this rod may go on
   std::int64_t clock_us_ = 0;        // the device's clock without its wraps
   wire::DeviceFrame stray_{};        // the last frame that did not follow

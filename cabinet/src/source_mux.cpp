@@ -43,6 +43,7 @@ int SourceMux::add(InputSource& source, Origin origin) {
 void SourceMux::assign(int rod, std::span<const int> order) {
   auto& wanted = slots_[rod].order;
   wanted.clear();
+  wanted.reserve(order.size());  // another order of as many takes no memory
   std::copy_if(order.begin(), order.end(), std::back_inserter(wanted),
                [&](int index) { return index >= 0 && index < static_cast<int>(sources_.size()); });
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -239,11 +240,47 @@ TEST(OpenDevice, ReadsAPtyByItsAddress) {
   line.plug();
   auto source = open_device("serial:" + line.path, nominal_calibration());
   ASSERT_TRUE(source.has_value()) << source.error();
-  (*source)->poll(0);
+  std::int64_t now_us = 0;
+  const auto poll_until_connected = [&](SimulatedDevice& device) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (!(*source)->connected() && std::chrono::steady_clock::now() < end) {
+      line.master.send(cobs(device.frame(1'000)));
+      (*source)->poll(now_us += 1'000);
+    }
+    return (*source)->connected();
+  };
   SimulatedDevice device;
-  line.master.send(cobs(device.frame()));
-  (*source)->poll(1'000);
-  EXPECT_TRUE((*source)->connected());
+  EXPECT_TRUE(poll_until_connected(device));
+
+  // It hangs up: held at the next poll. The path is no device's then, and nothing else happens.
+  line.master.close();
+  for (int i = 0; i < 1'000; ++i) (*source)->poll(now_us += 1'000);
+  EXPECT_FALSE((*source)->connected());
+  EXPECT_EQ((*source)->rods()[0].status, RodStatus::held);
+}
+
+TEST(OpenDevice, ARecordingIsInMemoryBeforeTheFirstPoll) {
+  SimulatedDevice device;
+  Bytes bytes;
+  for (int i = 0; i < 5'000; ++i) {
+    const Bytes frame = cobs(device.frame(1'000));
+    bytes.insert(bytes.end(), frame.begin(), frame.end());
+  }
+  auto recording = std::make_unique<Recording>(bytes);
+  auto source = open_device("file:" + recording->path, nominal_calibration());
+  ASSERT_TRUE(source.has_value()) << source.error();
+  ASSERT_EQ(::truncate(recording->path.c_str(), 0), 0);
+  recording.reset();
+  for (int i = 0; i < 5'001; ++i) (*source)->poll(i * 1'000);
+  EXPECT_EQ((*source)->counters().frames, 5'000u);
+}
+
+TEST(OpenDevice, RefusesARecordingThatIsTooLong) {
+  const Recording recording({});
+  ASSERT_EQ(::truncate(recording.path.c_str(), (64 << 20) + 1), 0);
+  const auto source = open_device("file:" + recording.path, nominal_calibration());
+  ASSERT_FALSE(source.has_value());
+  EXPECT_NE(source.error().find("longer than 64 MiB"), std::string::npos);
 }
 
 }  // namespace

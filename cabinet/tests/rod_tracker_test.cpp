@@ -149,6 +149,39 @@ TEST_P(Restart, ContinuesWithoutAJump) {
 INSTANTIATE_TEST_SUITE_P(AfterUptime, Restart,
                          testing::Values(2'000'000u, 600'000'000u, 2'600'000'000u, 4'200'000'000u));
 
+// The micro-controller ran on, only nobody heard it. Signed 32-bit differences of its clock: the
+// longest positive, negative ones, and past its wrap one that looks like the next frame's.
+class Silence : public testing::TestWithParam<std::int64_t> {};
+
+TEST_P(Silence, IsFollowedByANewRunWithoutAJump) {
+  Tracked t;
+  t.take(t.device.frame());
+  t.device.slide[2] = 4'000;
+  t.take(t.device.frame());
+  const double before = t.rod(2).slide;
+  t.tracker.hold();
+
+  t.now_us += GetParam();
+  t.device.time_us += static_cast<std::uint32_t>(GetParam());
+  t.device.sequence = static_cast<std::uint16_t>(t.device.sequence + 1'000);
+  t.device.slide[2] += 9'000;
+  int accepted = 0;
+  for (int i = 0; i < 10; ++i) {
+    accepted += t.take(t.device.frame());
+    ASSERT_EQ(t.rod(2).slide, before);
+  }
+  EXPECT_EQ(accepted, 7);  // from the fourth on
+  t.device.slide[2] += 80;
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(2).slide, before + 0.01, 1e-12);
+  EXPECT_EQ(t.rod(2).status, RodStatus::live);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfMinutes, Silence,
+                         testing::Values(35 * 60'000'000LL, 36 * 60'000'000LL, 50 * 60'000'000LL,
+                                         71 * 60'000'000LL, (1LL << 32) + 100'000,
+                                         100 * 60'000'000LL));
+
 // At each resolution: a motion in a gap that the counts can carry arrives; after a longer gap,
 // where they may have wrapped, nothing moves.
 void expect_longest_gap(double counts_per_mm, std::uint32_t trusted_us, std::uint32_t doubted_us) {

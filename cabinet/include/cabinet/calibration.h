@@ -10,6 +10,8 @@
 
 namespace cabinet {
 
+constexpr double kRodRadius = 0.008;  // [m] of the table's rods, on which the sensors look
+
 // d_slide = m[0][0] d_counts_slide + m[0][1] d_counts_spin   [m / count]
 // d_angle = m[1][0] d_counts_slide + m[1][1] d_counts_spin   [rad / count]
 // Off-diagonal terms undo a tilted sensor. The map acts on increments of the wrapping counts.
@@ -22,7 +24,7 @@ struct Calibration {
 };
 
 // Sensors mounted square, at so many counts a millimetre, on rods of the diameter [m].
-Calibration nominal_calibration(double counts_per_mm = 8.0, double rod_diameter = 0.016);
+Calibration nominal_calibration(double counts_per_mm = 8.0, double rod_diameter = 2 * kRodRadius);
 
 // Errors are one sentence: file, what is wrong, what to do. Refused: missing, empty, not JSON, not
 // 8 rods, not finite, rows (all but) parallel, or a scale more than 100 times off any known sensor.

@@ -25,6 +25,7 @@ struct DeviceOptions {
   std::array<double, kRods> slide_limit{};
   std::int64_t silence_us = 50'000;  // no frame for so long: the rods hold
   std::int64_t reopen_us = 200'000;  // between attempts to open a device that went away
+  bool opener_sets_line = false;     // a tty comes as raw 1 Mbaud already
 };
 
 // Opens the device and returns the descriptor, which then belongs to the source, or -1: not there
@@ -32,13 +33,15 @@ struct DeviceOptions {
 // file is a recording (either framing, seen from its bytes), paced by the micro-controller's clock
 // and played once. It is made non-blocking. Called from poll(): it must not wait.
 using DeviceOpener = std::function<int()>;
+// Takes the descriptor back, from poll() too and under the same rule. None: close(2).
+using DeviceCloser = std::function<void(int)>;
 
 // A rod is absent until its mouse was first heard; from then on live or held. Positions start at 0
 // and only ever change by the sensors' increments: after a pause, a replug or a restart of the
 // micro-controller they go on from where they were held. One thread at a time.
 class DeviceSource final : public InputSource {
  public:
-  DeviceSource(DeviceOptions options, DeviceOpener open);
+  DeviceSource(DeviceOptions options, DeviceOpener open, DeviceCloser close = {});
   ~DeviceSource() override;
 
   void poll(std::int64_t now_us) override;
@@ -58,6 +61,9 @@ class DeviceSource final : public InputSource {
 // "serial:/dev/ttyACM0", "hid:/dev/hidraw0" or "file:recording.bin"; an unknown scheme is an error
 // sentence, and so are a recording that is missing, a path that is no device and one that may not
 // be read. A device that is not there yet is not an error.
+//
+// poll() of the source never waits: a device is opened, set up and closed on a thread of its own,
+// and found within two attempts, 200 ms; a recording (64 MiB at most, 6 hours) is read whole here.
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
     const std::array<double, kRods>& slide_limit = {});

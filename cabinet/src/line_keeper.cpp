@@ -1,0 +1,60 @@
+#include "line_keeper.h"
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace cabinet {
+namespace {
+
+void close_if_open(int fd) {
+  if (fd >= 0) ::close(fd);
+}
+
+}  // namespace
+
+LineKeeper::LineKeeper(std::function<int()> open) : open_(std::move(open)) {
+  sem_init(&work_, 0, 0);
+  thread_ = std::thread([this] { run(); });
+}
+
+LineKeeper::~LineKeeper() {
+  ending_.store(true, std::memory_order_release);
+  sem_post(&work_);
+  thread_.join();
+  sem_destroy(&work_);
+  close_if_open(to_close_.load(std::memory_order_relaxed));
+  close_if_open(handover_.load(std::memory_order_relaxed));
+}
+
+int LineKeeper::take() {
+  const int state = handover_.load(std::memory_order_acquire);
+  if (state >= 0) {
+    handover_.store(kIdle, std::memory_order_relaxed);
+    return state;
+  }
+  if (state == kIdle) {
+    handover_.store(kAsked, std::memory_order_release);
+    sem_post(&work_);
+  }
+  return -1;
+}
+
+// The place is free: the descriptor before was closed before this one was opened.
+void LineKeeper::close(int fd) {
+  to_close_.store(fd, std::memory_order_release);
+  sem_post(&work_);
+}
+
+void LineKeeper::run() {
+  while (true) {
+    sem_wait(&work_);  // interrupted by a signal, it finds nothing to do
+    close_if_open(to_close_.exchange(-1, std::memory_order_acq_rel));
+    if (ending_.load(std::memory_order_acquire)) return;
+    if (handover_.load(std::memory_order_acquire) != kAsked) continue;
+    const int fd = open_();
+    handover_.store(fd >= 0 ? fd : kIdle, std::memory_order_release);
+  }
+}
+
+}  // namespace cabinet

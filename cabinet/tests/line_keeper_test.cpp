@@ -1,0 +1,84 @@
+// A device that takes its time to open: whoever polls does not wait for it.
+#include "line_keeper.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <optional>
+#include <thread>
+
+#include "simulated_device.h"
+
+using namespace cabinet;
+using namespace cabinet_test;
+
+namespace {
+
+bool is_open(int fd) {
+  return fcntl(fd, F_GETFD) >= 0;
+}
+
+template <class Condition>
+bool comes_true(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+int take_when_ready(LineKeeper& keeper) {
+  int fd = -1;
+  EXPECT_TRUE(comes_true([&] { return (fd = keeper.take()) >= 0; }));
+  return fd;
+}
+
+TEST(LineKeeper, DoesNotWaitForADeviceThatOpensSlowly) {
+  std::promise<void> answered;
+  std::atomic<int> opened{0};
+  LineKeeper keeper([&, answer = answered.get_future().share()] {
+    ++opened;
+    answer.wait();  // for as long as the test likes
+    return ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  });
+  for (int i = 0; i < 1'000; ++i) EXPECT_EQ(keeper.take(), -1);
+  answered.set_value();
+  const Descriptor device(take_when_ready(keeper));
+  EXPECT_TRUE(is_open(device.fd));
+  EXPECT_EQ(opened, 1);  // asked a thousand times, opened once
+}
+
+TEST(LineKeeper, AsksAgainForADeviceThatIsNotThere) {
+  std::atomic<int> tries{0};
+  LineKeeper keeper([&] { return ++tries < 4 ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC); });
+  const Descriptor device(take_when_ready(keeper));
+  EXPECT_EQ(tries, 4);
+}
+
+// A port that one program may hold only once could not be opened otherwise.
+TEST(LineKeeper, ClosesADeviceBeforeItOpensItAgain) {
+  std::atomic<int> last{-1};
+  std::atomic<int> still_open{0};
+  LineKeeper keeper([&] {
+    if (last >= 0 && is_open(last)) ++still_open;
+    last = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    return last.load();
+  });
+  for (int i = 0; i < 200; ++i) keeper.close(take_when_ready(keeper));
+  EXPECT_EQ(still_open, 0);
+  EXPECT_TRUE(comes_true([&] { return !is_open(last); }));
+}
+
+TEST(LineKeeper, ClosesWhatNobodyTookWhenItEnds) {
+  std::atomic<int> last{-1};
+  {
+    LineKeeper keeper([&] { return last = ::open("/dev/null", O_RDONLY | O_CLOEXEC); });
+    EXPECT_EQ(keeper.take(), -1);
+    ASSERT_TRUE(comes_true([&] { return last >= 0; }));
+  }
+  EXPECT_FALSE(is_open(last));
+}
+
+}  // namespace
