@@ -7,13 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace foosball {
 
+// Out: whatever takes bytes by push_back(), such as a vector of them.
+template <class Out>
 class ByteWriter {
  public:
-  explicit ByteWriter(std::vector<std::byte>& out) : out_(out) {}
+  explicit ByteWriter(Out& out) : out_(out) {}
 
   template <class T>
   void choice(const T& x, int /*end*/) {
@@ -28,7 +29,7 @@ class ByteWriter {
   }
 
  private:
-  std::vector<std::byte>& out_;
+  Out& out_;
 };
 
 class ByteReader {

@@ -21,6 +21,14 @@ void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
   MatchState::visit(archive, state);
 }
 
+// FNV-1a of the bytes it is given. Takes no memory: the recorder hashes between two ticks.
+struct ByteHash {
+  void push_back(std::byte b) {
+    value = (value ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
+  }
+  std::uint64_t value = 0xcbf29ce484222325u;
+};
+
 tl::unexpected<vp::Error> refuse(const char* why) {
   return tl::unexpected(vp::Error{vp::Errc::bad_data, why});
 }
@@ -53,15 +61,13 @@ vp::Expected<SavedMatch> load_match(const MatchDesc& desc, std::span<const std::
   return saved;
 }
 
-// FNV-1a over the head's bytes and those of the world's hash.
+// Over the head's bytes and those of the world's hash.
 std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world) {
-  std::vector<std::byte> head;
-  ByteWriter writer(head);
+  ByteHash hash;
+  ByteWriter writer(hash);
   visit_head(writer, kMagic, desc, state);
   writer.count(world.state_hash());
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const std::byte b : head) hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
-  return hash;
+  return hash.value;
 }
 
 }  // namespace foosball
