@@ -18,6 +18,7 @@ step_packages() { packages_install "$LOGS/packages-apt.log" build play check; }
 step_format() {
   local files
   mapfile -t files < <(our_files '*.h' '*.cpp' '*.c')
+  ((${#files[@]} > 0)) || { echo "git lists no source files here" && return 1; }
   clang-format --dry-run --Werror "${files[@]}" 2>"$LOGS/format.all" && said "${#files[@]} files" && return
   echo "these are not as .clang-format has them; clang-format -i FILE puts them right:"
   sed -n 's/^\([^: ]*\):[0-9]*:[0-9]*: error.*/\1/p' "$LOGS/format.all" | uniq -c
@@ -160,7 +161,11 @@ step_play() {
     [[ -s $out/$file ]] || { echo "./play left no $file" && return 1; }
   done
   [[ $(head -c 8 "$out/exhibition.png" | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]]
-  grep -q 'score' "$LOGS/play.words"
+  local wanted
+  for wanted in '^score +[0-9]+ : [0-9]+$' '^physics +(9[0-9]{2}|1[0-9]{3})[.0-9]* ticks/s' \
+    '^snapshots +[1-9][0-9]* received' '^picture +[0-9]*\.?[0-9]*[1-9][0-9]* frames/s'; do
+    grep -Eq "$wanted" "$LOGS/play.words" || { echo "./play did not say \"$wanted\"" && return 1; }
+  done
   # What a newcomer may get wrong is answered by one sentence.
   [[ $(./play --nonsense 2>&1 | wc -l) == 1 ]]
   said "$(grep -m1 score "$LOGS/play.words")"

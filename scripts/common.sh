@@ -78,9 +78,10 @@ virtual_display() {
   unset WAYLAND_DISPLAY
 }
 
-# stop PID...: asks the processes to end, and after 3 seconds makes them.
+# stop PID...: asks the processes to end, and after 3 seconds makes them. Fails if one had to be
+# made, or ended with an error.
 stop() {
-  local pid
+  local pid status clean=0
   for pid in "$@"; do kill -TERM "$pid" 2>/dev/null || true; done
   for pid in "$@"; do
     for _ in {1..60}; do
@@ -88,8 +89,11 @@ stop() {
       sleep 0.05
     done
     kill -KILL "$pid" 2>/dev/null || true
-    wait "$pid" 2>/dev/null || true
+    status=0
+    wait "$pid" 2>/dev/null || status=$?
+    ((status == 0 || status == 143 || status == 127)) || clean=1 # 143: by our signal; 127: no child
   done
+  return "$clean"
 }
 
 # By itself: scripts/common.sh FUNCTION ARGUMENT... runs one of the above, for wrappers such as setarch.

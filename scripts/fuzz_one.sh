@@ -15,4 +15,5 @@ ASAN_OPTIONS=detect_leaks=1 "build/fuzz/bin/$name" -seed=1 -max_total_time="$sec
   fail "the input is kept as $results/$name-*, the words in $results/$name.log"
 }
 runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$results/$name.log")
-echo "passed $name: ${runs:-0} runs" >"$results/$name.result"
+((${runs:-0} > 0)) || fail "it ran no input at all; its words are in $results/$name.log"
+echo "passed $name: $runs runs" >"$results/$name.result"
