@@ -26,6 +26,7 @@ play   libegl1               EGL at run time
 play   libgles2              OpenGL ES at run time
 play   libgl1-mesa-dri       OpenGL drivers, and the software one where there is no GPU
 play   fonts-dejavu-core     the letters on the screen
+play   xauth                 who may draw on that display: xvfb-run asks it
 play   xvfb                  a display for machines without one
 check  git                   which files a change touches
 check  python3               layer check, document check

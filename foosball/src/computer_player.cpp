@@ -21,11 +21,13 @@ struct ComputerPlayer::Impl {
       : team(d.team == 0 ? 0 : 1),
         temper(temper_of(std::isfinite(d.skill) ? d.skill : 0.0)),
         random(d.seed),
+        opens_match(d.opens_match),
         sight(team, static_cast<int>(temper.delay / kTick)) {}
 
   int team;
   Temper temper;
   Random random;
+  bool opens_match;
   ComputerSight sight;
   std::vector<RodTactics> rods;  // from its own goal outwards
   Layout layout = Layout::tournament;
@@ -107,7 +109,7 @@ void ComputerPlayer::Impl::push(double seconds) {
 
 void ComputerPlayer::Impl::work_logo(const MatchView& view) {
   constexpr double kLookAtLogo = 0.5;  // [s]
-  if (view.screen_seconds > kLookAtLogo) push(view.screen_seconds - kLookAtLogo);
+  if (opens_match && view.screen_seconds > kLookAtLogo) push(view.screen_seconds - kLookAtLogo);
 }
 
 void ComputerPlayer::Impl::work_selection(const MatchView& view) {

@@ -125,8 +125,9 @@ int judge_replay(const server::Server& server, const server::Log& log) {
   if (playback == nullptr || !server.replay_over()) return server::kExitOk;
   const bool same = playback->verdict() == server::Playback::Verdict::same;
   log(same ? server::LogLevel::info : server::LogLevel::warning, playback->verdict_sentence());
+  if (same) return server::kExitOk;
   return playback->verdict() == server::Playback::Verdict::differs ? server::kExitFailed
-                                                                   : server::kExitOk;
+                                                                   : server::kExitCutShort;
 }
 
 int serve(server::Server& server, const app::Options& options, const server::Log& log) {

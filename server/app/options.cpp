@@ -129,7 +129,7 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
       "The physics server of Space Foosball: steps the match 1000 times a second and sends it to\n"
       "every renderer that has joined. Ctrl-C ends it.\n\n"
       "Exit codes: 0 ended as told; 1 a replay differs, or something failed; 2 a bad option;\n"
-      "3 the port is in use.",
+      "3 the port is in use; 4 a replay stops early.",
       "space-foosball-server"};
   Options options;
   Raw raw;

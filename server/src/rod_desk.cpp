@@ -28,6 +28,7 @@ RodDesk::RodDesk(const foosball::MatchDesc& match,
     foosball::ComputerPlayerDesc desc;
     desc.team = team;
     desc.seed = computer_seed(match.seed, team);
+    desc.opens_match = computer[0] && computer[1];
     computers_[team] = std::make_unique<ComputerSource>(desc, view);
     computer_index_[team] = add(*computers_[team], cabinet::Origin::absolute, RodDriver::computer);
   }

@@ -40,6 +40,7 @@ struct ConnectionStatus {
   std::string detail;     // one sentence, or empty
   wire::Welcome welcome;  // of the last time it was joined
   std::uint64_t joins = 0;
+  bool server_ended = false;          // it said good-bye when it was last lost
   bool small_receive_buffer = false;  // the system granted less than was asked for
 };
 

@@ -48,6 +48,7 @@ class App {
   void judge_quality();
   std::string take_screenshot();
   void say_figures(double seconds) const;
+  bool match_is_over() const;
   bool leaving(double seconds) const;
 
   const Options& options_;
@@ -180,6 +181,7 @@ HudState App::hud(const Camera& camera) const {
       hud.connection_detail = status_.detail;
       break;
     case Link::lost:
+      if (match_is_over()) break;
       hud.connection_message = "Physics server lost: waiting at " + connection_->address();
       hud.connection_detail = status_.detail;
       break;
@@ -237,8 +239,12 @@ std::string App::take_screenshot() {
   return wrote ? error : wrote.error();
 }
 
+bool App::match_is_over() const {
+  return options_.until_server_ends && status_.link == Link::lost && status_.server_ended;
+}
+
 bool App::leaving(double seconds) const {
-  return window_->should_close() || asked_to_leave != 0 ||
+  return window_->should_close() || asked_to_leave != 0 || match_is_over() ||
          (options_.seconds && seconds >= *options_.seconds);
 }
 
@@ -259,6 +265,7 @@ int App::loop() {
   std::int64_t before = began;
   bool shot = options_.screenshot.empty();
   std::string failure;
+  double drawing = 0.0;  // [s], without the picture for a file
   for (bool last = false; !last;) {
     const std::int64_t now = now_us();
     const float dt = std::min(1e-6f * static_cast<float>(now - before), 0.1f);
@@ -269,6 +276,7 @@ int App::loop() {
     hear(now_us());
     draw(dt);
     last = leaving(seconds_);
+    drawing = 1e-6 * static_cast<double>(now_us() - began);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
       const std::int64_t pause = now_us();
@@ -280,7 +288,7 @@ int App::loop() {
     meter_.end(now_us());
     judge_quality();
   }
-  say_figures(1e-6 * static_cast<double>(now_us() - began));
+  say_figures(drawing);
   connection_.reset();  // says Bye
   if (!failure.empty()) std::fprintf(stderr, "%s\n", failure.c_str());
   return failure.empty() ? 0 : 1;

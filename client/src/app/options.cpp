@@ -59,10 +59,12 @@ tl::expected<Options, Leave> parse_options(int argc, const char* const* argv) {
   cli.add_option("--name", options.connection.name, "your name, for the server's log")
       ->capture_default_str();
   cli.add_option("--seconds", options.seconds, "leave after so many seconds")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.1, 1e6));
+  cli.add_flag("--until-server-ends", options.until_server_ends,
+               "leave when the physics server ends, instead of waiting for it");
   cli.add_option("--screenshot", options.screenshot, "write a picture to FILE.png, at the end");
   cli.add_option("--screenshot-at", options.screenshot_at, "... or after so many seconds")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e6));
   cli.add_option("--size", size, "of the window, WxH")->capture_default_str();
   cli.add_flag("--fullscreen", options.fullscreen, "take the whole screen");
   cli.add_option("--quality", quality, "low, high or auto (by the frame rate reached)")

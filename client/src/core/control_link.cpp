@@ -149,6 +149,8 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
   }
   if (const auto* bye = std::get_if<wire::Bye>(&message)) {
     drop(bye->reason.empty() ? "it said good-bye" : bye->reason, now_us);
+    const std::lock_guard lock(mutex_);
+    status_.server_ended = true;
     return false;
   }
   if (const auto* ping = std::get_if<wire::Ping>(&message)) queue(wire::Pong{ping->id});
@@ -163,6 +165,7 @@ void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) 
   joined_at_us_ = now_us;
   const std::lock_guard lock(mutex_);
   status_.link = Link::joined;
+  status_.server_ended = false;
   status_.detail.clear();
   status_.welcome = welcome;
   ++status_.joins;
