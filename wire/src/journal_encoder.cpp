@@ -110,9 +110,9 @@ bool JournalEncoder::add(const JournalEntry& entry, std::vector<std::byte>& out)
   } else if (const auto* keyframe = std::get_if<JournalKeyframe>(&entry)) {
     if (keyframe->tick != next_tick_ || keyframe->snapshot.size() > kMaxKeyframe) return false;
     flush(out);
-    std::vector<std::byte> large(kSmallPayload + keyframe->snapshot.size());
+    large_.resize(kSmallPayload + keyframe->snapshot.size());
     const auto describe = [](auto& codec, auto& k) { describe_journal_keyframe(codec, k); };
-    append_record(out, encode(large, describe, *keyframe));
+    append_record(out, encode(large_, describe, *keyframe));
   } else if (const auto* end = std::get_if<JournalEnd>(&entry)) {
     if (end->ticks != next_tick_) return false;
     flush(out);

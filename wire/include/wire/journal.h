@@ -99,7 +99,8 @@ class JournalEncoder {
 
   std::array<JournalRod, 8> previous_{};
   std::uint64_t next_tick_ = 0;
-  std::vector<std::byte> open_;  // ticks of the open record, without its head
+  std::vector<std::byte> open_;   // ticks of the open record, without its head
+  std::vector<std::byte> large_;  // a keyframe's payload; kept for its memory
   int open_ticks_ = 0;
   bool started_ = false, ended_ = false;
 };
