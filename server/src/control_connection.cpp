@@ -9,6 +9,10 @@
 namespace server {
 namespace {
 
+// Sent bytes are taken out of memory in pieces of this size while a peer reads without ever
+// catching up: smaller pieces move the unsent ones more often.
+constexpr std::size_t kSentBytesKept = 16 * 1024;
+
 bool would_block() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
@@ -57,13 +61,21 @@ bool ControlConnection::flush() {
   while (wants_to_send()) {
     const ssize_t size = ::send(socket_.get(), out_.data() + sent_, out_.size() - sent_,
                                 MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (size < 0) return would_block();
+    if (size < 0) {
+      const bool later = would_block();
+      if (sent_ >= kSentBytesKept) forget_sent();
+      return later;
+    }
     sent_ += static_cast<std::size_t>(size);
   }
-  out_.clear();
-  sent_ = 0;
+  forget_sent();
   if (shut_when_sent_) ::shutdown(socket_.get(), SHUT_WR);
   return true;
+}
+
+void ControlConnection::forget_sent() {
+  out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(sent_));
+  sent_ = 0;
 }
 
 void ControlConnection::close_softly(std::int64_t until_us) {

@@ -36,6 +36,7 @@ class ControlConnection {
   // read yet; the deadline bounds the wait for its own end.
   void close_softly(std::int64_t deadline_us);
   bool wants_to_send() const { return sent_ < out_.size(); }
+  std::size_t buffered_bytes() const { return out_.size(); }  // unsent, and some sent ones
   bool broke_off() const { return state == State::greeting && heard_; }
 
   int fd() const { return socket_.get(); }
@@ -48,6 +49,8 @@ class ControlConnection {
   std::string name;
 
  private:
+  void forget_sent();
+
   FileDescriptor socket_;
   sockaddr_in peer_;
   wire::ControlReader reader_;

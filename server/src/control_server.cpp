@@ -58,10 +58,10 @@ bool may_wish(const ControlConnection& connection, const foosball::Command& wish
 
 }  // namespace
 
-ControlServer::ControlServer(ControlOptions options, FileDescriptor listener)
+ControlServer::ControlServer(ControlOptions options, FileDescriptor listener, FileDescriptor wake)
     : options_(std::move(options)),
       listener_(std::move(listener)),
-      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      wake_(std::move(wake)),
       thread_([this] { run(); }) {}
 
 ControlServer::~ControlServer() {

@@ -53,7 +53,8 @@ struct ControlOptions {
 
 class ControlServer {
  public:
-  ControlServer(ControlOptions options, FileDescriptor listener);
+  // wake: a non-blocking eventfd.
+  ControlServer(ControlOptions options, FileDescriptor listener, FileDescriptor wake);
   ~ControlServer();
 
   // Tick thread.

@@ -4,7 +4,9 @@
 
 namespace server {
 
-InputPort::InputPort(int fd, std::uint64_t session) : fd_(fd), session_(session) {
+InputPort::InputPort(int fd, std::uint64_t session, std::size_t capacity)
+    : fd_(fd), session_(session) {
+  players_.reserve(capacity);
   for (int i = 0; i < kBatch; ++i) {
     parts_[i] = {buffers_[i].data(), buffers_[i].size()};
     messages_[i].msg_hdr.msg_iov = &parts_[i];

@@ -19,7 +19,7 @@ class InputPort {
   static constexpr int kMaxPerTick = 128;
 
   // fd: a non-blocking UDP socket, which must outlive this.
-  InputPort(int fd, std::uint64_t session);
+  InputPort(int fd, std::uint64_t session, std::size_t capacity);
 
   // The client's datagrams, known by their token, go to source; null: it watches, and may not.
   void add(std::uint32_t client, std::uint64_t token, RemoteSource* source);

@@ -96,10 +96,16 @@ std::string JournalFile::problem() const {
 void JournalFile::write_loop() {
   while (true) {
     const bool closing = closing_.load(std::memory_order_acquire);
-    if (!drain() || closing) return;
+    if (!drain()) return;
+    if (closing) return sync();
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t ignored = ::read(wake_.get(), &count, sizeof count);
   }
+}
+
+// A pipe or a device has no disk to wait for: EINVAL.
+void JournalFile::sync() {
+  if (::fdatasync(file_.get()) != 0 && errno != EINVAL) fail(Failure::write_failed, errno);
 }
 
 // False when the file can take no more. A record cut in two by that is where its reader stops.

@@ -34,7 +34,8 @@ class JournalFile {
 
   // Tick thread. Nothing happens once the journal has ended.
   void add(const wire::JournalEntry& entry);
-  // Appends what is still open, waits for the disk, ends the thread.
+  // Appends what is still open, waits until the disk has it (fdatasync, on the journal's thread),
+  // ends the thread. Not for the loop while it runs. problem() then says if the disk failed.
   void close();
 
   // Any thread. Empty, or the sentence that says why the journal ended early.
@@ -51,6 +52,7 @@ class JournalFile {
   void fail(Failure failure, int error_number);
   void write_loop();
   bool drain();
+  void sync();
   void signal();
 
   std::string path_;

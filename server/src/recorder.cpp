@@ -4,6 +4,7 @@ namespace server {
 
 Recorder::Recorder(std::unique_ptr<JournalFile> file, const wire::JournalHeader& header)
     : file_(std::move(file)) {
+  std::get<wire::JournalTick>(tick_entry_).commands.reserve(wire::kMaxJournalCommands);
   file_->add(header);
 }
 

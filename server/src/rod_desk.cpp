@@ -41,7 +41,7 @@ int RodDesk::add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver
 }
 
 void RodDesk::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
-  device_indices_.push_back(add(*device, cabinet::Origin::relative, RodDriver::cabinet));
+  order_.insert(order_.end() - 1, add(*device, cabinet::Origin::relative, RodDriver::cabinet));
   devices_.push_back(std::move(device));
   assign_all();
 }
@@ -56,12 +56,10 @@ void RodDesk::assign_all() {
   for (int team = 0; team < foosball::kTeams; ++team) {
     if (computers_[team]) computers_[team]->set_playing(!claimed_[team]);
   }
-  std::vector<int> order;
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const int team = table_.rods[rod].team;
-    order = device_indices_;
-    order.push_back(claimed_[team] ? remote_index_[team] : computer_index_[team]);
-    mux_.assign(rod, order);
+    order_.back() = claimed_[team] ? remote_index_[team] : computer_index_[team];
+    mux_.assign(rod, order_);
   }
 }
 

@@ -45,8 +45,8 @@ class RodDesk {
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;  // or none
   std::array<bool, foosball::kTeams> claimed_{};
   cabinet::SourceMux mux_;
-  std::vector<RodDriver> kinds_;  // by the mux's index
-  std::vector<int> device_indices_;
+  std::vector<RodDriver> kinds_;                         // by the mux's index
+  std::vector<int> order_{cabinet::SourceMux::kNobody};  // the devices', then the team's player
   std::array<int, foosball::kTeams> remote_index_{}, computer_index_{};
 };
 

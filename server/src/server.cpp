@@ -1,5 +1,9 @@
 #include "server/server.h"
 
+#include <sys/eventfd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <span>
 
 #include "broadcaster.h"
@@ -31,7 +35,7 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
 }  // namespace
 
 struct Server::Impl {
-  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
+  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, FileDescriptor&& wake,
        std::unique_ptr<Recorder>&& journal);
 
   void take_control_events();
@@ -73,19 +77,20 @@ struct Server::Impl {
 };
 
 Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
-                   std::unique_ptr<Recorder>&& journal)
+                   FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
     : options(std::move(given)),
       match(std::move(made)),
       port(opened.port),
       udp(std::move(opened.udp)),
-      input(udp.get(), options.session),
+      input(udp.get(), options.session, static_cast<std::size_t>(options.limits.connections)),
       broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1),
       desk(options.match, options.computer, match.view()),
       recorder(std::move(journal)),
-      control(control_options(), std::move(opened.tcp)) {
+      control(control_options(), std::move(opened.tcp), std::move(wake)) {
   clients.reserve(static_cast<std::size_t>(options.limits.connections));
   next.commands.reserve(wire::kMaxJournalCommands);
   snapshot.session = options.session;
+  snapshot.events.reserve(wire::kMaxEvents);
   if (options.network.multicast) {
     const auto& group = *options.network.multicast;
     broadcaster.add(0, *parse_address(group.address, group.port));
@@ -224,6 +229,12 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
   }
   auto ports = open_ports(options.network);
   if (!ports) return tl::unexpected(port_error(options.network, ports.error()));
+  FileDescriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!wake) {
+    return tl::unexpected(StartError{
+        Kind::failed, "cannot start the control port: " + std::string(std::strerror(errno)) +
+                          "; close other programs and try again"});
+  }
 
   std::unique_ptr<Recorder> recorder;
   if (!options.record.empty()) {
@@ -231,8 +242,9 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
     if (!file) return tl::unexpected(StartError{Kind::bad_option, file.error()});
     recorder = std::make_unique<Recorder>(std::move(*file), header);
   }
-  return std::unique_ptr<Server>(new Server(std::make_unique<Impl>(
-      std::move(options), std::move(*match), std::move(*ports), std::move(recorder))));
+  return std::unique_ptr<Server>(
+      new Server(std::make_unique<Impl>(std::move(options), std::move(*match), std::move(*ports),
+                                        std::move(wake), std::move(recorder))));
 }
 
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,5 +1,6 @@
 // The control port on real sockets: who may join, what a stranger can do, what clients are told.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <random>
 
@@ -259,6 +260,39 @@ TEST(Control, SaysByeBeforeItEnds) {
   ASSERT_TRUE(bye);
   EXPECT_EQ(bye->reason, "closing time");
   EXPECT_TRUE(client.sees_close());
+}
+
+// As many descriptors as there are now, and so many more.
+class DescriptorLimit {
+ public:
+  explicit DescriptorLimit(rlim_t more) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const int lowest_free = ::dup(0);
+    ::close(lowest_free);
+    const rlimit limit{static_cast<rlim_t>(lowest_free) + more, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  ~DescriptorLimit() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Control, StartsWholeOrSaysWhyNotHoweverFewDescriptorsAreLeft) {
+  int more = 0;
+  for (; more < 20; ++more) {
+    auto limit = std::make_unique<DescriptorLimit>(more);
+    Lockstep table([](ServerOptions& o) { o.record = temp_path("journal"); });
+    limit.reset();
+    if (table.started()) {
+      expect_alive(table);
+      break;
+    }
+    EXPECT_FALSE(table.error().sentence.empty()) << more;
+  }
+  ::unlink(temp_path("journal").c_str());
+  // Two ports, the control thread's and the journal's wake-up, the journal's file.
+  EXPECT_EQ(more, 5);
 }
 
 TEST(Control, SaysWhichPortIsInUseAndWhatToDo) {

@@ -45,6 +45,7 @@ class Server {
   static tl::expected<std::unique_ptr<Server>, StartError> create(ServerOptions options);
   ~Server();  // as finish(), if that was not called
 
+  // Precondition: before the first tick. It takes memory, and rods would change hands.
   void add_device(std::unique_ptr<cabinet::DeviceSource> device);
 
   // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
@@ -55,7 +56,8 @@ class Server {
   void warn(Topic topic, const std::string& text);
   void clear(Topic topic, const std::string& text);
 
-  // Says Bye to the clients and closes the journal.
+  // Says Bye to the clients and closes the journal, waiting for both: up to 0.2 s, and for the
+  // disk.
   void finish(const std::string& reason);
 
   std::uint16_t port() const;

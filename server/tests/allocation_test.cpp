@@ -1,0 +1,91 @@
+// Once warm, a tick takes no memory: an allocation may wait for a lock or for the kernel.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "lockstep.h"
+
+namespace {
+// The control and the journal's threads may allocate: only this thread's own are counted.
+thread_local long allocations = 0;
+}  // namespace
+
+// Not inlined: g++ 12 would otherwise take the pair of malloc and free for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace server {
+namespace {
+
+class WarmTick : public testing::Test {
+ protected:
+  void TearDown() override { ::unlink(path.c_str()); }
+
+  // What so many ticks take from the heap.
+  long taken(int ticks) {
+    const long before = allocations;
+    table.tick(ticks);
+    return allocations - before;
+  }
+  std::string path = temp_path("journal");
+  Lockstep table{[this](ServerOptions& o) {
+    o.computer = {true, true};
+    o.record = path;
+  }};
+};
+
+// Through the second of the journal's keyframes, eleven of its hashes, and whatever the match
+// brings.
+TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  // From the logo to the characters, and on to play.
+  for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
+    ASSERT_TRUE(table.tick_until([&] {
+      if (table->match().view().screen == screen) return true;
+      for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
+        watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::push), team, 0});
+      }
+      return false;
+    }));
+  }
+  table.tick(11'000);  // the first keyframe is at 10,000
+  const std::uint64_t written = table->counters().journal_bytes;
+  const std::uint64_t sent = table->counters().snapshots_sent;
+  EXPECT_EQ(taken(11'000), 0);
+  EXPECT_EQ(table->counters().snapshots_sent, sent + 11'000);
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().journal_bytes > written; }));
+  EXPECT_EQ(table->journal_problem(), "");
+  EXPECT_NE(table->match().view().screen, foosball::Screen::logo);
+  EXPECT_GT(allocations, 0);  // the counter counts
+}
+
+TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
+  table.tick(100);
+  for (int round = 0; round < 3; ++round) {
+    ProbeClient player(table.port());
+    ASSERT_TRUE(player.join(0));  // welcomed: the next tick has it
+    EXPECT_EQ(taken(1), 0);
+    EXPECT_EQ(table->clients(), 1);
+    player.leave();
+    long during = 0;
+    EXPECT_TRUE(table.tick_until([&] {
+      during += taken(1);
+      return table->clients() == 0;
+    }));
+    EXPECT_EQ(during, 0);
+  }
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,88 @@
+// What one connection keeps in memory for a peer that reads slowly.
+#include "control_connection.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <vector>
+
+namespace server {
+namespace {
+
+constexpr std::size_t kCap = 64 * 1024;
+
+class ControlConnectionTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::array<int, 2> ends{-1, -1};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+    const int small = 4096;  // so that the peer is behind at once
+    ::setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
+    connection.emplace(FileDescriptor(ends[0]), sockaddr_in{}, 0);
+    peer = FileDescriptor(ends[1]);
+  }
+  // Up to so many bytes of what has been sent.
+  void read(std::size_t most) {
+    std::vector<std::byte> bytes(most);
+    const ssize_t size = ::recv(peer.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (size > 0) received.push({bytes.data(), static_cast<std::size_t>(size)});
+    wire::ControlMessage message;
+    while (received.next(message) == wire::ControlReader::Status::message) {
+      ASSERT_TRUE(std::holds_alternative<wire::Pong>(message));
+      ASSERT_EQ(std::get<wire::Pong>(message).id, ++heard);
+    }
+  }
+  std::optional<ControlConnection> connection;
+  FileDescriptor peer;
+  wire::ControlReader received;
+  std::uint64_t heard = 0;
+};
+
+// A peer that pings and reads at one pace is never dropped for it, and what it was sent is not
+// kept.
+TEST_F(ControlConnectionTest, KeepsNoMoreForASteadyReaderThatNeverCatchesUp) {
+  std::uint64_t said = 0;
+  const auto say = [&] { return connection->send(wire::Pong{++said}, kCap); };
+  while (connection->buffered_bytes() < kCap / 2) {
+    ASSERT_TRUE(say());
+    ASSERT_TRUE(connection->flush());
+  }
+  std::vector<std::byte> one;
+  wire::encode_control(wire::Pong{1}, one);
+  std::size_t most = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    for (int k = 0; k < 8; ++k) ASSERT_TRUE(say());
+    read(8 * one.size());
+    ASSERT_TRUE(connection->flush());
+    ASSERT_TRUE(connection->wants_to_send());
+    most = std::max(most, connection->buffered_bytes());
+  }
+  EXPECT_LE(most, kCap + 16 * 1024);
+  EXPECT_GT(20'000 * 8 * one.size(), 10 * kCap);  // far more than that went through
+  while (connection->wants_to_send() || heard < said) {
+    ASSERT_TRUE(connection->flush());
+    read(kCap);
+  }
+  EXPECT_EQ(heard, said);  // in order, each once
+}
+
+TEST_F(ControlConnectionTest, CountsOnlyUnsentBytesAgainstTheCap) {
+  bool within = true;
+  std::uint64_t said = 0;
+  while (within && said < 100'000) {
+    within = connection->send(wire::Pong{++said}, kCap);
+    ASSERT_TRUE(connection->flush());
+  }
+  EXPECT_FALSE(within);
+  const auto sent_first = said;
+  for (int i = 0; i < 1'000 && connection->wants_to_send(); ++i) {
+    read(kCap);
+    ASSERT_TRUE(connection->flush());
+  }
+  EXPECT_TRUE(connection->send(wire::Pong{++said}, kCap));
+  EXPECT_GT(said, sent_first);
+}
+
+}  // namespace
+}  // namespace server
