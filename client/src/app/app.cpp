@@ -121,7 +121,7 @@ void App::follow_connection() {
     link_seen_ = status_.link;
     if (status_.link == Link::joined)
       log_info("joined the physics server at " + connection_->address());
-    if (status_.link == Link::lost)
+    if (status_.link == Link::lost && !match_is_over())
       log_warning("physics server lost (" + status_.detail + "): waiting at " +
                   connection_->address());
     if (status_.link == Link::refused) log_warning("the physics server refuses: " + status_.detail);
