@@ -17,7 +17,7 @@ struct Options {
   bool fullscreen = false;
   bool mute = false;
   bool show_fps = false;
-  bool until_server_ends = false;  // leave when the server says good-bye, else wait for it
+  bool until_server_ends = false;       // leave when the server says good-bye, else wait for it
   std::optional<Quality> quality;       // none: picked by what the machine can do
   std::optional<double> seconds;        // play so long, then leave
   std::optional<double> screenshot_at;  // none: at the end

@@ -14,7 +14,7 @@ struct ComputerPlayerDesc {
   int team = 1;
   std::uint64_t seed = 1;
   bool opens_match = true;  // pushes at the logo; false: leaves that to a person
-  double skill = 0.6;  // 0 sleepy .. 1 sharp: reaction time, aim, hand speed
+  double skill = 0.6;       // 0 sleepy .. 1 sharp: reaction time, aim, hand speed
 };
 
 class ComputerPlayer {
