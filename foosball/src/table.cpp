@@ -55,7 +55,7 @@ constexpr TableSpec describe(Layout layout) {
   table.layout = layout;
   table.length = kLength;
   table.width = kWidth;
-  table.wall_height = 0.130;  // rods pass through at 84 mm; a ball that hops stays inside
+  table.wall_height = 0.150;  // rods pass through at 84 mm; a ball that hops stays inside
   table.rod_height = kRodHeight;
   table.goal_width = 0.205;
   table.goal_height = 0.080;
