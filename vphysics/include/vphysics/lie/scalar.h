@@ -65,7 +65,7 @@ inline constexpr double kAtanTable[9] = {0.0,
 // 0 <= x <= 1. atan x = atan c + atan((x - c) / (1 + x c)), c the nearest eighth, so that the
 // argument of the series is at most 1/16 and the first term left out below 6e-20.
 inline double atan_unit(double x) {
-  const int k = static_cast<int>(x * 8.0 + 0.5);
+  const int k = static_cast<int>(std::floor(x * 8.0 + 0.5));
   const double c = k * 0.125;
   const double t = (x - c) / (1.0 + x * c);
   const double z = t * t;
