@@ -70,6 +70,15 @@ struct Descriptor {
   void send(const Bytes& bytes) const {
     ASSERT_EQ(::write(fd, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
+  // For a line that nobody reads yet: what does not fit is dropped, as by a real device, and
+  // nothing waits.
+  ssize_t send_what_fits(const Bytes& bytes) const {
+    const int flags = ::fcntl(fd, F_GETFL);
+    ::fcntl(fd, F_SETFL, flags | O_NONBLOCK);
+    const ssize_t sent = ::write(fd, bytes.data(), bytes.size());
+    ::fcntl(fd, F_SETFL, flags);
+    return sent;
+  }
 };
 
 // A serial line: the master's end is the micro-controller, path() what the PC opens.
