@@ -63,8 +63,8 @@ INSTANTIATE_TEST_SUITE_P(Layouts, Exhibition, testing::Values(Layout::paper, Lay
 
 TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
   Tally tally;
-  tally.tick_us.reserve(600000);
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  tally.tick_us.reserve(1200000);
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     play(GetParam(), seed, 0.9, 45000, false, tally);
   }
   std::sort(tally.tick_us.begin(), tally.tick_us.end());

@@ -50,13 +50,13 @@ double sampled_separation(Random& random, const Geometry& a, const SE3& Ta, cons
   for (int start = 0; start < 24; ++start) {
     Vec3 n = random.direction();
     double gap = gap_along(a, Ta, b, Tb, n);
-    for (double size = 0.5; size > 1e-7; size *= 0.93) {
-      for (int k = 0; k < 4; ++k) {
-        Vec3 m = n + size * random.in_cube(1.0);
-        m = (1.0 / norm(m)) * m;
-        const double g = gap_along(a, Ta, b, Tb, m);
-        if (g > gap) gap = g, n = m;
-      }
+    // A step that gains doubles the reach, so that a long way along a ridge is not cut short.
+    for (double size = 0.5; size > 1e-7;) {
+      Vec3 m = n + size * random.in_cube(1.0);
+      m = (1.0 / norm(m)) * m;
+      const double g = gap_along(a, Ta, b, Tb, m);
+      size *= g > gap ? 2.0 : 0.93;
+      if (g > gap) gap = g, n = m;
     }
     best = std::max(best, gap);
   }
@@ -71,7 +71,8 @@ TEST(SignedDistance, AgreesWithTheSampledSeparation) {
       const Geometry g = random_geometry(random, kind);
       const SE3 p(random.in_cube(1.5));
       const auto d = signed_distance(g, p.position());
-      ASSERT_NEAR(d.distance, sampled_separation(random, g, SE3{}, point, p), 5e-5);
+      // The sampling is off by 1.6e-4 at most in 900 trials, at edges; the distance is exact.
+      ASSERT_NEAR(d.distance, sampled_separation(random, g, SE3{}, point, p), 2e-4);
       ASSERT_NEAR(norm(d.normal), 1.0, 1e-14);
       // It grows along its normal at rate one, and nowhere lies below its tangent plane.
       const Vec3 q = random.in_cube(1.5);
@@ -95,8 +96,10 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
     find_manifold(a, Ta, b, Tb, margin, m);
     find_manifold(b, Tb, a, Ta, margin, turned);
     const double truth = sampled_separation(random, a, Ta, b, Tb);
-    // Edges against edges nearly along a face may be told as the face: within 5% of the depth.
-    const double tolerance = 2e-4 + 0.06 * std::fabs(truth);
+    // The sampling is off by 4.3e-4 at most in 300 trials a pair. Edges against edges nearly along
+    // a face are told as the face: by 4.9% of the depth at most in 300 trials.
+    const double tolerance =
+        ka == Kind::box && kb == Kind::box ? 1e-3 + 0.05 * std::fabs(truth) : 1e-3;
     if (m.count == 0) {
       ASSERT_GT(truth, margin - tolerance) << i;
       continue;
@@ -107,14 +110,13 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
       deepest = std::min(deepest, m.points[k].separation);
       ASSERT_LE(m.points[k].separation, margin);
     }
-    // Boxes apart at a corner: the separating axis tells less than the distance, never more.
-    const bool corner = ka == Kind::box && kb == Kind::box && truth > 0;
-    if (corner) {
-      ASSERT_LE(deepest, std::max(truth, margin) + tolerance) << i;
-    } else if (ka == Kind::capsule && kb == Kind::box && truth < 0) {
-      ASSERT_LE(truth + 1e-3,
-                0.0 + 1e-3);  // the axis may lie inside: depth is told to the nearest face
-      ASSERT_LE(deepest, 1e-3) << i;
+    if (ka == Kind::box && kb == Kind::box && truth > 0) {
+      // Boxes apart at a corner: the gap along a separating axis is less than the distance.
+      ASSERT_GT(deepest, 0.0) << i;
+      ASSERT_LE(deepest, truth + tolerance) << i;
+    } else if (ka == Kind::capsule && kb == Kind::box && deepest < -a.radius) {
+      // The axis lies inside: a depth is the way out of one of its points, of which all have to go.
+      ASSERT_LE(truth, deepest + tolerance) << i;
     } else {
       ASSERT_NEAR(deepest, truth, tolerance) << i;
     }
