@@ -12,7 +12,7 @@ seconds_since() { # seconds_since EPOCHREALTIME: with one decimal
 
 # Nobody should have to compile the same file twice: ccache is used where it is installed, and what it
 # keeps serves every checkout.
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros # with precompiled headers
 launcher_flags() {
   command -v ccache >/dev/null || return 0
   echo "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache"
