@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "scripted_scene.h"
@@ -86,6 +87,27 @@ TEST(Interpolator, WhatCountsChangesOnlyWhenItsSnapshotIsReached) {
   EXPECT_EQ(interpolate(a, b, 0.99, 0.001).score, a.score);
   EXPECT_EQ(interpolate(a, b, 0.99, 0.001).rods[2].status, a.rods[2].status);
   EXPECT_EQ(interpolate(a, b, 1.0, 0.001).score, b.score);
+}
+
+TEST(Interpolator, ARodSpunPastTheEndOfTheWiresAnglesGoesOnTheSameWay) {
+  constexpr double kTurn = 6.283185307179586, kRate = 60.0, kSpan = 0.004;
+  for (const double way : {1.0, -1.0}) {
+    // The end of the wire's range, half way between two snapshots, which go over the wire itself.
+    wire::Snapshot scenes[2];
+    for (int i = 0; i < 2; ++i) {
+      wire::Snapshot sent;
+      sent.rods[2].angle = static_cast<float>(way * (128 * kTurn + (i - 0.5) * kRate * kSpan));
+      std::array<std::byte, wire::kMaxDatagram> bytes;
+      const std::size_t size = wire::encode_snapshot(sent, bytes);
+      ASSERT_TRUE(wire::decode_snapshot({bytes.data(), size}, scenes[i]));
+    }
+    ASSERT_LT(scenes[1].rods[2].angle * scenes[0].rods[2].angle, 0.0f) << "not at the end";
+    for (const double share : {0.0, 0.1, 0.37, 0.51, 0.9, 1.0}) {
+      const double drawn = interpolate(scenes[0], scenes[1], share, kSpan).rods[2].angle;
+      const double truth = way * (128 * kTurn + (share - 0.5) * kRate * kSpan);
+      EXPECT_NEAR(std::remainder(drawn - truth, kTurn), 0.0, 3e-4) << way << " " << share;
+    }
+  }
 }
 
 TEST(Interpolator, MenOfAnotherLayoutAreNotMixed) {

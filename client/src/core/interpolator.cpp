@@ -48,7 +48,9 @@ wire::RodSnapshot interpolate(const wire::RodSnapshot& a, const wire::RodSnapsho
                               float span) {
   wire::RodSnapshot rod = a;
   rod.slide = hermite(a.slide, b.slide, a.slide_rate, b.slide_rate, s, span);
-  rod.angle = a.angle + (b.angle - a.angle) * s;
+  // The angle is sent modulo a lap of many turns: across its end it goes on, not all the way back.
+  const auto onward = static_cast<float>(wire::unwrap_angle(b.angle, a.angle));
+  rod.angle = s < 1.0f ? a.angle + (onward - a.angle) * s : b.angle;
   rod.slide_rate = a.slide_rate + (b.slide_rate - a.slide_rate) * s;
   rod.angle_rate = a.angle_rate + (b.angle_rate - a.angle_rate) * s;
   return rod;
