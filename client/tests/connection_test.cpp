@@ -46,6 +46,7 @@ class ConnectionTest : public ::testing::Test {
     auto opened = Connection::open(options_for(server.port()));
     ASSERT_TRUE(opened) << opened.error();
     connection = std::move(*opened);
+    connection->start();
   }
   void join(std::uint64_t session) {
     ASSERT_TRUE(server.welcome(session));
@@ -57,6 +58,11 @@ class ConnectionTest : public ::testing::Test {
       server.send_snapshot(snapshot(session, tick++));
       return connection->counters().received > before;
     });
+  }
+  // Between the two the listening thread looked for what is to be sent: 45 ms after the last input,
+  // which a loss and a return take longer than, a repetition would be.
+  bool hears_twice(std::uint64_t session) {
+    return hears(session, 20'000) && hears(session, 30'000);
   }
   ScriptedServer server;
   std::unique_ptr<Connection> connection;
@@ -161,7 +167,7 @@ TEST_F(ConnectionTest, InputsCarrySessionAndTokenCountUpAndAreRepeated) {
   join(42);
   std::array<wire::InputRod, 8> rods{};
   rods[3] = {true, 0.02f, 1.0f, 0.5f, 4.0f};
-  connection->drive(rods);
+  connection->drive(42, rods);
   const auto first = server.next_input();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->session, 42u);
@@ -176,10 +182,57 @@ TEST_F(ConnectionTest, InputsCarrySessionAndTokenCountUpAndAreRepeated) {
   EXPECT_EQ(again->rods[3].slide_rate, 0.0f);
 }
 
+TEST_F(ConnectionTest, NothingOfAnOldMatchReachesANewServer) {
+  open();
+  join(42);
+  std::array<wire::InputRod, 8> old_rods{}, new_rods{};
+  old_rods[3] = {true, 0.05f, 2.0f, 0.5f, 4.0f};
+  new_rods[5] = {true, -0.02f, 0.0f, 0.0f, 0.0f};
+  connection->drive(42, old_rods);
+  ASSERT_TRUE(server.next_input());
+  server.drop_client();
+  ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
+  const std::uint64_t sent = connection->inputs_sent();
+  join(43);
+  connection->drive(42, old_rods);  // a window that has not heard of the new match yet
+  connection->wish(42, {0, 0, 0});
+  ASSERT_TRUE(hears_twice(43));
+  EXPECT_EQ(connection->inputs_sent(), sent);
+  server.forget_inputs();
+  connection->wish(43, {2, 0, 1});
+  connection->drive(43, new_rods);
+  const auto input = server.next_input();
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->session, 43u);
+  EXPECT_FALSE(input->rods[3].driven);
+  EXPECT_TRUE(input->rods[5].driven);
+  const auto wish = server.next_message();
+  ASSERT_TRUE(wish && std::holds_alternative<wire::Wish>(*wish));
+  EXPECT_EQ(std::get<wire::Wish>(*wish).kind, 2);
+}
+
+TEST_F(ConnectionTest, AServerJoinedAgainGetsNoInputUntilTheHandMovesAnew) {
+  open();
+  join(42);
+  std::array<wire::InputRod, 8> rods{};
+  rods[3] = {true, 0.05f, 2.0f, 0.5f, 4.0f};
+  connection->drive(42, rods);
+  ASSERT_TRUE(server.next_input());
+  server.drop_client();
+  ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
+  const std::uint64_t sent = connection->inputs_sent();
+  join(42);
+  ASSERT_TRUE(hears_twice(42));
+  EXPECT_EQ(connection->inputs_sent(), sent);
+  server.forget_inputs();
+  connection->drive(42, rods);  // the same as before: sent all the same
+  EXPECT_TRUE(server.next_input());
+}
+
 TEST_F(ConnectionTest, WishesAndGoodByeReachTheServer) {
   open();
   join(42);
-  connection->wish({2, 0, 1});
+  connection->wish(42, {2, 0, 1});
   const auto wish = server.next_message();
   ASSERT_TRUE(wish && std::holds_alternative<wire::Wish>(*wish));
   EXPECT_EQ(std::get<wire::Wish>(*wish).kind, 2);
@@ -195,6 +248,24 @@ TEST_F(ConnectionTest, APingIsAnswered) {
   const auto pong = server.next_message();
   ASSERT_TRUE(pong && std::holds_alternative<wire::Pong>(*pong));
   EXPECT_EQ(std::get<wire::Pong>(*pong).id, 99u);
+}
+
+TEST(Connection, ANameIsLookedUpAtTheOpen) {
+  ScriptedServer server;
+  ConnectionOptions options = options_for(server.port());
+  options.host = "localhost";
+  auto connection = Connection::open(options);
+  ASSERT_TRUE(connection) << connection.error();
+  (*connection)->start();
+  ASSERT_TRUE(server.welcome(42));
+  EXPECT_TRUE(eventually([&] { return (*connection)->status().link == Link::joined; }));
+}
+
+TEST(Connection, OneThatWasNeverStartedEndsToo) {
+  auto connection = Connection::open({});
+  ASSERT_TRUE(connection) << connection.error();
+  EXPECT_EQ((*connection)->status().link, Link::connecting);
+  connection->reset();
 }
 
 TEST(Connection, AnUnknownHostIsOneSentence) {

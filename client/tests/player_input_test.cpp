@@ -8,12 +8,13 @@ namespace client {
 namespace {
 
 constexpr std::int64_t kFrame = 16'667;  // [us]
+constexpr std::uint64_t kSession = 1;    // of the scripted scenes
 
 class PlayerInputTest : public ::testing::TestWithParam<int> {};
 
 TEST_P(PlayerInputTest, AwayFromThePersonSlidesAwayAndToTheRightSwingsFeetToTheOtherGoal) {
   const int team = GetParam();
-  PlayerInput player(team, foosball::Layout::tournament);
+  PlayerInput player(kSession, team, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0.0);
   for (auto& rod : scene.rods) rod.slide = rod.angle = 0;
   player.update({}, &scene, kFrame);
@@ -30,7 +31,7 @@ TEST_P(PlayerInputTest, AwayFromThePersonSlidesAwayAndToTheRightSwingsFeetToTheO
 
 TEST_P(PlayerInputTest, DrivesTheOwnFourRodsOnlyAndTakesThemOverWhereTheyAre) {
   const int team = GetParam();
-  PlayerInput player(team, foosball::Layout::tournament);
+  PlayerInput player(kSession, team, foosball::Layout::tournament);
   const wire::Snapshot scene = scripted_play(0.7);
   player.update({}, &scene, kFrame);
   const auto& table = foosball::table_spec(foosball::Layout::tournament);
@@ -46,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(BothTeams, PlayerInputTest, ::testing::Values(0, 1));
 
 TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
   const auto lines = foosball::rods_of_team(foosball::table_spec(foosball::Layout::tournament), 1);
-  PlayerInput player(1, foosball::Layout::tournament);
+  PlayerInput player(kSession, 1, foosball::Layout::tournament);
   for (int line = 0; line < 4; ++line) {
     InputEvents events;
     events.choose_line = line;
@@ -56,7 +57,7 @@ TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
 }
 
 TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
-  PlayerInput player(0, foosball::Layout::tournament);
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   InputEvents events;
   events.push = true;
@@ -70,7 +71,7 @@ TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
 }
 
 TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
-  PlayerInput player(0, foosball::Layout::tournament);
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   InputEvents events;
   events.toggle_pause = true;
@@ -84,7 +85,7 @@ TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
 }
 
 TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
-  PlayerInput player(0, foosball::Layout::tournament);
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   scene.screen = 1;
   scene.character = {0, 0};
@@ -96,6 +97,32 @@ TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
   EXPECT_EQ(player.wishes()[0].value, 1);
   player.update(events, &scene, 2 * kFrame);
   EXPECT_TRUE(player.wishes().empty());
+}
+
+TEST(PlayerInput, TheRodsOfAnotherMatchAreNotTakenForItsBeginning) {
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  wire::Snapshot old_match = scripted_play(0.7), match = scripted_play(0.2);
+  old_match.session = kSession + 1;
+  old_match.screen = 0;
+  InputEvents events;
+  events.mouse_forward = 40;
+  events.push = true;
+  for (const wire::Snapshot* scene : {static_cast<const wire::Snapshot*>(nullptr),
+                                      static_cast<const wire::Snapshot*>(&old_match)}) {
+    player.update(events, scene, kFrame);
+    EXPECT_FALSE(player.begun());
+    EXPECT_TRUE(player.wishes().empty());
+    for (const wire::InputRod& rod : player.rods()) EXPECT_FALSE(rod.driven);
+  }
+  player.update({}, &match, 2 * kFrame);
+  EXPECT_TRUE(player.begun());
+  const auto active = static_cast<std::size_t>(player.active_rod());
+  EXPECT_TRUE(player.rods()[active].driven);
+  EXPECT_NEAR(player.rods()[active].slide, match.rods[active].slide, 1e-6);
+  EXPECT_NEAR(player.rods()[active].angle, match.rods[active].angle, 1e-6);
+  // A straggler of the old match moves nothing any more, and what the hand did in it is lost.
+  player.update(events, &old_match, 3 * kFrame);
+  EXPECT_NEAR(player.rods()[active].slide, match.rods[active].slide, 1e-6);
 }
 
 }  // namespace

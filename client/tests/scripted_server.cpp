@@ -84,6 +84,12 @@ std::optional<wire::InputDatagram> ScriptedServer::next_input() {
   return input;
 }
 
+void ScriptedServer::forget_inputs() {
+  std::byte byte;
+  while (recv(udp_, &byte, 1, MSG_DONTWAIT) >= 0) {
+  }
+}
+
 void ScriptedServer::send(const wire::ControlMessage& message) {
   std::vector<std::byte> bytes;
   wire::encode_control(message, bytes);

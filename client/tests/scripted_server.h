@@ -25,6 +25,7 @@ class ScriptedServer {
   bool accept();
   std::optional<wire::ControlMessage> next_message();
   std::optional<wire::InputDatagram> next_input();
+  void forget_inputs();  // that have come, and were not asked for
 
   void send(const wire::ControlMessage& message);
   void send_bytes(std::span<const std::byte> bytes);

@@ -1,6 +1,6 @@
 // The way to the physics server: control messages over TCP, snapshots and inputs over UDP, each on
 // a thread of its own. A server that falls silent or goes away is looked for again until it is
-// back.
+// back, at the address it had at the start: a server that moves to another wants a new start here.
 #pragma once
 
 #include <array>
@@ -46,10 +46,15 @@ struct ConnectionStatus {
 
 class Connection {
  public:
-  // Opens the UDP socket and starts. The error says what to do; a server that is not there is none.
+  // Looks up the server's address and opens the UDP socket. A name (an IPv4 address needs none) may
+  // take as long as the system's resolver has patience, so this comes before there is a window to
+  // be closed; nothing later looks a name up. The error says what to do; a server that is not there
+  // is none.
   static tl::expected<std::unique_ptr<Connection>, std::string> open(
       const ConnectionOptions& options);
-  ~Connection();  // says Bye
+  // Looks for the server from now on. Precondition: called once, before the others are.
+  void start();
+  ~Connection();  // says Bye; at once, whatever the network does
 
   // Any thread.
   ConnectionStatus status() const;
@@ -59,11 +64,14 @@ class Connection {
   std::vector<wire::Notice> notices() const;  // standing ones, oldest first
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
-  // Asks for something; forgotten while not joined.
-  void wish(const wire::Wish& wish);
+  // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
+  // that is joined: nothing made of an old match reaches a new one.
+  // Asks for something.
+  void wish(std::uint64_t session, const wire::Wish& wish);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
-  // 20 times a second until nothing was heard from the caller for a second.
-  void drive(const std::array<wire::InputRod, 8>& rods);
+  // 20 times a second until nothing was heard from the caller for a second, or until the server is
+  // joined anew.
+  void drive(std::uint64_t session, const std::array<wire::InputRod, 8>& rods);
   std::uint64_t inputs_sent() const;
 
  private:

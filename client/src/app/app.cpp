@@ -31,7 +31,8 @@ bool draws_in_software(const std::string& renderer) {
 
 class App {
  public:
-  explicit App(const Options& options) : options_(options) {}
+  App(const Options& options, std::unique_ptr<Connection> connection)
+      : options_(options), connection_(std::move(connection)) {}
   // Empty, or the sentence to say; exit_code is then set.
   std::string start(int& exit_code);
   int loop();
@@ -48,6 +49,9 @@ class App {
   void judge_quality();
   std::string take_screenshot();
   void say_figures(double seconds) const;
+  // The scene is of the match that is joined, not of one before: a picture, but nothing to act
+  // upon.
+  bool scene_is_current() const;
   bool match_is_over() const;
   bool leaving(double seconds) const;
 
@@ -95,9 +99,7 @@ std::string App::start(int& exit_code) {
     }
   }
   awaiting_since_ = now_us();
-  auto connection = Connection::open(options_.connection);
-  if (!connection) return connection.error();
-  connection_ = std::move(*connection);
+  connection_->start();
   if (connection_->status().small_receive_buffer) {
     log_warning(
         "The system grants a smaller receive buffer than 4 MiB: a stall of the window may lose "
@@ -133,8 +135,8 @@ void App::follow_connection() {
   player_.reset();
   if (status_.welcome.team < foosball::kTeams) {
     const int layout = std::min<int>(status_.welcome.layout, foosball::kLayouts - 1);
-    player_ =
-        std::make_unique<PlayerInput>(status_.welcome.team, static_cast<foosball::Layout>(layout));
+    player_ = std::make_unique<PlayerInput>(status_.welcome.session, status_.welcome.team,
+                                            static_cast<foosball::Layout>(layout));
   }
 }
 
@@ -156,9 +158,9 @@ void App::take_input(std::int64_t now) {
   const InputEvents events = window_->poll();
   if (!player_) return;
   player_->update(events, sample_.any ? &sample_.state : nullptr, now);
-  if (status_.link != Link::joined || !sample_.any) return;
-  connection_->drive(player_->rods());
-  for (const wire::Wish& wish : player_->wishes()) connection_->wish(wish);
+  if (!player_->begun()) return;
+  connection_->drive(player_->session(), player_->rods());
+  for (const wire::Wish& wish : player_->wishes()) connection_->wish(player_->session(), wish);
 }
 
 HudState App::hud(const Camera& camera) const {
@@ -172,9 +174,9 @@ HudState App::hud(const Camera& camera) const {
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
   switch (status_.link) {
     case Link::joined:
-      if (!sample_.any)
+      if (!scene_is_current())
         hud.connection_message = "Waiting for the first snapshot from " + connection_->address();
-      if (sample_.starving) hud.connection_detail = "no news from the physics server";
+      hud.starving = sample_.starving;
       break;
     case Link::connecting:
       hud.connection_message = "Waiting for the physics server at " + connection_->address();
@@ -239,6 +241,10 @@ std::string App::take_screenshot() {
   return wrote ? error : wrote.error();
 }
 
+bool App::scene_is_current() const {
+  return sample_.any && sample_.state.session == status_.welcome.session;
+}
+
 bool App::match_is_over() const {
   return options_.until_server_ends && status_.link == Link::lost && status_.server_ended;
 }
@@ -284,7 +290,7 @@ int App::loop() {
       picture_us_ = now_us() - pause;
     }
     window_->swap();
-    if (sample_.any && !sample_.starving) say_when_in_step(now_us());
+    if (scene_is_current() && !sample_.starving) say_when_in_step(now_us());
     meter_.end(now_us());
     judge_quality();
   }
@@ -334,8 +340,14 @@ void App::say_figures(double seconds) const {
 }  // namespace
 
 int run(const Options& options) {
+  // Before the window and the handlers: a name may take long to look up, and Ctrl-C must end that.
+  auto connection = Connection::open(options.connection);
+  if (!connection) {
+    std::fprintf(stderr, "%s\n", connection.error().c_str());
+    return 1;
+  }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { asked_to_leave = 1; });
-  App app(options);
+  App app(options, std::move(*connection));
   int exit_code = 0;
   if (const std::string error = app.start(exit_code); !error.empty()) {
     std::fprintf(stderr, "%s\n", error.c_str());

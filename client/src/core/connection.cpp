@@ -8,8 +8,8 @@
 namespace client {
 
 struct Connection::Impl {
-  Impl(const ConnectionOptions& o, UdpSocket udp)
-      : options(o), listener(std::move(udp)), link(o, listener) {}
+  Impl(const ConnectionOptions& o, const sockaddr_in& server, UdpSocket udp)
+      : options(o), listener(std::move(udp)), link(o, server, listener) {}
   ConnectionOptions options;
   SnapshotListener listener;
   ControlLink link;
@@ -23,11 +23,15 @@ tl::expected<std::unique_ptr<Connection>, std::string> Connection::open(
   auto udp = open_udp(htonl(is_loopback(*server) ? INADDR_LOOPBACK : INADDR_ANY), 0);
   if (!udp) return tl::unexpected(udp.error());
   return std::unique_ptr<Connection>(
-      new Connection(std::make_unique<Impl>(options, std::move(*udp))));
+      new Connection(std::make_unique<Impl>(options, *server, std::move(*udp))));
 }
 
 Connection::Connection(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Connection::~Connection() = default;
+
+void Connection::start() {
+  impl_->link.start();
+}
 
 ConnectionStatus Connection::status() const {
   ConnectionStatus status = impl_->link.status();
@@ -53,11 +57,11 @@ SnapshotCounters Connection::counters() const {
 std::int64_t Connection::delay_us() const {
   return impl_->listener.delay_us();
 }
-void Connection::wish(const wire::Wish& wish) {
-  impl_->link.wish(wish);
+void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
+  impl_->link.wish(session, wish);
 }
-void Connection::drive(const std::array<wire::InputRod, 8>& rods) {
-  impl_->listener.drive(rods, now_us());
+void Connection::drive(std::uint64_t session, const std::array<wire::InputRod, 8>& rods) {
+  impl_->listener.drive(session, rods, now_us());
 }
 std::uint64_t Connection::inputs_sent() const {
   return impl_->listener.inputs_sent();

@@ -21,13 +21,14 @@ constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leav
 
 }  // namespace
 
-ControlLink::ControlLink(const ConnectionOptions& options, SnapshotListener& listener)
-    : options_(options), listener_(listener), thread_([this] { run(); }) {}
+ControlLink::ControlLink(const ConnectionOptions& options, const sockaddr_in& server,
+                         SnapshotListener& listener)
+    : options_(options), server_(server), listener_(listener) {}
 
 ControlLink::~ControlLink() {
   stop_ = true;
   waker_.wake();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 ConnectionStatus ControlLink::status() const {
@@ -42,9 +43,9 @@ std::vector<wire::Notice> ControlLink::notices() const {
   return standing;
 }
 
-void ControlLink::wish(const wire::Wish& wish) {
+void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
   const std::lock_guard lock(mutex_);
-  if (status_.link != Link::joined) return;
+  if (status_.link != Link::joined || status_.welcome.session != session) return;
   wishes_.push_back(wish);
   waker_.wake();
 }
@@ -96,9 +97,6 @@ void ControlLink::on_time(std::int64_t now_us) {
 
 void ControlLink::begin(std::int64_t now_us) {
   next_try_us_ = now_us + options_.retry_us;
-  const auto server = resolve(options_.host, options_.port);
-  if (!server) return drop(server.error(), now_us);
-  server_ = *server;
   auto tcp = begin_connect(server_);
   if (!tcp) return drop(tcp.error(), now_us);
   tcp_ = std::move(*tcp);

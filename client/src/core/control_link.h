@@ -14,12 +14,16 @@ namespace client {
 
 class ControlLink {
  public:
-  ControlLink(const ConnectionOptions& options, SnapshotListener& listener);
+  ControlLink(const ConnectionOptions& options, const sockaddr_in& server,
+              SnapshotListener& listener);
   ~ControlLink();
 
+  void start() {
+    thread_ = std::thread([this] { run(); });
+  }
   ConnectionStatus status() const;
   std::vector<wire::Notice> notices() const;
-  void wish(const wire::Wish& wish);
+  void wish(std::uint64_t session, const wire::Wish& wish);
 
  private:
   enum class Stage : std::uint8_t { idle, connecting, greeting, joined };
@@ -39,6 +43,7 @@ class ControlLink {
   void say_bye();
 
   const ConnectionOptions options_;
+  const sockaddr_in server_;
   SnapshotListener& listener_;
   Waker waker_;
   std::atomic<bool> stop_{false};
@@ -46,7 +51,6 @@ class ControlLink {
   // The thread's own.
   Stage stage_ = Stage::idle;
   Fd tcp_;
-  sockaddr_in server_{};
   wire::ControlReader reader_;
   std::vector<std::byte> out_;
   std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;

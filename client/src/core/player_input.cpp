@@ -31,45 +31,50 @@ cabinet::PadState turned(const cabinet::PadState& pad) {
 
 }  // namespace
 
-PlayerInput::PlayerInput(int team, foosball::Layout layout)
-    : team_(team), table_(foosball::table_spec(layout)), hand_(hand_options(team, table_)) {
+PlayerInput::PlayerInput(std::uint64_t session, int team, foosball::Layout layout)
+    : session_(session),
+      team_(team),
+      table_(foosball::table_spec(layout)),
+      hand_(hand_options(team, table_)) {
   for (std::size_t i = 0; i < rod_x_.size(); ++i) rod_x_[i] = table_.rods[i].x;
 }
 
 void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
                          std::int64_t now_us) {
-  if (scene != nullptr) {
-    for (int rod = 0; rod < foosball::kRods; ++rod) {
-      const wire::RodSnapshot& r = scene->rods[static_cast<std::size_t>(rod)];
-      hand_.adopt(rod, r.slide, r.angle);
-    }
-  }
+  wishes_.clear();
   if (events.toggle_automatic) automatic_ = !automatic_;
   hand_.set_automatic(automatic_);
-  if (scene != nullptr && scene->ball_in_play) hand_.ball_at(scene->ball.position[0], rod_x_);
+  const bool known = scene != nullptr && scene->session == session_;
+  begun_ = begun_ || known;
+  if (known && scene->ball_in_play) hand_.ball_at(scene->ball.position[0], rod_x_);
   hand_.choose(events.choose_line);
   if (events.wheel != 0) hand_.cycle(events.wheel);
+  if (known) move(events, *scene);
+  hand_.poll(now_us);
+  if (known) collect_wishes(events, *scene);
+  key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
+}
+
+void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const wire::RodSnapshot& r = scene.rods[static_cast<std::size_t>(rod)];
+    hand_.adopt(rod, r.slide, r.angle);
+  }
   hand_.mouse_moved(events.mouse_forward, events.mouse_right);
   hand_.key_axis(events.key_slide, events.key_spin);
   hand_.pad(events.has_pad ? turned(events.pad) : cabinet::PadState{});
-  hand_.poll(now_us);
-  collect_wishes(events, scene);
 }
 
-void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot* scene) {
-  wishes_.clear();
+void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot& scene) {
   const auto team = static_cast<std::uint8_t>(team_);
-  const auto screen =
-      scene != nullptr ? static_cast<wire::Screen>(scene->screen) : wire::Screen::logo;
+  const auto screen = static_cast<wire::Screen>(scene.screen);
   if ((events.push || events.pad_push) && screen != wire::Screen::play)
     wishes_.push_back({number(wire::WishKind::push), team, 0});
-  if ((events.toggle_pause || events.pad_pause) && scene != nullptr &&
-      screen == wire::Screen::play) {
+  if ((events.toggle_pause || events.pad_pause) && screen == wire::Screen::play) {
     wishes_.push_back(
-        {number(wire::WishKind::pause), team, static_cast<std::uint8_t>(scene->paused ? 0 : 1)});
+        {number(wire::WishKind::pause), team, static_cast<std::uint8_t>(scene.paused ? 0 : 1)});
   }
-  if (scene != nullptr && screen == wire::Screen::selection) choose_character(events, *scene);
-  key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
+  if (screen == wire::Screen::selection) choose_character(events, scene);
 }
 
 // By number, by the wheel, or by a tap of an arrow; a spun rod chooses by itself, at the server.
@@ -90,6 +95,7 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
 
 std::array<wire::InputRod, 8> PlayerInput::rods() const {
   std::array<wire::InputRod, 8> rods{};
+  if (!begun_) return rods;
   for (std::size_t i = 0; i < rods.size(); ++i) {
     const cabinet::RodInput& input = hand_.rods()[i];
     if (input.status != cabinet::RodStatus::live) continue;

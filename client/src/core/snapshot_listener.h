@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -21,8 +22,8 @@ class SnapshotListener {
   std::uint16_t port() const { return unicast_.port; }
   bool small_buffer() const { return unicast_.small_buffer; }
 
-  // Joined: from now on snapshots of this session count, and inputs go to that address. The error
-  // is a sentence (the multicast group cannot be joined).
+  // Joined: from now on snapshots of this session count, and inputs go to that address, the first
+  // when drive() is called anew. The error is a sentence (the multicast group cannot be joined).
   tl::expected<void, std::string> join(const wire::Welcome& welcome, const sockaddr_in& server,
                                        std::uint32_t interface);
   // No longer joined: nothing is sent.
@@ -34,12 +35,12 @@ class SnapshotListener {
   std::int64_t delay_us() const;
   std::int64_t last_arrival_us() const { return last_arrival_us_.load(std::memory_order_relaxed); }
 
-  void drive(const std::array<wire::InputRod, 8>& rods, std::int64_t now_us);
+  void drive(std::uint64_t session, const std::array<wire::InputRod, 8>& rods, std::int64_t now_us);
   std::uint64_t inputs_sent() const { return inputs_sent_.load(std::memory_order_relaxed); }
 
  private:
   void run();
-  void receive(int fd);
+  void receive(const Fd& socket);
   int send_due(std::int64_t now_us);
   void send_input(std::int64_t now_us);
 
@@ -51,7 +52,7 @@ class SnapshotListener {
 
   mutable std::mutex mutex_;  // all below
   SnapshotBuffer buffer_;
-  UdpSocket multicast_;
+  std::shared_ptr<const UdpSocket> multicast_;
   bool joined_ = false;
   sockaddr_in server_{};
   wire::InputDatagram input_;

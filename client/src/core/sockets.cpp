@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -65,6 +66,10 @@ std::string text_of(const sockaddr_in& address) {
 }
 
 tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) == 1) return address;
   addrinfo hints{}, *found = nullptr;
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_STREAM;
@@ -74,7 +79,6 @@ tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uin
         "The server's host \"" + host + "\" is not known (" + gai_strerror(failed) +
         "): give --server HOST:PORT with a name or an IPv4 address that this machine can look up.");
   }
-  sockaddr_in address{};
   std::memcpy(&address, found->ai_addr, sizeof address);
   freeaddrinfo(found);
   address.sin_port = htons(port);
@@ -125,6 +129,18 @@ tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, st
   udp.small_buffer = !enlarge_receive_buffer(udp.fd.get());
   udp.port = port;
   return udp;
+}
+
+std::size_t take_datagrams(const Fd& socket, std::size_t most,
+                           const std::function<void(std::span<const std::byte>)>& take) {
+  std::array<std::byte, kLongestDatagram> bytes;
+  std::size_t taken = 0;
+  for (; taken < most; ++taken) {
+    const auto size = ::recv(socket.get(), bytes.data(), bytes.size(), 0);
+    if (size < 0) break;
+    take({bytes.data(), static_cast<std::size_t>(size)});
+  }
+  return taken;
 }
 
 tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server) {

@@ -3,7 +3,10 @@
 
 #include <netinet/in.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
@@ -50,12 +53,18 @@ struct UdpSocket {
 
 bool is_loopback(const sockaddr_in& address);
 std::string text_of(const sockaddr_in& address);
+// A name is looked up by the system, which may take long; an IPv4 address is not.
 tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port);
 // address: the interface to listen on; port 0: any free one.
 tl::expected<UdpSocket, std::string> open_udp(std::uint32_t address, std::uint16_t port);
 // A socket that hears the group, on the interface with that address.
 tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
                                                     std::uint32_t interface);
+// Takes the datagrams that have come, at most so many, cut to kLongestDatagram bytes; how many it
+// were. The bytes are the taker's until it returns.
+inline constexpr std::size_t kLongestDatagram = 2048;
+std::size_t take_datagrams(const Fd& socket, std::size_t most,
+                           const std::function<void(std::span<const std::byte>)>& take);
 // Begins to connect; finished (or failed) when the socket turns writable.
 tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server);
 // 0: connected; else the errno.

@@ -23,6 +23,7 @@ struct HudState {
   std::string connection_message;  // over all else, while the server is away; empty: it is there
   std::string connection_detail;
   std::vector<std::string> notices;  // newest last
+  bool starving = false;             // the server is joined, but its news are late
   bool mouse_free = false;           // the pointer is released: say how to take it back
   bool automatic_rod = false;
   float fps = 0.0f;  // 0: not shown
