@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/frame_meter.h"
@@ -31,17 +32,33 @@ TEST(Options, AreTakenAsGiven) {
 }
 
 TEST(Options, BadOnesAreOneSentenceAndExitCodeTwo) {
-  const std::vector<std::vector<const char*>> bad{
-      {"--server", "host:0"},  {"--server", "host:65536"}, {"--server", "a:b:1"},
-      {"--server", ""},        {"--server", "h:12x"},      {"--team", "2"},
-      {"--size", "1280"},      {"--size", "0x0"},          {"--size", "99999x100"},
-      {"--quality", "best"},   {"--seconds", "-1"},        {"--nonsense"},
-      {"--screenshot-at", "1"}};
+  const std::vector<std::vector<const char*>> bad{{"--server", "host:0"},
+                                                  {"--server", "host:65536"},
+                                                  {"--server", "a:b:1"},
+                                                  {"--server", ""},
+                                                  {"--server", "h:12x"},
+                                                  {"--team", "2"},
+                                                  {"--size", "1280"},
+                                                  {"--size", "0x0"},
+                                                  {"--size", "99999x100"},
+                                                  {"--quality", "best"},
+                                                  {"--seconds", "-1"},
+                                                  {"--nonsense"},
+                                                  {"--screenshot-at", "1"},
+                                                  {"--seconds", "nan"},
+                                                  {"--seconds", "inf"},
+                                                  {"--seconds", "3x"},
+                                                  {"--stats-file", "/"},
+                                                  {"--stats-file", "/no such folder/a.json"},
+                                                  {"--stats-file", "/proc/a.json"},
+                                                  {"--screenshot", "/no such folder/a.png"},
+                                                  {"--font-dir", "/no such folder"}};
   for (const auto& words : bad) {
     const auto o = parse(words);
     ASSERT_FALSE(o) << words[0] << " " << (words.size() > 1 ? words[1] : "");
     EXPECT_EQ(o.error().exit_code, 2);
-    EXPECT_FALSE(o.error().text.empty());
+    EXPECT_EQ(std::count(o.error().text.begin(), o.error().text.end(), '\n'), 0);
+    EXPECT_NE(o.error().text.find(words[0]), std::string::npos) << o.error().text;
   }
 }
 
