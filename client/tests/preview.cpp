@@ -23,9 +23,9 @@ struct Shot {
   int team;
 };
 constexpr Shot kShots[] = {
-    {"logo", 0.4, 0, 0},    {"selection", 1.0, 1, 0}, {"play-1", 0.35, 2, 0},
-    {"play-2", 1.62, 2, 1}, {"play-3", 2.4, 2, 0},    {"ceremony", 0.7, 3, 0},
-    {"end", 1.0, 4, 0},     {"lost", 3.0, 2, 0},      {"held", 4.1, 2, 0}};
+    {"logo", 0.4, 0, 0},   {"selection", 1.0, 1, 0}, {"play-1", 0.35, 2, 0}, {"play-2", 1.62, 2, 1},
+    {"play-3", 2.4, 2, 0}, {"ceremony", 0.7, 3, 0},  {"end", 1.0, 4, 0},     {"lost", 3.0, 2, 0},
+    {"held", 4.1, 2, 0},   {"pause", 3.3, 2, 0},     {"help", 4.6, 2, 1}};
 
 int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
   auto window = Window::open({.size = size, .title = "preview"});
@@ -66,12 +66,16 @@ int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
       hud.connection_message = "Physics server lost: waiting at 127.0.0.1:4750";
       hud.connection_detail = "The scene stands as it was last heard.";
     }
+    state.paused = std::strcmp(shot.name, "pause") == 0;
+    hud.show_help = std::strcmp(shot.name, "help") == 0;
     if (std::strcmp(shot.name, "held") == 0) hud.notices = {"cabinet unplugged: rods 4, 6 hold"};
     Particles particles;
     if (shot.screen == 2) {
       const auto& b = state.ball;
+      const auto radius =
+          static_cast<float>(foosball::table_spec(foosball::Layout::tournament).ball_radius);
       for (int i = 0; i < 4; ++i) {
-        particles.streak({b.position[0], b.position[1], b.position[2]}, {6, 3, 0}, 0.017f, 0.016f);
+        particles.streak({b.position[0], b.position[1], b.position[2]}, {6, 3, 0}, radius, 0.016f);
         particles.step(0.016f);
       }
       particles.spark({b.position[0], b.position[1], b.position[2]}, {1, 0, 0}, {1.2f, 0.9f, 0.5f},

@@ -1,8 +1,10 @@
 // Opens the real window, draws scripted moments and looks at the pixels. Needs a display.
+#include <GLES3/gl3.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdlib>
+#include <optional>
 
 #include "app/window.h"
 #include "render/hud.h"
@@ -50,17 +52,15 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     camera = player_camera({}, kSize);
   }
 
-  Image draw(const wire::Snapshot& state, bool with_hud = false, const std::string& message = {}) {
+  Image draw(const wire::Snapshot& state, std::optional<HudState> hud = {}) {
     SceneView view;
     view.camera = camera;
     Particles none;
     scene->draw(state, view, none, kSize);
-    if (with_hud) {
-      HudState hud;
-      hud.state = &state;
-      hud.camera = camera;
-      hud.connection_message = message;
-      draw_hud(*ui, hud, kSize);
+    if (hud) {
+      hud->state = &state;
+      hud->camera = camera;
+      draw_hud(*ui, *hud, kSize);
     }
     const Image image = read_pixels(kSize);
     // For a person to look at after a failure.
@@ -71,6 +71,18 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     }
     window->swap();
     return image;
+  }
+
+  // The HUD alone, over an even grey.
+  Image written(const wire::Snapshot& state, HudState hud) {
+    hud.state = &state;
+    hud.camera = camera;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, kSize.x, kSize.y);
+    glClearColor(0.5f, 0.5f, 0.5f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    draw_hud(*ui, hud, kSize);
+    return read_pixels(kSize);
   }
 
   glm::ivec2 pixel_of(const std::array<float, 3>& p) const {
@@ -187,14 +199,16 @@ TEST_P(RenderTest, AManThatMovesLeavesHisPlace) {
 
 TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
   const wire::Snapshot state = scripted_play(0.35);
-  const Image plain = draw(state), scored = draw(state, true);
+  const Image plain = draw(state), scored = draw(state, HudState{});
   EXPECT_GT(changed(plain, scored, {kSize.x / 2, 36}, 40), 700);
   // Orange figures left of the middle, blue ones right of it.
   const glm::vec3 left = mean(scored, {kSize.x / 2 - 60, 18}, {kSize.x / 2 - 25, 52});
   const glm::vec3 right = mean(scored, {kSize.x / 2 + 25, 18}, {kSize.x / 2 + 60, 52});
   EXPECT_GT(left.r, left.b + 10);
   EXPECT_GT(right.b, right.r + 10);
-  const Image lost = draw(state, true, "Physics server lost: waiting at 127.0.0.1:7531");
+  HudState lost_hud;
+  lost_hud.connection_message = "Physics server lost: waiting at 127.0.0.1:7531";
+  const Image lost = draw(state, lost_hud);
   EXPECT_GT(changed(scored, lost, {kSize.x / 2, static_cast<int>(0.42f * kSize.y)}, 60), 2000);
 }
 
@@ -203,9 +217,30 @@ TEST_P(RenderTest, EveryScreenHasItsWords) {
     wire::Snapshot state = scripted_play(0.35);
     state.screen = screen;
     state.ball_in_play = false;
-    const Image plain = draw(state), written = draw(state, true);
+    const Image plain = draw(state), written = draw(state, HudState{});
     EXPECT_GT(changed(plain, written, kSize / 2, kSize.x), 1500) << int{screen};
   }
+}
+
+TEST_P(RenderTest, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingForThem) {
+  const auto words = [&](const wire::Snapshot& state, int viewer_team, bool asked) {
+    HudState hud;
+    hud.viewer_team = viewer_team;
+    hud.show_help = asked;
+    return written(state, hud);
+  };
+  const auto told = [&](std::uint8_t screen, bool paused, bool asked) {
+    wire::Snapshot state = scripted_play(0.35);
+    state.screen = screen;
+    state.paused = paused;
+    const glm::ivec2 below{kSize.x / 2, kSize.y - 25};
+    return changed(words(state, -1, false), words(state, 0, asked), below, 25) > 200;
+  };
+  EXPECT_TRUE(told(0, false, false));
+  EXPECT_TRUE(told(1, false, false));
+  EXPECT_TRUE(told(2, true, false));
+  EXPECT_FALSE(told(2, false, false)) << "the view of the play is free";
+  EXPECT_TRUE(told(2, false, true));
 }
 
 TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {

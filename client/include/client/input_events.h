@@ -14,6 +14,7 @@ struct InputEvents {
   double key_spin = 0.0;       // -1, 0, 1: to the right positive, as held
   bool toggle_automatic = false;
   bool toggle_pause = false;
+  bool toggle_help = false;
   bool push = false;  // click, Space or Enter
   bool has_pad = false;
   cabinet::PadState pad;

@@ -66,6 +66,7 @@ class App {
   ViewMotion motion_;
   FrameMeter meter_;
   SceneSample sample_;
+  bool show_help_ = false;
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
@@ -134,9 +135,8 @@ void App::follow_connection() {
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   player_.reset();
   if (status_.welcome.team < foosball::kTeams) {
-    const int layout = std::min<int>(status_.welcome.layout, foosball::kLayouts - 1);
     player_ = std::make_unique<PlayerInput>(status_.welcome.session, status_.welcome.team,
-                                            static_cast<foosball::Layout>(layout));
+                                            static_cast<foosball::Layout>(status_.welcome.layout));
   }
 }
 
@@ -156,6 +156,7 @@ void App::hear(std::int64_t now) {
 
 void App::take_input(std::int64_t now) {
   const InputEvents events = window_->poll();
+  if (events.toggle_help) show_help_ = !show_help_;
   if (!player_) return;
   player_->update(events, sample_.any ? &sample_.state : nullptr, now);
   if (!player_->begun()) return;
@@ -169,6 +170,7 @@ HudState App::hud(const Camera& camera) const {
   hud.camera = camera;
   hud.viewer_team = player_ ? status_.welcome.team : -1;
   hud.mouse_free = !window_->captured();
+  hud.show_help = show_help_;
   hud.automatic_rod = player_ && player_->automatic();
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
@@ -207,9 +209,10 @@ void App::draw(float dt) {
   const wire::Snapshot& state = sample_.any ? sample_.state : kNothing;
   if (state.ball_in_play && !state.paused && status_.link == Link::joined) {
     const auto& ball = state.ball;
+    const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
     particles_.streak({ball.position[0], ball.position[1], ball.position[2]},
                       {ball.linear_velocity[0], ball.linear_velocity[1], ball.linear_velocity[2]},
-                      0.017f, dt);
+                      static_cast<float>(table.ball_radius), dt);
   }
   if (!state.paused) particles_.step(dt);
   if (sounds_) sounds_->set_listener(view.camera.eye, glm::vec3(0));

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "foosball/table.h"
 #include "render/hud.h"
 
 namespace client {
 namespace {
 
+constexpr float kLean = 0.030f;  // [m] of the gaze, with the ball at a goal
 constexpr float kSettle = 1.1f;  // [s] to close most of the way to where the camera wants to be
 
 }  // namespace
@@ -23,7 +25,9 @@ CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt) {
   } else if (screen == ScreenKind::selection) {
     wanted.closeness = 0.62f;
   } else if (scene->ball_in_play) {
-    wanted.lean = {0.030f * std::clamp(scene->ball.position[0] / 0.6f, -1.0f, 1.0f), 0.0f};
+    const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene->layout));
+    const float way = scene->ball.position[0] / static_cast<float>(0.5 * table.length);
+    wanted.lean = {kLean * std::clamp(way, -1.0f, 1.0f), 0.0f};
   }
   const float share = 1.0f - std::exp(-3.0f * dt / kSettle);
   view_.team = team;

@@ -76,6 +76,10 @@ void Window::Impl::pressed(int key) {
     case GLFW_KEY_P:
       events.toggle_pause = !events.toggle_pause;
       break;
+    case GLFW_KEY_F1:
+    case GLFW_KEY_H:
+      events.toggle_help = !events.toggle_help;
+      break;
     case GLFW_KEY_SPACE:
     case GLFW_KEY_ENTER:
     case GLFW_KEY_KP_ENTER:

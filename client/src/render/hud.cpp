@@ -36,8 +36,7 @@ void draw_score(const HudPen& pen, const wire::Snapshot& state) {
 
 // Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
 void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
-  const auto& table = foosball::table_spec(
-      static_cast<foosball::Layout>(std::min<int>(hud.state->layout, foosball::kLayouts - 1)));
+  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(hud.state->layout));
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const auto r = static_cast<std::size_t>(rod);
     if (hud.state->rods[r].status != number(wire::RodStatus::held)) continue;
@@ -52,8 +51,20 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
   }
 }
 
-void draw_notices(const HudPen& pen, const HudState& hud) {
-  float y = pen.bottom - 22.0f;
+// What the keys do: all of it on the logo and when asked for, a line where a choice is to be made.
+// How much room it takes at the bottom.
+float draw_help(const HudPen& pen, const HudState& hud) {
+  const auto screen =
+      hud.state != nullptr ? static_cast<ScreenKind>(hud.state->screen) : ScreenKind::logo;
+  const bool plays = hud.viewer_team >= 0;
+  if (hud.show_help || (plays && screen == ScreenKind::logo)) return draw_all_keys(pen);
+  if (plays && screen == ScreenKind::selection) return draw_keys_of_selection(pen);
+  if (plays && screen == ScreenKind::play && hud.state->paused) return draw_keys_of_pause(pen);
+  return 0.0f;
+}
+
+void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
+  float y = pen.bottom - 22.0f - room_below;
   const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
   for (std::size_t i = 0; i < shown; ++i) {
     const std::string& text = hud.notices[hud.notices.size() - 1 - i];
@@ -85,17 +96,22 @@ void draw_corner_texts(const HudPen& pen, const HudState& hud) {
     pen.text(text, {Face::regular, 13.0f, 0.0f, Align::right}, {pen.half_width - 16.0f, 26.0f},
              kFaint);
   }
+  if (hud.starving && hud.connection_message.empty()) {
+    pen.text("no news from the physics server", {Face::regular, 13.0f, 0.0f, Align::right},
+             {pen.half_width - 16.0f, 46.0f}, kWarning);
+  }
   if (hud.viewer_team < 0) pen.text("watching", small, {x, 26.0f}, kFaint);
   if (hud.automatic_rod) pen.text("automatic rod (Tab)", small, {x, 26.0f}, kFaint);
   if (hud.mouse_free && hud.viewer_team >= 0)
-    pen.text("mouse released: click to play, Esc to leave", small, {x, 46.0f}, kFaint);
+    pen.text("mouse released: click to play, F1 for the keys, Esc to leave", small, {x, 46.0f},
+             kFaint);
 }
 
 void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   const wire::Snapshot& state = *hud.state;
   switch (static_cast<ScreenKind>(state.screen)) {
     case ScreenKind::logo:
-      draw_logo(pen, state, hud.viewer_team);
+      draw_logo(pen, state, hud.viewer_team < 0);
       return;
     case ScreenKind::selection:
       draw_selection(pen, state, hud.viewer_team);
@@ -120,7 +136,8 @@ void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
   const HudPen pen(ui, screen, hud.viewer_team != 1);
   if (hud.state != nullptr) draw_match(pen, hud, screen);
   draw_corner_texts(pen, hud);
-  draw_notices(pen, hud);
+  const float help_height = draw_help(pen, hud);
+  draw_notices(pen, hud, help_height);
   if (!hud.connection_message.empty()) draw_connection(pen, hud);
   ui.flush(screen);
 }

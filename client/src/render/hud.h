@@ -25,6 +25,7 @@ struct HudState {
   std::vector<std::string> notices;  // newest last
   bool starving = false;             // the server is joined, but its news are late
   bool mouse_free = false;           // the pointer is released: say how to take it back
+  bool show_help = false;            // all keys, over whatever is shown
   bool automatic_rod = false;
   float fps = 0.0f;  // 0: not shown
 };

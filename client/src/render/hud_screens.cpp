@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "foosball/table.h"
@@ -45,26 +46,42 @@ struct KeyHelp {
   const char* keys;
   const char* meaning;
 };
-constexpr std::array<KeyHelp, 8> kKeyHelp{
+constexpr std::array<KeyHelp, 10> kAllKeys{
     {{"Mouse", "forward and back slides, sideways spins"},
      {"1 2 3 4", "take goalie, defence, midfield, attack"},
      {"Wheel", "next rod"},
      {"Tab", "rod nearest to the ball by itself"},
      {"Arrows, WASD", "slide and spin by keys"},
      {"Gamepad", "sticks slide and spin, shoulders change rod"},
+     {"Space, click", "push: begin, confirm"},
      {"P", "pause"},
+     {"F1, H", "show or hide the keys"},
      {"Esc", "release the mouse; again: leave"}}};
+constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3", "or"},
+                                                 {"wheel, arrows", "choose"},
+                                                 {"Space, click", "confirm"},
+                                                 {"F1", "all keys"}}};
+constexpr std::array<KeyHelp, 3> kPauseKeys{
+    {{"P", "play on"}, {"F1", "all keys"}, {"Esc", "release the mouse; again: leave"}}};
 
-void draw_key_help(const HudPen& pen) {
-  const float top = pen.bottom - 170.0f, half = 478.0f;
-  pen.panel({-half, top}, {half, top + 140.0f}, 14.0f, kPanel);
-  for (std::size_t i = 0; i < kKeyHelp.size(); ++i) {
-    const float x = i % 2 == 0 ? -half + 26.0f : 30.0f;
-    const float y = top + 34.0f + 28.0f * static_cast<float>(i / 2);
-    pen.text(kKeyHelp[i].keys, {Face::bold, 14.0f, 0.0f, Align::left}, {x, y}, kInk);
-    pen.text(kKeyHelp[i].meaning, {Face::regular, 14.0f, 0.0f, Align::left}, {x + 128.0f, y},
-             kFaint);
+// One line at the bottom of the screen; how high it stands.
+float draw_key_line(const HudPen& pen, std::span<const KeyHelp> line) {
+  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
+  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
+  const float within = 7.0f, between = 24.0f;
+  float width = -between;
+  for (const KeyHelp& key : line)
+    width += pen.width(key.keys, bold) + within + pen.width(key.meaning, regular) + between;
+  const float half = 0.5f * width + 20.0f, y = pen.bottom - 24.0f;
+  pen.panel({-half, y - 22.0f}, {half, y + 10.0f}, 10.0f, kPanel);
+  float x = -0.5f * width;
+  for (const KeyHelp& key : line) {
+    pen.text(key.keys, bold, {x, y}, kInk);
+    x += pen.width(key.keys, bold) + within;
+    pen.text(key.meaning, regular, {x, y}, kFaint);
+    x += pen.width(key.meaning, regular) + between;
   }
+  return 38.0f;
 }
 
 std::string capitalised(std::string text) {
@@ -107,7 +124,7 @@ void draw_character(const HudPen& pen, int character, const glm::vec2& at, float
                     const Colour& colour) {
   const glm::vec2 high = at + glm::vec2(width, 104.0f);
   pen.panel(at, high, 12.0f,
-            chosen ? Colour{0.07f, 0.10f, 0.15f, 0.92f} : Colour{0.03f, 0.045f, 0.07f, 0.60f});
+            chosen ? Colour{0.07f, 0.10f, 0.15f, 0.92f} : Colour{0.03f, 0.045f, 0.07f, 0.72f});
   if (chosen) pen.panel(at, high, 12.0f, colour, 2.0f);
   pen.text(capitalised(foosball::character_spec(character).name),
            {Face::bold, 18.0f, 0.0f, Align::left}, at + glm::vec2(18, 28), chosen ? kInk : kFaint);
@@ -120,7 +137,30 @@ void draw_character(const HudPen& pen, int character, const glm::vec2& at, float
 
 }  // namespace
 
-void draw_logo(const HudPen& pen, const wire::Snapshot& state, int viewer_team) {
+float draw_all_keys(const HudPen& pen) {
+  const auto rows = static_cast<float>(kAllKeys.size() / 2);
+  const float height = 28.0f * rows + 28.0f, half = 478.0f;
+  const float top = pen.bottom - 22.0f - height;
+  pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
+  for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
+    const float x = i % 2 == 0 ? -half + 26.0f : 30.0f;
+    const float y = top + 33.0f + 28.0f * static_cast<float>(i / 2);
+    pen.text(kAllKeys[i].keys, {Face::bold, 14.0f, 0.0f, Align::left}, {x, y}, kInk);
+    pen.text(kAllKeys[i].meaning, {Face::regular, 14.0f, 0.0f, Align::left}, {x + 128.0f, y},
+             kFaint);
+  }
+  return height + 20.0f;
+}
+
+float draw_keys_of_selection(const HudPen& pen) {
+  return draw_key_line(pen, kSelectionKeys);
+}
+
+float draw_keys_of_pause(const HudPen& pen) {
+  return draw_key_line(pen, kPauseKeys);
+}
+
+void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches) {
   pen.panel({-pen.half_width, 0.0f}, {pen.half_width, pen.bottom}, 0.0f, kVeil);
   pen.text("SPACE", {Face::bold, 40.0f, 0.62f, Align::centre}, {12.0f, 92.0f},
            {0.62f, 0.84f, 1.0f, 1.0f}, 0.8f);
@@ -129,14 +169,14 @@ void draw_logo(const HudPen& pen, const wire::Snapshot& state, int viewer_team) 
   pen.panel({-262.0f, 194.0f}, {-6.0f, 198.0f}, 2.0f, kTeamInk[pen.left_is_team_0 ? 0 : 1]);
   pen.panel({6.0f, 194.0f}, {262.0f, 198.0f}, 2.0f, kTeamInk[pen.left_is_team_0 ? 1 : 0]);
   const float pulse = 0.70f + 0.30f * std::sin(3.0f * state.screen_seconds);
-  const char* call = viewer_team < 0 ? "waiting for a player to push a rod"
-                                     : "Push a rod to begin: click, Space or Enter";
+  const char* call =
+      watches ? "waiting for a player to push a rod" : "Push a rod to begin: click, Space or Enter";
   pen.text(call, {Face::regular, 21.0f, 0.01f, Align::centre}, {0.0f, 236.0f},
            {0.92f, 0.96f, 1.0f, pulse}, 0.8f);
-  if (viewer_team >= 0) draw_key_help(pen);
 }
 
 void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team) {
+  pen.panel({-236.0f, 22.0f}, {236.0f, 104.0f}, 14.0f, kPanel);
   pen.text("CHOOSE YOUR CREW", {Face::bold, 32.0f, 0.10f, Align::centre}, {0.0f, 62.0f}, kInk,
            0.8f);
   pen.text("spin a rod to choose, push it to confirm", {Face::regular, 16.0f, 0.0f, Align::centre},
@@ -146,6 +186,7 @@ void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_t
     const float width = 184.0f;
     const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 36.0f
                                                       : pen.half_width - 36.0f - width;
+    pen.panel({x - 14.0f, 108.0f}, {x + width + 14.0f, 546.0f}, 16.0f, kVeil);
     pen.text(kTeamNames[t], {Face::bold, 26.0f, 0.08f, Align::left}, {x + 2.0f, 142.0f},
              kTeamInk[t]);
     if (team == viewer_team)
@@ -191,9 +232,8 @@ void draw_end(const HudPen& pen, const wire::Snapshot& state) {
 
 void draw_paused(const HudPen& pen) {
   const float y = 0.42f * pen.bottom;
-  pen.panel({-170.0f, y - 46.0f}, {170.0f, y + 44.0f}, 16.0f, {0.03f, 0.045f, 0.07f, 0.84f});
-  pen.text("PAUSED", {Face::bold, 38.0f, 0.16f, Align::centre}, {4.0f, y + 2.0f}, kInk);
-  pen.text("P goes on", {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, y + 28.0f}, kFaint);
+  pen.panel({-170.0f, y - 42.0f}, {170.0f, y + 32.0f}, 16.0f, {0.03f, 0.045f, 0.07f, 0.84f});
+  pen.text("PAUSED", {Face::bold, 38.0f, 0.16f, Align::centre}, {4.0f, y + 9.0f}, kInk);
 }
 
 }  // namespace client

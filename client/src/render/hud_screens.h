@@ -41,10 +41,15 @@ class HudPen {
   float middle_;
 };
 
-void draw_logo(const HudPen& pen, const wire::Snapshot& state, int viewer_team);
+void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches);
 void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team);
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state);
 void draw_end(const HudPen& pen, const wire::Snapshot& state);
 void draw_paused(const HudPen& pen);
+
+// What the keys do, at the bottom of the screen; how high it stands.
+float draw_all_keys(const HudPen& pen);
+float draw_keys_of_selection(const HudPen& pen);
+float draw_keys_of_pause(const HudPen& pen);
 
 }  // namespace client

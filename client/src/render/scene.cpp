@@ -246,7 +246,7 @@ void Scene::draw_particles(const SceneView& view, Particles& particles, float he
 
 void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
                  const glm::ivec2& screen) {
-  use_layout(state.layout == 0 ? foosball::Layout::paper : foosball::Layout::tournament);
+  use_layout(static_cast<foosball::Layout>(state.layout));
   post_.resize(screen);
   place_instances(state, view);
   glEnable(GL_DEPTH_TEST);

@@ -196,10 +196,10 @@ MeshData rod_mesh(const TableSpec& table, int rod, float detail) {
                       ProfilePoint{cap, half + 0.012f}, ProfilePoint{cap - 0.004f, half + 0.017f},
                       ProfilePoint{0, half + 0.018f}},
            14, true);
-  const float outermost = f(foosball::man_offset(spec, spec.men - 1)) + 0.026f;
-  const float bumper = r + 0.0055f;
+  // Rings that meet the wall when the rod is at its limit.
+  const float contact = f(0.5 * table.width - spec.slide_limit), bumper = r + 0.0055f;
   for (const float side : {-1.0f, 1.0f}) {
-    const float z = side * outermost;
+    const float z = side * (contact - 0.007f);
     b.turned(std::array{ProfilePoint{0, z - 0.007f}, ProfilePoint{bumper - 0.002f, z - 0.007f},
                         ProfilePoint{bumper, z - 0.005f}, ProfilePoint{bumper, z + 0.005f},
                         ProfilePoint{bumper - 0.002f, z + 0.007f}, ProfilePoint{0, z + 0.007f}},
