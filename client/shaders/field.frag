@@ -39,11 +39,12 @@ void main() {
   float mown = smoothstep(0.245, 0.255, band.x);
   vec3 turf = mix(vec3(0.0045, 0.040, 0.052), vec3(0.0065, 0.053, 0.067), mown);
   float towards = smoothstep(0.35, 1.0, abs(p.x) / u_half_field.x);
-  turf += u_team_colour[p.x > 0.0 ? 1 : 0] * 0.014 * towards;
+  vec3 team = u_team_colour[p.x > 0.0 ? 1 : 0];
+  turf += 0.014 * team * towards;
   float edge = min(u_half_field.x - abs(p.x), u_half_field.y - abs(p.y));
   float m = markings(p);
 
-  Surface s = Surface(mix(turf, vec3(0.52, 0.66, 0.70), 0.86 * m), 0.88, 0.0);
+  Surface s = Surface(mix(turf, mix(vec3(0.52, 0.66, 0.70), team, 0.45 * towards), 0.86 * m), 0.88, 0.0);
   float occlusion = mix(0.45, 1.0, smoothstep(0.0, 0.05, edge));
   float contact = 1.0;
   if (u_ball.w > 0.0) {

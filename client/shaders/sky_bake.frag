@@ -34,17 +34,17 @@ vec3 nebula(vec3 d) {
   float cloud = fbm(d * 2.6 + 1.9 * warp);
   float veil = fbm(d * 5.0 + 2.5 * warp.zxy + 40.0);
   float band = exp(-pow(dot(d, normalize(vec3(0.25, -0.45, 0.86))) * 2.2 + 0.35 * (warp.x - 0.5), 2.0));
-  vec3 c = vec3(0.0035, 0.0050, 0.0105);
-  c += vec3(0.020, 0.036, 0.085) * smoothstep(0.42, 0.85, cloud) * (0.35 + band);
-  c += vec3(0.060, 0.022, 0.078) * pow(smoothstep(0.40, 0.90, veil * 0.6 + cloud * 0.5), 2.0) * band;
-  c += vec3(0.012, 0.050, 0.056) * pow(smoothstep(0.45, 0.85, warp.y), 2.0) * (0.4 + 0.6 * band);
+  vec3 c = vec3(0.0045, 0.0060, 0.0140);
+  c += vec3(0.085, 0.110, 0.300) * smoothstep(0.42, 0.85, cloud) * (0.35 + band);
+  c += vec3(0.420, 0.120, 0.460) * pow(smoothstep(0.40, 0.90, veil * 0.6 + cloud * 0.5), 2.0) * band;
+  c += vec3(0.050, 0.190, 0.215) * pow(smoothstep(0.45, 0.85, warp.y), 2.0) * (0.4 + 0.6 * band);
   return c * (1.0 - 0.6 * smoothstep(0.45, 0.75, veil) * band);
 }
 
 // The table hangs over a planet at night: its limb rises behind the far wall from either side, and a
 // few lights of cities keep the dark alive.
 vec3 planet(vec3 d, vec3 sky) {
-  const float radius = 0.815;  // [rad]
+  const float radius = 0.740;  // [rad]; kLimb in sky.cpp
   float angle = acos(clamp(-d.z, -1.0, 1.0));
   float inside = radius - angle;
   vec2 around = normalize(d.xy + vec2(1e-5, 0.0));
@@ -58,9 +58,9 @@ vec3 planet(vec3 d, vec3 sky) {
   float land = smoothstep(0.50, 0.56, fbm(n * 2.3 + 31.0));
   float day = smoothstep(-0.2, 1.1, -around.x * r);
   vec3 ground = mix(vec3(0.0020, 0.0065, 0.0125), vec3(0.0060, 0.0075, 0.0070), land);
-  ground += vec3(0.018, 0.024, 0.032) * smoothstep(0.48, 0.80, clouds);
+  ground += vec3(0.046, 0.062, 0.088) * smoothstep(0.48, 0.80, clouds);
   float city = land * smoothstep(0.74, 0.90, noise(n * 26.0)) * smoothstep(0.55, 0.9, noise(n * 90.0));
-  vec3 c = ground * (0.45 + 2.4 * day) + vec3(0.16, 0.10, 0.045) * city * (1.0 - smoothstep(0.45, 0.7, clouds));
+  vec3 c = ground * (0.45 + 2.4 * day) + vec3(0.20, 0.12, 0.05) * city * (1.0 - smoothstep(0.45, 0.7, clouds));
   c += air * 0.55 * exp(-max(inside, 0.0) * 11.0);
   return mix(glow, c, smoothstep(-0.004, 0.004, inside));  // two texels wide: no stairs
 }

@@ -198,9 +198,13 @@ TEST_P(RenderTest, AManThatMovesLeavesHisPlace) {
 }
 
 TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
-  const wire::Snapshot state = scripted_play(0.35);
-  const Image plain = draw(state), scored = draw(state, HudState{});
-  EXPECT_GT(changed(plain, scored, {kSize.x / 2, 36}, 40), 700);
+  wire::Snapshot state = scripted_play(0.35), next = state;
+  next.score[0] = 8;
+  const glm::ivec2 left_figure{kSize.x / 2 - 40, 34}, right_figure{kSize.x / 2 + 40, 34};
+  const Image before = written(state, {}), after = written(next, {});
+  EXPECT_GT(changed(before, after, left_figure, 18), 40);
+  EXPECT_EQ(changed(before, after, right_figure, 18), 0);
+  const Image scored = draw(state, HudState{});
   // Orange figures left of the middle, blue ones right of it.
   const glm::vec3 left = mean(scored, {kSize.x / 2 - 60, 18}, {kSize.x / 2 - 25, 52});
   const glm::vec3 right = mean(scored, {kSize.x / 2 + 25, 18}, {kSize.x / 2 + 60, 52});

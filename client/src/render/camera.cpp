@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kElevation = 0.98f;  // [rad] above the field: the near wall hides little of it
 constexpr float kDistance = 1.72f;   // [m] at the aspect below: the table and the near handles fit
+constexpr float kGazeNear = 0.062f;  // [m] before the middle: the own handles are seen, not cut off
 constexpr float kFieldOfView = 0.64f;    // [rad], vertical
 constexpr float kAspect = 16.0f / 9.0f;  // narrower windows step back
 
@@ -29,7 +30,7 @@ Camera player_camera(const CameraView& view, const glm::ivec2& screen) {
   const float side = (view.team == 1 ? glm::half_pi<float>() : -glm::half_pi<float>()) + view.orbit;
   const float elevation = kElevation - 0.30f * view.closeness;
   const float toward = view.team == 1 ? 1.0f : -1.0f;
-  const glm::vec3 target{view.lean.x, view.lean.y + toward * 0.035f, 0.0f};
+  const glm::vec3 target{view.lean.x, view.lean.y + toward * kGazeNear, 0.0f};
   Camera camera;
   camera.eye =
       target + distance * glm::vec3(std::cos(elevation) * std::cos(side),

@@ -10,4 +10,8 @@ namespace client {
 inline constexpr std::array<glm::vec3, 2> kTeamColour{
     {{0.86f, 0.23f, 0.025f}, {0.07f, 0.42f, 0.95f}}};
 
+// Their lamps: deeper, since the tone curve makes bright light paler.
+inline constexpr std::array<glm::vec3, 2> kTeamLamp{
+    {{0.82f, 0.150f, 0.008f}, {0.032f, 0.32f, 0.935f}}};
+
 }  // namespace client

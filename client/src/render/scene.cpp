@@ -221,6 +221,8 @@ void Scene::draw_glass(const SceneView& view) const {
   glass_.set("u_view_projection", view.camera.view_projection);
   glass_.set("u_eye", view.camera.eye);
   glass_.set("u_top", static_cast<float>(table_->wall_height));
+  glass_.set("u_team_lamp[0]", kTeamLamp[0]);
+  glass_.set("u_team_lamp[1]", kTeamLamp[1]);
   glass_mesh_.draw();
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);

@@ -12,7 +12,7 @@
 namespace client {
 namespace {
 
-constexpr float kLimb = -0.683f;  // cosine of the planet's radius in sky_bake.frag, downwards
+constexpr float kLimb = -0.738f;  // cosine of the planet's radius in sky_bake.frag, downwards
 
 struct Star {
   glm::vec4 direction_brightness;
@@ -40,7 +40,7 @@ tl::expected<Sky, std::string> Sky::create(Quality quality) {
   sky.star_ = std::move(*star);
   sky.empty_ = GlVertexArray::make();
   sky.bake(*bake, quality == Quality::high ? 512 : 256);
-  sky.scatter_stars(quality == Quality::high ? 1800 : 900);
+  sky.scatter_stars(quality == Quality::high ? 3600 : 1800);
   return sky;
 }
 

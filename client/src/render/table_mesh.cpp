@@ -12,8 +12,8 @@ namespace {
 using foosball::TableSpec;
 
 const Paint kBody{{0.028f, 0.036f, 0.052f}, 0.0f, 0.38f, 0.25f, 0.0f};
-const Paint kRail{{0.040f, 0.050f, 0.066f}, 0.0f, 0.58f, 0.1f, 0.0f};
-const Paint kPlate{{0.014f, 0.018f, 0.025f}, 0.0f, 0.50f, 0.0f, 0.0f};
+const Paint kRail{{0.030f, 0.038f, 0.054f}, 0.0f, 0.68f, 0.0f, 0.0f};
+const Paint kPlate{{0.011f, 0.014f, 0.021f}, 0.0f, 0.80f, 0.0f, 0.0f};
 const Paint kBolt{{0.45f, 0.47f, 0.50f}, 0.0f, 0.3f, 1.0f, 0.0f};
 const Paint kWall{{0.040f, 0.052f, 0.070f}, 0.0f, 0.50f, 0.0f, 0.0f};
 const Paint kPocket{{0.012f, 0.015f, 0.020f}, 0.0f, 0.8f, 0.0f, 0.0f};
@@ -23,7 +23,6 @@ const Paint kChrome{{0.80f, 0.82f, 0.85f}, 0.0f, 0.17f, 1.0f, 0.0f};
 const Paint kRubber{{0.020f, 0.021f, 0.024f}, 0.0f, 0.75f, 0.0f, 0.0f};
 const Paint kGrip{glm::vec3(0.80f), 1.0f, 0.42f, 0.0f, 0.0f};
 const Paint kMark{{0.75f, 0.77f, 0.80f}, 0.0f, 0.4f, 0.0f, 0.0f};
-const Paint kStrip{{0.30f, 0.62f, 0.80f}, 0.0f, 0.5f, 0.0f, 0.55f};
 
 constexpr float kHandleLength = 0.105f;
 constexpr float kReach = 0.022f;  // of a rod beyond the wall when pushed in all the way
@@ -54,7 +53,7 @@ void add_body(MeshBuilder& b, const Sizes& s) {
   add_box(b, {-s.outer_x + 0.05f, -s.outer_y + 0.03f, -0.235f},
           {s.outer_x - 0.05f, s.outer_y - 0.03f, -0.18f}, 0.012f);
   for (const float side : {-1.0f, 1.0f}) {
-    b.paint(kStrip);
+    b.paint({kTeamLamp[side < 0.0f ? 0 : 1], 0.0f, 0.5f, 0.0f, 1.8f});
     const float y = side * (s.outer_y + 0.0005f);
     add_box(b, {-s.outer_x + 0.06f, y - 0.002f, -0.034f}, {s.outer_x - 0.06f, y + 0.002f, -0.030f},
             0.001f);
@@ -115,12 +114,12 @@ void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
   b.paint(kPocket);
   box(-0.0005f, depth + 0.002f, -goal - 0.001f, goal + 0.001f, -0.02f, -0.002f, 0.001f);
   // The frame of the mouth and an inlay on the deck say whose goal it is.
-  b.paint({kTeamColour[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 1.5f});
+  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 2.2f});
   const float w = 0.0032f;
   box(-0.002f, 0.004f, goal - 0.001f, goal + 2.0f * w, 0.0f, bar + w, 0.0014f);
   box(-0.002f, 0.004f, -goal - 2.0f * w, -goal + 0.001f, 0.0f, bar + w, 0.0014f);
   box(-0.002f, 0.004f, -goal - 2.0f * w, goal + 2.0f * w, bar - 0.001f, bar + w, 0.0014f);
-  b.paint({kTeamColour[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 0.8f});
+  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 1.8f});
   box(depth + 0.012f, depth + 0.017f, -s.half_width + 0.005f, s.half_width - 0.005f,
       s.wall - 0.002f, s.wall + 0.0034f, 0.001f);
 }
