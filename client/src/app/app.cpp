@@ -70,7 +70,6 @@ class App {
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
-  std::int64_t picture_us_ = 0;      // spent on the screenshot: no part of the frame rate
   std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
   glm::ivec2 size_{1, 1};
   double seconds_ = 0.0;
@@ -274,7 +273,8 @@ int App::loop() {
   std::int64_t before = began;
   bool shot = options_.screenshot.empty();
   std::string failure;
-  double drawing = 0.0;  // [s], without the picture for a file
+  double drawing = 0.0;         // [s], without the picture for a file:
+  std::int64_t picture_us = 0;  // that is no part of the frame rate
   for (bool last = false; !last;) {
     const std::int64_t now = now_us();
     const float dt = std::min(1e-6f * static_cast<float>(now - before), 0.1f);
@@ -285,13 +285,13 @@ int App::loop() {
     hear(now_us());
     draw(dt);
     last = leaving(seconds_);
-    drawing = 1e-6 * static_cast<double>(now_us() - began);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
       const std::int64_t pause = now_us();
       failure = take_screenshot();
-      picture_us_ = now_us() - pause;
+      picture_us = now_us() - pause;
     }
+    drawing = 1e-6 * static_cast<double>(now_us() - began - picture_us);
     window_->swap();
     if (scene_is_current() && !sample_.starving) say_when_in_step(now_us());
     meter_.end(now_us());
@@ -305,8 +305,7 @@ int App::loop() {
 
 void App::say_figures(double seconds) const {
   const SnapshotCounters c = connection_->counters();
-  const double drawing = seconds - 1e-6 * static_cast<double>(picture_us_);
-  const double rate = drawing > 0 ? static_cast<double>(meter_.frames()) / drawing : 0;
+  const double rate = seconds > 0 ? static_cast<double>(meter_.frames()) / seconds : 0;
   char text[640];
   std::snprintf(
       text, sizeof text,
