@@ -138,13 +138,14 @@ void draw_character(const HudPen& pen, int character, const glm::vec2& at, float
 }  // namespace
 
 float draw_all_keys(const HudPen& pen) {
-  const auto rows = static_cast<float>(kAllKeys.size() / 2);
-  const float height = 28.0f * rows + 28.0f, half = 478.0f;
+  constexpr std::size_t kRows = kAllKeys.size() / 2;
+  const float height = 28.0f * static_cast<float>(kRows) + 28.0f, half = 478.0f;
   const float top = pen.bottom - 22.0f - height;
   pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
     const float x = i % 2 == 0 ? -half + 26.0f : 30.0f;
-    const float y = top + 33.0f + 28.0f * static_cast<float>(i / 2);
+    const std::size_t row = i / 2;
+    const float y = top + 33.0f + 28.0f * static_cast<float>(row);
     pen.text(kAllKeys[i].keys, {Face::bold, 14.0f, 0.0f, Align::left}, {x, y}, kInk);
     pen.text(kAllKeys[i].meaning, {Face::regular, 14.0f, 0.0f, Align::left}, {x + 128.0f, y},
              kFaint);
