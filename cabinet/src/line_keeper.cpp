@@ -49,9 +49,12 @@ void LineKeeper::close(int fd) {
 void LineKeeper::run() {
   while (true) {
     sem_wait(&work_);  // interrupted by a signal, it finds nothing to do
+    // Asked first: who asks has said before what is to be closed. An ask after this look wakes
+    // anew.
+    const bool asked = handover_.load(std::memory_order_acquire) == kAsked;
     close_if_open(to_close_.exchange(-1, std::memory_order_acq_rel));
     if (ending_.load(std::memory_order_acquire)) return;
-    if (handover_.load(std::memory_order_acquire) != kAsked) continue;
+    if (!asked) continue;
     const int fd = open_();
     handover_.store(fd >= 0 ? fd : kIdle, std::memory_order_release);
   }

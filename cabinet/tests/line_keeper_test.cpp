@@ -66,7 +66,7 @@ TEST(LineKeeper, ClosesADeviceBeforeItOpensItAgain) {
     last = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     return last.load();
   });
-  for (int i = 0; i < 200; ++i) keeper.close(take_when_ready(keeper));
+  for (int i = 0; i < 2'000; ++i) keeper.close(take_when_ready(keeper));
   EXPECT_EQ(still_open, 0);
   EXPECT_TRUE(comes_true([&] { return !is_open(last); }));
 }
