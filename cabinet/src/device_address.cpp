@@ -14,6 +14,7 @@
 
 #include "cabinet/device_source.h"
 #include "line_keeper.h"
+#include "os/file_descriptor.h"
 #include "raw_line.h"
 
 namespace cabinet {
@@ -79,20 +80,6 @@ std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::stri
 
 constexpr std::size_t kMostRecordingBytes = std::size_t{64} << 20;
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 bool write_all(int fd, const char* bytes, std::size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(fd, bytes, size);
@@ -105,8 +92,8 @@ bool write_all(int fd, const char* bytes, std::size_t size) {
 
 // The whole recording, to be read from the start; empty: all is well.
 std::string copy_to_memory(const std::string& text, const std::string& path, int memory) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0 || memory < 0) return text + ": " + std::strerror(errno) + "; try again.";
+  const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file || memory < 0) return text + ": " + std::strerror(errno) + "; try again.";
   std::vector<char> piece(std::size_t{1} << 20);
   std::size_t total = 0;
   while (true) {
@@ -127,7 +114,7 @@ std::string copy_to_memory(const std::string& text, const std::string& path, int
 // The opener keeps a descriptor of its own, so that the poller's close() frees nothing.
 tl::expected<std::unique_ptr<DeviceSource>, std::string> recording_source(DeviceOptions options,
                                                                           const std::string& path) {
-  auto memory = std::make_shared<Descriptor>(::memfd_create("recording", MFD_CLOEXEC));
+  auto memory = std::make_shared<os::FileDescriptor>(::memfd_create("recording", MFD_CLOEXEC));
   const std::string sentence = copy_to_memory(options.name, path, memory->get());
   if (!sentence.empty()) return tl::unexpected(sentence);
   return std::make_unique<DeviceSource>(

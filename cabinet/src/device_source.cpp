@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 #include <utility>
 
 #include "frame_reader.h"
@@ -20,6 +21,8 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
+// A device that sends noise is not called silent between two pieces of it.
+constexpr std::int64_t kNoiseUs = 1'000'000;
 
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
@@ -54,6 +57,7 @@ struct DeviceSource::Impl {
   bool take_frames(std::int64_t now_us);
   std::int64_t due_us(std::int64_t now_us) const;
   void accept(std::int64_t now_us);
+  bool garbled() const;
 
   DeviceOptions options;
   DeviceOpener open;
@@ -67,7 +71,8 @@ struct DeviceSource::Impl {
   bool heard = false;  // since it was opened
   bool ever_heard = false;
   bool fresh = false;  // heard from within silence_us
-  std::int64_t heard_us = 0;
+  std::int64_t heard_us = 0, polled_us = 0;
+  std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
   bool recording = false, played = false;
@@ -102,6 +107,7 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
   reader.reset(packing);
   tracker.forget_base();
   heard = pending = false;
+  bytes_us.reset();
 }
 
 void DeviceSource::Impl::close_device() {
@@ -134,6 +140,13 @@ void DeviceSource::Impl::accept(std::int64_t now_us) {
   heard_us = now_us;
 }
 
+// Bytes came lately that belong to no frame. What came right after the last frame is only the piece
+// of one at which a device fell silent.
+bool DeviceSource::Impl::garbled() const {
+  if (!bytes_us || polled_us - *bytes_us > kNoiseUs) return false;
+  return !heard || *bytes_us - heard_us > options.silence_us / 2;
+}
+
 // False when the next frame of a recording is not due yet.
 bool DeviceSource::Impl::take_frames(std::int64_t now_us) {
   while (pending || reader.next(frame, counters)) {
@@ -152,6 +165,7 @@ void DeviceSource::Impl::take_in(std::int64_t now_us) {
     const ssize_t got = ::read(fd, room.data(), room.size());
     if (got > 0) {
       bytes += static_cast<std::size_t>(got);
+      bytes_us = now_us;
       reader.filled(static_cast<std::size_t>(got), counters);
       continue;
     }
@@ -171,6 +185,7 @@ DeviceSource::~DeviceSource() = default;
 
 void DeviceSource::poll(std::int64_t now_us) {
   Impl& in = *impl_;
+  in.polled_us = now_us;
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
   if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
@@ -188,8 +203,11 @@ const SourceCounters& DeviceSource::counters() const {
 const std::string& DeviceSource::name() const {
   return impl_->options.name;
 }
-bool DeviceSource::connected() const {
-  return impl_->fd >= 0 && impl_->fresh;
+DeviceState DeviceSource::state() const {
+  const Impl& in = *impl_;
+  if (in.fd < 0) return in.played ? DeviceState::over : DeviceState::missing;
+  if (in.fresh || in.pending) return DeviceState::live;
+  return in.garbled() ? DeviceState::garbled : DeviceState::silent;
 }
 std::uint32_t DeviceSource::last_frame_time_us() const {
   return impl_->tracker.last_frame_time_us();

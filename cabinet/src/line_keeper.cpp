@@ -13,16 +13,13 @@ void close_if_open(int fd) {
 
 }  // namespace
 
-LineKeeper::LineKeeper(std::function<int()> open) : open_(std::move(open)) {
-  sem_init(&work_, 0, 0);
-  thread_ = std::thread([this] { run(); });
-}
+LineKeeper::LineKeeper(std::function<int()> open)
+    : open_(std::move(open)), thread_([this] { run(); }) {}
 
 LineKeeper::~LineKeeper() {
   ending_.store(true, std::memory_order_release);
-  sem_post(&work_);
+  work_.post();
   thread_.join();
-  sem_destroy(&work_);
   close_if_open(to_close_.load(std::memory_order_relaxed));
   close_if_open(handover_.load(std::memory_order_relaxed));
 }
@@ -35,7 +32,7 @@ int LineKeeper::take() {
   }
   if (state == kIdle) {
     handover_.store(kAsked, std::memory_order_release);
-    sem_post(&work_);
+    work_.post();
   }
   return -1;
 }
@@ -43,12 +40,12 @@ int LineKeeper::take() {
 // The place is free: the descriptor before was closed before this one was opened.
 void LineKeeper::close(int fd) {
   to_close_.store(fd, std::memory_order_release);
-  sem_post(&work_);
+  work_.post();
 }
 
 void LineKeeper::run() {
   while (true) {
-    sem_wait(&work_);  // interrupted by a signal, it finds nothing to do
+    work_.wait();  // interrupted by a signal, it finds nothing to do
     // Asked first: who asks has said before what is to be closed. An ask after this look wakes
     // anew.
     const bool asked = handover_.load(std::memory_order_acquire) == kAsked;

@@ -2,11 +2,11 @@
 // milliseconds to seconds, and so may setting the line up. The thread that polls never waits.
 #pragma once
 
-#include <semaphore.h>
-
 #include <atomic>
 #include <functional>
 #include <thread>
+
+#include "os/thread_signal.h"
 
 namespace cabinet {
 
@@ -32,7 +32,7 @@ class LineKeeper {
   std::atomic<int> handover_{kIdle};
   std::atomic<int> to_close_{-1};
   std::atomic<bool> ending_{false};
-  sem_t work_;
+  os::ThreadSignal work_;
   std::thread thread_;
 };
 

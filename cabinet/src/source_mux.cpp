@@ -21,16 +21,6 @@ double fade(double& offset, double towards, double share, double seconds) {
   return seconds > 0 ? step / seconds : 0;
 }
 
-SourceCounters sum(const SourceCounters& a, const SourceCounters& b) {
-  return {a.frames + b.frames,
-          a.bad + b.bad,
-          a.lost + b.lost,
-          a.stale + b.stale,
-          a.reopened + b.reopened,
-          a.overflows + b.overflows,
-          a.line_errors + b.line_errors};
-}
-
 }  // namespace
 
 SourceMux::SourceMux(const std::array<double, kRods>& slide_limit) : slide_limit_(slide_limit) {}
@@ -105,7 +95,7 @@ void SourceMux::poll(std::int64_t now_us) {
   counters_ = {};
   for (const Entry& entry : sources_) {
     entry.source->poll(now_us);
-    counters_ = sum(counters_, entry.source->counters());
+    counters_ = counters_ + entry.source->counters();
   }
   for (int rod = 0; rod < kRods; ++rod) {
     const int driver = pick(rod);

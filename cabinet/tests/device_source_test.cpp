@@ -148,6 +148,45 @@ TEST(DeviceSource, SilenceHoldsAndTheNextFrameRevives) {
   EXPECT_EQ(bench.source->counters().reopened, 0u);
 }
 
+TEST(DeviceSource, TellsSilenceNoiseAndAbsenceApart) {
+  Bench bench;
+  const auto state = [&bench] { return bench.source->state(); };
+  EXPECT_EQ(state(), DeviceState::silent);
+  bench.line.master.send(Bytes(100, 0x55));
+  bench.step(1'000);
+  EXPECT_EQ(state(), DeviceState::garbled);
+  bench.step(900'000);  // noise now and then
+  EXPECT_EQ(state(), DeviceState::garbled);
+  bench.step(100'001);
+  EXPECT_EQ(state(), DeviceState::silent);
+
+  bench.line.master.send({0});  // the noise ends here
+  bench.send_and_step();
+  EXPECT_EQ(state(), DeviceState::live);
+  // Cut off in the middle of a frame: that piece makes it no noise.
+  const Bytes piece = cobs(bench.device.frame());
+  bench.line.master.send(Bytes(piece.begin(), piece.begin() + 20));
+  bench.step(1'000);
+  EXPECT_EQ(state(), DeviceState::live);
+  bench.step(60'000);
+  EXPECT_EQ(state(), DeviceState::silent);
+
+  bench.line.master.send({0});
+  bench.send_and_step();
+  EXPECT_EQ(state(), DeviceState::live);
+  for (int i = 0; i < 60; ++i) {  // from frames to noise, as after another program's reset
+    bench.line.master.send(Bytes(48, 0xEE));
+    bench.step(1'000);
+  }
+  EXPECT_EQ(state(), DeviceState::garbled);
+  bench.line.unplug();
+  bench.step(1'000);
+  EXPECT_EQ(state(), DeviceState::missing);
+  bench.line.plug();
+  bench.step(200'000);
+  EXPECT_EQ(state(), DeviceState::silent);  // what it was before counts no more
+}
+
 TEST(DeviceSource, OnePollTakesABoundedShareOfAFlood) {
   int pair[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair), 0);
@@ -197,6 +236,7 @@ void expect_paced(const std::function<Bytes(const wire::DeviceFrame&)>& coded) {
   }
   EXPECT_EQ((*source)->counters().frames, 100u);
   EXPECT_EQ((*source)->counters().bad, 0u);
+  EXPECT_EQ((*source)->state(), DeviceState::over);
   // Played once: at its end the rods hold, and go on holding.
   for (int i = 1; i < 10; ++i) (*source)->poll(start + 500'000 + i * 300'000);
   EXPECT_EQ((*source)->rods()[0].status, RodStatus::held);

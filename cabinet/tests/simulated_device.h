@@ -68,10 +68,10 @@ struct Descriptor {
     fd = -1;
   }
   void send(const Bytes& bytes) const {
-    ASSERT_EQ(::write(fd, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+    ASSERT_EQ(send_what_fits(bytes), static_cast<ssize_t>(bytes.size()));
   }
-  // For a line that nobody reads yet: what does not fit is dropped, as by a real device, and
-  // nothing waits.
+  // For a line that nobody reads yet: what does not fit is dropped, as by a real device. Neither of
+  // the two ever waits: a full line without a reader would make a test wait for ever.
   ssize_t send_what_fits(const Bytes& bytes) const {
     const int flags = ::fcntl(fd, F_GETFL);
     ::fcntl(fd, F_SETFL, flags | O_NONBLOCK);

@@ -16,6 +16,15 @@ namespace cabinet {
 
 enum class DeviceFraming : std::uint8_t { cobs, report };
 
+// What the descriptor shows of the device. A person is told something else for each.
+enum class DeviceState : std::uint8_t {
+  missing,  // not open: it is not there, may not be opened, or hung up
+  silent,   // open, but no byte comes
+  garbled,  // open, bytes come, but no frame among them is taken
+  live,     // frames come, or a recording waits for the time of its next one
+  over,     // a recording, played to its end
+};
+
 struct DeviceOptions {
   std::string name = "cabinet";
   DeviceFraming framing = DeviceFraming::cobs;
@@ -48,8 +57,9 @@ class DeviceSource final : public InputSource {
   const RodInputs& rods() const override;
   const SourceCounters& counters() const override;
   const std::string& name() const override;
-  // Open and heard from within silence_us.
-  bool connected() const;
+  // As of the last poll.
+  DeviceState state() const;
+  bool connected() const { return state() == DeviceState::live; }
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 

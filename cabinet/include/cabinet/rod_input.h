@@ -34,6 +34,16 @@ struct SourceCounters {
   std::uint64_t reopened = 0;     // times the device came back
   std::uint64_t overflows = 0;    // reports in which a sensor said it had moved too far to tell
   std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
+
+  friend SourceCounters operator+(const SourceCounters& a, const SourceCounters& b) {
+    return {a.frames + b.frames,
+            a.bad + b.bad,
+            a.lost + b.lost,
+            a.stale + b.stale,
+            a.reopened + b.reopened,
+            a.overflows + b.overflows,
+            a.line_errors + b.line_errors};
+  }
 };
 
 class InputSource {

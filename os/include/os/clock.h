@@ -1,0 +1,28 @@
+// The monotonic clock, for the edges that live in real time. It begins at some moment of the past.
+#pragma once
+
+#include <time.h>
+
+#include <cstdint>
+
+namespace os {
+
+inline std::int64_t monotonic_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+inline std::int64_t monotonic_us() {
+  return monotonic_ns() / 1000;
+}
+
+// May return early: when a signal comes.
+inline void sleep_until_ns(std::int64_t deadline_ns) {
+  timespec until{};
+  until.tv_sec = static_cast<time_t>(deadline_ns / 1'000'000'000);
+  until.tv_nsec = static_cast<long>(deadline_ns % 1'000'000'000);
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
+}  // namespace os
