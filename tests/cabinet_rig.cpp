@@ -1,8 +1,6 @@
 #include "cabinet_rig.h"
 
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,18 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "os/socket_address.h"
+
 namespace end_to_end {
 namespace {
 
 constexpr int kDeadlineMs = 5000;
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
 
 void require(bool held, const char* what) {
   if (!held) throw std::runtime_error(what);
@@ -70,19 +62,16 @@ CabinetRig::~CabinetRig() {
 
 void CabinetRig::join() {
   udp_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in mine = loopback(0);
-  socklen_t size = sizeof mine;
-  require(bind(udp_, reinterpret_cast<sockaddr*>(&mine), size) == 0, "bind failed");
-  require(getsockname(udp_, reinterpret_cast<sockaddr*>(&mine), &size) == 0, "no socket name");
+  const sockaddr_in mine = os::loopback(0);
+  require(bind(udp_, os::generic(mine), sizeof mine) == 0, "bind failed");
 
   tcp_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const sockaddr_in server = loopback(server_->port());
-  require(connect(tcp_, reinterpret_cast<const sockaddr*>(&server), sizeof server) == 0,
-          "cannot connect to the server");
+  const sockaddr_in server = os::loopback(server_->port());
+  require(connect(tcp_, os::generic(server), sizeof server) == 0, "cannot connect to the server");
   wire::Hello hello;
   hello.snapshot_layout = wire::snapshot_layout_hash();
   hello.name = "rig";
-  hello.udp_port = ntohs(mine.sin_port);
+  hello.udp_port = os::port_of(os::local_address(udp_));
   std::vector<std::byte> bytes;
   wire::encode_control(hello, bytes);
   require(send(tcp_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
@@ -95,7 +84,7 @@ void CabinetRig::join() {
   for (int i = 0; i < kDeadlineMs && first_; ++i) {
     sim_.advance_us(1000);
     forward_reports();
-    server_->tick(static_cast<std::int64_t>(sim_.now_us()));
+    tick();
     pollfd ready{udp_, POLLIN, 0};
     if (poll(&ready, 1, 1) == 1) {
       require(receive(last_), "the first snapshot does not decode");
@@ -129,6 +118,14 @@ std::vector<wire::Notice> CabinetRig::notices() {
   return found;
 }
 
+std::optional<wire::Notice> CabinetRig::next_notice() {
+  wire::ControlMessage message;
+  while (next_message(kDeadlineMs, message)) {
+    if (const auto* notice = std::get_if<wire::Notice>(&message)) return *notice;
+  }
+  return std::nullopt;
+}
+
 void CabinetRig::unplug() {
   close(to_server_.writing);
   to_server_.writing = -1;
@@ -158,10 +155,15 @@ void CabinetRig::forward_reports() {
   tap_->poll(static_cast<std::int64_t>(sim_.now_us()));
 }
 
+void CabinetRig::tick() {
+  server_->tick(static_cast<std::int64_t>(sim_.now_us()));
+  server_->wait_sent();
+}
+
 const wire::Snapshot& CabinetRig::step() {
   sim_.advance_us(1000);
   forward_reports();
-  server_->tick(static_cast<std::int64_t>(sim_.now_us()));
+  tick();
   const std::uint64_t before = last_.tick;
   if (!receive(last_) || last_.tick != before + 1) ++missed_;
   return last_;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cabinet/device_source.h"
@@ -31,6 +32,8 @@ class CabinetRig {
   void plug_in();
   // What the server has told a person since the last call.
   std::vector<wire::Notice> notices();
+  // Waits for the next notice, which travels by another thread than the tick's; none in 5 s: empty.
+  std::optional<wire::Notice> next_notice();
 
   // A second reader of the same reports: what the PC made of the counts, before the physics.
   const cabinet::DeviceSource& tap() const { return *tap_; }
@@ -49,6 +52,7 @@ class CabinetRig {
   void join();
   bool next_message(int deadline_ms, wire::ControlMessage& message);
   bool receive(wire::Snapshot& snapshot);
+  void tick();
   void forward_reports();
 
   firmware_sim::CabinetSim sim_{firmware_sim::Board::mega32u4};

@@ -99,15 +99,11 @@ int ticks_until(CabinetRig& rig, std::uint8_t status, int most) {
   return -1;
 }
 
-// The next notice of the level that names the cabinet; it travels by another thread than the
-// tick's.
+// The text of the next notice of the level that names the cabinet.
 std::string notice_of_cabinet(CabinetRig& rig, wire::Notice::Level level) {
-  for (int tick = 0; tick < 2000; ++tick) {
-    rig.step();
-    for (const wire::Notice& notice : rig.notices()) {
-      if (notice.level == level && notice.text.find("cabinet") != std::string::npos) {
-        return notice.text;
-      }
+  while (const auto notice = rig.next_notice()) {
+    if (notice->level == level && notice->text.find("cabinet") != std::string::npos) {
+      return notice->text;
     }
   }
   return {};

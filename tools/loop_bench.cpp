@@ -31,8 +31,8 @@ double us(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-3;
 }
 
-std::vector<Row> rows(const server::LoopStats& loop, std::uint64_t sent,
-                      const bench::ListenerTotals& heard) {
+std::vector<Row> rows(const server::LoopStats& loop, const server::SendStats& sending,
+                      std::uint64_t sent, const bench::ListenerTotals& heard) {
   const double lost = static_cast<double>(sent) - static_cast<double>(heard.received);
   return {{"sent", static_cast<double>(sent), "datagrams"},
           {"received", static_cast<double>(heard.received), "datagrams"},
@@ -45,7 +45,11 @@ std::vector<Row> rows(const server::LoopStats& loop, std::uint64_t sent,
           {"tick_p50", us(loop.cost.quantile(0.5)), "us"},
           {"tick_p99", us(loop.cost.quantile(0.99)), "us"},
           {"tick_p999", us(loop.cost.quantile(0.999)), "us"},
-          {"tick_max", us(loop.cost.max()), "us"}};
+          {"tick_max", us(loop.cost.max()), "us"},
+          {"send_p50", us(sending.cost.quantile(0.5)), "us"},
+          {"send_p99", us(sending.cost.quantile(0.99)), "us"},
+          {"to_wire_p50", us(sending.to_wire.quantile(0.5)), "us"},
+          {"to_wire_p99", us(sending.to_wire.quantile(0.99)), "us"}};
 }
 
 std::string csv(const std::vector<Row>& rows) {
@@ -62,13 +66,14 @@ int fail(const std::string& sentence) {
 }
 
 tl::expected<std::unique_ptr<server::Server>, server::StartError> make_server(
-    const Options& options, const server::Log& log) {
+    const Options& options, int send_priority, const server::Log& log) {
   server::ServerOptions wanted;
   wanted.match.seed = options.seed;
   wanted.computer = {true, true};
   wanted.limits.connections = wanted.limits.per_local_address = options.listeners;
   wanted.session = options.seed;
   wanted.random = [token = options.seed]() mutable { return ++token; };
+  wanted.send_priority = send_priority;
   wanted.log = log;
   return server::Server::create(std::move(wanted));
 }
@@ -78,12 +83,12 @@ int measure(const Options& options) {
   const server::Log log = [](server::LogLevel level, const std::string& text) {
     if (level == server::LogLevel::warning) std::fprintf(stderr, "loop-bench: %s\n", text.c_str());
   };
-  auto server = make_server(options, log);
+  server::LoopOptions loop_options;
+  loop_options.cpu = options.cpu;
+  auto server = make_server(options, loop_options.priority - 1, log);
   if (!server) return fail(server.error().sentence);
   if (!listeners.join((*server)->port())) return fail("not all listeners could join");
 
-  server::LoopOptions loop_options;
-  loop_options.cpu = options.cpu;
   server::TickLoop loop(loop_options, log);
   const std::atomic<bool> stop{false};
   const server::RunOptions run_options{
@@ -94,7 +99,7 @@ int measure(const Options& options) {
   if (!heard || !heard->complete) return fail("the listeners ended before they were told to");
 
   const auto counters = (*server)->counters();
-  const auto table = rows(loop.stats(), counters.snapshots_sent, *heard);
+  const auto table = rows(loop.stats(), (*server)->sending(), counters.snapshots_sent, *heard);
   std::printf("%d listeners, %.0f s, %zu bytes a snapshot\n", options.listeners,
               loop.stats().seconds,
               static_cast<std::size_t>(counters.snapshot_bytes /

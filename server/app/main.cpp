@@ -97,6 +97,10 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options) {
 tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const app::Options& options,
                                                                         const server::Log& log) {
   using Kind = server::StartError::Kind;
+  if (!options.stats_file.empty()) {
+    const auto writable = server::can_write_whole(options.stats_file);
+    if (!writable) return tl::unexpected(server::StartError{Kind::bad_option, writable.error()});
+  }
   auto devices = open_devices(options);
   if (!devices) return tl::unexpected(server::StartError{Kind::bad_option, devices.error()});
 
@@ -107,6 +111,9 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.session = random_number();
   wanted.random = random_number;
   wanted.record = options.record;
+  // Below the tick, which it must never hold up, and above all else.
+  if (options.loop.paced && options.loop.real_time)
+    wanted.send_priority = options.loop.priority - 1;
   wanted.log = log;
   if (!options.replay.empty()) {
     auto playback = server::Playback::open(options.replay);

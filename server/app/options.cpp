@@ -1,11 +1,10 @@
 #include "options.h"
 
-#include <arpa/inet.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <map>
 
+#include "os/socket_address.h"
 #include "server/exit_code.h"
 
 namespace app {
@@ -14,21 +13,16 @@ namespace {
 constexpr std::uint16_t kDefaultPort = 7531;
 constexpr double kMaxSeconds = 1e6;  // 11 days
 
-bool parse_ipv4(const std::string& text, in_addr& address) {
-  return ::inet_pton(AF_INET, text.c_str(), &address) == 1;
-}
-
 std::string check_address(const std::string& text) {
-  in_addr address{};
-  return parse_ipv4(text, address) ? "" : "\"" + text + "\" is no IPv4 address, such as 0.0.0.0";
+  return os::parse_ipv4(text, 0) ? "" : "\"" + text + "\" is no IPv4 address, such as 0.0.0.0";
 }
 
 std::optional<server::Endpoint> parse_group(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos) return std::nullopt;
   const std::string address = text.substr(0, colon), port = text.substr(colon + 1);
-  in_addr parsed{};
-  if (!parse_ipv4(address, parsed) || !IN_MULTICAST(ntohl(parsed.s_addr))) return std::nullopt;
+  const auto parsed = os::parse_ipv4(address, 0);
+  if (!parsed || !IN_MULTICAST(ntohl(parsed->sin_addr.s_addr))) return std::nullopt;
   const bool digits = !port.empty() && port.size() <= 5 &&
                       port.find_first_not_of("0123456789") == std::string::npos;
   const long number = digits ? std::stol(port) : 0;

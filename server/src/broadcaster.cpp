@@ -1,12 +1,23 @@
 #include "broadcaster.h"
 
+#include <sched.h>
+
 #include <algorithm>
+
+#include "os/clock.h"
 
 namespace server {
 
-Broadcaster::Broadcaster(int fd, std::size_t capacity) : fd_(fd), capacity_(capacity) {
+Broadcaster::Broadcaster(int fd, std::size_t capacity, int priority)
+    : fd_(fd), capacity_(capacity) {
   listeners_.reserve(capacity);
   messages_.reserve(capacity);
+  for (Parcel& parcel : parcels_) parcel.to.reserve(capacity);
+  thread_ = std::thread([this, priority] { run(priority); });
+}
+
+Broadcaster::~Broadcaster() {
+  close();
 }
 
 void Broadcaster::add(std::uint32_t client, const sockaddr_in& listener) {
@@ -17,13 +28,63 @@ void Broadcaster::remove(std::uint32_t client) {
   std::erase_if(listeners_, [client](const Listener& l) { return l.client == client; });
 }
 
-void Broadcaster::send(std::span<const std::byte> datagram) {
-  iovec part{const_cast<std::byte*>(datagram.data()), datagram.size()};  // only read by the kernel
+void Broadcaster::send(std::span<const std::byte> datagram, std::int64_t tick_ns) {
+  if (listeners_.empty()) return;
+  const std::uint32_t given = given_.load(std::memory_order_relaxed);
+  if (given - done_.load(std::memory_order_acquire) == kParcels) {
+    errors_.fetch_add(listeners_.size(), std::memory_order_relaxed);
+    return;
+  }
+  Parcel& parcel = parcels_[given % kParcels];
+  std::copy(datagram.begin(), datagram.end(), parcel.datagram.begin());
+  parcel.size = datagram.size();
+  parcel.tick_ns = tick_ns;
+  parcel.to.clear();
+  for (const Listener& listener : listeners_) parcel.to.push_back(listener.address);
+  given_.store(given + 1, std::memory_order_release);
+  work_.post();
+}
+
+void Broadcaster::wait_sent() {
+  const std::uint32_t given = given_.load(std::memory_order_relaxed);
+  for (std::uint32_t done; (done = done_.load(std::memory_order_acquire)) != given;) {
+    done_.wait(done, std::memory_order_acquire);
+  }
+}
+
+void Broadcaster::close() {
+  if (!thread_.joinable()) return;
+  closing_.store(true, std::memory_order_release);
+  work_.post();
+  thread_.join();
+}
+
+void Broadcaster::run(int priority) {
+  if (priority > 0) {
+    const sched_param wanted{.sched_priority = priority};
+    ::sched_setscheduler(0, SCHED_FIFO, &wanted);  // refused: the loop has said so of its own
+  }
+  std::uint32_t done = 0;
+  while (true) {
+    const bool closing = closing_.load(std::memory_order_acquire);
+    while (done != given_.load(std::memory_order_acquire)) {
+      deliver(parcels_[done % kParcels]);
+      done_.store(++done, std::memory_order_release);
+      done_.notify_all();
+    }
+    if (closing) return;
+    work_.wait();
+  }
+}
+
+void Broadcaster::deliver(Parcel& parcel) {
+  const std::int64_t begun = os::monotonic_ns();
+  iovec part{parcel.datagram.data(), parcel.size};
   messages_.clear();
-  for (Listener& listener : listeners_) {
+  for (sockaddr_in& address : parcel.to) {
     mmsghdr message{};
-    message.msg_hdr.msg_name = &listener.address;
-    message.msg_hdr.msg_namelen = sizeof listener.address;
+    message.msg_hdr.msg_name = &address;
+    message.msg_hdr.msg_namelen = sizeof address;
     message.msg_hdr.msg_iov = &part;
     message.msg_hdr.msg_iovlen = 1;
     messages_.push_back(message);
@@ -33,13 +94,16 @@ void Broadcaster::send(std::span<const std::byte> datagram) {
     const int sent = ::sendmmsg(fd_, messages_.data() + at, left, MSG_DONTWAIT);
     if (sent > 0) {
       at += static_cast<std::size_t>(sent);
-      sent_ += static_cast<std::uint64_t>(sent);
-      bytes_ += static_cast<std::uint64_t>(sent) * datagram.size();
+      sent_.fetch_add(static_cast<std::uint64_t>(sent), std::memory_order_relaxed);
+      bytes_.fetch_add(static_cast<std::uint64_t>(sent) * parcel.size, std::memory_order_relaxed);
     } else {  // the first of the rest could not be sent: the others may
-      ++errors_;
+      errors_.fetch_add(1, std::memory_order_relaxed);
       ++at;
     }
   }
+  const std::int64_t ended = os::monotonic_ns();
+  stats_.cost.record(ended - begun);
+  stats_.to_wire.record(ended - parcel.tick_ns);
 }
 
 }  // namespace server

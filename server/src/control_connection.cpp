@@ -32,7 +32,7 @@ void watch_for_silence(int fd) {
 
 }  // namespace
 
-ControlConnection::ControlConnection(FileDescriptor socket, const sockaddr_in& peer,
+ControlConnection::ControlConnection(os::FileDescriptor socket, const sockaddr_in& peer,
                                      std::int64_t hello_deadline_us)
     : deadline_us(hello_deadline_us), socket_(std::move(socket)), peer_(peer) {
   watch_for_silence(socket_.get());

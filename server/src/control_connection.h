@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "file_descriptor.h"
+#include "os/file_descriptor.h"
 #include "wire/control.h"
 
 namespace server {
@@ -22,7 +22,8 @@ class ControlConnection {
     dead,
   };
 
-  ControlConnection(FileDescriptor socket, const sockaddr_in& peer, std::int64_t hello_deadline_us);
+  ControlConnection(os::FileDescriptor socket, const sockaddr_in& peer,
+                    std::int64_t hello_deadline_us);
 
   // Reads what is there, at most a buffer full at a time, so that no client starves another.
   // False when the peer has gone.
@@ -51,7 +52,7 @@ class ControlConnection {
  private:
   void forget_sent();
 
-  FileDescriptor socket_;
+  os::FileDescriptor socket_;
   sockaddr_in peer_;
   wire::ControlReader reader_;
   std::vector<std::byte> out_;

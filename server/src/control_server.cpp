@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "clock.h"
-#include "socket.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
 #include "wire/snapshot.h"
 
 namespace server {
@@ -52,13 +52,14 @@ bool well_formed(const wire::Wish& wish) {
 // A player for the own team; whoever sits at this machine for all; a watcher elsewhere for nothing.
 bool may_wish(const ControlConnection& connection, const foosball::Command& wish) {
   using Kind = foosball::Command::Kind;
-  if (connection.team == wire::kWatchOnly) return is_loopback(connection.peer());
+  if (connection.team == wire::kWatchOnly) return os::is_loopback(connection.peer());
   return wish.kind == Kind::pause || wish.kind == Kind::restart || wish.team == connection.team;
 }
 
 }  // namespace
 
-ControlServer::ControlServer(ControlOptions options, FileDescriptor listener, FileDescriptor wake)
+ControlServer::ControlServer(ControlOptions options, os::FileDescriptor listener,
+                             os::FileDescriptor wake)
     : options_(std::move(options)),
       listener_(std::move(listener)),
       wake_(std::move(wake)),
@@ -117,7 +118,7 @@ void ControlServer::run() {
 }
 
 void ControlServer::wait() {
-  const std::int64_t now = monotonic_us();
+  const std::int64_t now = os::monotonic_us();
   const bool accepting = now >= accept_after_us_;
   std::int64_t until = accepting ? now + 60'000'000 : accept_after_us_;
   if (!leavers_.empty()) until = std::min(until, now + 10'000);
@@ -139,12 +140,12 @@ void ControlServer::accept_all() {
   while (true) {
     sockaddr_in peer{};
     socklen_t size = sizeof peer;
-    FileDescriptor socket(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
-                                    SOCK_NONBLOCK | SOCK_CLOEXEC));
+    os::FileDescriptor socket(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
+                                        SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket) {
       admit(std::move(socket), peer);
     } else if (errno != ECONNABORTED && errno != EINTR) {
-      if (errno != EAGAIN) accept_after_us_ = monotonic_us() + kAcceptPauseUs;
+      if (errno != EAGAIN) accept_after_us_ = os::monotonic_us() + kAcceptPauseUs;
       return;
     }
   }
@@ -156,14 +157,14 @@ int ControlServer::connections_from(const sockaddr_in& peer) const {
   }));
 }
 
-void ControlServer::admit(FileDescriptor socket, const sockaddr_in& peer) {
+void ControlServer::admit(os::FileDescriptor socket, const sockaddr_in& peer) {
   count(Count::accepted);
   const auto& limits = options_.limits;
-  const int share = is_loopback(peer) ? limits.per_local_address : limits.per_address;
+  const int share = os::is_loopback(peer) ? limits.per_local_address : limits.per_address;
   const bool full = static_cast<int>(connections_.size()) >= limits.connections;
   const bool greedy = connections_from(peer) >= share;
   auto connection = std::make_unique<ControlConnection>(std::move(socket), peer,
-                                                        monotonic_us() + limits.hello_us);
+                                                        os::monotonic_us() + limits.hello_us);
   if (full || greedy) {
     // Told once and forgotten at once: a crowd at the door takes no place inside.
     refuse(*connection, wire::Refusal::Code::full,
@@ -271,7 +272,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
   send(connection, welcome);
   for (const auto& [topic, notice] : notices_) send(connection, notice);
   count(Count::joined);
-  options_.log(LogLevel::info, connection.name + " at " + to_text(connection.peer()) +
+  options_.log(LogLevel::info, connection.name + " at " + os::to_text(connection.peer()) +
                                    (connection.team == wire::kWatchOnly
                                         ? " watches"
                                         : " plays team " + std::to_string(connection.team)));
@@ -308,12 +309,12 @@ void ControlServer::refuse(ControlConnection& connection, wire::Refusal::Code co
   if (++refusals_logged_ <= kMaxRefusalsLogged) {
     options_.log(
         LogLevel::warning,
-        "refused " + to_text(connection.peer()) + ": " + reason +
+        "refused " + os::to_text(connection.peer()) + ": " + reason +
             (refusals_logged_ == kMaxRefusalsLogged ? " (further refusals are only counted)" : ""));
   }
   send(connection, wire::Refusal{code, reason});
   if (connection.client != 0) release(connection);
-  connection.close_softly(monotonic_us() + kClosingUs);
+  connection.close_softly(os::monotonic_us() + kClosingUs);
 }
 
 void ControlServer::reject(ControlConnection& connection, const std::string& reason) {
@@ -321,8 +322,8 @@ void ControlServer::reject(ControlConnection& connection, const std::string& rea
 }
 
 void ControlServer::drop(ControlConnection& connection, const std::string& why) {
-  options_.log(LogLevel::warning,
-               connection.name + " at " + to_text(connection.peer()) + " is dropped: it " + why);
+  options_.log(LogLevel::warning, connection.name + " at " + os::to_text(connection.peer()) +
+                                      " is dropped: it " + why);
   release(connection);
 }
 
@@ -337,13 +338,13 @@ void ControlServer::release(ControlConnection& connection) {
   leavers_.push_back(event);
   tell_leavers();
   count(Count::left);
-  options_.log(LogLevel::info, connection.name + " at " + to_text(connection.peer()) + " left");
+  options_.log(LogLevel::info, connection.name + " at " + os::to_text(connection.peer()) + " left");
   connection.client = 0;
 }
 
 void ControlServer::expire(ControlConnection& connection) {
   const bool waits = connection.state == State::greeting || connection.state == State::closing;
-  if (!waits || monotonic_us() < connection.deadline_us) return;
+  if (!waits || os::monotonic_us() < connection.deadline_us) return;
   if (connection.state == State::greeting) count(Count::timed_out);
   release(connection);
 }
@@ -381,9 +382,10 @@ void ControlServer::say_goodbye() {
       connection->close_softly(0);
     }
   }
-  const std::int64_t until = monotonic_us() + kGoodbyeUs;
+  const std::int64_t until = os::monotonic_us() + kGoodbyeUs;
   const auto unsent = [](const auto& c) { return c->flush() && c->wants_to_send(); };
-  while (std::any_of(connections_.begin(), connections_.end(), unsent) && monotonic_us() < until) {
+  while (std::any_of(connections_.begin(), connections_.end(), unsent) &&
+         os::monotonic_us() < until) {
     ::poll(nullptr, 0, 1);
   }
 }

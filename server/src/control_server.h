@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "control_connection.h"
-#include "file_descriptor.h"
 #include "foosball/match.h"
+#include "os/file_descriptor.h"
 #include "server/counters.h"
 #include "server/log.h"
 #include "server/network.h"
@@ -54,7 +54,7 @@ struct ControlOptions {
 class ControlServer {
  public:
   // wake: a non-blocking eventfd.
-  ControlServer(ControlOptions options, FileDescriptor listener, FileDescriptor wake);
+  ControlServer(ControlOptions options, os::FileDescriptor listener, os::FileDescriptor wake);
   ~ControlServer();
 
   // Tick thread.
@@ -84,7 +84,7 @@ class ControlServer {
   void run();
   void wait();
   void accept_all();
-  void admit(FileDescriptor socket, const sockaddr_in& peer);
+  void admit(os::FileDescriptor socket, const sockaddr_in& peer);
   int connections_from(const sockaddr_in& peer) const;
   void serve(ControlConnection& connection);
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
@@ -106,7 +106,7 @@ class ControlServer {
   }
 
   ControlOptions options_;
-  FileDescriptor listener_, wake_;
+  os::FileDescriptor listener_, wake_;
   Connections connections_;
   std::array<std::uint32_t, foosball::kTeams> team_owner_{};  // client; 0 nobody
   std::map<std::uint32_t, wire::Notice> notices_;             // standing, by topic

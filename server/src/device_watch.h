@@ -1,9 +1,10 @@
-// Tells when a device goes away, comes back, or was never there.
+// Tells a person what is the matter with a device, what to do, and when it is well again.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,17 +17,22 @@ class DeviceWatch {
  public:
   using Tell = std::function<void(wire::Notice::Level, std::uint32_t device, const std::string&)>;
 
+  // At once when a device that was live no longer is, or is again; else what has lasted a while.
   void look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices, std::int64_t now_us,
             const Tell& tell);
 
  private:
-  // A device that takes longer than this to say its first word is told to be missing.
+  // To say its first word, and before one fault is told in place of another: a controller that was
+  // plugged in again is silent for as long as it starts.
   static constexpr std::int64_t kPatienceUs = 1'000'000;
-  enum class State : std::uint8_t { awaited, present, gone };
   struct Watched {
-    State state = State::awaited;
-    std::int64_t since_us = 0;
+    cabinet::DeviceState state;  // as last seen
+    std::int64_t since_us;       // in that state, or under watch
+    std::optional<cabinet::DeviceState> told;
+    bool ever_live = false;
   };
+  static bool due(const Watched& watched, std::int64_t now_us);
+
   std::vector<Watched> watched_;
 };
 

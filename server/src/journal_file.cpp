@@ -12,18 +12,19 @@ namespace server {
 
 tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
     const JournalFileOptions& options) {
-  FileDescriptor file(::open(options.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  os::FileDescriptor file(
+      ::open(options.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!file) {
     return tl::unexpected("cannot record to " + options.path + ": " + std::strerror(errno) +
                           "; choose a file in a folder that can be written");
   }
-  FileDescriptor wake(::eventfd(0, EFD_CLOEXEC));
+  os::FileDescriptor wake(::eventfd(0, EFD_CLOEXEC));
   if (!wake) return tl::unexpected("cannot record: " + std::string(std::strerror(errno)));
   return std::unique_ptr<JournalFile>(new JournalFile(options, std::move(file), std::move(wake)));
 }
 
-JournalFile::JournalFile(const JournalFileOptions& options, FileDescriptor file,
-                         FileDescriptor wake)
+JournalFile::JournalFile(const JournalFileOptions& options, os::FileDescriptor file,
+                         os::FileDescriptor wake)
     : path_(options.path),
       file_(std::move(file)),
       wake_(std::move(wake)),

@@ -14,7 +14,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "file_descriptor.h"
+#include "os/file_descriptor.h"
 #include "server/byte_ring.h"
 #include "wire/journal.h"
 
@@ -47,7 +47,7 @@ class JournalFile {
  private:
   enum class Failure : int { none, ring_full, write_failed };
 
-  JournalFile(const JournalFileOptions& options, FileDescriptor file, FileDescriptor wake);
+  JournalFile(const JournalFileOptions& options, os::FileDescriptor file, os::FileDescriptor wake);
   void push();
   void fail(Failure failure, int error_number);
   void write_loop();
@@ -56,7 +56,7 @@ class JournalFile {
   void signal();
 
   std::string path_;
-  FileDescriptor file_, wake_;
+  os::FileDescriptor file_, wake_;
   ByteRing ring_;
   wire::JournalEncoder encoder_;
   std::vector<std::byte> encoded_;

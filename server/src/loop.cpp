@@ -8,18 +8,17 @@
 #include <cstring>
 #include <string>
 
-#include "clock.h"
+#include "os/clock.h"
 
 namespace server {
 namespace {
 
-void sleep_until(std::int64_t deadline_ns) {
-  timespec until{};
-  until.tv_sec = static_cast<time_t>(deadline_ns / 1'000'000'000);
-  until.tv_nsec = static_cast<long>(deadline_ns % 1'000'000'000);
+class MonotonicClock final : public LoopClock {
+ public:
+  std::int64_t now_ns() override { return os::monotonic_ns(); }
   // A signal ends the sleep early; the tick then comes to see that it should stop.
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-}
+  void sleep_until(std::int64_t deadline_ns) override { os::sleep_until_ns(deadline_ns); }
+};
 
 std::string because() {
   return std::string(": ") + std::strerror(errno);
@@ -27,7 +26,13 @@ std::string because() {
 
 }  // namespace
 
-TickLoop::TickLoop(const LoopOptions& options, Log log) : options_(options), log_(std::move(log)) {}
+LoopClock& monotonic_clock() {
+  static MonotonicClock clock;
+  return clock;
+}
+
+TickLoop::TickLoop(const LoopOptions& options, Log log, LoopClock& clock)
+    : options_(options), log_(std::move(log)), clock_(clock) {}
 
 void TickLoop::ask_for_rights() {
   // Without real-time priority the kernel may round a sleep up by 50 us; ask it not to.
@@ -68,13 +73,13 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t now) {
 
 void TickLoop::run(const std::function<bool(std::int64_t, const LoopStats&)>& tick) {
   if (options_.paced) ask_for_rights();
-  const std::int64_t start = monotonic_ns();
+  const std::int64_t start = clock_.now_ns();
   std::int64_t deadline = start + kPeriodNs;
   for (bool go_on = true; go_on;) {
-    if (options_.paced) sleep_until(deadline);
-    const std::int64_t woken = monotonic_ns();
+    if (options_.paced) clock_.sleep_until(deadline);
+    const std::int64_t woken = clock_.now_ns();
     go_on = tick(woken / 1000, stats_);
-    const std::int64_t done = monotonic_ns();
+    const std::int64_t done = clock_.now_ns();
     if (options_.paced) stats_.lateness.record(woken - deadline);
     stats_.cost.record(done - woken);
     ++stats_.ticks;

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 namespace server {
@@ -27,8 +29,16 @@ double number(std::uint64_t count) {
   return static_cast<double>(count);
 }
 
+cabinet::SourceCounters all_devices(const Server& server) {
+  cabinet::SourceCounters sum;
+  for (const DeviceCounters& device : server.devices()) sum = sum + device.counters;
+  return sum;
+}
+
 std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
   const Counters c = server.counters();
+  const SendStats& sending = server.sending();
+  const cabinet::SourceCounters devices = all_devices(server);
   const auto& score = server.match().view().score;
   return {
       {"score0", static_cast<double>(score[0])},
@@ -50,7 +60,12 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"snapshots_per_second", per_second(c.snapshots_sent, loop)},
       {"snapshot_bytes", number(c.snapshot_bytes)},
       {"send_errors", number(c.send_errors)},
+      {"send_p50_us", us(sending.cost.quantile(0.5))},
+      {"send_p99_us", us(sending.cost.quantile(0.99))},
+      {"to_wire_p50_us", us(sending.to_wire.quantile(0.5))},
+      {"to_wire_p99_us", us(sending.to_wire.quantile(0.99))},
       {"events_dropped", number(c.events_dropped)},
+      {"match_events_dropped", number(c.match_events_dropped)},
       {"journal_bytes", number(c.journal_bytes)},
       {"journal_dropped", number(c.journal_dropped)},
       {"clients_joined", number(c.control.joined)},
@@ -65,6 +80,13 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"input_bad", number(c.input.bad)},
       {"input_foreign", number(c.input.foreign)},
       {"input_stale", number(c.input.stale)},
+      {"device_frames", number(devices.frames)},
+      {"device_bad", number(devices.bad)},
+      {"device_lost", number(devices.lost)},
+      {"device_stale", number(devices.stale)},
+      {"device_reopened", number(devices.reopened)},
+      {"device_overflows", number(devices.overflows)},
+      {"device_line_errors", number(devices.line_errors)},
   };
 }
 
@@ -73,8 +95,23 @@ std::string quantiles(const Histogram& h) {
                      us(h.quantile(0.99)), us(h.quantile(0.999)), us(h.max()));
 }
 
+std::string line(const DeviceCounters& device) {
+  const cabinet::SourceCounters& c = device.counters;
+  return fmt::format(
+      "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, "
+      "{} errors on the sensors' lines",
+      device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.line_errors);
+}
+
 bool ends_with_csv(const std::string& path) {
   return path.size() >= 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
+}
+
+constexpr const char* kPart = ".part";
+
+std::string cannot_write(const std::string& path, int error) {
+  return "cannot write " + path + ": " + std::strerror(error) +
+         "; choose a file in a folder that can be written";
 }
 
 }  // namespace
@@ -89,7 +126,17 @@ std::string summary(const Server& server, const LoopStats& loop) {
                  loop.seconds, per_second(c.ticks, loop), loop.missed, 100.0 * loop.missed_share());
   if (loop.lateness.count() > 0) fmt::format_to(out, "lateness   {}\n", quantiles(loop.lateness));
   fmt::format_to(out, "tick cost  {}\n", quantiles(loop.cost));
+  if (c.snapshots_sent > 0) {
+    fmt::format_to(out, "sending    {}, beside the tick\n", quantiles(server.sending().cost));
+  }
   fmt::format_to(out, "snapshots  {} sent, {} errors\n", c.snapshots_sent, c.send_errors);
+  if (c.events_dropped > 0 || c.match_events_dropped > 0) {
+    fmt::format_to(out, "events     {} dropped from snapshots, {} in the match\n", c.events_dropped,
+                   c.match_events_dropped);
+  }
+  for (const DeviceCounters& device : server.devices()) {
+    fmt::format_to(out, "{}\n", line(device));
+  }
   fmt::format_to(out, "input      {} taken, {} bad, {} foreign, {} stale\n", c.input.accepted,
                  c.input.bad, c.input.foreign, c.input.stale);
   fmt::format_to(out,
@@ -120,16 +167,30 @@ tl::expected<void, std::string> write_stats(const Server& server, const LoopStat
   return write_whole(path, text);
 }
 
+tl::expected<void, std::string> can_write_whole(const std::string& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  if (kind != std::filesystem::file_type::not_found &&
+      kind != std::filesystem::file_type::regular) {
+    return tl::unexpected("cannot write " + path + ": it is no ordinary file; choose another one");
+  }
+  const std::string part = path + kPart;
+  std::FILE* file = std::fopen(part.c_str(), "wb");
+  if (file == nullptr) return tl::unexpected(cannot_write(path, errno));
+  std::fclose(file);
+  std::remove(part.c_str());
+  return {};
+}
+
 tl::expected<void, std::string> write_whole(const std::string& path, const std::string& text) {
-  const std::string part = path + ".part";
+  const std::string part = path + kPart;
   std::FILE* file = std::fopen(part.c_str(), "wb");
   bool ok = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
   if (file != nullptr) ok = std::fclose(file) == 0 && ok;
   if (ok && std::rename(part.c_str(), path.c_str()) == 0) return {};
   const int error = errno;
   std::remove(part.c_str());
-  return tl::unexpected("cannot write " + path + ": " + std::strerror(error) +
-                        "; choose a file in a folder that can be written");
+  return tl::unexpected(cannot_write(path, error));
 }
 
 }  // namespace server

@@ -12,6 +12,8 @@
 #include "event_repeater.h"
 #include "input_port.h"
 #include "match_record.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
 #include "recorder.h"
 #include "rod_desk.h"
 #include "snapshot_builder.h"
@@ -35,7 +37,7 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
 }  // namespace
 
 struct Server::Impl {
-  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, FileDescriptor&& wake,
+  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, os::FileDescriptor&& wake,
        std::unique_ptr<Recorder>&& journal);
 
   void take_control_events();
@@ -44,7 +46,7 @@ struct Server::Impl {
   void add_wish(const foosball::Command& wish);
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
-  void broadcast(std::int64_t now_us);
+  void broadcast(std::int64_t now_us, std::int64_t tick_ns);
   void put_drivers(wire::Snapshot& out) const;
   void watch_journal();
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
@@ -58,7 +60,7 @@ struct Server::Impl {
   ServerOptions options;
   foosball::Match match;
   std::uint16_t port;
-  FileDescriptor udp;
+  os::FileDescriptor udp;
   InputPort input;
   Broadcaster broadcaster;
   RodDesk desk;
@@ -77,13 +79,14 @@ struct Server::Impl {
 };
 
 Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
-                   FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
+                   os::FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
     : options(std::move(given)),
       match(std::move(made)),
       port(opened.port),
       udp(std::move(opened.udp)),
       input(udp.get(), options.session, static_cast<std::size_t>(options.limits.connections)),
-      broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1),
+      broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1,
+                  options.send_priority),
       desk(options.match, options.computer, match.view()),
       recorder(std::move(journal)),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
@@ -93,7 +96,7 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
   snapshot.events.reserve(wire::kMaxEvents);
   if (options.network.multicast) {
     const auto& group = *options.network.multicast;
-    broadcaster.add(0, *parse_address(group.address, group.port));
+    broadcaster.add(0, *os::parse_ipv4(group.address, group.port));
   }
 }
 
@@ -191,14 +194,14 @@ void Server::Impl::put_drivers(wire::Snapshot& out) const {
   }
 }
 
-void Server::Impl::broadcast(std::int64_t now_us) {
+void Server::Impl::broadcast(std::int64_t now_us, std::int64_t tick_ns) {
   ++snapshot.sequence;
   snapshot.send_time_us = now_us;
   build_snapshot(match.view(), snapshot);
   put_drivers(snapshot);
   events.fill(snapshot.events);
   const std::size_t size = wire::encode_snapshot(snapshot, datagram);
-  broadcaster.send(std::span(datagram).first(size));
+  broadcaster.send(std::span(datagram).first(size), tick_ns);
 }
 
 void Server::Impl::watch_journal() {
@@ -223,13 +226,13 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
   auto match = foosball::Match::create(options.match);
   if (!match) return tl::unexpected(StartError{Kind::failed, match.error().message});
   const auto& group = options.network.multicast;
-  if (group && !parse_address(group->address, group->port)) {
+  if (group && !os::parse_ipv4(group->address, group->port)) {
     return tl::unexpected(
         StartError{Kind::bad_option, "\"" + group->address + "\" is no IPv4 address"});
   }
   auto ports = open_ports(options.network);
   if (!ports) return tl::unexpected(port_error(options.network, ports.error()));
-  FileDescriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  os::FileDescriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!wake) {
     return tl::unexpected(StartError{
         Kind::failed, "cannot start the control port: " + std::string(std::strerror(errno)) +
@@ -259,17 +262,22 @@ void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
 
 void Server::tick(std::int64_t now_us) {
   Impl& s = *impl_;
+  const std::int64_t began_ns = os::monotonic_ns();  // measures, decides nothing
   s.take_control_events();
   if (s.gather(now_us)) {
     step_recorded(s.match, s.next);
     ++s.ticks;
     s.events.add(s.match.events());
-    s.broadcast(now_us);  // first of all: a hand waits for it
+    s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
     if (s.recorder) s.recorder->add(s.next, s.match);
   } else {
-    s.broadcast(now_us);
+    s.broadcast(now_us, began_ns);
   }
   s.watch_journal();
+}
+
+void Server::wait_sent() {
+  impl_->broadcaster.wait_sent();
 }
 
 void Server::warn(Topic topic, const std::string& text) {
@@ -283,6 +291,7 @@ void Server::clear(Topic topic, const std::string& text) {
 void Server::finish(const std::string& reason) {
   if (impl_->finished) return;
   impl_->finished = true;
+  impl_->broadcaster.close();  // the last snapshot before the Bye
   impl_->control.stop(reason);
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
 }
@@ -318,6 +327,7 @@ Counters Server::counters() const {
   out.snapshot_bytes = s.broadcaster.bytes();
   out.send_errors = s.broadcaster.errors();
   out.events_dropped = s.events.dropped();
+  out.match_events_dropped = s.match.view().events_dropped;
   if (s.recorder) {
     out.journal_bytes = s.recorder->file().bytes_written();
     out.journal_dropped = s.recorder->file().entries_dropped();
@@ -325,6 +335,18 @@ Counters Server::counters() const {
   out.input = s.input.counters();
   out.control = s.control.counters();
   return out;
+}
+
+std::vector<DeviceCounters> Server::devices() const {
+  std::vector<DeviceCounters> out;
+  for (const auto& device : impl_->desk.devices()) {
+    out.push_back({device->name(), device->counters()});
+  }
+  return out;
+}
+
+const SendStats& Server::sending() const {
+  return impl_->broadcaster.stats();
 }
 
 }  // namespace server

@@ -1,10 +1,11 @@
 #include "socket.h"
 
-#include <arpa/inet.h>
 #include <sys/socket.h>
 
 #include <cerrno>
 #include <cstring>
+
+#include "os/socket_address.h"
 
 namespace server {
 namespace {
@@ -18,25 +19,18 @@ bool set_option(int fd, int level, int name, const T& value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
 }
 
-tl::expected<FileDescriptor, SocketError> bound_socket(int type, const sockaddr_in& address) {
-  FileDescriptor fd(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+tl::expected<os::FileDescriptor, SocketError> bound_socket(int type, const sockaddr_in& address) {
+  os::FileDescriptor fd(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd) return tl::unexpected(last_error());
   // TCP: a restart does not wait for the last run's closed connections. On UDP it would let two
   // servers share a port.
   if (type == SOCK_STREAM && !set_option(fd.get(), SOL_SOCKET, SO_REUSEADDR, 1)) {
     return tl::unexpected(last_error());
   }
-  if (::bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (::bind(fd.get(), os::generic(address), sizeof address) != 0) {
     return tl::unexpected(last_error());
   }
   return fd;
-}
-
-std::uint16_t port_of(int fd) {
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
-  return ntohs(address.sin_port);
 }
 
 bool prepare_udp(int fd, const NetworkOptions& options, const sockaddr_in& address) {
@@ -55,7 +49,7 @@ tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options, soc
   auto tcp = bound_socket(SOCK_STREAM, address);
   if (!tcp) return tl::unexpected(tcp.error());
   if (::listen(tcp->get(), 16) != 0) return tl::unexpected(last_error());
-  const std::uint16_t port = port_of(tcp->get());
+  const std::uint16_t port = os::port_of(os::local_address(tcp->get()));
   address.sin_port = htons(port);
   auto udp = bound_socket(SOCK_DGRAM, address);
   if (!udp) return tl::unexpected(udp.error());
@@ -65,26 +59,8 @@ tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options, soc
 
 }  // namespace
 
-std::optional<sockaddr_in> parse_address(const std::string& address, std::uint16_t port) {
-  sockaddr_in parsed{};
-  parsed.sin_family = AF_INET;
-  parsed.sin_port = htons(port);
-  if (::inet_pton(AF_INET, address.c_str(), &parsed.sin_addr) != 1) return std::nullopt;
-  return parsed;
-}
-
-std::string to_text(const sockaddr_in& address) {
-  char text[INET_ADDRSTRLEN] = {};
-  ::inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-  return std::string(text) + ":" + std::to_string(ntohs(address.sin_port));
-}
-
-bool is_loopback(const sockaddr_in& address) {
-  return (ntohl(address.sin_addr.s_addr) >> 24) == IN_LOOPBACKNET;
-}
-
 tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
-  const auto address = parse_address(options.listen, options.port);
+  const auto address = os::parse_ipv4(options.listen, options.port);
   if (!address) {
     return tl::unexpected(SocketError{false, "\"" + options.listen + "\" is no IPv4 address"});
   }

@@ -1,6 +1,5 @@
 #include "probe_client.h"
 
-#include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,21 +8,10 @@
 #include <chrono>
 #include <utility>
 
+#include "os/socket_address.h"
+
 namespace server {
 namespace {
-
-sockaddr_in loopback(const std::string& address, std::uint16_t port) {
-  sockaddr_in out{};
-  out.sin_family = AF_INET;
-  out.sin_port = htons(port);
-  ::inet_pton(AF_INET, address.c_str(), &out.sin_addr);
-  return out;
-}
-
-template <class Call>
-bool with(const sockaddr_in& address, Call call) {
-  return call(reinterpret_cast<const sockaddr*>(&address), socklen_t{sizeof address}) == 0;
-}
 
 class Deadline {
  public:
@@ -55,13 +43,13 @@ ProbeClient::ProbeClient(std::uint16_t port, const std::string& from) : server_p
   udp_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const int buffer = 4 << 20;  // a stalled test machine loses nothing
   ::setsockopt(udp_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
-  with(loopback(from, 0), [&](auto* a, auto size) { return ::bind(udp_, a, size); });
+  const sockaddr_in mine = os::parse_ipv4(from, 0).value_or(os::loopback(0));
+  ::bind(udp_, os::generic(mine), sizeof mine);
 
   tcp_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  with(loopback(from, 0), [&](auto* a, auto size) { return ::bind(tcp_, a, size); });
-  const bool reached = with(loopback("127.0.0.1", port),
-                            [&](auto* a, auto size) { return ::connect(tcp_, a, size); });
-  if (!reached) leave();
+  ::bind(tcp_, os::generic(mine), sizeof mine);
+  const sockaddr_in server = os::loopback(port);
+  if (::connect(tcp_, os::generic(server), sizeof server) != 0) leave();
 }
 
 ProbeClient::~ProbeClient() {
@@ -81,10 +69,7 @@ void ProbeClient::leave() {
 }
 
 std::uint16_t ProbeClient::udp_port() const {
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  ::getsockname(udp_, reinterpret_cast<sockaddr*>(&address), &size);
-  return ntohs(address.sin_port);
+  return os::port_of(os::local_address(udp_));
 }
 
 wire::Hello ProbeClient::hello(std::uint8_t team) const {
@@ -149,9 +134,9 @@ bool ProbeClient::send_input(const wire::InputDatagram& input) {
 }
 
 bool ProbeClient::send_datagram(std::span<const std::byte> bytes) {
-  const auto to = loopback("127.0.0.1", server_port_);
-  return ::sendto(udp_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-                  sizeof to) == static_cast<ssize_t>(bytes.size());
+  const sockaddr_in to = os::loopback(server_port_);
+  return ::sendto(udp_, bytes.data(), bytes.size(), 0, os::generic(to), sizeof to) ==
+         static_cast<ssize_t>(bytes.size());
 }
 
 std::optional<wire::Snapshot> ProbeClient::snapshot(int patience_ms) {

@@ -19,8 +19,8 @@ class ControlConnectionTest : public testing::Test {
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
     const int small = 4096;  // so that the peer is behind at once
     ::setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
-    connection.emplace(FileDescriptor(ends[0]), sockaddr_in{}, 0);
-    peer = FileDescriptor(ends[1]);
+    connection.emplace(os::FileDescriptor(ends[0]), sockaddr_in{}, 0);
+    peer = os::FileDescriptor(ends[1]);
   }
   // Up to so many bytes of what has been sent.
   void read(std::size_t most) {
@@ -34,7 +34,7 @@ class ControlConnectionTest : public testing::Test {
     }
   }
   std::optional<ControlConnection> connection;
-  FileDescriptor peer;
+  os::FileDescriptor peer;
   wire::ControlReader received;
   std::uint64_t heard = 0;
 };

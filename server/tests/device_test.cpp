@@ -3,6 +3,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <fstream>
+#include <span>
+
 #include "lockstep.h"
 #include "wire/device_frame.h"
 
@@ -27,6 +31,10 @@ class Controller {
     if (pc_end_ >= 0) ::close(pc_end_);
     own_end_ = pc_end_ = -1;
   }
+  void send(std::span<const std::uint8_t> bytes) {
+    ASSERT_EQ(::send(own_end_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT),
+              static_cast<ssize_t>(bytes.size()));
+  }
   // One report; rod 2 has moved on by so many counts.
   void report(int slide_counts) {
     frame_.present = 0xFF;
@@ -35,7 +43,7 @@ class Controller {
     frame_.slide[2] = static_cast<std::uint16_t>(frame_.slide[2] + slide_counts);
     std::array<std::uint8_t, wire::kDeviceReportBytes> bytes{};
     wire::encode_device_frame(frame_, bytes.data());
-    ASSERT_EQ(::send(own_end_, bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t{64});
+    send(bytes);
   }
 
  private:
@@ -64,6 +72,10 @@ class DeviceTest : public testing::Test {
     while (wait_readable(watcher.udp(), 0)) watcher.snapshot(0);
     table.tick();
     return watcher.snapshot().value_or(wire::Snapshot{});
+  }
+  std::string notice_text() {
+    const auto notice = watcher.hear_a<wire::Notice>();
+    return notice ? notice->text : std::string();
   }
   Controller controller;  // outlives the server
   Lockstep table;
@@ -101,7 +113,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   EXPECT_LE(table.now_us() - from, 100'000);
   const auto notice = watcher.hear_a<wire::Notice>();
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, "cabinet test unplugged: its rods hold");
+  EXPECT_EQ(notice->text, "cabinet test unplugged: its rods hold; plug it in again");
   table.tick(300);
   EXPECT_NEAR(table->match().view().rods[2].slide, where, 0.0005);
 
@@ -119,17 +131,80 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   EXPECT_LT(farthest, 0.0005);  // no jump
 }
 
-TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
+// What a person is told, each with what to do about it.
+TEST_F(DeviceTest, ADeviceThatNeverSaysAWordIsToldToBeSilent) {
+  table.tick(900);
+  EXPECT_FALSE(watcher.hear(0));  // it has a second to start
+  table.tick(200);
+  EXPECT_EQ(notice_text(),
+            "cabinet test is there but sends nothing: plug it in anew, and check its "
+            "firmware");
+}
+
+TEST_F(DeviceTest, ADeviceThatSendsNoFrameIsToldToBeTheWrongOne) {
+  const std::array<std::uint8_t, 64> noise{0x55, 0xAA};
+  for (int i = 0; i < 1100; ++i) {
+    controller.send(noise);
+    table.tick();
+  }
+  EXPECT_EQ(notice_text(),
+            "cabinet test sends what is no frame: is it the right device, with our firmware?");
+  EXPECT_EQ(table->devices().at(0).name, "cabinet test");
+  EXPECT_EQ(table->devices().at(0).counters.bad, 1100u);
+  EXPECT_EQ(table->devices().at(0).counters.frames, 0u);
+  run(1);  // its first true frame
+  EXPECT_EQ(notice_text(), "cabinet test is back");
+}
+
+// One notice each, in whatever order the faults follow each other: none while a new one has not
+// lasted a second.
+TEST_F(DeviceTest, FromOneFaultToTheNextAPersonIsToldOnce) {
+  run(20);
+  table.tick(60);
+  EXPECT_EQ(notice_text().substr(0, 35), "cabinet test is there but sends not");
+  const std::array<std::uint8_t, 64> noise{1, 2, 3};
+  for (int i = 0; i < 1100; ++i) {
+    controller.send(noise);
+    table.tick();
+  }
+  EXPECT_EQ(notice_text().substr(0, 29), "cabinet test sends what is no");
+  controller.unplug();
+  table.tick(1100);
+  EXPECT_EQ(notice_text(), "cabinet test unplugged: its rods hold; plug it in again");
+  controller.plug_in();
+  table.tick(400);  // opened, and still silent
+  run(2);
+  EXPECT_EQ(notice_text(), "cabinet test is back");
+  EXPECT_FALSE(watcher.hear(0));
+}
+
+std::optional<wire::Notice> notice_of(std::unique_ptr<cabinet::DeviceSource> device, int ticks) {
   Lockstep table;
+  table->add_device(std::move(device));
+  ProbeClient watcher(table.port());
+  EXPECT_TRUE(watcher.join());
+  table.tick(ticks);
+  return watcher.hear_a<wire::Notice>();
+}
+
+TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
   cabinet::DeviceOptions options;
   options.name = "cabinet nowhere";
-  table->add_device(std::make_unique<cabinet::DeviceSource>(options, [] { return -1; }));
-  ProbeClient watcher(table.port());
-  ASSERT_TRUE(watcher.join());
-  table.tick(1100);
-  const auto notice = watcher.hear_a<wire::Notice>();
+  const auto notice =
+      notice_of(std::make_unique<cabinet::DeviceSource>(options, [] { return -1; }), 1100);
   ASSERT_TRUE(notice);
-  EXPECT_NE(notice->text.find("cabinet nowhere is not there"), std::string::npos);
+  EXPECT_EQ(notice->text, "cabinet nowhere is not there: plug it in, or give its right address");
+}
+
+TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
+  const std::string path = temp_path("noise.bin");
+  std::ofstream(path, std::ios::binary) << std::string(5'000, 'x');
+  auto device = cabinet::open_device("file:" + path, cabinet::nominal_calibration());
+  std::remove(path.c_str());
+  ASSERT_TRUE(device);
+  const auto notice = notice_of(std::move(*device), 10);
+  ASSERT_TRUE(notice);
+  EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
 }
 
 }  // namespace

@@ -47,7 +47,10 @@ class Lockstep {
   std::int64_t now_us() const { return now_us_; }
 
   void tick(int count = 1) {
-    for (int i = 0; i < count; ++i) server_->tick(now_us_ += 1000);
+    for (int i = 0; i < count; ++i) {
+      server_->tick(now_us_ += 1000);
+      server_->wait_sent();
+    }
   }
   // Ticks until the condition holds: for what another thread has to hand on first.
   bool tick_until(const std::function<bool()>& condition, int max_ms = 5000) {

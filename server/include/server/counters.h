@@ -2,6 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+
+#include "cabinet/rod_input.h"
+#include "server/histogram.h"
 
 namespace server {
 
@@ -31,11 +35,23 @@ struct Counters {
   std::uint64_t snapshots_sent = 0;  // datagrams, over all listeners
   std::uint64_t snapshot_bytes = 0;
   std::uint64_t send_errors = 0;
-  std::uint64_t events_dropped = 0;
+  std::uint64_t events_dropped = 0;        // found no place in the snapshots
+  std::uint64_t match_events_dropped = 0;  // found none in their tick
   std::uint64_t journal_bytes = 0;
   std::uint64_t journal_dropped = 0;  // entries that the journal lacks, at least
   InputCounters input;
   ControlCounters control;
+};
+
+struct DeviceCounters {
+  std::string name;
+  cabinet::SourceCounters counters;
+};
+
+// Of the thread that sends, one value a tick that had listeners [ns].
+struct SendStats {
+  Histogram cost;     // of handing a snapshot to the kernel for every listener
+  Histogram to_wire;  // from the tick's beginning until that is done
 };
 
 }  // namespace server

@@ -22,9 +22,18 @@ struct LoopOptions {
   int cpu = -1;  // pin to this core; -1: any
 };
 
+// What the loop asks the time of and sleeps by. A test hands in one of its own.
+class LoopClock {
+ public:
+  virtual ~LoopClock() = default;
+  virtual std::int64_t now_ns() = 0;                       // does not fall
+  virtual void sleep_until(std::int64_t deadline_ns) = 0;  // may return early, for a signal
+};
+LoopClock& monotonic_clock();
+
 struct LoopStats {
   Histogram lateness;  // of the wake-up behind its deadline [ns]
-  Histogram cost;      // of one tick [ns]
+  Histogram cost;      // of one tick, from the wake-up to all but the next sleep [ns]
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   double seconds = 0.0;  // from the first to the last tick
@@ -39,7 +48,7 @@ class TickLoop {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
 
-  TickLoop(const LoopOptions& options, Log log);
+  TickLoop(const LoopOptions& options, Log log, LoopClock& clock = monotonic_clock());
 
   // Calls tick(now_us, stats so far) once a period until it returns false. The calling thread gets
   // the rights; each that is refused is said in the log, and the loop runs all the same.
@@ -53,6 +62,7 @@ class TickLoop {
 
   LoopOptions options_;
   Log log_;
+  LoopClock& clock_;
   LoopStats stats_;
 };
 

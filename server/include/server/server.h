@@ -2,8 +2,9 @@
 // snapshots out. tick() is called by the loop (server/loop.h) 1000 times a second, or by a test in
 // lockstep: the number of ticks never depends on a clock.
 //
-// Threads: all is called on one thread, the tick's. The control port and the journal have threads
-// of their own inside; tick() never waits for them, for a socket or for the disk.
+// Threads: all is called on one thread, the tick's. The control port, the sending of snapshots and
+// the journal have threads of their own inside; tick() never waits for them, for a socket or for
+// the disk.
 #pragma once
 
 #include <array>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "cabinet/device_source.h"
 #include "foosball/match.h"
@@ -30,7 +32,8 @@ struct ServerOptions {
   std::uint64_t session = 0;              // random, other at every start
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
-  std::unique_ptr<Playback> replay;       // plays this instead of what sources and clients say
+  int send_priority = 0;  // real-time, of the thread that sends snapshots; 0: an ordinary one
+  std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say
   Log log = [](LogLevel, const std::string&) {};
 };
 
@@ -51,6 +54,9 @@ class Server {
   // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
   void tick(std::int64_t now_us);
 
+  // Until the kernel has every snapshot of the ticks so far. Not for the loop: for tests.
+  void wait_sent();
+
   // Something all clients should read; replaces the notice of the same topic.
   enum class Topic : std::uint32_t { overload = 1, journal = 2, replay = 3, devices = 100 };
   void warn(Topic topic, const std::string& text);
@@ -68,6 +74,8 @@ class Server {
   std::uint64_t clients_ever() const;   // joined so far
   std::string journal_problem() const;  // empty: none
   Counters counters() const;
+  std::vector<DeviceCounters> devices() const;
+  const SendStats& sending() const;  // precondition: finish() was called
 
  private:
   struct Impl;
