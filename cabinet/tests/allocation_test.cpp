@@ -1,32 +1,13 @@
 // Once warm, a poll takes no memory: the server's loop calls it 1000 times a second.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <memory>
-#include <new>
 
 #include "cabinet/device_source.h"
 #include "cabinet/hand.h"
 #include "cabinet/source_mux.h"
+#include "counting_new.h"
 #include "simulated_device.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Not inlined: g++ 12 would otherwise take the pair of malloc and free for a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 using namespace cabinet;
 using namespace cabinet_test;
@@ -56,17 +37,17 @@ TEST(Allocation, PollingThroughFramesNoiseUnplugAndReplugTakesNoMemory) {
       if (i % 7 == 0) bytes[9] = 0;  // and now and then a broken one
       line.master.send(bytes);
     }
-    const long before = allocations;
+    const long before = os::testing::allocations();
     mux.poll(now_us += 1'000);
-    taken += allocations - before;
+    taken += os::testing::allocations() - before;
   }
   EXPECT_EQ(taken, 0);
   EXPECT_EQ(device.counters().reopened, 1u);
   EXPECT_GT(device.counters().bad, 200u);
   EXPECT_GT(device.counters().frames, 1'300u);
-  const long before = allocations;
+  const long before = os::testing::allocations();
   const auto held = std::make_unique<Bytes>(100);
-  EXPECT_GT(allocations, before);  // the counter counts
+  EXPECT_GT(os::testing::allocations(), before);  // the counter counts
 }
 
 }  // namespace

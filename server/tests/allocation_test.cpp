@@ -1,28 +1,8 @@
 // Once warm, a tick takes no memory: an allocation may wait for a lock or for the kernel.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "counting_new.h"
 #include "lockstep.h"
-
-namespace {
-// The control and the journal's threads may allocate: only this thread's own are counted.
-thread_local long allocations = 0;
-}  // namespace
-
-// Not inlined: g++ 12 would otherwise take the pair of malloc and free for a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace server {
 namespace {
@@ -33,9 +13,9 @@ class WarmTick : public testing::Test {
 
   // What so many ticks take from the heap.
   long taken(int ticks) {
-    const long before = allocations;
+    const long before = os::testing::allocations();
     table.tick(ticks);
-    return allocations - before;
+    return os::testing::allocations() - before;
   }
   std::string path = temp_path("journal");
   Lockstep table{[this](ServerOptions& o) {
@@ -67,7 +47,7 @@ TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
   EXPECT_TRUE(table.tick_until([&] { return table->counters().journal_bytes > written; }));
   EXPECT_EQ(table->journal_problem(), "");
   EXPECT_NE(table->match().view().screen, foosball::Screen::logo);
-  EXPECT_GT(allocations, 0);  // the counter counts
+  EXPECT_GT(os::testing::allocations(), 0);  // the counter counts
 }
 
 TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {

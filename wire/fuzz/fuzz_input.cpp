@@ -2,7 +2,7 @@
 // back to the bit.
 #include <cstdlib>
 
-#include "samples.h"
+#include "datagram.h"
 
 namespace {
 
@@ -17,10 +17,5 @@ void read(const wire::samples::Bytes& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto in = std::as_bytes(std::span(data, size));
-  wire::samples::Bytes bytes(in.begin(), in.end());
-  read(bytes);
-  wire::samples::reseal(bytes);
-  read(bytes);
-  return 0;
+  return read_as_is_and_sealed(data, size, read);
 }

@@ -2,6 +2,7 @@
 // wrong, writes are dropped and reads give 0.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,16 +16,24 @@ class BitWriter {
 
   // bits <= 64; value < 2^bits.
   void put(std::uint64_t value, int bits) {
-    if (bits > 32) {
-      put32(value & 0xFFFFFFFFU, 32);
-      value >>= 32;
-      bits -= 32;
-    }
-    put32(value, bits);
+    window_ |= value << held_;
+    held_ += bits;
+    if (held_ < 64) return;
+    put_word();
+    held_ -= 64;
+    // What the window had no room for; a shift by 64 would not give 0.
+    window_ = held_ > 0 ? value >> (bits - held_) : 0;
   }
 
   void align() {
-    while (held_ > 0) spill();
+    for (; held_ > 0; held_ -= 8) {
+      if (at_ == out_.size()) {
+        failed_ = true;
+      } else {
+        out_[at_++] = static_cast<std::byte>(window_ & 0xFF);
+      }
+      window_ >>= 8;
+    }
     held_ = 0;
   }
 
@@ -39,31 +48,27 @@ class BitWriter {
   }
 
   bool ok() const { return !failed_; }
-  // Whole bytes written; all of them after align().
+  // Precondition: aligned.
   std::size_t size() const { return at_; }
   std::span<const std::byte> written() const { return out_.first(at_); }
 
  private:
-  void put32(std::uint64_t value, int bits) {
-    window_ |= value << held_;
-    held_ += bits;
-    while (held_ >= 8) spill();
-  }
-
-  void spill() {
-    if (at_ == out_.size()) {
+  // The whole window, lowest byte first.
+  void put_word() {
+    if (out_.size() - at_ < 8) {
       failed_ = true;
-    } else {
-      out_[at_++] = static_cast<std::byte>(window_ & 0xFF);
+      return;
     }
-    window_ >>= 8;
-    held_ -= 8;
+    std::array<std::byte, 8> bytes;  // one store, wherever the lowest byte comes first
+    for (int i = 0; i < 8; ++i) bytes[i] = static_cast<std::byte>(window_ >> 8 * i & 0xFF);
+    std::memcpy(out_.data() + at_, bytes.data(), 8);
+    at_ += 8;
   }
 
   std::span<std::byte> out_;
   std::size_t at_ = 0;
   std::uint64_t window_ = 0;  // the held_ lowest bits wait to be written; the others are 0
-  int held_ = 0;              // < 8 between calls
+  int held_ = 0;              // < 64 between calls
   bool failed_ = false;
 };
 

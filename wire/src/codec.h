@@ -16,9 +16,26 @@
 
 namespace wire {
 
+// What only orders the fields, and takes no bits itself: the same for both.
+class Structure {
+ public:
+  template <class Body>
+  void group(const Group&, Body body) {
+    body();
+  }
+  template <class Body>
+  void when(const Group&, bool present, Body body) {
+    if (present) body();
+  }
+  template <class Elements, class Body>
+  void array(const Group&, Elements& elements, Body body) {
+    for (auto& element : elements) body(element);
+  }
+};
+
 // Writes a message. Whatever the values, what is written is valid: they are clamped to their
 // ranges.
-class Encoder {
+class Encoder : public Structure {
  public:
   Encoder(std::span<std::byte> out, std::uint32_t layout) : bits_(out), layout_(layout) {}
 
@@ -57,18 +74,6 @@ class Encoder {
     put_varint(static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63));
   }
 
-  template <class Body>
-  void group(const Group&, Body body) {
-    body();
-  }
-  template <class Body>
-  void when(const Group&, bool present, Body body) {
-    if (present) body();
-  }
-  template <class T, std::size_t n, class Body>
-  void array(const Group&, const std::array<T, n>& elements, Body body) {
-    for (const T& element : elements) body(element);
-  }
   template <class T, class Body>
   void list(const List& f, const std::vector<T>& elements, Body body) {
     const std::size_t count = std::min<std::size_t>(elements.size(), f.max);
@@ -107,7 +112,7 @@ class Encoder {
 
 // Reads a message. The first thing wrong is remembered and all that follows reads as 0; ask ok()
 // once, at the end.
-class Decoder {
+class Decoder : public Structure {
  public:
   Decoder(std::span<const std::byte> in, std::uint32_t layout)
       : in_(in), bits_(in), layout_(layout) {}
@@ -166,18 +171,6 @@ class Decoder {
     if (!ok()) value = 0;
   }
 
-  template <class Body>
-  void group(const Group&, Body body) {
-    body();
-  }
-  template <class Body>
-  void when(const Group&, bool present, Body body) {
-    if (present) body();
-  }
-  template <class T, std::size_t n, class Body>
-  void array(const Group&, std::array<T, n>& elements, Body body) {
-    for (T& element : elements) body(element);
-  }
   template <class T, class Body>
   void list(const List& f, std::vector<T>& elements, Body body) {
     elements.resize(within(get(f.bits), f.max, f.name));

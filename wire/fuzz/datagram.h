@@ -1,0 +1,15 @@
+// What the fuzz targets of datagrams share.
+#pragma once
+
+#include "samples.h"
+
+// Reads the bytes as they are, which the checksum mostly refuses, and under a right checksum.
+template <class Read>
+int read_as_is_and_sealed(const std::uint8_t* data, std::size_t size, Read read) {
+  const auto in = std::as_bytes(std::span(data, size));
+  wire::samples::Bytes bytes(in.begin(), in.end());
+  read(bytes);
+  wire::samples::reseal(bytes);
+  read(bytes);
+  return 0;
+}
