@@ -1,7 +1,9 @@
 include(GoogleTest)
 
-# Build only what the tests labelled "fast" need; the sanitizer presets build no more than this.
+# Build only what the tests labelled "fast" need; the address sanitizer's preset builds no more than
+# this, the thread sanitizer's only those of them that have threads.
 add_custom_target(fast_tests)
+add_custom_target(threads_tests)
 
 # Half of what a test's source costs to compile is gtest.h: the fast tests share it, compiled once.
 if(SF_BUILD_TESTS AND NOT SF_FUZZ)
@@ -18,9 +20,10 @@ if(SF_BUILD_TESTS AND NOT SF_FUZZ)
                             <vector>)
 endif()
 
-# sf_test(NAME SOURCES... LIBS... [LABELS fast|slow [display]] [TIMEOUT s] [SERIAL]): one GoogleTest
-# program, each of its tests known to ctest. Label "fast" (the default) means: it also runs under the
-# sanitizers. "display": it opens a window. SERIAL: it measures time, nothing else runs beside it.
+# sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SERIAL]): one
+# GoogleTest program, each of its tests known to ctest. Label "fast" (the default) means: it also runs
+# under the address sanitizer, with "threads" under the thread sanitizer too, which has nothing to look
+# at in a program of one thread. "display": it opens a window. SERIAL: it measures time, nothing else runs beside it.
 function(sf_test name)
   if(NOT SF_BUILD_TESTS OR SF_FUZZ)
     return()
@@ -44,6 +47,9 @@ function(sf_test name)
     target_compile_options(${name} PRIVATE -O0)
     target_precompile_headers(${name} REUSE_FROM sf_test_headers)
     add_dependencies(fast_tests ${name})
+  endif()
+  if("threads" IN_LIST ARG_LABELS)
+    add_dependencies(threads_tests ${name})
   endif()
   # gtest_discover_tests takes a list apart, and with it every property after LABELS; joined by "+"
   # the labels stay one word, which `ctest -L fast` finds just as well.

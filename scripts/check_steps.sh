@@ -83,21 +83,21 @@ no_address_randomisation() {
 step_tests_gcc() { run_tests release; }
 step_tests_clang() { run_tests clang -L fast; }
 
-sanitized_tests() { # sanitized_tests PRESET
+sanitized_tests() { # sanitized_tests PRESET LABEL
   configure "$1" "$LOGS/$1-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=ON -DSF_FIRMWARE=OFF
-  no_address_randomisation bash scripts/common.sh build "$1" "$LOGS/$1-build.log" fast_tests
-  run_tests "$1" -L fast
+  no_address_randomisation bash scripts/common.sh build "$1" "$LOGS/$1-build.log" "$2_tests"
+  run_tests "$1" -L "$2"
 }
 
 step_asan() {
   export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
   export UBSAN_OPTIONS=print_stacktrace=1
-  sanitized_tests asan-ubsan
+  sanitized_tests asan-ubsan fast
 }
 
 step_tsan() {
   export TSAN_OPTIONS=second_deadlock_stack=1
-  sanitized_tests tsan
+  sanitized_tests tsan threads
 }
 
 step_tidy() { python3 scripts/tidy.py --build build/clang | tee "$LOGS/tidy.all" && tail -n 1 "$LOGS/tidy.all" >"$LOGS/tidy.said"; }
