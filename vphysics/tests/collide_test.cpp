@@ -96,12 +96,15 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
     find_manifold(a, Ta, b, Tb, margin, m);
     find_manifold(b, Tb, a, Ta, margin, turned);
     const double truth = sampled_separation(random, a, Ta, b, Tb);
-    // The sampling is off by 4.3e-4 at most in 300 trials a pair. Edges against edges nearly along
-    // a face are told as the face: by 4.9% of the depth at most in 300 trials.
-    const double tolerance =
-        ka == Kind::box && kb == Kind::box ? 1e-3 + 0.05 * std::fabs(truth) : 1e-3;
+    // A gap that was sampled is one: the separation is never less. How far the best of them stays
+    // behind it is the sampling's fault: by 2.4e-3 at most, over what g++ and clang++ draw. Edges
+    // against edges nearly along a face are told as the face: by 4.9% of the depth at most in 300
+    // trials.
+    const bool boxes = ka == Kind::box && kb == Kind::box;
+    const double behind = 5e-3;
+    const double below = boxes ? 1e-3 + 0.05 * std::fabs(truth) : 1e-9;
     if (m.count == 0) {
-      ASSERT_GT(truth, margin - tolerance) << i;
+      ASSERT_GT(truth, margin - behind) << i;
       continue;
     }
     ++touching;
@@ -110,15 +113,16 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
       deepest = std::min(deepest, m.points[k].separation);
       ASSERT_LE(m.points[k].separation, margin);
     }
-    if (ka == Kind::box && kb == Kind::box && truth > 0) {
+    if (boxes && truth > 0) {
       // Boxes apart at a corner: the gap along a separating axis is less than the distance.
       ASSERT_GT(deepest, 0.0) << i;
-      ASSERT_LE(deepest, truth + tolerance) << i;
+      ASSERT_LE(deepest, truth + behind) << i;
     } else if (ka == Kind::capsule && kb == Kind::box && deepest < -a.radius) {
       // The axis lies inside: a depth is the way out of one of its points, of which all have to go.
-      ASSERT_LE(truth, deepest + tolerance) << i;
+      ASSERT_LE(truth, deepest + 1e-9) << i;
     } else {
-      ASSERT_NEAR(deepest, truth, tolerance) << i;
+      ASSERT_GE(deepest, truth - below) << i;
+      ASSERT_LE(deepest, truth + behind) << i;
     }
     ASSERT_NEAR(norm(m.normal), 1.0, 1e-12);
     ASSERT_EQ(turned.count > 0, true);
