@@ -28,6 +28,12 @@ void Broadcaster::remove(std::uint32_t client) {
   std::erase_if(listeners_, [client](const Listener& l) { return l.client == client; });
 }
 
+void Broadcaster::expect() {
+  if (listeners_.empty()) return;
+  expected_.store(given_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  work_.post();
+}
+
 void Broadcaster::send(std::span<const std::byte> datagram, std::int64_t tick_ns) {
   if (listeners_.empty()) return;
   const std::uint32_t given = given_.load(std::memory_order_relaxed);
@@ -74,6 +80,16 @@ void Broadcaster::run(int priority) {
     }
     if (closing) return;
     work_.wait();
+    await(done);
+  }
+}
+
+// Awake, since to be woken takes as long as the tick does.
+void Broadcaster::await(std::uint32_t done) {
+  static const bool beside = std::thread::hardware_concurrency() > 1;  // else it would hold it up
+  if (!beside || expected_.load(std::memory_order_acquire) != done + 1) return;
+  const std::int64_t end = os::monotonic_ns() + kLookOutNs;
+  while (given_.load(std::memory_order_acquire) == done && os::monotonic_ns() < end) {
   }
 }
 

@@ -33,6 +33,8 @@ class Broadcaster {
   // The tick's thread; nothing here waits or takes memory.
   void add(std::uint32_t client, const sockaddr_in& listener);
   void remove(std::uint32_t client);
+  // A datagram will be given soon: the thread wakes up now, beside the tick that makes it.
+  void expect();
   // tick_ns: when the tick began, on the monotonic clock. A datagram that finds kParcels others
   // still waiting is dropped, and counted as an error for each listener.
   void send(std::span<const std::byte> datagram, std::int64_t tick_ns);
@@ -48,6 +50,8 @@ class Broadcaster {
 
  private:
   static constexpr std::uint32_t kParcels = 16;  // 16 ms of a thread that gets no time
+  // To look out for an expected datagram without going to sleep: three times what a tick takes.
+  static constexpr std::int64_t kLookOutNs = 150'000;
   struct Listener {
     std::uint32_t client;
     sockaddr_in address;
@@ -60,6 +64,7 @@ class Broadcaster {
     std::vector<sockaddr_in> to;
   };
   void run(int priority);
+  void await(std::uint32_t done);
   void deliver(Parcel& parcel);
 
   int fd_;
@@ -67,7 +72,7 @@ class Broadcaster {
   std::vector<Listener> listeners_;
 
   std::array<Parcel, kParcels> parcels_;
-  std::atomic<std::uint32_t> given_{0}, done_{0};
+  std::atomic<std::uint32_t> expected_{0}, given_{0}, done_{0};
   std::atomic<bool> closing_{false};
   os::ThreadSignal work_;
 

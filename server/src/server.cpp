@@ -264,6 +264,7 @@ void Server::tick(std::int64_t now_us) {
   Impl& s = *impl_;
   const std::int64_t began_ns = os::monotonic_ns();  // measures, decides nothing
   s.take_control_events();
+  s.broadcaster.expect();
   if (s.gather(now_us)) {
     step_recorded(s.match, s.next);
     ++s.ticks;
