@@ -33,7 +33,7 @@ configure() {
 
 # build PRESET LOG TARGET...: builds, showing how far it is; the words go to the log.
 build() {
-  local preset=$1 log=$2 line shown=0 now status
+  local preset=$1 log=$2 line shown=0 now status begun=$EPOCHREALTIME
   shift 2
   mkdir -p "$(dirname "$log")"
   : >"$log"
@@ -43,15 +43,15 @@ build() {
       [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
       now=$((BASH_REMATCH[1] * 100 / BASH_REMATCH[2]))
       if [[ -t 1 ]]; then
-        printf '\r  compiling %3d%%' "$now"
-      elif ((now >= shown + 25)); then
-        shown=$((now / 25 * 25))
-        echo "  compiled $shown%"
+        printf '\r  compiling %3d%% of %d steps' "$now" "${BASH_REMATCH[2]}"
+      elif ((now >= shown + 10)); then
+        shown=$((now / 10 * 10))
+        echo "  compiled $shown% of ${BASH_REMATCH[2]} steps after $(seconds_since "$begun") s"
       fi
     done
   status=${PIPESTATUS[0]}
   set -o pipefail
-  [[ -t 1 ]] && printf '\r                  \r'
+  [[ -t 1 ]] && printf '\r%40s\r' ''
   if ((status != 0)); then
     grep -E -A4 'error|FAILED' "$log" | head -n 40 >&2 || tail -n 20 "$log" >&2
     echo "Building build/$preset failed; the whole log is in $log." >&2

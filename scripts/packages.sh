@@ -58,7 +58,7 @@ packages_missing() {
 
 # packages_install LOG GROUP...: installs what is missing. Returns 1, having said why, if it cannot.
 packages_install() {
-  local log=$1 missing as_root=() command
+  local log=$1 missing as_root=() command begun=$EPOCHREALTIME
   shift
   [[ ${SF_SKIP_PACKAGES:-0} == 1 ]] && return 0
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -69,7 +69,7 @@ packages_install() {
   missing=$(packages_missing "$@")
   [[ -z $missing ]] && return 0
 
-  echo "To be installed from Debian, and why:"
+  echo "Installing $(wc -l <<<"$missing") packages from Debian, and why (log: $log):"
   packages_table | awk -v missing=" ${missing//$'\n'/ } " \
     'index(missing, " " $2 " ") { name = $2; sub(/^[^ ]+ +[^ ]+ +/, ""); printf "  %-21s %s\n", name, $0 }'
   command="apt-get install --no-install-recommends ${missing//$'\n'/ }"
@@ -92,9 +92,11 @@ packages_install() {
   if ! apt-get install --simulate --no-install-recommends "$@" >>"$log" 2>&1; then
     packages_update "$log" "${as_root[@]}" || return 1
   fi
-  packages_apt "$log" "${as_root[@]}" -- "$@" && return 0
-  packages_update "$log" "${as_root[@]}" || return 1
-  packages_apt "$log" "${as_root[@]}" -- "$@" && return 0
+  if packages_apt "$log" "${as_root[@]}" -- "$@" ||
+    { packages_update "$log" "${as_root[@]}" && packages_apt "$log" "${as_root[@]}" -- "$@"; }; then
+    awk -v a="$begun" -v b="$EPOCHREALTIME" 'BEGIN { printf "  installed after %.1f s\n", b - a }'
+    return 0
+  fi
   tail -n 5 "$log" >&2
   echo "The packages could not be installed; all of apt-get's words are in $log. By hand: $command" >&2
   return 1
