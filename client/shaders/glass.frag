@@ -1,4 +1,4 @@
-// The side walls' upper half: clear, so that the near wall hides nothing of the field. Their edge
+// The side walls above their foot: clear, so that the near wall hides nothing of the field. Their edge
 // glows in the colour of the team that stands there.
 in vec3 v_position;
 in vec3 v_normal;

@@ -9,10 +9,12 @@ namespace client {
 // Thickness of the side walls and length of a rod beyond its outermost reach [m].
 inline constexpr float kWallThickness = 0.034f;
 inline constexpr float kEndMargin = 0.045f;
-inline constexpr float kSolidWallHeight = 0.050f;
+// What is solid of a side wall; glass above it. Higher, the near wall would hide a ball at its
+// foot.
+inline constexpr float kSolidWallHeight = 0.024f;
 
 MeshData table_mesh(const foosball::TableSpec& table, float detail);
-// Upper half of the side walls, drawn blended.
+// The side walls above that, drawn blended.
 MeshData glass_mesh(const foosball::TableSpec& table);
 // The surface between the walls.
 MeshData field_mesh(const foosball::TableSpec& table);
