@@ -44,12 +44,12 @@ ProbeClient::ProbeClient(std::uint16_t port, const std::string& from) : server_p
   const int buffer = 4 << 20;  // a stalled test machine loses nothing
   ::setsockopt(udp_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
   const sockaddr_in mine = os::parse_ipv4(from, 0).value_or(os::loopback(0));
-  ::bind(udp_, os::generic(mine), sizeof mine);
+  const bool udp_bound = ::bind(udp_, os::generic(mine), sizeof mine) == 0;
 
   tcp_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  ::bind(tcp_, os::generic(mine), sizeof mine);
+  const bool tcp_bound = ::bind(tcp_, os::generic(mine), sizeof mine) == 0;
   const sockaddr_in server = os::loopback(port);
-  if (::connect(tcp_, os::generic(server), sizeof server) != 0) leave();
+  if (!udp_bound || !tcp_bound || ::connect(tcp_, os::generic(server), sizeof server) != 0) leave();
 }
 
 ProbeClient::~ProbeClient() {
