@@ -42,13 +42,14 @@ MouseLink::Event MouseLink::on_byte(uint8_t value, bool good, uint16_t now_ms) {
   last_byte_ = good ? value : 0xFF;
   if (!good) return kNone;
   const bool asked = state_ == kReply || (state_ == kSend && !lines_.sending(mouse_));
-  if (asked) {
+  if (before == kSelfTestPassed && value == kMouseId) {
+    // The end of the self-test that we asked for, or it was plugged in just now and knows nothing
+    // of what it was told before. No answer to a command looks like this.
+    restart();
+  } else if (asked) {
     on_reply(value, now_ms);
-  } else if (state_ == kBat) {
-    if (value == kFailed) give_up(now_ms);
-    if (before == kSelfTestPassed && value == kMouseId) restart();
-  } else if (state_ == kAbsent && before == kSelfTestPassed && value == kMouseId) {
-    restart();  // just plugged in
+  } else if (state_ == kBat && value == kFailed) {
+    give_up(now_ms);
   }
   return kNone;
 }
@@ -75,6 +76,9 @@ void MouseLink::on_reply(uint8_t value, uint16_t now_ms) {
 }
 
 void MouseLink::restart() {
+  lines_.release(mouse_);
+  present_ = false;
+  asking_ = false;
   script_at_ = kAfterReset;
   tries_ = 0;
   begin(kScript[script_at_]);
@@ -147,10 +151,9 @@ void MouseLink::send_command(uint16_t now_ms) {
 }
 
 MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
-  if (!parser_.between_packets() &&
-      passed(now_ms, static_cast<uint16_t>(byte_ms_ + kUnfinishedMs))) {
+  if (!parser_.between_packets()) {
+    if (!passed(now_ms, static_cast<uint16_t>(byte_ms_ + kUnfinishedMs))) return kNone;
     if (parser_.looks_like_power_on()) {
-      present_ = false;
       restart();
       return kNone;
     }

@@ -143,9 +143,26 @@ TEST(HotPlug, AMouseIsBackWithinTwoSecondsAndDoesNotJump) {
   EXPECT_EQ(rig.frame().slide[3], 125);
 }
 
+TEST(HotPlug, AMousePluggedInAgainAtTheGateIsSetUpAgain) {
+  HostRig rig;
+  rig.host.allow_streaming(false);
+  ASSERT_TRUE(rig.advance_until([&] { return rig.host.link(3).waits_at_gate(); }, 2000));
+  rig.mice[3].unplug();
+  rig.advance_us(20'000);
+  rig.mice[3].replug();
+  rig.advance_us(1'000'000);
+  rig.host.allow_streaming(true);
+  ASSERT_TRUE(all_present(rig));
+  EXPECT_TRUE(rig.mice[3].enabled());
+  EXPECT_EQ(rig.mice[3].rate(), 200);
+  EXPECT_EQ(rig.mice[3].counts_per_mm(), 8);
+}
+
 TEST(Streaming, AskingASilentMouseLosesNoCount) {
   // Movement that begins at every moment around the question, which comes each 250 ms.
-  HostRig rig;
+  MouseOptions options;
+  options.forgets_cut_packets = true;
+  HostRig rig(options);
   ASSERT_TRUE(all_present(rig));
   constexpr int kTimes = 200;
   for (int i = 0; i < kTimes; ++i) {

@@ -199,6 +199,7 @@ void SimMouse::at_idle(std::uint64_t now_ns, bool host_clock_low, bool host_data
 
 void SimMouse::start_byte(std::uint64_t now_ns) {
   const Chunk& chunk = outgoing_.front();
+  cut_after_byte_ = false;
   byte_fault_ = Fault::none;
   const bool second = byte_at_ == 1;
   if (chunk.movement && fault_ != Fault::none && second)
@@ -236,6 +237,7 @@ void SimMouse::end_byte(std::uint64_t now_ns) {
 
 void SimMouse::abort(std::uint64_t now_ns) {
   clock_low_ = data_low_ = false;
+  cut_after_byte_ = byte_at_ > 0;
   byte_at_ = 0;
   after(now_ns, kLook, Phase::idle);
 }
@@ -252,7 +254,8 @@ void SimMouse::end_command_byte(std::uint64_t now_ns) {
 
 void SimMouse::answer(std::vector<std::uint8_t> bytes, std::uint64_t now_ns) {
   // By the book, movement counts as reported once it has been sent.
-  if (!outgoing_.empty() && outgoing_.front().movement) {
+  const bool forgets = options_.forgets_cut_packets && (cut_after_byte_ || byte_at_ > 0);
+  if (!outgoing_.empty() && outgoing_.front().movement && !forgets) {
     pending_slide_ += outgoing_.front().slide;
     pending_spin_ += outgoing_.front().spin;
   }

@@ -21,6 +21,7 @@ struct MouseOptions {
   std::uint32_t self_test_ms = 400;  // from power-on or reset to AA 00
   bool splits_overflow = true;  // movement beyond nine bits waits for the next packet; otherwise
                                 // it is lost and the overflow flag says so
+  bool forgets_cut_packets = false;  // a command after a packet's first byte loses its counts
   std::uint64_t seed = 1;
 };
 
@@ -114,6 +115,7 @@ class SimMouse {
 
   std::deque<Chunk> outgoing_;
   std::size_t byte_at_ = 0;
+  bool cut_after_byte_ = false;  // the host cut the packet off after a whole byte of it
   int bit_at_ = 0;
   std::uint16_t frame_ = 0;
   Chunk last_sent_;
