@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "rig.h"
@@ -239,6 +242,73 @@ TEST(Sensor, SeesABallThatIsThroughWithinAStep) {
   EXPECT_EQ(events[0].user_data_a, 42u);
   EXPECT_EQ(events[0].impulse, 0.0);
   EXPECT_EQ(world.velocity(ball).v, (Vec3{45, 0, 0}));
+}
+
+// Balls so fast between walls so near that a pair parts and meets again within one step, past
+// sensors that lie side by side.
+World rattle() {
+  World world({.gravity = {}, .max_impacts_per_step = 64});
+  const Material bouncy{0.0, 1.0, 0.0};
+  const double gap = kBallRadius + 0.004;
+  for (const double side : {-1.0, 1.0}) {
+    add_fixed(world, Box{{0.05, 1, 1}}, bouncy, SE3(Vec3{side * (gap + 0.05), 0, 0}));
+    add_fixed(world, Box{{1, 0.05, 1}}, bouncy, SE3(Vec3{0, side * 0.35, 0}));
+    BodyDesc desc;
+    desc.motion = Motion::fixed;
+    ColliderDesc sensor;
+    sensor.shape = Box{{0.2, 0.001, 1}};
+    sensor.sensor = true;
+    sensor.T_body_shape = SE3(Vec3{0, side * 0.004, 0});
+    must(world.add_collider(must(world.create_body(desc)), sensor));
+  }
+  for (int i = 0; i < 4; ++i) {
+    add_ball(world, {0, 0.12 * (i - 1.5), 0}, {18.0 + i, 6.0 - 5.0 * i, 0}, bouncy);
+  }
+  return world;
+}
+
+TEST(Events, BeginAndEndInTurnsEvenWhereAPairMeetsTwiceInAStep) {
+  World world = rattle();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> touching;
+  int both_in_a_step = 0, solid_ends = 0, sensor_ends = 0;
+  for (int step = 0; step < 2000; ++step) {
+    must(world.step(0.001));
+    std::set<std::pair<std::uint32_t, std::uint32_t>> ended;
+    for (const ContactEvent& e : world.contact_events()) {
+      const std::pair pair{e.a.index, e.b.index};
+      bool& touches = touching[pair];
+      if (e.kind == ContactEvent::Kind::begin) {
+        EXPECT_FALSE(touches) << "a second begin, step " << step;
+        touches = true;
+        both_in_a_step += ended.count(pair) > 0;
+      } else {
+        EXPECT_TRUE(touches) << "a hit or end without a begin, step " << step;
+        if (e.kind != ContactEvent::Kind::end) continue;
+        touches = false;
+        ended.insert(pair);
+        ++(e.sensor ? sensor_ends : solid_ends);
+      }
+    }
+  }
+  EXPECT_GT(both_in_a_step, 100);
+  EXPECT_GT(solid_ends, 1000);
+  EXPECT_GT(sensor_ends, 10);
+}
+
+TEST(Events, AreInOrderOfTime) {
+  World world = rattle();
+  int later = 0;
+  for (int step = 0; step < 2000; ++step) {
+    must(world.step(0.001));
+    double before = 0.0;
+    for (const ContactEvent& e : world.contact_events()) {
+      EXPECT_GE(e.time, before);
+      EXPECT_LE(e.time, 0.001);
+      later += e.time > before;
+      before = e.time;
+    }
+  }
+  EXPECT_GT(later, 1000);
 }
 
 TEST(Filter, LetsPassWhatIsNotInTheMask) {

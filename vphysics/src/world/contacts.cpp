@@ -180,9 +180,12 @@ void World::Impl::solve_contacts(double h, bool first) {
 void World::Impl::emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
                        const Vec3& normal, double approach, double impulse, double time) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  events.push_back({kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
-                    collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal,
-                    approach, impulse, time});
+  // In order of time: only sensors swept between two impacts are found out of it.
+  auto place = events.end();
+  while (place != events.begin() && std::prev(place)->time > time) --place;
+  events.insert(place, {kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
+                        collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal,
+                        approach, impulse, time});
 }
 
 void World::Impl::report_contacts(double time) {
@@ -251,11 +254,13 @@ void World::Impl::remember_impulses() {
   }
 }
 
+// What touched in the last step and does no more. It may meet again later in this one.
 void World::Impl::report_ends() {
-  for (const PairRecord& last : records) {
+  for (PairRecord& last : records) {
     if (!last.touching) continue;
     const PairRecord* now = lookup(next_records, last.key);
     if (now && now->touching) continue;
+    last.touching = false;
     emit(ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0, 0.0);
   }
 }
