@@ -5,6 +5,7 @@ namespace server {
 Recorder::Recorder(std::unique_ptr<JournalFile> file, const wire::JournalHeader& header)
     : file_(std::move(file)) {
   std::get<wire::JournalTick>(tick_entry_).commands.reserve(wire::kMaxJournalCommands);
+  std::get<wire::JournalKeyframe>(keyframe_entry_).snapshot.reserve(wire::kMaxKeyframe);
   file_->add(header);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "counting_new.h"
+#include "journal_file.h"
 #include "lockstep.h"
 
 namespace server {
@@ -65,6 +66,38 @@ TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
     }));
     EXPECT_EQ(during, 0);
   }
+}
+
+// A match with more contacts has a larger keyframe than any before it.
+TEST(WarmJournal, TakesNoMemoryForTheLargestEntries) {
+  const std::string path = temp_path("journal");
+  auto file = JournalFile::create({.path = path});
+  ASSERT_TRUE(file) << file.error();
+  (*file)->add(wire::JournalHeader{});
+  wire::JournalTick tick;
+  tick.commands.resize(wire::kMaxJournalCommands);
+  std::uint64_t ticks = 0;
+  for (const std::size_t bytes : {std::size_t{1000}, std::size_t{5000}, wire::kMaxKeyframe / 4}) {
+    const wire::JournalEntry keyframe =
+        wire::JournalKeyframe{ticks + wire::kJournalBatch, std::vector<std::byte>(bytes)};
+    long taken = 0;
+    for (int i = 0; i < wire::kJournalBatch; ++i) {
+      tick.tick = ticks++;
+      for (wire::JournalRod& rod : tick.rods) rod.slide_100nm = i % 2 == 0 ? 1'000'000 : 0;
+      const wire::JournalEntry entry = tick;
+      const long before = os::testing::allocations();
+      (*file)->add(entry);
+      taken += os::testing::allocations() - before;
+    }
+    const long before = os::testing::allocations();
+    (*file)->add(keyframe);
+    taken += os::testing::allocations() - before;
+    EXPECT_EQ(taken, 0) << bytes;
+  }
+  (*file)->close();
+  EXPECT_EQ((*file)->entries_dropped(), 0u);
+  EXPECT_EQ((*file)->problem(), "");
+  ::unlink(path.c_str());
 }
 
 }  // namespace

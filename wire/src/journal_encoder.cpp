@@ -65,16 +65,21 @@ JournalRodChange change_of(const JournalRod& from, const JournalRod& to) {
 
 }  // namespace
 
+JournalEncoder::JournalEncoder() {
+  change_.commands.reserve(kMaxJournalCommands);
+  open_.reserve(kJournalBatch * kSmallPayload);
+  large_.reserve(kSmallPayload + kMaxKeyframe);
+}
+
 bool JournalEncoder::add_tick(const JournalTick& tick, std::vector<std::byte>& out) {
   if (tick.tick != next_tick_ || !valid(tick)) return false;
-  JournalTickChange change;
   for (std::size_t i = 0; i < tick.rods.size(); ++i) {
-    change.rods[i] = change_of(previous_[i], tick.rods[i]);
+    change_.rods[i] = change_of(previous_[i], tick.rods[i]);
   }
-  change.commands = tick.commands;
+  change_.commands = tick.commands;
   std::array<std::byte, kSmallPayload> scratch;
   const auto describe = [](auto& codec, auto& t) { describe_journal_tick(codec, t); };
-  append(open_, encode(scratch, describe, change));
+  append(open_, encode(scratch, describe, change_));
   previous_ = tick.rods;
   ++next_tick_;
   if (++open_ticks_ == kJournalBatch) flush(out);

@@ -82,11 +82,27 @@ struct JournalEnd {
 using JournalEntry =
     std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe, JournalEnd>;
 
+// How a rod's target differs from the tick before (at tick 0: from a rod that is not live, at 0).
+struct JournalRodChange {
+  bool changed = false;
+  bool live = false;
+  std::int64_t slide = 0, angle = 0, slide_rate = 0, angle_rate = 0;
+};
+
+// What is written of a tick.
+struct JournalTickChange {
+  std::array<JournalRodChange, 8> rods{};
+  std::vector<JournalCommand> commands;
+};
+
 // Encodes entries to bytes ready to append to a file. Ticks are coded as changes against the tick
 // before and gathered in records of up to kJournalBatch; any other entry, and flush(), closes the
 // open record.
 class JournalEncoder {
  public:
+  // Takes all the memory it will need, for the largest entries.
+  JournalEncoder();
+
   // False, and nothing is written, for an entry that a reader would refuse: no header first, or a
   // second one, a tick that is not the next, a count that is not the ticks so far, too many
   // commands, a command, layout or angle out of range, too large a keyframe, anything after the
@@ -99,6 +115,7 @@ class JournalEncoder {
 
   std::array<JournalRod, 8> previous_{};
   std::uint64_t next_tick_ = 0;
+  JournalTickChange change_;
   std::vector<std::byte> open_;   // ticks of the open record, without its head
   std::vector<std::byte> large_;  // a keyframe's payload; kept for its memory
   int open_ticks_ = 0;

@@ -23,18 +23,6 @@ constexpr Constant journal_kind(JournalKind kind) {
   return Constant{"kind", 8, static_cast<std::uint64_t>(kind), "of payload"};
 }
 
-// How a rod's target differs from the tick before (at tick 0: from a rod that is not live, at 0).
-struct JournalRodChange {
-  bool changed = false;
-  bool live = false;
-  std::int64_t slide = 0, angle = 0, slide_rate = 0, angle_rate = 0;
-};
-
-struct JournalTickChange {
-  std::array<JournalRodChange, 8> rods{};
-  std::vector<JournalCommand> commands;
-};
-
 struct JournalTicksHead {
   std::uint64_t first_tick = 0;
   std::uint8_t count = 0;
