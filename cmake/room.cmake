@@ -45,6 +45,7 @@ function(sf_test name)
     # Two thirds of all compiling are the tests' own code, full of macros, which -O0 nearly halves (and
     # more than halves under the sanitizers). What they call is in libraries, which keep their level.
     target_compile_options(${name} PRIVATE -O0)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)  # they name their rigs alike
     target_precompile_headers(${name} REUSE_FROM sf_test_headers)
     add_dependencies(fast_tests ${name})
   endif()

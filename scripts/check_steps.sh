@@ -75,7 +75,7 @@ count_tests() { # count_tests JUNIT
   said "$((all - failures - skips)) passed, $skips skipped"
 }
 
-# g++ 12's thread sanitizer does not start under the address randomisation of newer kernels.
+# The thread sanitizers of g++ 12 and clang 14 do not start under the address randomisation of newer kernels.
 no_address_randomisation() {
   if setarch "$(uname -m)" -R true 2>/dev/null; then setarch "$(uname -m)" -R "$@"; else "$@"; fi
 }

@@ -1,18 +1,13 @@
 #include "core/ps2_lines.h"
 
+#include "core/ps2_parity.h"
+
 namespace firmware {
 
 namespace {
 
 uint8_t bit_of(uint8_t mouse) {
   return static_cast<uint8_t>(1u << mouse);
-}
-
-bool odd_ones(uint8_t value) {
-  value = static_cast<uint8_t>(value ^ (value >> 4));
-  value = static_cast<uint8_t>(value ^ (value >> 2));
-  value = static_cast<uint8_t>(value ^ (value >> 1));
-  return (value & 1) != 0;
 }
 
 // Bit number i of value becomes the mouse's bit in plane i. The other bits belong to mice that may

@@ -1,17 +1,8 @@
 #include "core/ps2_receiver.h"
 
+#include "core/ps2_parity.h"
+
 namespace firmware {
-
-namespace {
-
-bool odd_ones(uint8_t value) {
-  value = static_cast<uint8_t>(value ^ (value >> 4));
-  value = static_cast<uint8_t>(value ^ (value >> 2));
-  value = static_cast<uint8_t>(value ^ (value >> 1));
-  return (value & 1) != 0;
-}
-
-}  // namespace
 
 Ps2Receiver::Event Ps2Receiver::fail() {
   count_ = kHunting;

@@ -1,0 +1,18 @@
+// The parity bit makes the ones of a byte and itself odd in number.
+#ifndef FIRMWARE_CORE_PS2_PARITY_H
+#define FIRMWARE_CORE_PS2_PARITY_H
+
+#include <stdint.h>
+
+namespace firmware {
+
+inline bool odd_ones(uint8_t value) {
+  value = static_cast<uint8_t>(value ^ (value >> 4));
+  value = static_cast<uint8_t>(value ^ (value >> 2));
+  value = static_cast<uint8_t>(value ^ (value >> 1));
+  return (value & 1) != 0;
+}
+
+}  // namespace firmware
+
+#endif
