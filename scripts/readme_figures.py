@@ -29,7 +29,10 @@ def table(name, root):
         lines += [f'| {r["subject"]} | {r["engine"]} | {r["metric"]} | {r["value"]} {r["unit"]} |'.replace(' |  |', ' | |')
                   for r in rows]
         lines.append('')
-    return '\n'.join(lines) or 'Not measured yet.\n'
+    if not lines:
+        raise ValueError(f'README.md shows {name}, which nobody has measured: run ./bench {name} and '
+                         f'keep its file in benchmarks/results')
+    return '\n'.join(lines)
 
 
 def main():
