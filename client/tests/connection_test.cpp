@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "client/clock.h"
+#include "os/clock.h"
 #include "scripted_scene.h"
 #include "scripted_server.h"
 
@@ -16,9 +16,9 @@ namespace {
 // Looks again and again until it holds; the wait is for another thread's event, with a far
 // deadline.
 bool eventually(const std::function<bool()>& holds) {
-  const std::int64_t deadline = now_us() + 10'000'000;
+  const std::int64_t deadline = os::monotonic_us() + 10'000'000;
   while (!holds()) {
-    if (now_us() > deadline) return false;
+    if (os::monotonic_us() > deadline) return false;
     poll(nullptr, 0, 1);
   }
   return true;
@@ -76,7 +76,7 @@ TEST_F(ConnectionTest, SaysHelloWithItsLayoutAndPortAndHearsSnapshots) {
   EXPECT_EQ(server.hello().name, "tester");
   EXPECT_NE(server.hello().udp_port, 0);
   EXPECT_TRUE(hears(42, 0));
-  EXPECT_TRUE(connection->sample(now_us()).any);
+  EXPECT_TRUE(connection->sample(os::monotonic_us()).any);
 }
 
 TEST_F(ConnectionTest, BadForeignAndRepeatedDatagramsAreEachCounted) {
@@ -110,11 +110,11 @@ TEST_F(ConnectionTest, SilenceIsNoticedAndTheServersReturnToo) {
   open();
   join(42);
   ASSERT_TRUE(hears(42, 0));
-  const std::int64_t silent_since = now_us();
+  const std::int64_t silent_since = os::monotonic_us();
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
-  EXPECT_GE(now_us() - silent_since, 450'000);
-  EXPECT_TRUE(connection->sample(now_us()).any);  // the last scene stands
-  ASSERT_TRUE(server.welcome(42));                // the next attempt, answered
+  EXPECT_GE(os::monotonic_us() - silent_since, 450'000);
+  EXPECT_TRUE(connection->sample(os::monotonic_us()).any);  // the last scene stands
+  ASSERT_TRUE(server.welcome(42));                          // the next attempt, answered
   EXPECT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
   EXPECT_TRUE(hears(42, 1000));
 }
@@ -129,7 +129,8 @@ TEST_F(ConnectionTest, AServerThatDiesAndReturnsWithANewSessionIsJoinedAgain) {
   ASSERT_EQ(server.port(), port);
   join(43);
   EXPECT_TRUE(hears(43, 0));
-  EXPECT_TRUE(eventually([&] { return connection->sample(now_us()).state.session == 43; }));
+  EXPECT_TRUE(
+      eventually([&] { return connection->sample(os::monotonic_us()).state.session == 43; }));
   EXPECT_EQ(connection->status().joins, 2u);
   server.send_snapshot(snapshot(42, 9100));  // a straggler of the dead one
   EXPECT_TRUE(eventually([&] { return connection->counters().foreign == 1; }));

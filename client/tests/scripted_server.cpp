@@ -1,64 +1,47 @@
 #include "scripted_server.h"
 
-#include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
+
+#include "os/socket_address.h"
 
 namespace client {
 namespace {
 
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
-
 std::uint16_t bind_to(int fd, std::uint16_t port) {
   const int on = 1;
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address = loopback(port);
-  if (bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) return 0;
-  socklen_t size = sizeof address;
-  getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
-  return ntohs(address.sin_port);
+  const sockaddr_in address = os::loopback(port);
+  if (bind(fd, os::generic(address), sizeof address) != 0) return 0;
+  return os::port_of(os::local_address(fd));
 }
 
-bool readable(int fd) {
-  pollfd polled{fd, POLLIN, 0};
-  return fd >= 0 && poll(&polled, 1, static_cast<int>(ScriptedServer::kPatience.count())) == 1;
+bool readable(const os::FileDescriptor& fd) {
+  pollfd polled{fd.get(), POLLIN, 0};
+  return fd && poll(&polled, 1, static_cast<int>(ScriptedServer::kPatience.count())) == 1;
 }
 
 }  // namespace
 
 ScriptedServer::ScriptedServer(std::uint16_t port)
     : listener_(socket(AF_INET, SOCK_STREAM, 0)), udp_(socket(AF_INET, SOCK_DGRAM, 0)) {
-  port_ = bind_to(listener_, port);
-  udp_port_ = bind_to(udp_, 0);
-  listen(listener_, 4);
-}
-
-ScriptedServer::~ScriptedServer() {
-  drop_client();
-  close(udp_);
-  close(listener_);
+  port_ = bind_to(listener_.get(), port);
+  udp_port_ = bind_to(udp_.get(), 0);
+  listen(listener_.get(), 4);
 }
 
 void ScriptedServer::drop_client() {
-  if (client_ >= 0) close(client_);
-  client_ = -1;
+  client_.reset();
   reader_ = {};
 }
 
 bool ScriptedServer::accept() {
   drop_client();
   if (!readable(listener_)) return false;
-  client_ = ::accept(listener_, nullptr, nullptr);
-  return client_ >= 0;
+  client_ = os::FileDescriptor(::accept(listener_.get(), nullptr, nullptr));
+  return static_cast<bool>(client_);
 }
 
 std::optional<wire::ControlMessage> ScriptedServer::next_message() {
@@ -68,7 +51,7 @@ std::optional<wire::ControlMessage> ScriptedServer::next_message() {
     if (status == wire::ControlReader::Status::message) return message;
     std::array<std::byte, 1024> bytes;
     if (status == wire::ControlReader::Status::broken || !readable(client_)) return {};
-    const auto size = recv(client_, bytes.data(), bytes.size(), 0);
+    const auto size = recv(client_.get(), bytes.data(), bytes.size(), 0);
     if (size <= 0) return {};
     reader_.push({bytes.data(), static_cast<std::size_t>(size)});
   }
@@ -78,7 +61,7 @@ std::optional<wire::InputDatagram> ScriptedServer::next_input() {
   std::array<std::byte, 2048> bytes;
   wire::InputDatagram input;
   if (!readable(udp_)) return {};
-  const auto size = recv(udp_, bytes.data(), bytes.size(), 0);
+  const auto size = recv(udp_.get(), bytes.data(), bytes.size(), 0);
   if (size < 0 || !wire::decode_input({bytes.data(), static_cast<std::size_t>(size)}, input))
     return {};
   return input;
@@ -86,7 +69,7 @@ std::optional<wire::InputDatagram> ScriptedServer::next_input() {
 
 void ScriptedServer::forget_inputs() {
   std::byte byte;
-  while (recv(udp_, &byte, 1, MSG_DONTWAIT) >= 0) {
+  while (recv(udp_.get(), &byte, 1, MSG_DONTWAIT) >= 0) {
   }
 }
 
@@ -97,7 +80,8 @@ void ScriptedServer::send(const wire::ControlMessage& message) {
 }
 
 void ScriptedServer::send_bytes(std::span<const std::byte> bytes) {
-  [[maybe_unused]] const auto sent = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  [[maybe_unused]] const auto sent =
+      ::send(client_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 void ScriptedServer::send_snapshot(const wire::Snapshot& snapshot) {
@@ -106,8 +90,8 @@ void ScriptedServer::send_snapshot(const wire::Snapshot& snapshot) {
 }
 
 void ScriptedServer::send_datagram(std::span<const std::byte> bytes) {
-  const sockaddr_in to = loopback(hello_.udp_port);
-  sendto(udp_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  const sockaddr_in to = os::loopback(hello_.udp_port);
+  sendto(udp_.get(), bytes.data(), bytes.size(), 0, os::generic(to), sizeof to);
 }
 
 bool ScriptedServer::welcome(std::uint64_t session, std::uint64_t token, std::uint8_t team) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "os/file_descriptor.h"
 #include "wire/control.h"
 #include "wire/input_datagram.h"
 #include "wire/snapshot.h"
@@ -17,7 +18,6 @@ namespace client {
 class ScriptedServer {
  public:
   explicit ScriptedServer(std::uint16_t port = 0);  // 0: any
-  ~ScriptedServer();
   std::uint16_t port() const { return port_; }
 
   // Each waits until it happened, at most kPatience; false or nothing after that.
@@ -38,7 +38,7 @@ class ScriptedServer {
   const wire::Hello& hello() const { return hello_; }
 
  private:
-  int listener_ = -1, client_ = -1, udp_ = -1;
+  os::FileDescriptor listener_, client_, udp_;
   std::uint16_t port_ = 0, udp_port_ = 0;
   wire::ControlReader reader_;
   wire::Hello hello_;

@@ -11,8 +11,8 @@
 #include "app/log.h"
 #include "app/view_motion.h"
 #include "app/window.h"
-#include "client/clock.h"
 #include "client/player_input.h"
+#include "os/clock.h"
 #include "render/hud.h"
 #include "render/image.h"
 #include "render/scene.h"
@@ -98,7 +98,7 @@ std::string App::start(int& exit_code) {
       log_warning(sounds.error());
     }
   }
-  awaiting_since_ = now_us();
+  awaiting_since_ = os::monotonic_us();
   connection_->start();
   if (connection_->status().small_receive_buffer) {
     log_warning(
@@ -130,7 +130,7 @@ void App::follow_connection() {
   }
   if (status_.joins == joins_seen_) return;
   joins_seen_ = status_.joins;
-  if (awaiting_since_ == 0) awaiting_since_ = now_us();
+  if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   player_.reset();
   if (status_.welcome.team < foosball::kTeams) {
@@ -263,38 +263,38 @@ void App::await_first_snapshot() {
   constexpr double kLook = 0.002;
   for (double waited = 0.0; waited < kPatience && !sample_.any; waited += kLook) {
     window_->wait(kLook);
-    hear(now_us());
+    hear(os::monotonic_us());
   }
 }
 
 int App::loop() {
   await_first_snapshot();
-  const std::int64_t began = now_us();
+  const std::int64_t began = os::monotonic_us();
   std::int64_t before = began;
   bool shot = options_.screenshot.empty();
   std::string failure;
   double drawing = 0.0;         // [s], without the picture for a file:
   std::int64_t picture_us = 0;  // that is no part of the frame rate
   for (bool last = false; !last;) {
-    const std::int64_t now = now_us();
+    const std::int64_t now = os::monotonic_us();
     const float dt = std::min(1e-6f * static_cast<float>(now - before), 0.1f);
     before = now;
     seconds_ = 1e-6 * static_cast<double>(now - began);
     meter_.begin(now);
     take_input(now);
-    hear(now_us());
+    hear(os::monotonic_us());
     draw(dt);
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
-      const std::int64_t pause = now_us();
+      const std::int64_t pause = os::monotonic_us();
       failure = take_screenshot();
-      picture_us = now_us() - pause;
+      picture_us = os::monotonic_us() - pause;
     }
-    drawing = 1e-6 * static_cast<double>(now_us() - began - picture_us);
+    drawing = 1e-6 * static_cast<double>(os::monotonic_us() - began - picture_us);
     window_->swap();
-    if (scene_is_current() && !sample_.starving) say_when_in_step(now_us());
-    meter_.end(now_us());
+    if (scene_is_current() && !sample_.starving) say_when_in_step(os::monotonic_us());
+    meter_.end(os::monotonic_us());
     judge_quality();
   }
   say_figures(drawing);

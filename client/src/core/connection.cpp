@@ -1,9 +1,8 @@
 #include "client/connection.h"
 
-#include <arpa/inet.h>
-
-#include "client/clock.h"
 #include "core/control_link.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
 
 namespace client {
 
@@ -20,7 +19,7 @@ tl::expected<std::unique_ptr<Connection>, std::string> Connection::open(
   // A server on this machine is heard on this machine only.
   const auto server = resolve(options.host, options.port);
   if (!server) return tl::unexpected(server.error());
-  auto udp = open_udp(htonl(is_loopback(*server) ? INADDR_LOOPBACK : INADDR_ANY), 0);
+  auto udp = open_udp(htonl(os::is_loopback(*server) ? INADDR_LOOPBACK : INADDR_ANY), 0);
   if (!udp) return tl::unexpected(udp.error());
   return std::unique_ptr<Connection>(
       new Connection(std::make_unique<Impl>(options, *server, std::move(*udp))));
@@ -61,7 +60,7 @@ void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
   impl_->link.wish(session, wish);
 }
 void Connection::drive(std::uint64_t session, const std::array<wire::InputRod, 8>& rods) {
-  impl_->listener.drive(session, rods, now_us());
+  impl_->listener.drive(session, rods, os::monotonic_us());
 }
 std::uint64_t Connection::inputs_sent() const {
   return impl_->listener.inputs_sent();

@@ -8,7 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "client/clock.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
 
 namespace client {
 namespace {
@@ -52,14 +53,14 @@ void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
 
 void ControlLink::run() {
   while (!stop_) {
-    on_time(now_us());
+    on_time(os::monotonic_us());
     const short events = static_cast<short>(
         stage_ == Stage::connecting || !out_.empty() ? POLLIN | POLLOUT : POLLIN);
     pollfd polled[2] = {{waker_.fd(), POLLIN, 0},
                         {stage_ == Stage::idle ? -1 : tcp_.get(), events, 0}};
-    if (::poll(polled, 2, wait_ms(now_us())) < 0) continue;
+    if (::poll(polled, 2, wait_ms(os::monotonic_us())) < 0) continue;
     if (polled[0].revents != 0) waker_.drain();
-    const std::int64_t now = now_us();
+    const std::int64_t now = os::monotonic_us();
     if (stage_ == Stage::connecting && polled[1].revents != 0) {
       on_connected(now);
     } else if (stage_ != Stage::idle && polled[1].revents != 0) {
@@ -105,7 +106,8 @@ void ControlLink::begin(std::int64_t now_us) {
 }
 
 void ControlLink::on_connected(std::int64_t now_us) {
-  if (const int error = connect_result(tcp_); error != 0) return drop(std::strerror(error), now_us);
+  if (const int error = connect_result(tcp_.get()); error != 0)
+    return drop(std::strerror(error), now_us);
   stage_ = Stage::greeting;
   reader_ = {};
   out_.clear();
@@ -157,7 +159,8 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
 }
 
 void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) {
-  const auto heard = listener_.join(welcome, server_, local_address(tcp_).sin_addr.s_addr);
+  const auto heard =
+      listener_.join(welcome, server_, os::local_address(tcp_.get()).sin_addr.s_addr);
   if (!heard) return drop(heard.error(), now_us, true);
   stage_ = Stage::joined;
   joined_at_us_ = now_us;

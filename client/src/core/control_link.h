@@ -50,7 +50,7 @@ class ControlLink {
 
   // The thread's own.
   Stage stage_ = Stage::idle;
-  Fd tcp_;
+  os::FileDescriptor tcp_;
   wire::ControlReader reader_;
   std::vector<std::byte> out_;
   std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;

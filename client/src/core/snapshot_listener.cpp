@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/clock.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
 
 namespace client {
 namespace {
@@ -105,8 +106,7 @@ void SnapshotListener::send_input(std::int64_t now_us) {
   ++input_.sequence;
   std::array<std::byte, wire::kMaxInputDatagram> bytes;
   const std::size_t size = wire::encode_input(input_, bytes);
-  ::sendto(unicast_.fd.get(), bytes.data(), size, 0, reinterpret_cast<const sockaddr*>(&server_),
-           sizeof server_);
+  ::sendto(unicast_.fd.get(), bytes.data(), size, 0, os::generic(server_), sizeof server_);
   inputs_sent_.fetch_add(1, std::memory_order_relaxed);
   input_changed_ = false;
   sent_at_us_ = now_us;
@@ -124,10 +124,10 @@ int SnapshotListener::send_due(std::int64_t now_us) {
   return static_cast<int>((due - now_us + 999) / 1000);
 }
 
-void SnapshotListener::receive(const Fd& socket) {
+void SnapshotListener::receive(int socket) {
   wire::Snapshot snapshot;
   take_datagrams(socket, kMostAtOnce, [&](std::span<const std::byte> bytes) {
-    const std::int64_t arrival = now_us();
+    const std::int64_t arrival = os::monotonic_us();
     const bool good = wire::decode_snapshot(bytes, snapshot);
     const std::lock_guard lock(mutex_);
     if (!good) {
@@ -140,7 +140,7 @@ void SnapshotListener::receive(const Fd& socket) {
 
 void SnapshotListener::run() {
   while (!stop_) {
-    const int wait_ms = send_due(now_us());
+    const int wait_ms = send_due(os::monotonic_us());
     std::shared_ptr<const UdpSocket> group;  // held here, so that leave() closes none in use
     {
       const std::lock_guard lock(mutex_);
@@ -151,8 +151,8 @@ void SnapshotListener::run() {
                         {group ? group->fd.get() : -1, POLLIN, 0}};
     if (::poll(polled, 3, wait_ms) < 0) continue;
     if (polled[0].revents != 0) waker_.drain();
-    if (polled[1].revents != 0) receive(unicast_.fd);
-    if (group && polled[2].revents != 0) receive(group->fd);
+    if (polled[1].revents != 0) receive(unicast_.fd.get());
+    if (group && polled[2].revents != 0) receive(group->fd.get());
   }
 }
 

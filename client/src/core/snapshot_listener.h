@@ -40,7 +40,7 @@ class SnapshotListener {
 
  private:
   void run();
-  void receive(const Fd& socket);
+  void receive(int socket);
   int send_due(std::int64_t now_us);
   void send_input(std::int64_t now_us);
 

@@ -1,26 +1,21 @@
 #include "core/sockets.h"
 
-#include <arpa/inet.h>
-#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/tcp.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
+
+#include "os/socket_address.h"
 
 namespace client {
 namespace {
 
 std::string reason() {
   return std::strerror(errno);
-}
-
-sockaddr* generic(sockaddr_in& address) {
-  return reinterpret_cast<sockaddr*>(&address);
 }
 
 // SO_RCVBUFFORCE goes past net.core.rmem_max where the process may; the kernel doubles what it
@@ -38,38 +33,19 @@ bool enlarge_receive_buffer(int fd) {
 
 }  // namespace
 
-Fd::~Fd() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 Waker::Waker() : event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
 void Waker::wake() const {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written =
-      ::write(event_.get(), &one, sizeof one);  // full: it is awake
+  ::eventfd_write(event_.get(), 1);  // full: it is awake
 }
 
 void Waker::drain() const {
-  std::uint64_t count = 0;
-  [[maybe_unused]] const auto read = ::read(event_.get(), &count, sizeof count);
-}
-
-bool is_loopback(const sockaddr_in& address) {
-  return (ntohl(address.sin_addr.s_addr) >> 24) == 127;
-}
-
-std::string text_of(const sockaddr_in& address) {
-  char text[INET_ADDRSTRLEN] = "?";
-  inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-  return std::string(text) + ":" + std::to_string(ntohs(address.sin_port));
+  eventfd_t count = 0;
+  ::eventfd_read(event_.get(), &count);
 }
 
 tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) == 1) return address;
+  if (const auto dotted = os::parse_ipv4(host, port)) return *dotted;
   addrinfo hints{}, *found = nullptr;
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_STREAM;
@@ -79,6 +55,7 @@ tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uin
         "The server's host \"" + host + "\" is not known (" + gai_strerror(failed) +
         "): give --server HOST:PORT with a name or an IPv4 address that this machine can look up.");
   }
+  sockaddr_in address{};
   std::memcpy(&address, found->ai_addr, sizeof address);
   freeaddrinfo(found);
   address.sin_port = htons(port);
@@ -87,39 +64,37 @@ tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uin
 
 tl::expected<UdpSocket, std::string> open_udp(std::uint32_t address, std::uint16_t port) {
   UdpSocket udp;
-  udp.fd = Fd(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  udp.fd = os::FileDescriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   sockaddr_in local{};
   local.sin_family = AF_INET;
   local.sin_addr.s_addr = address;
   local.sin_port = htons(port);
-  if (!udp.fd || ::bind(udp.fd.get(), generic(local), sizeof local) != 0) {
+  if (!udp.fd || ::bind(udp.fd.get(), os::generic(local), sizeof local) != 0) {
     return tl::unexpected(
         "Cannot open a UDP socket to hear the server (" + reason() +
         "): check the limits of open files and the network's permissions of this process.");
   }
   udp.small_buffer = !enlarge_receive_buffer(udp.fd.get());
-  udp.port = ntohs(local_address(udp.fd).sin_port);
+  udp.port = os::port_of(os::local_address(udp.fd.get()));
   return udp;
 }
 
 tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
                                                     std::uint32_t interface) {
   UdpSocket udp;
-  udp.fd = Fd(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  udp.fd = os::FileDescriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   setsockopt(udp.fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   ip_mreq membership{};
-  sockaddr_in local{};
-  local.sin_family = AF_INET;
-  local.sin_port = htons(port);
   membership.imr_interface.s_addr = interface;
-  if (inet_pton(AF_INET, group.c_str(), &membership.imr_multiaddr) != 1) {
+  const auto local = os::parse_ipv4(group, port);
+  if (!local) {
     return tl::unexpected(
         "The server names \"" + group +
         "\" as its multicast group, which is no IPv4 address: check the server's --multicast.");
   }
-  local.sin_addr = membership.imr_multiaddr;
-  if (!udp.fd || ::bind(udp.fd.get(), generic(local), sizeof local) != 0 ||
+  membership.imr_multiaddr = local->sin_addr;
+  if (!udp.fd || ::bind(udp.fd.get(), os::generic(*local), sizeof *local) != 0 ||
       setsockopt(udp.fd.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) !=
           0) {
     return tl::unexpected(
@@ -131,22 +106,22 @@ tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, st
   return udp;
 }
 
-std::size_t take_datagrams(const Fd& socket, std::size_t most,
+std::size_t take_datagrams(int socket, std::size_t most,
                            const std::function<void(std::span<const std::byte>)>& take) {
   std::array<std::byte, kLongestDatagram> bytes;
   std::size_t taken = 0;
   for (; taken < most; ++taken) {
-    const auto size = ::recv(socket.get(), bytes.data(), bytes.size(), 0);
+    const auto size = ::recv(socket, bytes.data(), bytes.size(), 0);
     if (size < 0) break;
     take({bytes.data(), static_cast<std::size_t>(size)});
   }
   return taken;
 }
 
-tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server) {
-  Fd tcp(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  sockaddr_in to = server;
-  if (!tcp || (::connect(tcp.get(), generic(to), sizeof to) != 0 && errno != EINPROGRESS)) {
+tl::expected<os::FileDescriptor, std::string> begin_connect(const sockaddr_in& server) {
+  os::FileDescriptor tcp(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!tcp ||
+      (::connect(tcp.get(), os::generic(server), sizeof server) != 0 && errno != EINPROGRESS)) {
     return tl::unexpected(reason());
   }
   const int on = 1;
@@ -154,18 +129,11 @@ tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server) {
   return tcp;
 }
 
-int connect_result(const Fd& socket) {
+int connect_result(int socket) {
   int error = 0;
   socklen_t size = sizeof error;
-  if (getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) return errno;
+  if (getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) != 0) return errno;
   return error;
-}
-
-sockaddr_in local_address(const Fd& socket) {
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  getsockname(socket.get(), generic(address), &size);
-  return address;
 }
 
 }  // namespace client

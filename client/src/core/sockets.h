@@ -9,26 +9,10 @@
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
-#include <utility>
+
+#include "os/file_descriptor.h"
 
 namespace client {
-
-class Fd {
- public:
-  Fd() = default;
-  explicit Fd(int fd) : fd_(fd) {}
-  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Fd& operator=(Fd&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Fd();
-  int get() const { return fd_; }
-  explicit operator bool() const { return fd_ >= 0; }
-
- private:
-  int fd_ = -1;
-};
 
 // Wakes a thread that waits in poll().
 class Waker {
@@ -39,20 +23,18 @@ class Waker {
   void drain() const;
 
  private:
-  Fd event_;
+  os::FileDescriptor event_;
 };
 
 inline constexpr int kReceiveBufferBytes =
     4 * 1024 * 1024;  // half a second's stall at 1 kHz loses nothing
 
 struct UdpSocket {
-  Fd fd;
+  os::FileDescriptor fd;
   std::uint16_t port = 0;
   bool small_buffer = false;  // less than kReceiveBufferBytes was granted
 };
 
-bool is_loopback(const sockaddr_in& address);
-std::string text_of(const sockaddr_in& address);
 // A name is looked up by the system, which may take long; an IPv4 address is not.
 tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port);
 // address: the interface to listen on; port 0: any free one.
@@ -63,12 +45,11 @@ tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, st
 // Takes the datagrams that have come, at most so many, cut to kLongestDatagram bytes; how many it
 // were. The bytes are the taker's until it returns.
 inline constexpr std::size_t kLongestDatagram = 2048;
-std::size_t take_datagrams(const Fd& socket, std::size_t most,
+std::size_t take_datagrams(int socket, std::size_t most,
                            const std::function<void(std::span<const std::byte>)>& take);
 // Begins to connect; finished (or failed) when the socket turns writable.
-tl::expected<Fd, std::string> begin_connect(const sockaddr_in& server);
+tl::expected<os::FileDescriptor, std::string> begin_connect(const sockaddr_in& server);
 // 0: connected; else the errno.
-int connect_result(const Fd& socket);
-sockaddr_in local_address(const Fd& socket);
+int connect_result(int socket);
 
 }  // namespace client

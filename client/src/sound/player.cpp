@@ -10,6 +10,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "os/file_descriptor.h"
+
 namespace client {
 namespace {
 
@@ -20,20 +22,17 @@ constexpr std::size_t kVoices = 16;  // more at once are not told apart; the old
 class QuietStderr {
  public:
   QuietStderr() : kept_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (nowhere >= 0) ::close(nowhere);
+    const os::FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+    if (kept_ && nowhere) ::dup2(nowhere.get(), STDERR_FILENO);
   }
   ~QuietStderr() {
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
+    if (kept_) ::dup2(kept_.get(), STDERR_FILENO);
   }
   QuietStderr(const QuietStderr&) = delete;
   QuietStderr& operator=(const QuietStderr&) = delete;
 
  private:
-  int kept_;
+  os::FileDescriptor kept_;
 };
 
 }  // namespace
