@@ -19,7 +19,7 @@ constexpr double kCeremonyAtLeast = 0.5;  // [s]
 constexpr double kLeastHit = 0.003;  // [N s]
 
 std::uint64_t ticks(double seconds) {
-  return static_cast<std::uint64_t>(seconds / kTick + 0.5);
+  return static_cast<std::uint64_t>(std::lround(seconds / kTick));
 }
 
 bool plausible(const MatchDesc& desc) {

@@ -89,7 +89,7 @@ void FoosballTick(benchmark::State& state) {
   std::vector<std::byte> start;
   table.world.snapshot(start);
   std::uint64_t impacts = 0, limited = 0, ticks = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (ticks % 100 == 0) drive(table, random);
     const auto status = table.world.step(0.001);
     impacts += table.world.counters().impacts;
@@ -104,7 +104,7 @@ BENCHMARK(FoosballTick)->Unit(benchmark::kMicrosecond)->MinTime(1.0);
 
 void StateHash(benchmark::State& state) {
   const Table table = make_table();
-  for (auto _ : state) benchmark::DoNotOptimize(table.world.state_hash());
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(table.world.state_hash());
 }
 BENCHMARK(StateHash)->Unit(benchmark::kMicrosecond);
 

@@ -79,7 +79,8 @@ std::vector<std::uint8_t> distance_field(std::span<const std::uint8_t> coverage,
   field.reserve(coverage.size() / static_cast<std::size_t>(step * step));
   for (int y = step / 2; y < height; y += step) {
     for (int x = step / 2; x < width; x += step) {
-      const auto i = static_cast<std::size_t>(y * width + x);
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x);
       const float distance = std::sqrt(to_outside[i]) - std::sqrt(to_inside[i]);
       field.push_back(static_cast<std::uint8_t>(
           std::lround(std::clamp(128.0f + 127.0f * distance / reach, 0.0f, 255.0f))));

@@ -14,7 +14,8 @@ namespace vp::collide {
 
 struct IndexPair {
   std::uint32_t a, b;  // a < b
-  constexpr auto operator<=>(const IndexPair&) const = default;
+  // The check takes the 0 that the compiler compares with for a pointer.
+  constexpr auto operator<=>(const IndexPair&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 class BroadPhase {
