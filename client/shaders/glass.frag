@@ -11,7 +11,9 @@ void main() {
   vec3 v = normalize(u_eye - v_position);
   float facing = abs(dot(normalize(v_normal), v));
   float edge = smoothstep(u_top - 0.006, u_top - 0.001, v_position.z);
-  float alpha = 0.05 + 0.16 * pow(1.0 - facing, 3.0) + 0.65 * edge;
+  // The near wall's edge lies across the field in the picture: it must not hide the ball.
+  float lamp = v_position.y * u_eye.y > 0.0 ? 0.28 : 0.65;
+  float alpha = 0.04 + 0.16 * pow(1.0 - facing, 3.0) + lamp * edge;
   vec3 light = 2.3 * u_team_lamp[v_position.y < 0.0 ? 0 : 1] + 0.10;
   o_colour = scene_output(mix(vec3(0.32, 0.50, 0.62), light, edge), alpha);
 }

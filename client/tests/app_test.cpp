@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "app/view_motion.h"
 #include "render/particles.h"
+#include "render/table_mesh.h"
 #include "scripted_scene.h"
 #include "sound/player.h"
 
@@ -150,15 +151,51 @@ TEST(Camera, PutsTheOwnGoalOnTheLeftForEitherTeam) {
   }
 }
 
-TEST(Camera, ShowsTheWholeFieldInNarrowWindowsToo) {
-  for (const glm::ivec2 screen :
-       {glm::ivec2(1280, 720), glm::ivec2(800, 800), glm::ivec2(2560, 1080)}) {
-    const Camera camera = player_camera({}, screen);
-    for (const float x : {-0.6f, 0.6f}) {
-      for (const float y : {-0.34f, 0.34f}) {
-        const glm::vec3 p = camera.project({x, y, 0}, screen);
-        EXPECT_TRUE(p.x > 0 && p.x < static_cast<float>(screen.x) && p.y > 0 &&
-                    p.y < static_cast<float>(screen.y));
+// The table and its handles at both ends of their way, as they are drawn.
+std::vector<glm::vec3> all_that_must_be_seen(const foosball::TableSpec& table) {
+  std::vector<glm::vec3> points;
+  for (const MeshVertex& v : table_mesh(table, 1.0f).vertices) points.push_back(v.position);
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
+    const float handle = handle_offset(table, rod);
+    for (const MeshVertex& v : rod_mesh(table, rod, 1.0f).vertices) {
+      if (std::abs(v.position.y - handle) > 0.07f) continue;
+      for (const double slide : {-spec.slide_limit, spec.slide_limit}) {
+        points.push_back(v.position + glm::vec3(spec.x, slide, table.rod_height));
+      }
+    }
+  }
+  return points;
+}
+
+// Of the picture's halves, how much the outermost point takes: 1 at its edge.
+float share_taken(const Camera& camera, const std::vector<glm::vec3>& points) {
+  float most = 0.0f;
+  for (const glm::vec3& point : points) {
+    const glm::vec4 clip = camera.view_projection * glm::vec4(point, 1.0f);
+    EXPECT_GT(clip.w, 0.0f);
+    most = std::max({most, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
+  }
+  return most;
+}
+
+TEST(Camera, ShowsTheWholeTableWithAllHandlesAtFullSlideInEveryWindow) {
+  for (const auto layout : {foosball::Layout::paper, foosball::Layout::tournament}) {
+    const auto points = all_that_must_be_seen(foosball::table_spec(layout));
+    for (const glm::ivec2 screen :
+         {glm::ivec2(720, 720), glm::ivec2(1024, 768), glm::ivec2(1280, 800), glm::ivec2(1280, 720),
+          glm::ivec2(2160, 1080), glm::ivec2(2520, 1080)}) {
+      for (const int team : {0, 1}) {
+        for (const float lean : {-kMostLean, 0.0f, kMostLean}) {
+          const Camera camera =
+              player_camera({.layout = layout, .team = team, .lean = {lean, 0.0f}}, screen);
+          const float share = share_taken(camera, points);
+          EXPECT_LT(share, 0.985f) << screen.x << "x" << screen.y << " team " << team;
+          // ... and no farther away than that needs.
+          if (lean == 0.0f) {
+            EXPECT_GT(share, 0.90f) << screen.x << "x" << screen.y;
+          }
+        }
       }
     }
   }

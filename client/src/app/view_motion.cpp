@@ -10,7 +10,6 @@
 namespace client {
 namespace {
 
-constexpr float kLean = 0.030f;  // [m] of the gaze, with the ball at a goal
 constexpr float kSettle = 1.1f;  // [s] to close most of the way to where the camera wants to be
 
 }  // namespace
@@ -27,9 +26,10 @@ CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt) {
   } else if (scene->ball_in_play) {
     const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene->layout));
     const float way = scene->ball.position[0] / static_cast<float>(0.5 * table.length);
-    wanted.lean = {kLean * std::clamp(way, -1.0f, 1.0f), 0.0f};
+    wanted.lean = {kMostLean * std::clamp(way, -1.0f, 1.0f), 0.0f};
   }
   const float share = 1.0f - std::exp(-3.0f * dt / kSettle);
+  if (scene != nullptr) view_.layout = static_cast<foosball::Layout>(scene->layout);
   view_.team = team;
   view_.orbit += share * (wanted.orbit - view_.orbit);
   view_.closeness += share * (wanted.closeness - view_.closeness);

@@ -2,17 +2,76 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
+#include "render/table_mesh.h"
 
 namespace client {
 namespace {
 
-constexpr float kElevation = 0.98f;  // [rad] above the field: the near wall hides little of it
-constexpr float kDistance = 1.72f;   // [m] at the aspect below: the table and the near handles fit
-constexpr float kGazeNear = 0.062f;  // [m] before the middle: the own handles are seen, not cut off
-constexpr float kFieldOfView = 0.64f;    // [rad], vertical
-constexpr float kAspect = 16.0f / 9.0f;  // narrower windows step back
+// From where the whole table is seen. Lower, the men of one rod would hide each other and the ball;
+// higher, the way of the goalies' handles, which is longer than the field, would make it small.
+constexpr float kElevation = 0.74f;    // [rad] above the field
+constexpr float kFieldOfView = 0.50f;  // [rad], vertical
+constexpr float kMargin = 0.97f;       // of the picture's half that the table may take
+
+// From where the men are seen, for a choice between them.
+constexpr float kNearElevation = 0.80f;  // [rad]
+constexpr float kNearDistance = 1.07f;   // [m] at the aspect below; narrower windows step back
+constexpr float kNearGaze = 0.06f;       // [m] before the middle
+constexpr float kNearAspect = 16.0f / 9.0f;
+
+struct Stand {
+  float distance;  // of the eye from where it looks at the field [m]
+  float gaze;      // how far before the middle that is [m]
+};
+
+// What has to be in the picture, as team 0 sees it; the table looks the same from the other side.
+std::vector<glm::vec3> outermost_points(const foosball::TableSpec& table) {
+  std::vector<glm::vec3> points;
+  const Extent body = table_extent(table);
+  for (const float x : {body.low.x, body.high.x}) {
+    for (const float y : {body.low.y, body.high.y}) {
+      for (const float z : {body.low.z, body.high.z}) points.emplace_back(x, y, z);
+    }
+  }
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const auto x = static_cast<float>(table.rods[static_cast<std::size_t>(rod)].x);
+    const auto z = static_cast<float>(table.rod_height);
+    for (const float dx : {-kHandleRadius, kHandleRadius}) {
+      for (const float dz : {-kHandleRadius, kHandleRadius})
+        points.emplace_back(x + dx, handle_reach(table, rod), z + dz);
+    }
+  }
+  return points;
+}
+
+// The nearest stand from which all points are in view. With the eye at (0, forward, up) along the
+// view's own axes, a point at (x, f, u) is in view if |x| <= (f - forward) tan_x and
+// |u - up| <= (f - forward) tan_y: linear in the eye, so that the outermost points of each of the
+// four sides decide.
+Stand whole_table(const foosball::TableSpec& table, float aspect) {
+  const glm::vec2 forward{std::cos(kElevation), -std::sin(kElevation)};  // in the plane of y and z
+  const glm::vec2 up{-forward.y, forward.x};
+  const float tan_y = kMargin * std::tan(0.5f * kFieldOfView);
+  const float tan_x = aspect * tan_y;
+  float top = -1e9f, bottom = -1e9f, side = -1e9f;
+  for (const glm::vec3& point : outermost_points(table)) {
+    const glm::vec2 p{point.y, point.z};
+    const float f = glm::dot(p, forward), u = glm::dot(p, up);
+    top = std::max(top, u - tan_y * f);
+    bottom = std::max(bottom, -u - tan_y * f);
+    side = std::max(side, std::abs(point.x) + kMostLean - tan_x * f);
+  }
+  const float back = std::max((top + bottom) / (2.0f * tan_y), side / tan_x);
+  const glm::vec2 eye = 0.5f * (top - bottom) * up - back * forward;
+  const float distance = eye.y / -forward.y;
+  return {distance, -(eye.x + distance * forward.x)};
+}
 
 }  // namespace
 
@@ -25,12 +84,14 @@ glm::vec3 Camera::project(const glm::vec3& world, const glm::ivec2& screen) cons
 Camera player_camera(const CameraView& view, const glm::ivec2& screen) {
   const float aspect =
       static_cast<float>(std::max(screen.x, 1)) / static_cast<float>(std::max(screen.y, 1));
-  const float distance =
-      kDistance * std::max(1.0f, kAspect / aspect) * (1.0f - 0.45f * view.closeness);
-  const float side = (view.team == 1 ? glm::half_pi<float>() : -glm::half_pi<float>()) + view.orbit;
-  const float elevation = kElevation - 0.30f * view.closeness;
+  const Stand whole = whole_table(foosball::table_spec(view.layout), aspect);
+  const float near = kNearDistance * std::max(1.0f, kNearAspect / aspect);
+  const float distance = glm::mix(whole.distance, near, view.closeness);
+  const float elevation = glm::mix(kElevation, kNearElevation, view.closeness);
+  const float gaze = glm::mix(whole.gaze, kNearGaze, view.closeness);
   const float toward = view.team == 1 ? 1.0f : -1.0f;
-  const glm::vec3 target{view.lean.x, view.lean.y + toward * kGazeNear, 0.0f};
+  const float side = toward * glm::half_pi<float>() + view.orbit;
+  const glm::vec3 target{view.lean.x, view.lean.y + toward * gaze, 0.0f};
   Camera camera;
   camera.eye =
       target + distance * glm::vec3(std::cos(elevation) * std::cos(side),

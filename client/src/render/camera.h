@@ -1,10 +1,12 @@
 // A player's view: standing at the long side, own goal to the left, looking down at the whole
-// table.
+// table with its handles, wherever they are slid to, in windows of every shape.
 #pragma once
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "foosball/table.h"
 
 namespace client {
 
@@ -18,10 +20,13 @@ struct Camera {
   glm::vec3 project(const glm::vec3& world, const glm::ivec2& screen) const;
 };
 
+inline constexpr float kMostLean = 0.030f;  // [m] along x: so far the whole table stays in view
+
 struct CameraView {
+  foosball::Layout layout = foosball::Layout::tournament;
   int team = 0;            // whose side; a watcher stands with team 0
   float orbit = 0.0f;      // turned about the table [rad]: the logo and the ceremony drift slowly
-  float closeness = 0.0f;  // 0 whole table .. 1 near
+  float closeness = 0.0f;  // 0 whole table .. 1 near the men
   glm::vec2 lean{0.0f};    // of the gaze towards the play [m]
 };
 

@@ -25,7 +25,10 @@ const Paint kGrip{glm::vec3(0.80f), 1.0f, 0.42f, 0.0f, 0.0f};
 const Paint kMark{{0.75f, 0.77f, 0.80f}, 0.0f, 0.4f, 0.0f, 0.0f};
 
 constexpr float kHandleLength = 0.105f;
-constexpr float kReach = 0.022f;  // of a rod beyond the wall when pushed in all the way
+constexpr float kHandleInset = 0.004f;  // of the rod's end in its handle
+constexpr float kReach = 0.010f;        // of a rod beyond the wall when pushed in all the way
+
+constexpr float kPlinthBottom = -0.235f;
 
 float f(double v) {
   return static_cast<float>(v);
@@ -50,7 +53,7 @@ void add_body(MeshBuilder& b, const Sizes& s) {
   b.paint(kBody);
   add_box(b, {-s.outer_x, -s.outer_y, -0.19f}, {s.outer_x, s.outer_y, -0.004f}, 0.012f);
   b.paint(kRail);  // plinth
-  add_box(b, {-s.outer_x + 0.05f, -s.outer_y + 0.03f, -0.235f},
+  add_box(b, {-s.outer_x + 0.05f, -s.outer_y + 0.03f, kPlinthBottom},
           {s.outer_x - 0.05f, s.outer_y - 0.03f, -0.18f}, 0.012f);
   for (const float side : {-1.0f, 1.0f}) {
     b.paint({kTeamLamp[side < 0.0f ? 0 : 1], 0.0f, 0.5f, 0.0f, 1.8f});
@@ -205,7 +208,7 @@ MeshData rod_mesh(const TableSpec& table, int rod, float detail) {
              14, true);
   }
   b.paint(kGrip);
-  const float g = 0.0165f, near = -half + 0.004f, far = near - kHandleLength;
+  const float g = kHandleRadius, near = -half + kHandleInset, far = near - kHandleLength;
   b.turned(
       std::array{ProfilePoint{0, far}, ProfilePoint{g * 0.75f, far}, ProfilePoint{g, far + 0.008f},
                  ProfilePoint{g * 0.92f, far + 0.5f * kHandleLength},
@@ -216,6 +219,17 @@ MeshData rod_mesh(const TableSpec& table, int rod, float detail) {
   b.rounded_box({0, (spec.team == 0 ? -0.93f : 0.93f) * g, far + 0.5f * kHandleLength},
                 {0.0028f, 0.0022f, 0.36f * kHandleLength}, 0.001f, 1);
   return b.take();
+}
+
+Extent table_extent(const TableSpec& table) {
+  const Sizes s(table);
+  return {{-s.outer_x, -s.outer_y, kPlinthBottom}, {s.outer_x, s.outer_y, s.wall + 0.004f}};
+}
+
+float handle_reach(const TableSpec& table, int rod) {
+  const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
+  const float y = rod_half_length(table, rod) - kHandleInset + kHandleLength + f(spec.slide_limit);
+  return spec.team == 0 ? -y : y;
 }
 
 float handle_offset(const TableSpec& table, int rod) {

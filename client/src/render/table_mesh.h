@@ -20,6 +20,15 @@ MeshData glass_mesh(const foosball::TableSpec& table);
 MeshData field_mesh(const foosball::TableSpec& table);
 // One rod in its own frame: origin on the axis, y along it, handle on its team's side.
 MeshData rod_mesh(const foosball::TableSpec& table, int rod, float detail);
+// The box around the table, without its rods [m].
+struct Extent {
+  glm::vec3 low, high;
+};
+Extent table_extent(const foosball::TableSpec& table);
+// Where the outer end of a rod's handle is when the rod is slid out all the way, along y, signed
+// [m].
+float handle_reach(const foosball::TableSpec& table, int rod);
+inline constexpr float kHandleRadius = 0.0165f;  // [m]
 // From the middle of a rod to the middle of its handle, along y, signed [m].
 float handle_offset(const foosball::TableSpec& table, int rod);
 
