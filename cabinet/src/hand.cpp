@@ -17,9 +17,11 @@ constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a 
 constexpr double kNearer = 0.03;       // [m] a rod must be nearer by, to be chosen: no flicker
 constexpr double kLongestStep = 0.05;  // [s] a stalled window does not fling the rods
 
-// A mouse reports every 8 ms or faster, a window polls every 16.7 ms or faster.
+// A mouse reports every 8 ms or faster: a poll that brings nothing, that long after the last
+// movement, says that the hand stands. Held longer, the rate drives the rod on past where the hand
+// stopped.
 constexpr std::int64_t kReportUs = 8'000;
-constexpr std::int64_t kRateHoldUs = 40'000;
+constexpr std::int64_t kRateHoldUs = 9'000;
 
 double finite(double value) {
   return std::isfinite(value) ? value : 0;

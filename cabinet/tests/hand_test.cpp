@@ -57,6 +57,32 @@ TEST(Hand, TheMouseMovesTheActiveRodOnly) {
   EXPECT_EQ(p.rod(3).status, RodStatus::live);
 }
 
+TEST(Hand, StandsWithTheFirstFrameThatBringsNothing) {
+  Player p;
+  for (int frame = 0; frame < 10; ++frame) {
+    p.hand.mouse_moved(10, 10);
+    p.frames(1);
+    EXPECT_GT(p.active().slide_rate, 0.3);
+    EXPECT_NE(p.active().angle_rate, 0);
+  }
+  p.frames(1);
+  EXPECT_EQ(p.active().slide_rate, 0);
+  EXPECT_EQ(p.active().angle_rate, 0);
+}
+
+TEST(Hand, MovesOnBetweenTheReportsOfASlowMouse) {
+  Player p;
+  constexpr std::int64_t kFrameUs = 4'167, kReportUs = 8'000;  // 240 Hz, 125 Hz
+  std::int64_t next_us = p.now_us + kReportUs;
+  for (int frame = 0; frame < 480; ++frame) {
+    for (; next_us <= p.now_us + kFrameUs; next_us += kReportUs) p.hand.mouse_moved(0, 16);
+    p.frames(1, kFrameUs);
+    if (frame < 10) continue;
+    const double steady = 16 * HandOptions{}.radians_per_pixel / (1e-6 * kReportUs);
+    EXPECT_NEAR(std::abs(p.active().angle_rate) / steady, 1.0, 0.55) << frame;  // measured 0.50
+  }
+}
+
 TEST(Hand, SignsTurnTheMotionRound) {
   HandOptions options = Player::options();
   options.slide_sign = options.angle_sign = -1;
