@@ -4,6 +4,7 @@ in vec3 v_position;
 in vec3 v_normal;
 in vec3 v_shadow;
 in vec3 v_local;
+uniform float u_fade;  // of light with height [1/m], in the mirror
 out vec4 o_colour;
 
 void main() {
@@ -28,5 +29,5 @@ void main() {
   albedo = mix(albedo, vec3(0.30, 0.31, 0.33), 0.75 * seam);
   vec3 n = normalize(v_normal);
   vec3 light = shade(Surface(albedo, 0.32, 0.0), v_position, n, v_shadow, 1.0);
-  o_colour = scene_output(light + albedo * 0.22, 1.0);  // a little of its own: never lost in a shadow
+  o_colour = scene_output((light + albedo * 0.22) * exp(-u_fade * v_position.z), 1.0);  // a little of its own: never lost in a shadow
 }

@@ -1,10 +1,12 @@
 // The turf: calm dark teal in mown bands, markings drawn from their signed distances so that they
-// stay sharp at every size, and the ball's contact shadow as a cue of its height.
+// stay sharp at every size, and the ball's contact shadow as a cue of its height. Its surface is
+// polished: what was drawn upside down before shines through by the share in its alpha.
 in vec3 v_position;
 in vec3 v_shadow;
 uniform vec2 u_half_field;    // [m]
 uniform float u_goal_width;   // [m]
 uniform vec3 u_team_colour[2];
+uniform vec3 u_team_lamp[2];
 uniform vec4 u_ball;          // position, radius [m]; radius 0: none
 uniform vec4 u_active_rod;    // x, strength, rod's side of the marker (y), tick of the pulse
 out vec4 o_colour;
@@ -37,14 +39,14 @@ void main() {
   vec2 p = v_position.xy;
   vec2 band = abs(fract(p / vec2(0.150, 2.0) + 0.25) - 0.5);
   float mown = smoothstep(0.245, 0.255, band.x);
-  vec3 turf = mix(vec3(0.0045, 0.040, 0.052), vec3(0.0065, 0.053, 0.067), mown);
+  vec3 turf = mix(vec3(0.0030, 0.034, 0.042), vec3(0.0045, 0.046, 0.056), mown);
   float towards = smoothstep(0.35, 1.0, abs(p.x) / u_half_field.x);
   vec3 team = u_team_colour[p.x > 0.0 ? 1 : 0];
   turf += 0.014 * team * towards;
   float edge = min(u_half_field.x - abs(p.x), u_half_field.y - abs(p.y));
   float m = markings(p);
 
-  Surface s = Surface(mix(turf, mix(vec3(0.52, 0.66, 0.70), team, 0.45 * towards), 0.86 * m), 0.88, 0.0);
+  Surface s = Surface(mix(turf, mix(vec3(0.52, 0.66, 0.70), team, 0.45 * towards), 0.86 * m), 0.80, 0.0);
   float occlusion = mix(0.45, 1.0, smoothstep(0.0, 0.05, edge));
   float contact = 1.0;
   if (u_ball.w > 0.0) {
@@ -57,5 +59,11 @@ void main() {
   // A soft lane of light lies under the rod in hand.
   float lane = (p.x - u_active_rod.x) / 0.020;
   c += u_active_rod.y * exp(-lane * lane) * vec3(0.16, 0.20, 0.19) * (0.55 + 0.45 * s.albedo.g * 8.0);
-  o_colour = scene_output(c, 1.0);
+  c += m * mix(vec3(0.16, 0.24, 0.26), team, 0.6 * towards) * 0.35;
+  // The lamps along the walls and around the goals light the turf at their feet.
+  vec2 goal = vec2(u_half_field.x - abs(p.x), max(abs(p.y) - 0.5 * u_goal_width, 0.0));
+  c += u_team_lamp[p.y > 0.0 ? 1 : 0] * 0.10 * exp(-22.0 * (u_half_field.y - abs(p.y)));
+  c += u_team_lamp[p.x > 0.0 ? 1 : 0] * 0.30 * exp(-20.0 * length(goal));
+  float grazing = 1.0 - normalize(u_eye - v_position).z;
+  o_colour = vec4(scene_output(c, 1.0).rgb, 0.13 + 0.80 * grazing * grazing);
 }

@@ -14,6 +14,6 @@ void main() {
   // The near wall's edge lies across the field in the picture: it must not hide the ball.
   float lamp = v_position.y * u_eye.y > 0.0 ? 0.28 : 0.65;
   float alpha = 0.04 + 0.16 * pow(1.0 - facing, 3.0) + lamp * edge;
-  vec3 light = 2.3 * u_team_lamp[v_position.y < 0.0 ? 0 : 1] + 0.10;
+  vec3 light = 3.2 * u_team_lamp[v_position.y < 0.0 ? 0 : 1] + 0.10;
   o_colour = scene_output(mix(vec3(0.32, 0.50, 0.62), light, edge), alpha);
 }

@@ -34,10 +34,10 @@ vec3 nebula(vec3 d) {
   float cloud = fbm(d * 2.6 + 1.9 * warp);
   float veil = fbm(d * 5.0 + 2.5 * warp.zxy + 40.0);
   float band = exp(-pow(dot(d, normalize(vec3(0.25, -0.45, 0.86))) * 2.2 + 0.35 * (warp.x - 0.5), 2.0));
-  vec3 c = vec3(0.0045, 0.0060, 0.0140);
-  c += vec3(0.085, 0.110, 0.300) * smoothstep(0.42, 0.85, cloud) * (0.35 + band);
-  c += vec3(0.420, 0.120, 0.460) * pow(smoothstep(0.40, 0.90, veil * 0.6 + cloud * 0.5), 2.0) * band;
-  c += vec3(0.050, 0.190, 0.215) * pow(smoothstep(0.45, 0.85, warp.y), 2.0) * (0.4 + 0.6 * band);
+  vec3 c = vec3(0.0060, 0.0070, 0.0180);
+  c += vec3(0.130, 0.130, 0.420) * smoothstep(0.42, 0.85, cloud) * (0.35 + band);
+  c += vec3(0.900, 0.220, 0.800) * pow(smoothstep(0.40, 0.90, veil * 0.6 + cloud * 0.5), 2.0) * band;
+  c += vec3(0.070, 0.280, 0.340) * pow(smoothstep(0.45, 0.85, warp.y), 2.0) * (0.4 + 0.6 * band);
   return c * (1.0 - 0.6 * smoothstep(0.45, 0.75, veil) * band);
 }
 
@@ -49,7 +49,7 @@ vec3 planet(vec3 d, vec3 sky) {
   float inside = radius - angle;
   vec2 around = normalize(d.xy + vec2(1e-5, 0.0));
   float lit = 0.20 + 0.80 * smoothstep(-0.9, 0.9, -around.x);
-  vec3 air = vec3(0.07, 0.24, 0.46) * lit;
+  vec3 air = vec3(0.10, 0.32, 0.66) * lit;
   vec3 glow = sky + air * 0.85 * exp(min(inside, 0.0) * 30.0);
   if (inside < -0.006) return glow;
   float r = angle / radius;
@@ -57,10 +57,10 @@ vec3 planet(vec3 d, vec3 sky) {
   float clouds = fbm(n * 3.2 + 1.4 * fbm(n * 5.0 + 9.0));
   float land = smoothstep(0.50, 0.56, fbm(n * 2.3 + 31.0));
   float day = smoothstep(-0.2, 1.1, -around.x * r);
-  vec3 ground = mix(vec3(0.0020, 0.0065, 0.0125), vec3(0.0060, 0.0075, 0.0070), land);
-  ground += vec3(0.046, 0.062, 0.088) * smoothstep(0.48, 0.80, clouds);
+  vec3 ground = mix(vec3(0.0040, 0.0160, 0.0360), vec3(0.0130, 0.0160, 0.0160), land);
+  ground += vec3(0.090, 0.115, 0.160) * smoothstep(0.48, 0.80, clouds);
   float city = land * smoothstep(0.74, 0.90, noise(n * 26.0)) * smoothstep(0.55, 0.9, noise(n * 90.0));
-  vec3 c = ground * (0.45 + 2.4 * day) + vec3(0.20, 0.12, 0.05) * city * (1.0 - smoothstep(0.45, 0.7, clouds));
+  vec3 c = ground * (0.45 + 2.4 * day) + vec3(0.60, 0.34, 0.13) * city * (1.0 - smoothstep(0.45, 0.7, clouds));
   c += air * 0.55 * exp(-max(inside, 0.0) * 11.0);
   return mix(glow, c, smoothstep(-0.004, 0.004, inside));  // two texels wide: no stairs
 }

@@ -154,7 +154,9 @@ TEST(Camera, PutsTheOwnGoalOnTheLeftForEitherTeam) {
 // The table and its handles at both ends of their way, as they are drawn.
 std::vector<glm::vec3> all_that_must_be_seen(const foosball::TableSpec& table) {
   std::vector<glm::vec3> points;
-  for (const MeshVertex& v : table_mesh(table, 1.0f).vertices) points.push_back(v.position);
+  for (const MeshData& mesh : {body_mesh(table, 1.0f), rim_mesh(table, 1.0f)}) {
+    for (const MeshVertex& v : mesh.vertices) points.push_back(v.position);
+  }
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
     const float handle = handle_offset(table, rod);

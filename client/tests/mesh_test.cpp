@@ -148,9 +148,13 @@ INSTANTIATE_TEST_SUITE_P(Characters, Figures,
 TEST(TableMesh, IsClosedAndLeavesTheGoalMouthsOpen) {
   for (const auto layout : {foosball::Layout::paper, foosball::Layout::tournament}) {
     const auto& table = foosball::table_spec(layout);
-    const MeshData mesh = table_mesh(table, 1.0f);
-    expect_sound_triangles(mesh);
-    expect_closed(mesh);
+    const MeshData body = body_mesh(table, 1.0f), mesh = rim_mesh(table, 1.0f);
+    for (const MeshData* part : {&body, &mesh}) {
+      expect_sound_triangles(*part);
+      expect_closed(*part);
+    }
+    // What is mirrored as if it stood on the field must not hang below it.
+    for (const MeshVertex& v : body.vertices) EXPECT_LT(v.position.z, 0.0f);
     // No vertex stands in the mouth, where the ball rolls in.
     for (const MeshVertex& v : mesh.vertices) {
       const bool in_mouth =

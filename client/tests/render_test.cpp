@@ -151,6 +151,22 @@ TEST_P(RenderTest, TheBallIsWhereItsPixelsAre) {
   }
 }
 
+TEST_P(RenderTest, TheFieldMirrorsWhatIsAboveItAndNothingWhereNothingIs) {
+  wire::Snapshot with = scripted_play(0.35);
+  with.ball.position = {0.12f, -0.05f, 0.06f};
+  wire::Snapshot without = with;
+  without.ball_in_play = false;
+  const Image image = draw(with), empty = draw(without);
+  const glm::ivec2 mirrored = pixel_of({0.12f, -0.05f, -0.06f}),
+                   beside = pixel_of({0.16f, -0.15f, 0});
+  const auto brighter = [&](glm::ivec2 at) {
+    const glm::vec3 more = mean(image, at - 2, at + 3) - mean(empty, at - 2, at + 3);
+    return (more.r + more.g + more.b) / 3.0f;
+  };
+  EXPECT_GT(brighter(mirrored), 8.0f);
+  EXPECT_LT(std::abs(brighter(beside)), 2.0f);
+}
+
 TEST_P(RenderTest, MenAreAtTheirPlacesInTheirTeamsColours) {
   for (const double moment : {0.35, 1.62, 2.4}) {
     wire::Snapshot state = scripted_play(moment);

@@ -13,7 +13,7 @@ using Kind = wire::EventKind;
 constexpr float kAudible = 0.004f;  // [N s]: less is rolling, not hitting
 constexpr float kStrong = 0.20f;    // [N s]: a hard shot
 
-const glm::vec3 kWoodDust{0.45f, 0.55f, 0.65f};
+const glm::vec3 kWoodDust{0.9f, 1.1f, 1.3f};
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void show_events(std::span<const wire::EventSnapshot> events, Particles& particl
     switch (static_cast<Kind>(event.kind)) {
       case Kind::man_hit:
         if (event.value < kAudible) break;
-        particles.spark(at, glm::vec3(0), 0.5f * team + glm::vec3(0.35f, 0.32f, 0.28f), strength);
+        particles.spark(at, glm::vec3(0), 1.2f * team + glm::vec3(1.1f, 0.95f, 0.75f), strength);
         play(Sound::kick, volume_of_impulse(event.value));
         break;
       case Kind::wall_hit:

@@ -1,6 +1,7 @@
 #include "render/particles.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace client {
@@ -21,12 +22,12 @@ void Particles::add(const Particle& particle) {
 
 void Particles::spark(const glm::vec3& at, const glm::vec3& towards, const glm::vec3& colour,
                       float strength) {
-  const int count = 4 + static_cast<int>(18.0f * std::clamp(strength, 0.0f, 1.0f));
+  const int count = 6 + static_cast<int>(26.0f * std::clamp(strength, 0.0f, 1.0f));
   for (int i = 0; i < count; ++i) {
     const glm::vec3 scatter{uniform(), uniform(), 0.5f + 0.5f * uniform()};
     const float speed = (0.25f + 0.9f * strength) * (0.6f + 0.4f * uniform());
-    add({at, speed * (scatter + 0.9f * towards), colour, 0.0022f + 0.0010f * uniform(), 0.0f,
-         0.30f + 0.12f * uniform(), -2.5f});
+    add({at, speed * (scatter + 0.9f * towards), colour, 0.0036f + 0.0014f * uniform(), 0.0f,
+         0.38f + 0.12f * uniform(), -2.5f});
   }
 }
 
@@ -39,16 +40,17 @@ void Particles::celebrate(const glm::vec3& at, const glm::vec3& colour) {
   }
 }
 
-// Faint beads left where the ball was during the frame.
+// Beads of light left where the ball was during the frame: cool when it runs, white-hot when shot.
 void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float radius, float dt) {
   const float speed = glm::length(velocity);
-  if (speed < 2.0f) return;
-  const float fade = std::clamp((speed - 2.0f) / 6.0f, 0.0f, 1.0f);
+  if (speed < 1.2f) return;
+  const float fade = std::clamp((speed - 1.2f) / 5.0f, 0.0f, 1.0f);
+  const glm::vec3 light =
+      fade * glm::mix(glm::vec3(0.10f, 0.28f, 0.45f), glm::vec3(0.60f, 0.54f, 0.42f), fade);
   const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, 12);
   for (int i = 0; i < beads; ++i) {
     const float back = dt * static_cast<float>(i) / static_cast<float>(beads);
-    add({ball - velocity * back, glm::vec3(0), glm::vec3(0.30f, 0.36f, 0.42f) * fade,
-         0.75f * radius, back, 0.12f, 0.0f});
+    add({ball - velocity * back, glm::vec3(0), light, 0.80f * radius, back, 0.20f, 0.0f});
   }
 }
 

@@ -27,7 +27,7 @@ void Post::resize(const glm::ivec2& screen) {
   if (screen == screen_) return;
   screen_ = screen;
   if (quality_ == Quality::low) {
-    scene_ = Target({.size = glm::max(screen / 2, 1), .format = GL_RGBA8, .depth = true});
+    scene_ = Target({.size = glm::max(screen * 2 / 3, 1), .format = GL_RGBA8, .depth = true});
     return;
   }
   scene_ = Target({.size = screen, .samples = 4, .depth = true});

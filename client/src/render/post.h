@@ -1,4 +1,4 @@
-// From light to the screen: bloom over three halvings and the tone curve (high quality), or a plain
+// From light to the screen: bloom over five halvings and the tone curve (high quality), or a plain
 // enlargement (low).
 #pragma once
 
@@ -28,8 +28,8 @@ class Post {
   Program bright_, down_, up_, present_;
   GlVertexArray empty_;
   Target scene_;
-  std::array<Target, 4> small_;
-  std::array<Target, 3> bloom_;
+  std::array<Target, 5> small_;
+  std::array<Target, 4> bloom_;
   glm::ivec2 screen_{0, 0};
 };
 

@@ -18,6 +18,8 @@ namespace {
 const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.42f, -0.04f, 0.90f));
 const glm::vec3 kKeyColour{3.5f, 3.35f, 3.1f};
 const glm::vec3 kHeldColour{0.95f, 0.62f, 0.08f};
+// Of light with height in the mirror [1/m]: the turf is no glass, only what stands near is clear.
+constexpr float kMirrorFade = 13.0f;
 constexpr float kLightReach = 1.0f;  // [m]: the table fits into the light's box
 
 glm::vec3 vec(const std::array<float, 3>& a) {
@@ -31,6 +33,16 @@ glm::mat4 pose(const wire::PoseVelocity& body) {
   glm::mat4 m = glm::mat4_cast(quat(body.orientation));
   m[3] = glm::vec4(vec(body.position), 1.0f);
   return m;
+}
+
+// As if seen from under the field: what a mirror in its place would show.
+Camera mirrored(const Camera& camera) {
+  const glm::mat4 flip = glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, -1));
+  Camera below = camera;
+  below.eye.z = -camera.eye.z;
+  below.view = camera.view * flip;
+  below.view_projection = camera.view_projection * flip;
+  return below;
 }
 
 // The key light's camera: a box around the table.
@@ -62,7 +74,7 @@ tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality)
   auto post = Post::create(quality);
   if (!post) return tl::unexpected(post.error());
   scene->post_ = std::move(*post);
-  scene->shadow_ = quality == Quality::high ? ShadowTarget(2048, true) : ShadowTarget(1024, false);
+  scene->shadow_ = quality == Quality::high ? ShadowTarget(2048, true) : ShadowTarget(768, false);
   scene->light_matrix_ = light_matrix();
   scene->build_static_meshes();
   scene->use_layout(foosball::Layout::tournament);
@@ -120,8 +132,10 @@ void Scene::use_layout(foosball::Layout layout) {
   if (table_ == &table) return;
   table_ = &table;
   const float detail = quality_ == Quality::high ? 1.0f : 0.4f;
-  table_mesh_ = GpuMesh(table_mesh(table, detail));
-  table_mesh_.set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
+  body_mesh_ = GpuMesh(body_mesh(table, detail));
+  rim_mesh_ = GpuMesh(rim_mesh(table, detail));
+  for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_})
+    mesh->set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
   glass_mesh_ = GpuMesh(glass_mesh(table));
   field_mesh_ = GpuMesh(field_mesh(table));
   for (int rod = 0; rod < foosball::kRods; ++rod) {
@@ -160,9 +174,9 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   for (std::size_t kind = 0; kind < kKinds; ++kind) figure_meshes_[kind].set_instances(men_[kind]);
 }
 
-void Scene::draw_solids(const Program& program) const {
-  program.use();
-  table_mesh_.draw();
+// All that stands on the field or around it.
+void Scene::draw_standing() const {
+  rim_mesh_.draw();
   for (const GpuMesh& rod : rod_meshes_) rod.draw();
   for (const GpuMesh& figures : figure_meshes_) figures.draw();
 }
@@ -174,15 +188,16 @@ void Scene::draw_shadows() const {
   glPolygonOffset(1.5f, 2.0f);
   depth_.use();
   depth_.set("u_light_matrix", light_matrix_);
-  draw_solids(depth_);
+  draw_standing();
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void Scene::light(const Program& program, const SceneView& view) const {
+void Scene::light(const Program& program, const Camera& camera, float fade) const {
   program.use();
-  program.set("u_view_projection", view.camera.view_projection);
+  program.set("u_view_projection", camera.view_projection);
   program.set("u_shadow_matrix", kTextureFromClip * light_matrix_);
-  program.set("u_eye", view.camera.eye);
+  program.set("u_eye", camera.eye);
+  program.set("u_fade", fade);
   program.set("u_key_direction", kKeyDirection);
   program.set("u_key_colour", kKeyColour);
   program.set("u_shadow_map", 1);
@@ -190,11 +205,13 @@ void Scene::light(const Program& program, const SceneView& view) const {
 }
 
 void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const {
-  light(field_, view);
+  light(field_, view.camera, 0.0f);
   field_.set("u_half_field", 0.5f * glm::vec2(table_->length, table_->width));
   field_.set("u_goal_width", static_cast<float>(table_->goal_width));
   field_.set("u_team_colour[0]", kTeamColour[0]);
   field_.set("u_team_colour[1]", kTeamColour[1]);
+  field_.set("u_team_lamp[0]", kTeamLamp[0]);
+  field_.set("u_team_lamp[1]", kTeamLamp[1]);
   const auto radius = static_cast<float>(table_->ball_radius);
   field_.set("u_ball", glm::vec4(vec(state.ball.position), state.ball_in_play ? radius : 0.0f));
   glm::vec4 lane(0.0f);
@@ -203,7 +220,25 @@ void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const
             0.85f + 0.15f * std::sin(4.0f * view.time), 0.0f, 0.0f};
   }
   field_.set("u_active_rod", lane);
+  // Over the reflections that are there already; its alpha is their share.
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_SRC_ALPHA);
   field_mesh_.draw();
+  glDisable(GL_BLEND);
+}
+
+// Drawn upside down before all else and then forgotten by the depth buffer: the field is laid over
+// it, and what lies outside the field is covered by the table and the sky.
+void Scene::draw_reflections(const wire::Snapshot& state, const SceneView& view) {
+  const Camera below = mirrored(view.camera);
+  glFrontFace(GL_CW);
+  light(solid_, below, kMirrorFade);
+  draw_standing();
+  light(ball_, below, kMirrorFade);
+  draw_ball(state);
+  glFrontFace(GL_CCW);
+  draw_particles(below, static_cast<float>(post_.scene().size().y));
+  glClear(GL_DEPTH_BUFFER_BIT);
 }
 
 void Scene::draw_ball(const wire::Snapshot& state) const {
@@ -228,20 +263,24 @@ void Scene::draw_glass(const SceneView& view) const {
   glDisable(GL_BLEND);
 }
 
-void Scene::draw_particles(const SceneView& view, Particles& particles, float height) {
+void Scene::load_particles(Particles& particles) {
   const std::vector<ParticleVertex>& vertices = particles.vertices();
-  if (vertices.empty()) return;
+  particle_count_ = static_cast<GLsizei>(vertices.size());
+  glBindBuffer(GL_ARRAY_BUFFER, particle_buffer_.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(ParticleVertex)),
+               vertices.data(), GL_STREAM_DRAW);
+}
+
+void Scene::draw_particles(const Camera& camera, float height) const {
+  if (particle_count_ == 0) return;
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glDepthMask(GL_FALSE);
   particle_.use();
-  particle_.set("u_view_projection", view.camera.view_projection);
-  particle_.set("u_pixels_per_unit", 0.5f * height * view.camera.projection[1][1]);
+  particle_.set("u_view_projection", camera.view_projection);
+  particle_.set("u_pixels_per_unit", 0.5f * height * camera.projection[1][1]);
   glBindVertexArray(particle_array_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, particle_buffer_.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(ParticleVertex)),
-               vertices.data(), GL_STREAM_DRAW);
-  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(vertices.size()));
+  glDrawArrays(GL_POINTS, 0, particle_count_);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }
@@ -251,6 +290,7 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   use_layout(static_cast<foosball::Layout>(state.layout));
   post_.resize(screen);
   place_instances(state, view);
+  load_particles(particles);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glEnable(GL_CULL_FACE);
@@ -261,15 +301,18 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
   bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
-  light(solid_, view);
-  draw_solids(solid_);
-  light(ball_, view);
+  draw_reflections(state, view);
+  light(solid_, view.camera, 0.0f);
+  draw_standing();
+  light(ball_, view.camera, 0.0f);
   draw_ball(state);
   draw_field(state, view);
+  solid_.use();
+  body_mesh_.draw();
   const auto height = static_cast<float>(post_.scene().size().y);
   sky_.draw(view.camera, height / 720.0f, view.time);
   draw_glass(view);
-  draw_particles(view, particles, height);
+  draw_particles(view.camera, height);
   glDisable(GL_CULL_FACE);
   post_.present(screen);
 }

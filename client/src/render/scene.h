@@ -43,12 +43,14 @@ class Scene {
   void use_layout(foosball::Layout layout);
   void place_instances(const wire::Snapshot& state, const SceneView& view);
   void draw_shadows() const;
-  void draw_solids(const Program& program) const;
+  void draw_standing() const;
+  void draw_reflections(const wire::Snapshot& state, const SceneView& view);
   void draw_field(const wire::Snapshot& state, const SceneView& view) const;
   void draw_ball(const wire::Snapshot& state) const;
   void draw_glass(const SceneView& view) const;
-  void draw_particles(const SceneView& view, Particles& particles, float height);
-  void light(const Program& program, const SceneView& view) const;
+  void load_particles(Particles& particles);
+  void draw_particles(const Camera& camera, float height) const;
+  void light(const Program& program, const Camera& camera, float fade) const;
 
   static constexpr std::size_t kFigures = foosball::kTeams;
   static constexpr std::size_t kKinds = foosball::kCharacters;
@@ -60,12 +62,13 @@ class Scene {
   Post post_;
   ShadowTarget shadow_;
   glm::mat4 light_matrix_{1.0f};
-  GpuMesh table_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
+  GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
   std::array<GpuMesh, kKinds> figure_meshes_;  // by character; both teams' men may share one
   std::array<std::vector<Instance>, kKinds> men_;
   GlVertexArray particle_array_;
   GlBuffer particle_buffer_;
+  GLsizei particle_count_ = 0;
 };
 
 }  // namespace client

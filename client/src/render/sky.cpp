@@ -39,17 +39,21 @@ tl::expected<Sky, std::string> Sky::create(Quality quality) {
   sky.background_ = std::move(*background);
   sky.star_ = std::move(*star);
   sky.empty_ = GlVertexArray::make();
-  sky.bake(*bake, quality == Quality::high ? 512 : 256);
-  sky.scatter_stars(quality == Quality::high ? 3600 : 1800);
+  sky.bake(*bake, quality);
+  sky.scatter_stars(quality == Quality::high ? 11000 : 6000);
   return sky;
 }
 
-void Sky::bake(const Program& bake, int face_size) {
+void Sky::bake(const Program& bake, Quality quality) {
+  const int face_size = quality == Quality::high ? 768 : 384;
   cube_ = GlTexture::make();
   bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
-  const int levels = 1 + static_cast<int>(std::log2(face_size));
+  // Only high quality has mirrors of every roughness; mixing two levels costs software dear.
+  const bool mirrored = quality == Quality::high;
+  const int levels = mirrored ? 1 + static_cast<int>(std::log2(face_size)) : 1;
   glTexStorage2D(GL_TEXTURE_CUBE_MAP, levels, GL_RGBA8, face_size, face_size);
-  glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER,
+                  mirrored ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   GlFramebuffer framebuffer = GlFramebuffer::make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
@@ -75,7 +79,7 @@ void Sky::scatter_stars(int count) {
   for (int i = 0; i < count; ++i) {
     const float z = 2.0f * unit(random) - 1.0f, turn = glm::two_pi<float>() * unit(random);
     if (z < kLimb) continue;  // the planet hides it
-    const float r = std::sqrt(1.0f - z * z), brightness = std::pow(unit(random), 5.0f),
+    const float r = std::sqrt(1.0f - z * z), brightness = std::pow(unit(random), 6.0f),
                 warm = unit(random);
     stars.push_back({{r * std::cos(turn), r * std::sin(turn), z, brightness},
                      glm::mix(glm::vec3(0.65f, 0.80f, 1.0f), glm::vec3(1.0f, 0.86f, 0.70f), warm)});

@@ -20,7 +20,7 @@ class Sky {
   void draw(const Camera& camera, float pixel_scale, float time) const;
 
  private:
-  void bake(const Program& bake, int face_size);
+  void bake(const Program& bake, Quality quality);
   void scatter_stars(int count);
 
   Program background_, star_;

@@ -56,9 +56,9 @@ void add_body(MeshBuilder& b, const Sizes& s) {
   add_box(b, {-s.outer_x + 0.05f, -s.outer_y + 0.03f, kPlinthBottom},
           {s.outer_x - 0.05f, s.outer_y - 0.03f, -0.18f}, 0.012f);
   for (const float side : {-1.0f, 1.0f}) {
-    b.paint({kTeamLamp[side < 0.0f ? 0 : 1], 0.0f, 0.5f, 0.0f, 1.8f});
+    b.paint({kTeamLamp[side < 0.0f ? 0 : 1], 0.0f, 0.5f, 0.0f, 3.0f});
     const float y = side * (s.outer_y + 0.0005f);
-    add_box(b, {-s.outer_x + 0.06f, y - 0.002f, -0.034f}, {s.outer_x - 0.06f, y + 0.002f, -0.030f},
+    add_box(b, {-s.outer_x + 0.06f, y - 0.002f, -0.037f}, {s.outer_x - 0.06f, y + 0.002f, -0.030f},
             0.001f);
   }
 }
@@ -117,13 +117,13 @@ void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
   b.paint(kPocket);
   box(-0.0005f, depth + 0.002f, -goal - 0.001f, goal + 0.001f, -0.02f, -0.002f, 0.001f);
   // The frame of the mouth and an inlay on the deck say whose goal it is.
-  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 2.2f});
-  const float w = 0.0032f;
+  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 3.2f});
+  const float w = 0.0045f;
   box(-0.002f, 0.004f, goal - 0.001f, goal + 2.0f * w, 0.0f, bar + w, 0.0014f);
   box(-0.002f, 0.004f, -goal - 2.0f * w, -goal + 0.001f, 0.0f, bar + w, 0.0014f);
   box(-0.002f, 0.004f, -goal - 2.0f * w, goal + 2.0f * w, bar - 0.001f, bar + w, 0.0014f);
-  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 1.8f});
-  box(depth + 0.012f, depth + 0.017f, -s.half_width + 0.005f, s.half_width - 0.005f,
+  b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 2.6f});
+  box(depth + 0.011f, depth + 0.018f, -s.half_width + 0.005f, s.half_width - 0.005f,
       s.wall - 0.002f, s.wall + 0.0034f, 0.001f);
 }
 
@@ -146,10 +146,15 @@ float rod_half_length(const TableSpec& table, int rod) {
 
 }  // namespace
 
-MeshData table_mesh(const TableSpec& table, float detail) {
+MeshData body_mesh(const TableSpec& table, float detail) {
+  MeshBuilder b(detail);
+  add_body(b, Sizes(table));
+  return b.take();
+}
+
+MeshData rim_mesh(const TableSpec& table, float detail) {
   const Sizes s(table);
   MeshBuilder b(detail);
-  add_body(b, s);
   add_side_walls(b, s, table);
   add_end(b, s, table, 0);
   add_end(b, s, table, 1);

@@ -13,7 +13,9 @@ inline constexpr float kEndMargin = 0.045f;
 // foot.
 inline constexpr float kSolidWallHeight = 0.024f;
 
-MeshData table_mesh(const foosball::TableSpec& table, float detail);
+// What lies below the field, and what stands around it: the field mirrors only the latter.
+MeshData body_mesh(const foosball::TableSpec& table, float detail);
+MeshData rim_mesh(const foosball::TableSpec& table, float detail);
 // The side walls above that, drawn blended.
 MeshData glass_mesh(const foosball::TableSpec& table);
 // The surface between the walls.
