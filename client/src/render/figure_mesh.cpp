@@ -19,14 +19,14 @@ const Paint kVisor{glm::vec3(0.10f, 0.075f, 0.04f), 0.0f, 0.12f, 0.85f, 0.0f};
 const Paint kSteel{glm::vec3(0.55f, 0.57f, 0.60f), 0.0f, 0.30f, 1.0f, 0.0f};
 const Paint kSole{glm::vec3(0.05f, 0.055f, 0.065f), 0.0f, 0.7f, 0.0f, 0.0f};
 
-struct Extent {
+struct PartExtent {
   glm::vec3 centre{0.0f}, half{0.0f};
   float bottom() const { return centre.z - half.z; }
   float top() const { return centre.z + half.z; }
 };
 
-Extent extent_of(std::span<const foosball::ManBox> boxes, Part part) {
-  Extent e;
+PartExtent extent_of(std::span<const foosball::ManBox> boxes, Part part) {
+  PartExtent e;
   for (const foosball::ManBox& box : boxes) {
     if (box.part != part) continue;
     for (int i = 0; i < 3; ++i) {
@@ -38,7 +38,7 @@ Extent extent_of(std::span<const foosball::ManBox> boxes, Part part) {
 }
 
 // Hips, waist, chest, shoulders. Slimmer than its box by the arms' thickness.
-void add_torso(MeshBuilder& b, const Extent& t) {
+void add_torso(MeshBuilder& b, const PartExtent& t) {
   const float w = t.half.y, d = t.half.x, h = 2.0f * t.half.z, z = t.bottom();
   const auto ring = [&](float share, float width, float depth, float shift) {
     return LoftRing{
@@ -62,7 +62,7 @@ void add_torso(MeshBuilder& b, const Extent& t) {
                 {0.32f * d, 0.58f * w, 0.27f * h}, 0.0030f);
 }
 
-void add_arms(MeshBuilder& b, const Extent& t) {
+void add_arms(MeshBuilder& b, const PartExtent& t) {
   const float d = t.half.x, h = 2.0f * t.half.z, z = t.bottom();
   const float arm = std::min(0.20f * t.half.y + 0.0016f, 0.0055f);
   for (const float side : {-1.0f, 1.0f}) {
@@ -84,7 +84,7 @@ void add_arms(MeshBuilder& b, const Extent& t) {
   }
 }
 
-void add_head(MeshBuilder& b, const Extent& head, const Extent& torso) {
+void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso) {
   const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
   b.paint(kHelmet);
   b.ellipsoid(head.centre, r, 20, 14);
@@ -108,7 +108,8 @@ void add_head(MeshBuilder& b, const Extent& head, const Extent& torso) {
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
 }
 
-void add_legs(MeshBuilder& b, const Extent& leg, const Extent& torso, const Extent& foot) {
+void add_legs(MeshBuilder& b, const PartExtent& leg, const PartExtent& torso,
+              const PartExtent& foot) {
   const float hip = torso.bottom() + 0.003f, ankle = foot.top() - 0.002f;
   const float half = 0.5f * leg.half.y, knee = ankle + 0.5f * (hip - ankle);
   b.paint(kSuit);
@@ -129,7 +130,7 @@ void add_legs(MeshBuilder& b, const Extent& leg, const Extent& torso, const Exte
   }
 }
 
-void add_foot(MeshBuilder& b, const Extent& foot) {
+void add_foot(MeshBuilder& b, const PartExtent& foot) {
   const float sole = 0.0035f;
   b.paint(kShell);
   b.rounded_box({foot.centre.x, foot.centre.y, foot.centre.z + 0.5f * sole},
@@ -145,8 +146,8 @@ void add_foot(MeshBuilder& b, const Extent& foot) {
 }  // namespace
 
 MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius, float detail) {
-  const Extent torso = extent_of(boxes, Part::torso), head = extent_of(boxes, Part::head);
-  const Extent leg = extent_of(boxes, Part::leg), foot = extent_of(boxes, Part::foot);
+  const PartExtent torso = extent_of(boxes, Part::torso), head = extent_of(boxes, Part::head);
+  const PartExtent leg = extent_of(boxes, Part::leg), foot = extent_of(boxes, Part::foot);
   MeshBuilder b(detail);
   add_torso(b, torso);
   add_arms(b, torso);
