@@ -233,7 +233,7 @@ Extent table_extent(const TableSpec& table) {
 
 float handle_reach(const TableSpec& table, int rod) {
   const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
-  const float y = rod_half_length(table, rod) - kHandleInset + kHandleLength + f(spec.slide_limit);
+  const float y = rod_half_length(table, rod) - kHandleInset + kHandleLength;
   return spec.team == 0 ? -y : y;
 }
 

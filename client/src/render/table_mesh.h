@@ -27,8 +27,8 @@ struct Extent {
   glm::vec3 low, high;
 };
 Extent table_extent(const foosball::TableSpec& table);
-// Where the outer end of a rod's handle is when the rod is slid out all the way, along y, signed
-// [m].
+// Where the outer end of a rod's handle is when the rod is in the middle of its slide, along y,
+// signed [m].
 float handle_reach(const foosball::TableSpec& table, int rod);
 inline constexpr float kHandleRadius = 0.0165f;  // [m]
 // From the middle of a rod to the middle of its handle, along y, signed [m].
