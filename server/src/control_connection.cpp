@@ -1,6 +1,7 @@
 #include "control_connection.h"
 
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -71,6 +72,11 @@ bool ControlConnection::flush() {
   forget_sent();
   if (shut_when_sent_) ::shutdown(socket_.get(), SHUT_WR);
   return true;
+}
+
+bool ControlConnection::peer_left() const {
+  pollfd polled{socket_.get(), POLLRDHUP, 0};
+  return ::poll(&polled, 1, 0) == 1;  // POLLRDHUP, POLLHUP or POLLERR
 }
 
 void ControlConnection::forget_sent() {

@@ -33,6 +33,8 @@ class ControlConnection {
   bool send(const wire::ControlMessage& message, std::size_t cap);
   // False when the peer has gone.
   bool flush();
+  // The peer has gone, or will say no more than what is still to be read.
+  bool peer_left() const;
   // No more will be sent. Ends the connection towards the peer without cutting off what it has not
   // read yet; the deadline bounds the wait for its own end.
   void close_softly(std::int64_t deadline_us);

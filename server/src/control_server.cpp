@@ -91,6 +91,7 @@ ControlCounters ControlServer::counters() const {
           .refused = value(Count::refused),
           .bad_messages = value(Count::bad_messages),
           .timed_out = value(Count::timed_out),
+          .gave_up = value(Count::gave_up),
           .slow_dropped = value(Count::slow_dropped),
           .wishes = value(Count::wishes),
           .wishes_dropped = value(Count::wishes_dropped)};
@@ -151,9 +152,10 @@ void ControlServer::accept_all() {
   }
 }
 
+// Attempts that were given up while this process stood still take up nobody's share.
 int ControlServer::connections_from(const sockaddr_in& peer) const {
   return static_cast<int>(std::count_if(connections_.begin(), connections_.end(), [&](auto& c) {
-    return c->peer().sin_addr.s_addr == peer.sin_addr.s_addr;
+    return c->peer().sin_addr.s_addr == peer.sin_addr.s_addr && !c->peer_left();
   }));
 }
 
@@ -211,6 +213,13 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
 
 void ControlServer::greet(ControlConnection& connection, const wire::Hello& hello) {
   connection.name = printable(hello.name);
+  // Whoever gave up waiting has asked anew since, and must not find its place taken by its own
+  // ghost.
+  if (connection.peer_left()) {
+    count(Count::gave_up);
+    release(connection);
+    return;
+  }
   if (hello.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
            "this server speaks control version " + std::to_string(wire::kControlVersion) +
@@ -236,12 +245,22 @@ bool ControlServer::grant_team(ControlConnection& connection, std::uint8_t team)
     refuse(connection, wire::Refusal::Code::team_taken, "a recording plays here: join to watch");
     return false;
   }
+  release_team_of_a_leaver(team);
   if (team_owner_[team] != 0) {
     refuse(connection, wire::Refusal::Code::team_taken,
            "team " + std::to_string(team) + " is taken: ask for the other one, or join to watch");
     return false;
   }
   return true;
+}
+
+// Its end may be known and not yet read: it comes behind what the client still said.
+void ControlServer::release_team_of_a_leaver(std::uint8_t team) {
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined && connection->team == team && connection->peer_left()) {
+      release(*connection);
+    }
+  }
 }
 
 void ControlServer::join(ControlConnection& connection, const wire::Hello& hello) {

@@ -75,6 +75,7 @@ class ControlServer {
     refused,
     bad_messages,
     timed_out,
+    gave_up,
     slow_dropped,
     wishes,
     wishes_dropped,
@@ -90,6 +91,7 @@ class ControlServer {
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
   void greet(ControlConnection& connection, const wire::Hello& hello);
   bool grant_team(ControlConnection& connection, std::uint8_t team);
+  void release_team_of_a_leaver(std::uint8_t team);
   void join(ControlConnection& connection, const wire::Hello& hello);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
   void send(ControlConnection& connection, const wire::ControlMessage& message);

@@ -73,6 +73,7 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"clients_refused", number(c.control.refused)},
       {"control_bad", number(c.control.bad_messages)},
       {"control_timed_out", number(c.control.timed_out)},
+      {"control_gave_up", number(c.control.gave_up)},
       {"control_slow_dropped", number(c.control.slow_dropped)},
       {"wishes", number(c.control.wishes)},
       {"wishes_dropped", number(c.control.wishes_dropped)},

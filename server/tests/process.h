@@ -47,6 +47,12 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void kill(int signal) { ::kill(pid_, signal); }
+  // Stands still from now on, until SIGCONT.
+  bool suspend() {
+    int status = 0;
+    kill(SIGSTOP);
+    return ::waitpid(pid_, &status, WUNTRACED) == pid_ && WIFSTOPPED(status);
+  }
 
   // Reads until the text is in its output; false at its end or after patience.
   bool says(const std::string& text, int patience_ms = 20'000) {

@@ -140,6 +140,27 @@ TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
   EXPECT_NE(server->output().find("everybody has left"), std::string::npos);
 }
 
+// What a client does while the server stands still: it loses its place, asks, gives up, asks anew.
+TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBeforeIt) {
+  RunningServer server({});
+  ProbeClient player(server.port());
+  ASSERT_TRUE(player.join(0));
+  ASSERT_TRUE(server->suspend());
+  player.say(wire::Ping{1});
+  player.leave();
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    ProbeClient ghost(server.port());
+    ASSERT_TRUE(ghost.connected());
+    ghost.say(ghost.hello(0));
+  }
+  ProbeClient again(server.port());
+  ASSERT_TRUE(again.say(again.hello(0)));
+  server->kill(SIGCONT);
+  const auto answer = again.hear();
+  ASSERT_TRUE(answer);
+  EXPECT_TRUE(std::holds_alternative<wire::Welcome>(*answer)) << server->output();
+}
+
 // A player in a process of its own.
 [[noreturn]] void play_until_killed(std::uint16_t port, int say_ready) {
   ProbeClient player(port);

@@ -17,6 +17,7 @@ struct ControlCounters {
   std::uint64_t refused = 0;         // for version, layout, a taken team or a full house
   std::uint64_t bad_messages = 0;    // unreadable, cut short, or out of place
   std::uint64_t timed_out = 0;       // no Hello in time
+  std::uint64_t gave_up = 0;         // had gone before their Hello was answered
   std::uint64_t slow_dropped = 0;    // did not read what was sent to them
   std::uint64_t wishes = 0;          // handed on to the match
   std::uint64_t wishes_dropped = 0;  // not allowed, or too many
