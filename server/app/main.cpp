@@ -111,6 +111,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.session = random_number();
   wanted.random = random_number;
   wanted.record = options.record;
+  wanted.overwrite = options.overwrite;
   // Below the tick, which it must never hold up, and above all else.
   if (options.loop.paced && options.loop.real_time)
     wanted.send_priority = options.loop.priority - 1;
@@ -126,7 +127,15 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   return made;
 }
 
-// The exit code, as far as a replay has a say in it.
+// The exit code, as far as the recording that was written has a say in it.
+int judge_record(const server::Server& server, const server::Log& log) {
+  const std::string problem = server.journal_problem();
+  if (problem.empty()) return server::kExitOk;
+  log(server::LogLevel::warning, problem);
+  return server::kExitFailed;
+}
+
+// The same for a replay.
 int judge_replay(const server::Server& server, const server::Log& log) {
   const server::Playback* playback = server.replay();
   if (playback == nullptr || !server.replay_over()) return server::kExitOk;
@@ -149,8 +158,8 @@ int serve(server::Server& server, const app::Options& options, const server::Log
   const server::RunEnd end = server::run(server, loop, options.run, stop_requested);
   server.finish(server::to_text(end));
 
-  const int code = judge_replay(server, log);
-  if (!server.journal_problem().empty()) log(server::LogLevel::warning, server.journal_problem());
+  // Never both: a replay is not recorded.
+  const int code = options.replay.empty() ? judge_record(server, log) : judge_replay(server, log);
   if (!options.quiet) {
     std::printf("%s:\n%s", server::to_text(end), server::summary(server, loop.stats()).c_str());
   }

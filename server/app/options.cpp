@@ -82,6 +82,11 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
 
 void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
+  cli.add_flag(
+         "--overwrite", o.overwrite,
+         "replace the recording that is there already; of two computer players it is replaced "
+         "without, since the same seed plays it again")
+      ->needs(record);
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)
@@ -111,6 +116,7 @@ void translate(Options& o, const Raw& raw) {
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
+  o.overwrite = o.overwrite || (o.computer[0] && o.computer[1]);
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
   for (std::string& device : o.devices) device = with_scheme(device);
@@ -122,8 +128,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   CLI::App cli{
       "The physics server of Space Foosball: steps the match 1000 times a second and sends it to\n"
       "every renderer that has joined. Ctrl-C ends it.\n\n"
-      "Exit codes: 0 ended as told; 1 a replay differs, or something failed; 2 a bad option;\n"
-      "3 the port is in use; 4 a replay stops early.",
+      "Exit codes: 0 ended as told; 1 a replay differs, a recording lacks its end, or something\n"
+      "failed; 2 a bad option; 3 the port is in use; 4 a replay stops early.",
       "space-foosball-server"};
   Options options;
   Raw raw;

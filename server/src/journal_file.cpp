@@ -3,20 +3,52 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 
 namespace server {
+namespace {
+
+bool begins_as_a_recording(const std::string& path) {
+  const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::array<std::byte, 256> start;  // a header is 49 bytes
+  const ssize_t size = file ? ::read(file.get(), start.data(), start.size()) : -1;
+  if (size <= 0) return false;
+  wire::JournalReader reader({start.data(), static_cast<std::size_t>(size)});
+  const auto entry = reader.next();
+  return entry && std::holds_alternative<wire::JournalHeader>(*entry);
+}
+
+// Makes the file an empty one. Empty, or why it must stay as it is and what to do.
+std::string objection(int file, const JournalFileOptions& options) {
+  struct stat about {};
+  if (::fstat(file, &about) != 0) return std::string(std::strerror(errno)) + "; try again";
+  if (!S_ISREG(about.st_mode) || about.st_size == 0) return {};
+  if (!begins_as_a_recording(options.path)) {
+    return "there is a file of that name that is no recording; choose another name";
+  }
+  if (!options.overwrite) {
+    return "there is a recording already; choose another name, remove it, or give --overwrite";
+  }
+  if (::ftruncate(file, 0) != 0) return std::string(std::strerror(errno)) + "; remove the old one";
+  return {};
+}
+
+}  // namespace
 
 tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
     const JournalFileOptions& options) {
-  os::FileDescriptor file(
-      ::open(options.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  os::FileDescriptor file(::open(options.path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
   if (!file) {
     return tl::unexpected("cannot record to " + options.path + ": " + std::strerror(errno) +
                           "; choose a file in a folder that can be written");
+  }
+  if (const std::string why = objection(file.get(), options); !why.empty()) {
+    return tl::unexpected("cannot record to " + options.path + ": " + why);
   }
   os::FileDescriptor wake(::eventfd(0, EFD_CLOEXEC));
   if (!wake) return tl::unexpected("cannot record: " + std::string(std::strerror(errno)));

@@ -22,12 +22,14 @@ namespace server {
 
 struct JournalFileOptions {
   std::string path;
+  bool overwrite = false;  // a recording that is there already; nothing else ever is
   std::size_t ring_bytes = std::size_t{8} << 20;  // minutes of play, or 8 of the largest keyframes
 };
 
 class JournalFile {
  public:
-  // Creates or empties the file; the error is a sentence.
+  // A file that is there already must be empty, or a recording to be overwritten; the error is a
+  // sentence. A pipe or a device is written to as it is.
   static tl::expected<std::unique_ptr<JournalFile>, std::string> create(
       const JournalFileOptions& options);
   ~JournalFile();  // closes, if close() was not called

@@ -221,6 +221,48 @@ TEST(ServerProgram, ReplaysWhatItRecorded) {
   std::remove(path.c_str());
 }
 
+TEST(ServerProgram, FailsWhenItsRecordingEndedEarly) {
+  Process full(serve({"--port", "0", "--seconds", "0.1", "--record", "/dev/full"}));
+  EXPECT_EQ(full.wait(), 1);
+  EXPECT_NE(full.output().find("recording to /dev/full ended early"), std::string::npos)
+      << full.output();
+}
+
+TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
+  const std::string path = temp_path("match.sfr");
+  const std::vector<std::string> record = {"--quiet", "--port",   "0", "--seconds",
+                                           "0.05",    "--record", path};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), record.begin(), record.end());
+    return serve(more);
+  };
+  std::ofstream{path};  // an empty one holds nothing
+  Process first(with({}));
+  EXPECT_EQ(first.wait(), 0) << first.output();
+  const std::string kept = text_of(path);
+  ASSERT_FALSE(kept.empty());
+
+  Process second(with({}));
+  EXPECT_EQ(second.wait(), 2);
+  EXPECT_NE(second.output().find("choose another name, remove it, or give --overwrite"),
+            std::string::npos)
+      << second.output();
+  EXPECT_EQ(text_of(path), kept);
+
+  Process told(with({"--overwrite", "--seed", "99"}));
+  EXPECT_EQ(told.wait(), 0) << told.output();
+  EXPECT_NE(text_of(path), kept);
+  Process exhibition(with({"--team0", "computer", "--team1", "computer"}));
+  EXPECT_EQ(exhibition.wait(), 0) << exhibition.output();
+
+  std::ofstream(path) << "a letter";
+  Process other(with({"--overwrite"}));
+  EXPECT_EQ(other.wait(), 2);
+  EXPECT_NE(other.output().find("no recording"), std::string::npos) << other.output();
+  EXPECT_EQ(text_of(path), "a letter");
+  std::remove(path.c_str());
+}
+
 // A replay whose recorded hash is another one: said, and a non-zero exit of both programs.
 TEST(ServerProgram, SaysThatAReplayDiffers) {
   const std::string path = temp_path("match.sfr");

@@ -1,12 +1,29 @@
 // Recording and replay: the same bits, what is cut short, what differs, what cannot be written.
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 
 #include "journal_file.h"
 #include "lockstep.h"
 #include "wire/read_file.h"
+
+namespace {
+
+std::atomic<int> fdatasyncs{0};
+std::atomic<bool> disk_fails{false};
+
+}  // namespace
+
+// In place of the C library's, in this program: counted, and failing on demand.
+extern "C" int fdatasync(int fd) {
+  ++fdatasyncs;
+  if (!disk_fails) return static_cast<int>(::syscall(SYS_fdatasync, fd));
+  errno = EIO;
+  return -1;
+}
 
 namespace server {
 namespace {
@@ -181,6 +198,22 @@ TEST(Recording, SaysThatAFileCannotBeMade) {
   ASSERT_FALSE(table.started());
   EXPECT_EQ(table.error().kind, StartError::Kind::bad_option);
   EXPECT_NE(table.error().sentence.find("/nowhere/match.sfr"), std::string::npos);
+}
+
+TEST(JournalFile, WaitsForTheDiskAtItsEndAndSaysWhenThatFails) {
+  const std::string path = temp_path("synced.sfr");
+  for (const bool fails : {false, true}) {
+    auto file = JournalFile::create({.path = path, .overwrite = true}).value();
+    file->add(wire::JournalHeader{});
+    fdatasyncs = 0;
+    disk_fails = fails;
+    file->close();
+    disk_fails = false;
+    EXPECT_EQ(fdatasyncs, 1);
+    EXPECT_EQ(file->problem().find("ended early: Input/output error") != std::string::npos, fails)
+        << file->problem();
+  }
+  std::remove(path.c_str());
 }
 
 // A ring too small for a keyframe: the journal ends there, readable to there.

@@ -32,6 +32,7 @@ struct ServerOptions {
   std::uint64_t session = 0;              // random, other at every start
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
+  bool overwrite = false;                 // the recording that is there already
   int send_priority = 0;  // real-time, of the thread that sends snapshots; 0: an ordinary one
   std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say
   Log log = [](LogLevel, const std::string&) {};
