@@ -1,6 +1,16 @@
 #include "remote_source.h"
 
 namespace server {
+namespace {
+
+// A rod that no hand moves any more stays where it is.
+void let_go(cabinet::RodInput& rod) {
+  if (rod.status != cabinet::RodStatus::live) return;
+  rod.status = cabinet::RodStatus::held;
+  rod.slide_rate = rod.angle_rate = 0.0;
+}
+
+}  // namespace
 
 RemoteSource::RemoteSource(const foosball::TableSpec& table, int team)
     : name_("client of team " + std::to_string(team)) {
@@ -26,7 +36,11 @@ bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us)
   heard_us_ = now_us;
   for (int rod = 0; rod < cabinet::kRods; ++rod) {
     const wire::InputRod& in = input.rods[rod];
-    if (!own_[rod] || !in.driven) continue;
+    if (!own_[rod]) continue;
+    if (!in.driven) {
+      let_go(rods_[rod]);
+      continue;
+    }
     rods_[rod] = {in.slide,      in.angle, in.slide_rate,
                   in.angle_rate, now_us,   cabinet::RodStatus::live};
   }
@@ -35,11 +49,7 @@ bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us)
 
 void RemoteSource::poll(std::int64_t now_us) {
   if (!heard_ || now_us - heard_us_ < kSilenceUs) return;
-  for (cabinet::RodInput& rod : rods_) {
-    if (rod.status != cabinet::RodStatus::live) continue;
-    rod.status = cabinet::RodStatus::held;
-    rod.slide_rate = rod.angle_rate = 0.0;
-  }
+  for (cabinet::RodInput& rod : rods_) let_go(rod);
 }
 
 }  // namespace server

@@ -55,6 +55,23 @@ TEST_F(RemoteSourceTest, HoldsItsRodsAfterSilenceAndGoesOnWithTheNextWord) {
   EXPECT_EQ(source.rods()[0].status, RodStatus::live);
 }
 
+TEST_F(RemoteSourceTest, HoldsARodThatIsNoLongerDrivenAndLeavesAloneOneThatNeverWas) {
+  wire::InputDatagram in = input(1, 0.03f);
+  in.rods[1].driven = false;
+  ASSERT_TRUE(source.accept(in, 1000));
+  in = input(2, 0.05f);
+  in.rods[0].driven = in.rods[1].driven = false;
+  ASSERT_TRUE(source.accept(in, 2000));
+  const cabinet::RodInput& rod = source.rods()[0];
+  EXPECT_EQ(rod.status, RodStatus::held);
+  EXPECT_FLOAT_EQ(static_cast<float>(rod.slide), 0.03f);
+  EXPECT_EQ(rod.slide_rate, 0.0);
+  EXPECT_EQ(rod.angle_rate, 0.0);
+  EXPECT_EQ(source.rods()[1].status, RodStatus::absent);
+  ASSERT_TRUE(source.accept(input(3, 0.04f), 3000));
+  EXPECT_EQ(rod.status, RodStatus::live);
+}
+
 TEST_F(RemoteSourceTest, TakesANewClientsSequenceFromItsStart) {
   ASSERT_TRUE(source.accept(input(500, 0.03f), 1000));
   source.reset();
