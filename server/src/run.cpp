@@ -1,33 +1,23 @@
 #include "server/run.h"
 
+#include "overload_watch.h"
+
 namespace server {
 namespace {
 
-// Looks once a second at how many ticks were missed in it.
-class OverloadWatch {
- public:
-  void look(Server& server, const LoopStats& stats) {
-    if (stats.ticks - ticks_ < kWindow) return;
-    const std::uint64_t missed = stats.missed - missed_;
-    ticks_ = stats.ticks;
-    missed_ = stats.missed;
-    const bool overloaded = missed > kTolerated;
-    if (overloaded == told_) return;
-    told_ = overloaded;
-    if (overloaded) {
+void tell(Server& server, OverloadWatch::News news) {
+  switch (news) {
+    case OverloadWatch::News::overloaded:
       server.warn(Server::Topic::overload,
                   "the physics server cannot keep up: end other programs on its machine");
-    } else {
+      break;
+    case OverloadWatch::News::keeps_up_again:
       server.clear(Server::Topic::overload, "the physics server keeps up again");
-    }
+      break;
+    case OverloadWatch::News::none:
+      break;
   }
-
- private:
-  static constexpr std::uint64_t kWindow = 1000;  // ticks
-  static constexpr std::uint64_t kTolerated = 50;
-  std::uint64_t ticks_ = 0, missed_ = 0;
-  bool told_ = false;
-};
+}
 
 std::optional<RunEnd> reason_to_end(const Server& server, const RunOptions& options,
                                     const LoopStats& stats, const std::atomic<bool>& stop) {
@@ -62,7 +52,7 @@ RunEnd run(Server& server, TickLoop& loop, const RunOptions& options,
   std::optional<RunEnd> end;
   loop.run([&](std::int64_t now_us, const LoopStats& stats) {
     server.tick(now_us);
-    overload.look(server, stats);
+    tell(server, overload.look(stats.ticks, stats.missed));
     end = reason_to_end(server, options, stats, stop);
     return !end;
   });

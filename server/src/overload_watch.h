@@ -1,0 +1,31 @@
+// Looks once a second of ticks at how many were missed in it.
+#pragma once
+
+#include <cstdint>
+
+namespace server {
+
+class OverloadWatch {
+ public:
+  enum class News : std::uint8_t { none, overloaded, keeps_up_again };
+
+  static constexpr std::uint64_t kWindow = 1000;  // ticks
+  static constexpr std::uint64_t kTolerated = 50;
+
+  // Both counted since the start; called each tick.
+  News look(std::uint64_t ticks, std::uint64_t missed) {
+    if (ticks - ticks_ < kWindow) return News::none;
+    const bool overloaded = missed - missed_ > kTolerated;
+    ticks_ = ticks;
+    missed_ = missed;
+    if (overloaded == overloaded_) return News::none;
+    overloaded_ = overloaded;
+    return overloaded ? News::overloaded : News::keeps_up_again;
+  }
+
+ private:
+  std::uint64_t ticks_ = 0, missed_ = 0;
+  bool overloaded_ = false;
+};
+
+}  // namespace server
