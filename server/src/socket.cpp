@@ -11,7 +11,7 @@ namespace server {
 namespace {
 
 SocketError last_error() {
-  return {errno == EADDRINUSE, std::strerror(errno)};
+  return {errno};
 }
 
 template <class T>
@@ -59,15 +59,35 @@ tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options, soc
 
 }  // namespace
 
+std::string sentence(const NetworkOptions& options, const SocketError& error) {
+  const std::string where = std::to_string(options.port) + " on " + options.listen;
+  switch (error.number) {
+    case 0:
+      return "\"" + options.listen + "\" is no IPv4 address: give one with --listen";
+    case EADDRINUSE:
+      return "port " + where +
+             " is already in use: stop the program that has it (ss -lntup lists them), or choose "
+             "another port with --port (0 takes any free one)";
+    case EACCES:
+      return "port " + where +
+             " may not be used without rights that this program lacks, as those below 1024: choose "
+             "another port with --port (0 takes any free one)";
+    case EADDRNOTAVAIL:
+      return "cannot listen at port " + where +
+             ": no such address here; choose an address of this machine with --listen";
+    default:
+      return "cannot listen at port " + where + ": " + std::strerror(error.number) +
+             "; close other programs, or choose another --port or --listen";
+  }
+}
+
 tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
   const auto address = os::parse_ipv4(options.listen, options.port);
-  if (!address) {
-    return tl::unexpected(SocketError{false, "\"" + options.listen + "\" is no IPv4 address"});
-  }
+  if (!address) return tl::unexpected(SocketError{});
   auto ports = open_once(options, *address);
   // A free TCP port whose UDP twin is taken: another free one will do.
   constexpr int kMaxTries = 16;
-  for (int i = 1; i < kMaxTries && options.port == 0 && !ports && ports.error().occupied; ++i) {
+  for (int i = 1; i < kMaxTries && options.port == 0 && !ports && ports.error().occupied(); ++i) {
     ports = open_once(options, *address);
   }
   return ports;

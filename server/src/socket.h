@@ -1,6 +1,7 @@
 // Sockets as the server needs them: opened with all options set, or a reason.
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
@@ -11,9 +12,11 @@
 namespace server {
 
 struct SocketError {
-  bool occupied = false;  // the port is taken
-  std::string reason;     // of the system
+  int number = 0;  // errno, or 0: the options name no address
+  bool occupied() const { return number == EADDRINUSE; }
 };
+// What is wrong and what to do.
+std::string sentence(const NetworkOptions& options, const SocketError& error);
 
 // One TCP listener and one UDP socket, both non-blocking, bound to the same port number.
 struct PortPair {
