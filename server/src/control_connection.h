@@ -10,6 +10,7 @@
 
 #include "os/file_descriptor.h"
 #include "wire/control.h"
+#include "wish_rules.h"
 
 namespace server {
 
@@ -50,6 +51,7 @@ class ControlConnection {
   std::uint32_t client = 0;  // joined
   std::uint8_t team = wire::kWatchOnly;
   std::string name;
+  WishAllowance wishes;
 
  private:
   void forget_sent();

@@ -9,6 +9,7 @@
 #include "os/clock.h"
 #include "os/socket_address.h"
 #include "wire/snapshot.h"
+#include "wish_rules.h"
 
 namespace server {
 namespace {
@@ -23,8 +24,6 @@ constexpr std::int64_t kAcceptPauseUs = 100'000;
 constexpr std::size_t kRoomForMembers = 256;
 constexpr int kMaxRefusalsLogged = 20;
 
-constexpr auto kCommandKinds = static_cast<std::uint8_t>(foosball::Command::Kind::restart) + 1;
-
 // A stranger's name, fit for a log.
 std::string printable(const std::string& name) {
   std::string text = name.empty() ? "unnamed" : name;
@@ -32,28 +31,6 @@ std::string printable(const std::string& name) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
   return text;
-}
-
-bool well_formed(const wire::Wish& wish) {
-  using Kind = foosball::Command::Kind;
-  if (wish.kind >= kCommandKinds || wish.team >= foosball::kTeams) return false;
-  switch (static_cast<Kind>(wish.kind)) {
-    case Kind::choose_character:
-      return wish.value < foosball::kCharacters;
-    case Kind::pause:
-      return wish.value <= 1;
-    case Kind::push:
-    case Kind::restart:
-      return true;
-  }
-  return false;
-}
-
-// A player for the own team; whoever sits at this machine for all; a watcher elsewhere for nothing.
-bool may_wish(const ControlConnection& connection, const foosball::Command& wish) {
-  using Kind = foosball::Command::Kind;
-  if (connection.team == wire::kWatchOnly) return os::is_loopback(connection.peer());
-  return wish.kind == Kind::pause || wish.kind == Kind::restart || wish.team == connection.team;
 }
 
 }  // namespace
@@ -306,8 +283,9 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& w
   event.kind = ControlEvent::Kind::wish;
   event.client = connection.client;
   event.wish = {static_cast<foosball::Command::Kind>(wish.kind), wish.team, wish.value};
-  const bool taken =
-      may_wish(connection, event.wish) && events_.room() > kRoomForMembers && events_.push(event);
+  const bool taken = may_wish(connection.team, os::is_loopback(connection.peer()), event.wish) &&
+                     connection.wishes.take(os::monotonic_us()) &&
+                     events_.room() > kRoomForMembers && events_.push(event);
   count(taken ? Count::wishes : Count::wishes_dropped);
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/eventfd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <span>
@@ -22,16 +23,13 @@
 namespace server {
 namespace {
 
+// A match rebuilds its world at a restart's serve: no more than two of them in one tick.
+constexpr std::size_t kMostCommands = 8;
+static_assert(kMostCommands <= wire::kMaxJournalCommands);
+
 StartError port_error(const NetworkOptions& network, const SocketError& error) {
-  const std::string where = std::to_string(network.port) + " on " + network.listen;
-  if (error.occupied) {
-    return {StartError::Kind::port_taken,
-            "port " + where +
-                " is already in use: stop the program that has it (ss -lntup lists "
-                "them), or choose another port with --port (0 takes any free one)"};
-  }
-  return {StartError::Kind::bad_option, "cannot listen at port " + where + ": " + error.reason +
-                                            "; choose an address of this machine with --listen"};
+  return {error.occupied() ? StartError::Kind::port_taken : StartError::Kind::bad_option,
+          sentence(network, error)};
 }
 
 }  // namespace
@@ -43,7 +41,7 @@ struct Server::Impl {
   void take_control_events();
   void admit(const ControlEvent& event);
   void dismiss(std::uint32_t client);
-  void add_wish(const foosball::Command& wish);
+  bool nobody_left_to_play_for(std::uint8_t leavers_team) const;
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
   void broadcast(std::int64_t now_us, std::int64_t tick_ns);
@@ -119,8 +117,8 @@ ControlOptions Server::Impl::control_options() const {
 void Server::Impl::take_control_events() {
   next.commands.clear();
   ControlEvent event;
-  // Wishes beyond what a tick of the journal takes wait in the queue for the next one.
-  while (next.commands.size() < wire::kMaxJournalCommands && control.next_event(event)) {
+  // Each event makes one command at most. Those beyond wait in the queue for the next tick.
+  while (next.commands.size() < kMostCommands && control.next_event(event)) {
     switch (event.kind) {
       case ControlEvent::Kind::joined:
         admit(event);
@@ -146,12 +144,25 @@ void Server::Impl::admit(const ControlEvent& event) {
 }
 
 void Server::Impl::dismiss(std::uint32_t client) {
-  for (const Client& c : clients) {
-    if (c.id == client && c.team < foosball::kTeams) desk.set_claimed(c.team, false);
-  }
-  std::erase_if(clients, [client](const Client& c) { return c.id == client; });
+  const auto leaver =
+      std::find_if(clients.begin(), clients.end(), [&](const Client& c) { return c.id == client; });
+  if (leaver == clients.end()) return;
+  const std::uint8_t team = leaver->team;
+  clients.erase(leaver);
+  if (team < foosball::kTeams) desk.set_claimed(team, false);
   input.remove(client);
   broadcaster.remove(client);
+  // A pause is for those who made it: the match goes on when they have left.
+  if (!options.replay && nobody_left_to_play_for(team)) {
+    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
+  }
+}
+
+// The last player has left, or the last of those who only watched.
+bool Server::Impl::nobody_left_to_play_for(std::uint8_t leavers_team) const {
+  if (leavers_team == wire::kWatchOnly) return clients.empty();
+  return std::none_of(clients.begin(), clients.end(),
+                      [](const Client& c) { return c.team < foosball::kTeams; });
 }
 
 // False when a recording has no further tick.
@@ -241,7 +252,7 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
 
   std::unique_ptr<Recorder> recorder;
   if (!options.record.empty()) {
-    auto file = JournalFile::create({.path = options.record});
+    auto file = JournalFile::create({.path = options.record, .overwrite = options.overwrite});
     if (!file) return tl::unexpected(StartError{Kind::bad_option, file.error()});
     recorder = std::make_unique<Recorder>(std::move(*file), header);
   }

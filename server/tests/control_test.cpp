@@ -226,6 +226,90 @@ TEST(Control, LetsAWatcherAtThisMachineWish) {
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
 }
 
+// A hundred wishes at once: the few that a hand could have made count, the rest are dropped.
+TEST(Control, TakesNoMoreWishesOfAClientThanAHandCanMake) {
+  Lockstep table;
+  ProbeClient watcher(table.port()), other(table.port());
+  ASSERT_TRUE(watcher.join() && other.join());
+  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  std::vector<std::byte> flood;
+  for (int i = 0; i < 100; ++i) wire::encode_control(restart, flood);
+  const auto began = std::chrono::steady_clock::now();
+  ASSERT_TRUE(watcher.send_raw(flood));
+  const auto counted = [&] {
+    const ControlCounters c = table->counters().control;
+    return c.wishes + c.wishes_dropped;
+  };
+  ASSERT_TRUE(table.tick_until([&] { return counted() == 100; }));
+  const auto took = std::chrono::steady_clock::now() - began;
+  const auto earned = static_cast<std::uint64_t>(took / std::chrono::milliseconds(50)) + 1;
+  const std::uint64_t taken = table->counters().control.wishes;
+  EXPECT_GE(taken, 16u);
+  EXPECT_LE(taken, 16u + earned);
+  other.say(restart);  // another client's is not among them
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.wishes > taken; }));
+}
+
+// A match in play, as a local watcher starts it.
+void start_play(Lockstep& table, ProbeClient& watcher) {
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  for (const std::uint8_t team : std::array<std::uint8_t, 3>{0, 0, 1})
+    watcher.say(wire::Wish{push, team, 0});
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+}
+
+TEST(Control, APauseEndsWhenTheLastPlayerLeaves) {
+  Lockstep table;
+  ProbeClient watcher(table.port()), first(table.port()), second(table.port());
+  ASSERT_TRUE(watcher.join() && first.join(0) && second.join(1));
+  start_play(table, watcher);
+  const auto paused = [&] { return table->match().view().paused; };
+  first.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  ASSERT_TRUE(table.tick_until(paused));
+  first.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
+  table.tick(3);
+  EXPECT_TRUE(paused()) << "another player is there, who may go on with it";
+  second.leave();
+  EXPECT_TRUE(table.tick_until([&] { return !paused(); }));
+}
+
+TEST(Control, APauseEndsWhenTheLastWatcherLeavesAnExhibition) {
+  Lockstep table;
+  ProbeClient watcher(table.port()), another(table.port());
+  ASSERT_TRUE(watcher.join() && another.join());
+  start_play(table, watcher);
+  const auto paused = [&] { return table->match().view().paused; };
+  watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  ASSERT_TRUE(table.tick_until(paused));
+  watcher.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  table.tick(3);
+  EXPECT_TRUE(paused());
+  another.leave();
+  EXPECT_TRUE(table.tick_until([&] { return !paused(); }));
+}
+
+TEST(Control, ADepartedPlayersTokenDrivesNothing) {
+  Lockstep table;
+  ProbeClient first(table.port()), second(table.port());
+  const auto old = first.join(0);
+  ASSERT_TRUE(old);
+  table.tick();
+  first.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
+  ASSERT_TRUE(second.join(0));
+  wire::InputDatagram input;
+  input.session = old->session;
+  input.token = old->token;
+  input.sequence = 1;
+  for (auto& rod : input.rods) rod = {true, 0.05f, 0.0f, 0.0f, 0.0f};
+  ASSERT_TRUE(second.send_input(input));
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().input.foreign == 1; }));
+  EXPECT_EQ(table->counters().input.accepted, 0u);
+}
+
 TEST(Control, TellsEveryoneANoticeAndThoseWhoJoinLaterUntilItIsCleared) {
   Lockstep table;
   ProbeClient first(table.port());
@@ -280,7 +364,10 @@ class DescriptorLimit {
 
 TEST(Control, StartsWholeOrSaysWhyNotHoweverFewDescriptorsAreLeft) {
   const std::string journal = temp_path("journal");
-  const auto record = [&](ServerOptions& o) { o.record = journal; };
+  const auto record = [&](ServerOptions& o) {
+    o.record = journal;
+    o.overwrite = true;
+  };
   // Once with all it wants: a sanitizer's first look at a class takes descriptors of its own.
   Lockstep(record).started();
   int more = 0;
