@@ -13,7 +13,7 @@ void encode_snapshot_full(benchmark::State& state) {
   std::mt19937_64 random(1);
   const Snapshot snapshot = samples::random_snapshot(random, true);
   std::array<std::byte, kMaxDatagram> out;
-  for (auto _ : state) benchmark::DoNotOptimize(encode_snapshot(snapshot, out));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(encode_snapshot(snapshot, out));
 }
 BENCHMARK(encode_snapshot_full)->Unit(benchmark::kMicrosecond);
 
@@ -21,21 +21,21 @@ void decode_snapshot_full(benchmark::State& state) {
   std::mt19937_64 random(1);
   const auto bytes = samples::encoded(samples::random_snapshot(random, true));
   Snapshot snapshot;
-  for (auto _ : state) benchmark::DoNotOptimize(decode_snapshot(bytes, snapshot));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(decode_snapshot(bytes, snapshot));
 }
 BENCHMARK(decode_snapshot_full)->Unit(benchmark::kMicrosecond);
 
 void encode_input_datagram(benchmark::State& state) {
   const InputDatagram input = samples::input();
   std::array<std::byte, kMaxInputDatagram> out;
-  for (auto _ : state) benchmark::DoNotOptimize(encode_input(input, out));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(encode_input(input, out));
 }
 BENCHMARK(encode_input_datagram)->Unit(benchmark::kMicrosecond);
 
 void decode_input_datagram(benchmark::State& state) {
   const auto bytes = samples::encoded(samples::input());
   InputDatagram input;
-  for (auto _ : state) benchmark::DoNotOptimize(decode_input(bytes, input));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(decode_input(bytes, input));
 }
 BENCHMARK(decode_input_datagram)->Unit(benchmark::kMicrosecond);
 
@@ -47,7 +47,7 @@ void journal_tick(benchmark::State& state) {
   JournalEntry entry{JournalTick{}};
   auto& tick = std::get<JournalTick>(entry);
   std::size_t bytes = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     for (std::size_t rod = 0; rod < 4; ++rod) {
       tick.rods[rod] = {static_cast<std::int32_t>(tick.tick % 1000) * 300,
                         static_cast<std::int64_t>(tick.tick) * 900, 300'000, 900, true};
@@ -63,7 +63,7 @@ BENCHMARK(journal_tick)->Unit(benchmark::kMicrosecond);
 
 void crc32_of_1200_bytes(benchmark::State& state) {
   const samples::Bytes bytes(1200, std::byte{0x5A});
-  for (auto _ : state) benchmark::DoNotOptimize(crc32(bytes));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(crc32(bytes));
 }
 BENCHMARK(crc32_of_1200_bytes)->Unit(benchmark::kMicrosecond);
 

@@ -52,20 +52,17 @@ double travel(const Body& body, const collide::Motion& m, double h) {
 void World::Impl::refresh_bounds(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!body.alive) {
-      bounds[i] = {};
-    } else if (body.unbounded) {
+    bounds[i] = {};
+    if (body.alive && body.unbounded) {
       // The bounds of a plane's body enclose those of its colliders, planes included.
       bounds[i] = collide::transformed(body.T, body.local);
       pose_colliders(i);
       for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
         bounds[i] = merged(bounds[i], colliders[c].bounds);
       }
-    } else if (!collide::empty(body.local)) {
+    } else if (body.alive && !collide::empty(body.local)) {
       bounds[i] = grown(collide::transformed(body.T, body.local),
                         desc.contact_slop + travel(body, motions[i], h));
-    } else {
-      bounds[i] = {};
     }
     movable[i] = body.alive && can_move(body);
   }
