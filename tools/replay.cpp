@@ -32,7 +32,6 @@ bool continue_elsewhere(foosball::Match& match, const foosball::MatchDesc& desc)
 }
 
 int replay(const Options& options, server::Playback& playback, foosball::Match& match) {
-  using Verdict = server::Playback::Verdict;
   bool restored = !options.restore_at;
   const auto restore_here = [&] {
     if (restored || playback.ticks() != *options.restore_at) return true;
@@ -54,17 +53,11 @@ int replay(const Options& options, server::Playback& playback, foosball::Match& 
   }
 
   const auto& view = match.view();
-  const bool stopped = stop_here() && playback.verdict() != Verdict::differs;
   std::printf("ticks    %" PRIu64 "\n", playback.ticks());
   std::printf("hash     %016" PRIx64 "\n", match.state_hash());
   std::printf("score    %d : %d\n", view.score[0], view.score[1]);
-  std::printf("verdict  %s\n",
-              stopped ? ("stopped as told; so far the same: " +
-                         std::to_string(playback.hashes_checked()) + " states compared")
-                            .c_str()
-                      : playback.verdict_sentence().c_str());
-  if (playback.verdict() == Verdict::differs) return server::kExitFailed;
-  return stopped || playback.verdict() == Verdict::same ? server::kExitOk : server::kExitCutShort;
+  std::printf("verdict  %s\n", playback.verdict_sentence().c_str());
+  return server::exit_code(playback.verdict());
 }
 
 }  // namespace

@@ -112,6 +112,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.random = random_number;
   wanted.record = options.record;
   wanted.overwrite = options.overwrite;
+  wanted.await_client = options.await_client;
   // Below the tick, which it must never hold up, and above all else.
   if (options.loop.paced && options.loop.real_time)
     wanted.send_priority = options.loop.priority - 1;
@@ -135,15 +136,14 @@ int judge_record(const server::Server& server, const server::Log& log) {
   return server::kExitFailed;
 }
 
-// The same for a replay.
-int judge_replay(const server::Server& server, const server::Log& log) {
+// The same for a replay. The summary says the verdict too.
+int judge_replay(const server::Server& server, bool quiet, const server::Log& log) {
   const server::Playback* playback = server.replay();
-  if (playback == nullptr || !server.replay_over()) return server::kExitOk;
-  const bool same = playback->verdict() == server::Playback::Verdict::same;
-  log(same ? server::LogLevel::info : server::LogLevel::warning, playback->verdict_sentence());
-  if (same) return server::kExitOk;
-  return playback->verdict() == server::Playback::Verdict::differs ? server::kExitFailed
-                                                                   : server::kExitCutShort;
+  if (playback == nullptr) return server::kExitOk;
+  const int code = server::exit_code(playback->verdict());
+  if (quiet && code != server::kExitOk)
+    log(server::LogLevel::warning, playback->verdict_sentence());
+  return code;
 }
 
 int serve(server::Server& server, const app::Options& options, const server::Log& log) {
@@ -159,7 +159,8 @@ int serve(server::Server& server, const app::Options& options, const server::Log
   server.finish(server::to_text(end));
 
   // Never both: a replay is not recorded.
-  const int code = options.replay.empty() ? judge_record(server, log) : judge_replay(server, log);
+  const int code =
+      options.replay.empty() ? judge_record(server, log) : judge_replay(server, options.quiet, log);
   if (!options.quiet) {
     std::printf("%s:\n%s", server::to_text(end), server::summary(server, loop.stats()).c_str());
   }

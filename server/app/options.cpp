@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -40,15 +41,20 @@ std::string check_seconds(const std::string& text) {
   return ok ? "" : "\"" + text + "\" is no number of seconds between 0.001 and 1000000";
 }
 
-std::string check_seed(const std::string& text) {
+std::optional<std::uint64_t> parse_seed(const std::string& text) {
   std::uint64_t value = 0;
-  const bool ok = text.find_first_not_of("0123456789") == std::string::npos &&
-                  CLI::detail::lexical_cast(text, value);
-  return ok ? "" : "\"" + text + "\" is no whole number below 2^64";
+  const char* end = text.data() + text.size();
+  const auto [stopped_at, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stopped_at == end ? std::optional(value) : std::nullopt;
+}
+
+std::string check_seed(const std::string& text) {
+  return parse_seed(text) ? ""
+                          : "\"" + text + "\" is no whole number from 0 to 18446744073709551615";
 }
 
 struct Raw {
-  std::string layout = "tournament", team0 = "human", team1 = "human", multicast;
+  std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed;
   double seconds = 0.0;
   bool fast = false, no_real_time = false;
 };
@@ -57,8 +63,7 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   const CLI::IsMember player({"human", "computer"});
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  cli.add_option("--seed", o.match.seed, "of the match and the computer players")
-      ->check(check_seed);
+  cli.add_option("--seed", raw.seed, "of the match and the computer players")->check(check_seed);
   cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
@@ -94,6 +99,8 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_flag("--fast", raw.fast, "replay as fast as it goes")->needs(replay);
   cli.add_option("--seconds", raw.seconds, "end after so much time of the match")
       ->check(check_seconds);
+  cli.add_flag("--await-client", o.await_client,
+               "begin the match, or its replay, when the first client has joined");
   cli.add_flag("--exit-when-empty", o.run.exit_when_empty,
                "end when the last client that joined has left");
   cli.add_option("--cpu", o.loop.cpu, "pin the tick to this core")->check(CLI::Range(0, 1023));
@@ -113,6 +120,7 @@ std::string with_scheme(const std::string& device) {
 
 void translate(Options& o, const Raw& raw) {
   o.match.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
+  if (!raw.seed.empty()) o.match.seed = *parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));

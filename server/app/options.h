@@ -20,7 +20,7 @@ struct Options {
   server::LoopOptions loop;
   std::vector<std::string> devices;
   std::string calibration, record, replay, ready_file, stats_file;
-  bool overwrite = false, quiet = false;
+  bool overwrite = false, await_client = false, quiet = false;
 };
 
 // What to print, and the exit code, when there is nothing to run: --help, or a bad value.

@@ -1,6 +1,7 @@
 #include "server/playback.h"
 
 #include "match_record.h"
+#include "server/exit_code.h"
 #include "wire/read_file.h"
 
 namespace server {
@@ -23,11 +24,26 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
                           ": choose a file that --record wrote");
   }
   playback->match_ = from_header(*header);
+  if (const auto playable = foosball::Match::create(playback->match_); !playable)
+    return tl::unexpected(name + " cannot be replayed: " + playable.error().message);
+  if (!playback->holds_a_tick()) {
+    return tl::unexpected(name +
+                          " holds the beginning of a match, but no tick of it: there is nothing to "
+                          "replay");
+  }
   return playback;
 }
 
 Playback::Playback(std::vector<std::byte> file, std::string name)
     : file_(std::move(file)), name_(std::move(name)), reader_(file_) {}
+
+bool Playback::holds_a_tick() const {
+  wire::JournalReader reader(file_);
+  while (const auto entry = reader.next()) {
+    if (std::holds_alternative<wire::JournalTick>(*entry)) return true;
+  }
+  return false;
+}
 
 const wire::JournalTick* Playback::next(const foosball::Match& match) {
   while (auto entry = reader_.next()) {
@@ -43,6 +59,7 @@ const wire::JournalTick* Playback::next(const foosball::Match& match) {
       ended_ = true;
     }
   }
+  exhausted_ = true;
   return nullptr;
 }
 
@@ -63,6 +80,7 @@ void Playback::compare(std::uint64_t tick, bool same) {
 
 Playback::Verdict Playback::verdict() const {
   if (first_difference_) return Verdict::differs;
+  if (!exhausted_) return Verdict::so_far;
   return ended_ && reader_.problem().empty() ? Verdict::same : Verdict::cut_short;
 }
 
@@ -72,6 +90,8 @@ std::string Playback::verdict_sentence() const {
   switch (verdict()) {
     case Verdict::same:
       return "the replay is the match that was played: " + after;
+    case Verdict::so_far:
+      return "left before the recording's end; it is the match that was played so far: " + after;
     case Verdict::cut_short:
       return name_ + " stops early" +
              (reader_.problem().empty() ? " (no end was recorded)"
@@ -84,6 +104,19 @@ std::string Playback::verdict_sentence() const {
              "build is not deterministic";
   }
   return {};
+}
+
+int exit_code(Playback::Verdict verdict) {
+  switch (verdict) {
+    case Playback::Verdict::same:
+    case Playback::Verdict::so_far:
+      return kExitOk;
+    case Playback::Verdict::cut_short:
+      return kExitCutShort;
+    case Playback::Verdict::differs:
+      break;
+  }
+  return kExitFailed;
 }
 
 void step_recorded(foosball::Match& match, const wire::JournalTick& tick) {

@@ -45,7 +45,7 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"score1", static_cast<double>(score[1])},
       {"seconds", loop.seconds},
       {"ticks", number(c.ticks)},
-      {"ticks_per_second", per_second(c.ticks, loop)},
+      {"ticks_per_second", per_second(loop.ticks, loop)},
       {"ticks_missed", number(loop.missed)},
       {"missed_share", loop.missed_share()},
       {"late_p50_us", us(loop.lateness.quantile(0.5))},
@@ -123,8 +123,11 @@ std::string summary(const Server& server, const LoopStats& loop) {
   std::string text;
   auto out = std::back_inserter(text);
   fmt::format_to(out, "score      {} : {}\n", score[0], score[1]);
+  if (server.replay() != nullptr)
+    fmt::format_to(out, "verdict    {}\n", server.replay()->verdict_sentence());
   fmt::format_to(out, "ticks      {} in {:.1f} s ({:.1f} a second), {} missed ({:.3f}%)\n", c.ticks,
-                 loop.seconds, per_second(c.ticks, loop), loop.missed, 100.0 * loop.missed_share());
+                 loop.seconds, per_second(loop.ticks, loop), loop.missed,
+                 100.0 * loop.missed_share());
   if (loop.lateness.count() > 0) fmt::format_to(out, "lateness   {}\n", quantiles(loop.lateness));
   fmt::format_to(out, "tick cost  {}\n", quantiles(loop.cost));
   if (c.snapshots_sent > 0) {

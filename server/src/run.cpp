@@ -20,10 +20,10 @@ void tell(Server& server, OverloadWatch::News news) {
 }
 
 std::optional<RunEnd> reason_to_end(const Server& server, const RunOptions& options,
-                                    const LoopStats& stats, const std::atomic<bool>& stop) {
+                                    const std::atomic<bool>& stop) {
   if (stop.load(std::memory_order_relaxed)) return RunEnd::stopped;
   if (server.replay_over()) return RunEnd::replay_over;
-  if (options.ticks != 0 && stats.ticks + 1 >= options.ticks) return RunEnd::time_over;
+  if (options.ticks != 0 && server.ticks() >= options.ticks) return RunEnd::time_over;
   if (options.exit_when_empty && server.clients_ever() > 0 && server.clients() == 0) {
     return RunEnd::empty;
   }
@@ -53,7 +53,7 @@ RunEnd run(Server& server, TickLoop& loop, const RunOptions& options,
   loop.run([&](std::int64_t now_us, const LoopStats& stats) {
     server.tick(now_us);
     tell(server, overload.look(stats.ticks, stats.missed));
-    end = reason_to_end(server, options, stats, stop);
+    end = reason_to_end(server, options, stop);
     return !end;
   });
   return *end;

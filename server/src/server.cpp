@@ -165,13 +165,15 @@ bool Server::Impl::nobody_left_to_play_for(std::uint8_t leavers_team) const {
                       [](const Client& c) { return c.team < foosball::kTeams; });
 }
 
-// False when a recording has no further tick.
+// False when there is no tick to step: a client is awaited, or a recording is over.
 bool Server::Impl::gather(std::int64_t now_us) {
   input.receive(now_us);
+  const bool begun = !options.await_client || clients_ever > 0;
   if (!options.replay) {
-    gather_live(now_us);
-    return true;
+    gather_live(now_us);  // before the beginning too: devices are not to run over
+    return begun;
   }
+  if (!begun) return false;
   if (replay_over) return false;
   const wire::JournalTick* recorded = options.replay->next(match);
   if (recorded == nullptr) {
@@ -325,6 +327,9 @@ int Server::clients() const {
 }
 std::uint64_t Server::clients_ever() const {
   return impl_->clients_ever;
+}
+std::uint64_t Server::ticks() const {
+  return impl_->ticks;
 }
 
 std::string Server::journal_problem() const {

@@ -57,6 +57,8 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--layout", "round"},
       {"--team0", "ghost"},
       {"--seed", "-1x"},
+      {"--seed", "0x10"},
+      {"--seed", "18446744073709551616"},
       {"--seconds", "0"},
       {"--seconds", "nan"},
       {"--fast"},
@@ -82,6 +84,11 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     EXPECT_EQ(said.rfind("space-foosball-server: ", 0), 0u) << said;
   }
+}
+
+TEST(ServerProgram, TakesEverySeedOf64Bits) {
+  Process process(serve({"--port", "0", "--seed", "18446744073709551615", "--seconds", "0.01"}));
+  EXPECT_EQ(process.wait(), 0) << process.output();
 }
 
 TEST(ServerProgram, ExplainsItself) {
@@ -278,9 +285,16 @@ TEST(ServerProgram, SaysThatAReplayDiffers) {
   Process headless({REPLAY_BINARY, path});
   EXPECT_EQ(headless.wait(), 1);
   EXPECT_NE(headless.output().find("differs"), std::string::npos);
-  Process shown(serve({"--port", "0", "--replay", path}));
+  const std::vector<std::string> options = {"--port", "0", "--replay", path};
+  Process shown(serve(options));
   EXPECT_EQ(shown.wait(), 1);
-  EXPECT_NE(shown.output().find("differs"), std::string::npos);
+  EXPECT_NE(shown.output().find("\nverdict    the replay differs"), std::string::npos)
+      << shown.output();
+  std::vector<std::string> quietly = options;
+  quietly.push_back("--quiet");
+  Process quiet(serve(quietly));
+  EXPECT_EQ(quiet.wait(), 1);
+  EXPECT_NE(quiet.output().find("the replay differs"), std::string::npos) << quiet.output();
   std::remove(path.c_str());
 }
 

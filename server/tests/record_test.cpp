@@ -175,6 +175,59 @@ TEST(Recording, RefusesAFileThatIsNoRecording) {
   EXPECT_FALSE(Playback::open("/nowhere/at/all"));
 }
 
+std::vector<std::byte> journal(const std::vector<wire::JournalEntry>& entries) {
+  wire::JournalEncoder encoder;
+  std::vector<std::byte> out;
+  for (const auto& entry : entries) EXPECT_TRUE(encoder.add(entry, out));
+  return out;
+}
+
+TEST(Recording, RefusesOneWithoutATickAndNamesIt) {
+  const wire::JournalHeader header;
+  for (const auto& bytes : {journal({header}), journal({header, wire::JournalEnd{0, 1}})}) {
+    const auto opened = Playback::from_bytes(bytes, "x.sfr");
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().rfind("x.sfr holds ", 0), 0u) << opened.error();
+    EXPECT_NE(opened.error().find("no tick"), std::string::npos) << opened.error();
+  }
+}
+
+TEST(Recording, RefusesRulesThatCannotBePlayedAndNamesTheFile) {
+  wire::JournalHeader header;
+  header.goals_to_win = 0;
+  const auto opened = Playback::from_bytes(journal({header, wire::JournalTick{}}), "x.sfr");
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().rfind("x.sfr cannot be replayed: ", 0), 0u) << opened.error();
+}
+
+TEST(Recording, LeftBeforeItsEndIsSaidToBeTheSameSoFar) {
+  const Recorded live = record(1'500);
+  auto playback = Playback::open(live.path).value();
+  auto match = foosball::Match::create(playback->match()).value();
+  while (playback->ticks() < 1'200) step_recorded(match, *playback->next(match));
+  EXPECT_EQ(playback->verdict(), Playback::Verdict::so_far);
+  EXPECT_EQ(playback->hashes_checked(), 1u);
+  EXPECT_NE(playback->verdict_sentence().find("left before"), std::string::npos);
+  std::remove(live.path.c_str());
+}
+
+TEST(Recording, BeginsItsReplayWhenTheAwaitedClientHasJoined) {
+  const Recorded live = record(20);
+  Lockstep table([&](ServerOptions& o) {
+    o.replay = Playback::open(live.path).value();
+    o.await_client = true;
+  });
+  table.tick(100);
+  EXPECT_EQ(table->ticks(), 0u);
+  EXPECT_FALSE(table->replay_over());
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  while (!table->replay_over()) table.tick();
+  EXPECT_EQ(table->ticks(), live.ticks);
+  EXPECT_EQ(table->match().state_hash(), live.hash);
+  std::remove(live.path.c_str());
+}
+
 TEST(Recording, GoesOnPlayingWhenTheDiskIsFull) {
   Lockstep table([](ServerOptions& o) {
     o.computer = {true, true};

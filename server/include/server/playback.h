@@ -18,12 +18,13 @@ class Playback {
  public:
   enum class Verdict {
     same,       // every hash agreed, to the recorded end
+    so_far,     // every hash agreed, but the replay was left before the recording's end
     cut_short,  // every hash agreed, but the recording stops without its end
     differs,    // a hash did not agree: this build does not play the match as it was played
   };
 
-  // Reads the file; the error is a sentence. Refused: what cannot be read or does not begin with a
-  // match's header.
+  // Reads the file; the error is a sentence that names it. Refused: what cannot be read, does not
+  // begin with the header of a match that can be played, or holds no tick of it.
   static tl::expected<std::unique_ptr<Playback>, std::string> open(const std::string& path);
   static tl::expected<std::unique_ptr<Playback>, std::string> from_bytes(
       std::vector<std::byte> file, const std::string& name);
@@ -41,6 +42,7 @@ class Playback {
 
  private:
   Playback(std::vector<std::byte> file, std::string name);
+  bool holds_a_tick() const;
   void check(const foosball::Match& match, const wire::JournalHash& hash);
   void check(const foosball::Match& match, const wire::JournalKeyframe& keyframe);
   void compare(std::uint64_t tick, bool same);
@@ -53,8 +55,12 @@ class Playback {
   std::vector<std::byte> scratch_;
   std::uint64_t ticks_ = 0, checked_ = 0;
   std::optional<std::uint64_t> first_difference_;  // ticks stepped
-  bool ended_ = false;
+  bool ended_ = false;                             // the recorded end was seen
+  bool exhausted_ = false;                         // nothing more can be read
 };
+
+// What a program that replays ends with: 0, 1 or 4 (server/exit_code.h).
+int exit_code(Playback::Verdict verdict);
 
 // Steps the match with one journaled tick: the only way in which a replay steps.
 void step_recorded(foosball::Match& match, const wire::JournalTick& tick);

@@ -33,6 +33,7 @@ struct ServerOptions {
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
   bool overwrite = false;                 // the recording that is there already
+  bool await_client = false;              // the first tick is when the first client has joined
   int send_priority = 0;  // real-time, of the thread that sends snapshots; 0: an ordinary one
   std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say
   Log log = [](LogLevel, const std::string&) {};
@@ -73,6 +74,7 @@ class Server {
   const Playback* replay() const;       // or null
   int clients() const;                  // joined now, as the last tick saw it
   std::uint64_t clients_ever() const;   // joined so far
+  std::uint64_t ticks() const;          // of the match
   std::string journal_problem() const;  // empty: none
   Counters counters() const;
   std::vector<DeviceCounters> devices() const;
