@@ -152,10 +152,107 @@ replay_hash() {
   echo "$preset ${*:3} $(sed -n 's/^hash *//p' <<<"$words")"
 }
 
+# expect STATUS COMMAND...: runs it, its words going to LOGS/STEP.said_by, and compares its exit status.
+expect() {
+  local wanted=$1 status=0
+  shift
+  "$@" >"$LOGS/$STEP.said_by" 2>&1 || status=$?
+  cat "$LOGS/$STEP.said_by"
+  ((status == wanted)) || { echo "\"$*\" ended with $status, not with $wanted" && return 1; }
+}
+has_said() { # has_said REGULAR_EXPRESSION: the last command that was expected
+  grep -Eq "$1" "$LOGS/$STEP.said_by" || { echo "it did not say \"$1\"" && return 1; }
+}
+
+# What a newcomer may get wrong is answered by one sentence and exit code 2.
+play_refusals() { # play_refusals FOLDER
+  local options
+  head -c 40 "$1/exhibition.sfr" >"$1/no.sfr"
+  while read -r -a options; do
+    expect 2 ./play "${options[@]}"
+    [[ $(wc -l <"$LOGS/$STEP.said_by") == 1 ]] || { echo "that was more than one sentence" && return 1; }
+  done <<TEXT
+--nonsense
+--seconds 0
+--seconds 1000001
+--seed -1
+--seed 18446744073709551616
+--headless --out $1/no.sfr
+--headless --calibration $1/no.sfr
+--headless --record $1
+--headless --replay $1/no.sfr
+TEXT
+}
+
+# A replay says whether it is the match that was played, and ends with a status that says so too.
+play_replays() { # play_replays FOLDER
+  build/release/bin/space-foosball-server --port 0 --team0 computer --team1 computer --quiet --seconds 1.5 \
+    --seed 18446744073709551615 --record "$1/short.sfr"
+  head -c -40 "$1/short.sfr" >"$1/cut.sfr"
+  python3 - "$1" <<'PYTHON' # another hash at the recorded end, the last 8 bytes
+import struct, sys, zlib
+data = bytearray(open(sys.argv[1] + '/short.sfr', 'rb').read())
+at = 0
+while at + 8 + struct.unpack_from('<I', data, at)[0] < len(data):
+    at += 8 + struct.unpack_from('<I', data, at)[0]
+data[-1] ^= 1
+struct.pack_into('<I', data, at + 4, zlib.crc32(data[at + 8:]))
+open(sys.argv[1] + '/differs.sfr', 'wb').write(data)
+PYTHON
+  expect 1 ./play --headless --replay "$1/differs.sfr" --screenshot "$1/differs.png"
+  has_said '^verdict +the replay differs .* tick 1500:'
+  has_said '^written .*/differs.png$'
+  expect 4 ./play --headless --replay "$1/cut.sfr" --screenshot "$1/cut.png"
+  has_said '^verdict .*cut.sfr stops early .* match that was played so far'
+  has_said '^written .*/cut.png$'
+}
+
+# Stopped, it names what it leaves; killed, it leaves no process.
+play_signals() { # play_signals FOLDER
+  local pid pids status=0
+  ./play --headless --seconds 600 --out "$1" --record "$1/stopped.sfr" >"$LOGS/$STEP.said_by" 2>&1 &
+  pid=$!
+  await larger_than 1000 "$1/stopped.sfr" # the match goes on, hence the renderer has joined it
+  kill -TERM "$pid"
+  wait "$pid" || status=$?
+  cat "$LOGS/$STEP.said_by"
+  ((status == 143)) || { echo "stopped, ./play ended with $status, not with 143" && return 1; }
+  has_said '^left .*/exhibition.png$'
+  has_said '^left .*/stopped.sfr$'
+  expect 0 build/release/bin/foosball-replay "$1/stopped.sfr"
+
+  ./play --headless --seconds 600 --out "$1" >/dev/null 2>&1 &
+  pid=$!
+  await has_children "$pid" Xvfb space-foosball space-foosball-server
+  pids=$(children "$pid")
+  kill -KILL "$pid"
+  wait "$pid" || true
+  for pid in $pids; do await is_gone "$pid"; done
+}
+
+await() { # await COMMAND...: until it succeeds, at most 30 s
+  for _ in {1..600}; do
+    "$@" && return
+    sleep 0.05
+  done
+  echo "not within 30 s: $*"
+  return 1
+}
+is_gone() { ! kill -0 "$1" 2>/dev/null; }
+larger_than() { [[ -f $2 && $(stat -c %s "$2") -gt $1 ]]; } # larger_than BYTES FILE
+children() { cat "/proc/$1/task/$1/children"; }
+has_children() { # has_children PID PROGRAM...
+  local pid program programs=' '
+  for pid in $(children "$1"); do
+    programs+="$(basename "$(readlink "/proc/$pid/exe")") "
+  done
+  for program in "${@:2}"; do [[ $programs == *" $program "* ]] || return 1; done
+}
+
 step_play() {
   local out=$LOGS/play
   rm -rf "$out"
-  ./play --headless --seconds 8 --out "$out" | tee "$LOGS/play.words"
+  ./play --headless --seconds 6 --out "$out" | tee "$LOGS/play.words"
   local file
   for file in exhibition.png exhibition.sfr; do
     [[ -s $out/$file ]] || { echo "./play left no $file" && return 1; }
@@ -166,8 +263,9 @@ step_play() {
     '^snapshots +[1-9][0-9]* received' '^picture +[0-9]*\.?[0-9]*[1-9][0-9]* frames/s'; do
     grep -Eq "$wanted" "$LOGS/play.words" || { echo "./play did not say \"$wanted\"" && return 1; }
   done
-  # What a newcomer may get wrong is answered by one sentence.
-  [[ $(./play --nonsense 2>&1 | wc -l) == 1 ]]
+  play_refusals "$out"
+  play_replays "$out"
+  play_signals "$out"
   said "$(grep -m1 score "$LOGS/play.words")"
 }
 

@@ -64,7 +64,8 @@ virtual_display() {
   local number fifo
   fifo=$(mktemp -u)
   mkfifo "$fifo"
-  Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$fifo" >/dev/null 2>&1 &
+  # Out of reach of a Ctrl-C: what draws in it may have a last picture to draw.
+  setsid setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$fifo" >/dev/null 2>&1 &
   # shellcheck disable=SC2034  # read by the callers' clean-up
   XVFB_PID=$!
   # Opening for reading waits for the writer; Xvfb writes its number once it can be used, or dies.
@@ -78,22 +79,22 @@ virtual_display() {
   unset WAYLAND_DISPLAY
 }
 
-# stop PID...: asks the processes to end, and after 3 seconds makes them. Fails if one had to be
-# made, or ended with an error.
+# stop PID...: asks the processes to end, and after STOP_SECONDS (3) makes them. Fails if one had to be
+# made, or ended with an error: with its status.
 stop() {
-  local pid status clean=0
+  local pid status i looks=$((${STOP_SECONDS:-3} * 20)) failed=0
   for pid in "$@"; do kill -TERM "$pid" 2>/dev/null || true; done
   for pid in "$@"; do
-    for _ in {1..60}; do
+    for ((i = 0; i < looks; ++i)); do
       kill -0 "$pid" 2>/dev/null || break
       sleep 0.05
     done
     kill -KILL "$pid" 2>/dev/null || true
     status=0
     wait "$pid" 2>/dev/null || status=$?
-    ((status == 0 || status == 143 || status == 127)) || clean=1 # 143: by our signal; 127: no child
+    ((status == 0 || status == 143 || status == 127)) || failed=$status # 143: by our signal; 127: no child
   done
-  return "$clean"
+  return "$failed"
 }
 
 # By itself: scripts/common.sh FUNCTION ARGUMENT... runs one of the above, for wrappers such as setarch.
