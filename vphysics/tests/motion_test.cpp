@@ -70,7 +70,7 @@ TEST(Bounce, HeightFallsByTheSquareOfRestitution) {
       }
       if (bounced) top = std::max(top, world.pose(ball).position().z - kBallRadius);
     }
-    EXPECT_NEAR(top, e * e * drop, 0.006 * drop) << e;
+    EXPECT_NEAR(top, e * e * drop, 0.001 * drop) << e;
   }
 }
 

@@ -5,7 +5,18 @@
 //     friction  |p_t| <= mu p_n,   a disc, not a box: two rows solved together
 //     rolling   |p_r| <= rho p_n,  moments
 // Restitution is a second round, in which contacts that closed faster than the threshold and
-// carried an impulse in the first get the target e * approach. Penetration is taken out by a third
+// carried an impulse in the first get a target that leaves at e times their approach.
+//
+// Approach and target are those of the true parabola: the velocities hold the forces of the whole
+// step from its start. With u the outward speed at the start of a step dt, x the height and a
+// constant acceleration -g, semi-implicit Euler conserves u^2 / 2 + g x - u g dt / 2. For a contact
+// that closes at u1 (step's forces included) with h of the step left over a gap s, this gives
+//     approach^2 = (u1 - early)^2 + 2 g s,    early = g (h - dt / 2),
+//     (target + early)^2 = (e approach)^2 - 2 g s,
+// but for (g dt)^2 / 4, which is left out. A body at rest closes at u1 = g dt in each step: whether
+// a contact bounces is decided by u1 - g h, the speed that the forces have given it by now.
+//
+// Penetration is taken out by a third
 // set of impulses that acts on positions alone and so adds no energy. Sources: Catto 2006
 // (sequential impulses); Moreau 1988 for the disc; Jolt and Box2D for correcting positions apart.
 #include "solve/contact_solver.h"
@@ -82,6 +93,23 @@ double rolling_mass(const Sym3& K) {
   return most > 0.0 ? 1.0 / most : 0.0;
 }
 
+void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBody& b,
+                      const ContactConstraint& c, ContactPoint& p) {
+  const Vec3 forced =
+      b.forced_v + cross(b.forced_w, p.arm_b) - a.forced_v - cross(a.forced_w, p.arm_a);
+  const double closing = -dot(c.normal, relative_velocity(a, b, p));
+  const double gain = -dot(c.normal, forced);  // g dt
+  const double left = s.duration / s.step;
+  // A swept body is at its contact; its gap is within the tolerance.
+  const double gap = c.swept ? 0.0 : std::max(0.0, p.separation);
+  p.early = gain * (left - 0.5);
+  p.fall = 2.0 * gain / s.step * gap;
+  const double speed = std::max(0.0, closing - p.early);
+  p.approach = std::sqrt(std::max(0.0, speed * speed + p.fall));
+  p.hits = closing - gain * left > s.restitution_threshold;
+  p.bounces = false;
+}
+
 void prepare(const StepContext& s, ContactConstraint& c) {
   const SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
   c.rolling_mass = c.rolling > 0.0 ? rolling_mass(a.angular + b.angular) : 0.0;
@@ -92,7 +120,7 @@ void prepare(const StepContext& s, ContactConstraint& c) {
     const double k = response(a, b, p, c.normal, c.normal);
     p.normal_mass = k > 1e-12 ? 1.0 / k : 0.0;
     prepare_tangents(a, b, c, p);
-    p.approach = -dot(c.normal, relative_velocity(a, b, p));
+    prepare_approach(s, a, b, c, p);
     p.target = -std::max(0.0, p.separation - s.slop) / s.duration;
     p.push = 0.0;
   }
@@ -205,9 +233,12 @@ bool set_bounce_targets(const StepContext& s) {
     if (c.restitution <= 0.0) continue;
     for (int i = 0; i < c.count; ++i) {
       ContactPoint& p = c.points[i];
-      if (p.approach <= s.restitution_threshold || p.normal_impulse <= 0.0) continue;
-      p.target = c.restitution * p.approach;
-      any = true;
+      if (!p.hits || p.normal_impulse <= 0.0) continue;
+      const double leaving = c.restitution * p.approach;
+      const double target = std::sqrt(std::max(0.0, leaving * leaving - p.fall)) - p.early;
+      if (target <= p.target) continue;
+      p.target = target;
+      p.bounces = any = true;
     }
   }
   return any;

@@ -16,12 +16,13 @@
 namespace vp::solve {
 
 struct SolverBody {
-  Vec3 w, v;             // world frame; written by the solver
-  Vec3 turn, shift;      // position correction; written by the solver, applied by the world
-  Sym3 angular, linear;  // inverse inertia, world frame; zero for what nothing moves
-  Vec3 x;                // the point, world frame
+  Vec3 w, v;                // world frame; written by the solver
+  Vec3 turn, shift;         // position correction; written by the solver, applied by the world
+  Sym3 angular, linear;     // inverse inertia, world frame; zero for what nothing moves
+  Vec3 x;                   // the point, world frame
+  Vec3 forced_w, forced_v;  // what this step's forces added to w and v
 };
-static_assert(sizeof(SolverBody) == 27 * sizeof(double));
+static_assert(sizeof(SolverBody) == 33 * sizeof(double));
 
 struct ContactPoint {
   // Given.
@@ -33,8 +34,12 @@ struct ContactPoint {
   double normal_mass;
   double tangent_mass[3];  // inverse of the 2x2 tangent block: 11, 12, 22
   double slide_mass;       // inverse of the block's largest eigenvalue
-  double approach;         // speed of approach before the solve, >= 0 when approaching
-  double target;           // least normal speed after it
+  double approach;         // speed of approach at the instant of contact, >= 0
+  double early;            // part of the approach that the step's forces add only after it
+  double fall;             // what they add to its square while the gap closes [m^2/s^2]
+  bool hits;               // faster than the threshold; what rests does not hit
+  bool bounces;
+  double target;  // least normal speed after it
   // Impulses; what they hold before the solve is the warm start.
   double normal_impulse;
   double tangent_impulse[2];
@@ -71,6 +76,7 @@ struct StepContext {
   std::span<ContactConstraint> contacts;
   std::span<JointRow> joints;
   double duration;  // to the end of the step [s]
+  double step;      // all of it [s]
   double slop;
   double restitution_threshold;
   int iterations;

@@ -30,6 +30,13 @@ const PairPoint* point_of(const PairRecord& record, const collide::ManifoldPoint
   return nearest;
 }
 
+// Takes out of what the forces added what the solve took from it: a load that is carried is no
+// approach in the impacts that follow.
+void remove_carried(Vec3& forced, const Vec3& change) {
+  const double against = -dot(forced, change), size = dot(change, change);
+  if (against > 0.0) forced += std::min(1.0, against / size) * change;
+}
+
 // How far a contact point may have moved in a step to be the same [contact slops].
 constexpr double kSamePoint = 20.0;
 
@@ -144,7 +151,7 @@ void World::Impl::add_joint_rows(double h, bool first) {
   }
 }
 
-void World::Impl::solve_contacts(double h, bool first) {
+void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
     // An impact: contacts found at the start of the step take part with fresh impulses.
     for (solve::ContactConstraint& c : discrete_contacts) {
@@ -160,10 +167,14 @@ void World::Impl::solve_contacts(double h, bool first) {
   add_joint_rows(h, first);
   if (contacts.empty() && joint_rows.empty()) return;
   refresh_solver_bodies();
-  solve::solve({solver_bodies, contacts, joint_rows, h, desc.contact_slop,
+  solve::solve({solver_bodies, contacts, joint_rows, h, dt, desc.contact_slop,
                 desc.restitution_threshold, desc.velocity_iterations});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].alive || bodies[i].motion != Motion::dynamic) continue;
+    if (first) {
+      remove_carried(forced[i].w, solver_bodies[i].w - bodies[i].w);
+      remove_carried(forced[i].v, solver_bodies[i].v - bodies[i].v);
+    }
     bodies[i].w = solver_bodies[i].w;
     bodies[i].v = solver_bodies[i].v;
     (void)stop_if_out_of_range(i);
@@ -192,10 +203,14 @@ void World::Impl::report_contacts(double time) {
   for (const solve::ContactConstraint& c : contacts) {
     double impulse = 0.0, approach = 0.0, nearest = collide::kFar;
     Vec3 point;
+    bool hits = false;
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       impulse += p.normal_impulse;
-      if (p.normal_impulse > 0.0) approach = std::max(approach, p.approach);
+      if (p.normal_impulse > 0.0) {
+        approach = std::max(approach, p.approach);
+        hits |= p.hits;
+      }
       if (p.separation < nearest) nearest = p.separation, point = p.position;
     }
     if (impulse <= 0.0 && nearest > desc.contact_slop) continue;
@@ -205,9 +220,7 @@ void World::Impl::report_contacts(double time) {
     const bool known = record.touching || (last && last->touching);
     record.touching = true;
     if (!known) emit(ContactEvent::Kind::begin, pair, point, c.normal, approach, impulse, time);
-    if (approach > desc.restitution_threshold) {
-      emit(ContactEvent::Kind::hit, pair, point, c.normal, approach, impulse, time);
-    }
+    if (hits) emit(ContactEvent::Kind::hit, pair, point, c.normal, approach, impulse, time);
   }
 }
 
@@ -242,7 +255,7 @@ void World::Impl::remember_impulses() {
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};
-      if (p.target > 0.0) continue;  // a bounce carries nothing on
+      if (p.bounces) continue;  // a bounce carries nothing on
       record.points[i].normal_impulse = p.normal_impulse;
       record.points[i].friction =
           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1];

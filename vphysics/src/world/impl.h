@@ -115,6 +115,10 @@ struct SweptPair {
   double separation;
 };
 
+struct Velocity {
+  Vec3 w, v;  // world frame
+};
+
 struct World::Impl {
   WorldDesc desc;
   std::vector<Body> bodies;
@@ -135,6 +139,7 @@ struct World::Impl {
   std::vector<collide::Bounds> bounds;
   std::vector<std::uint8_t> movable, posed, held;
   std::vector<collide::Motion> motions;
+  std::vector<Velocity> forced;  // what the step's forces added
   std::vector<solve::SolverBody> solver_bodies;
   std::vector<collide::IndexPair> body_pairs;
   std::vector<ColliderPair> discrete_pairs;
@@ -185,7 +190,7 @@ struct World::Impl {
   void find_discrete_contacts(double h);
   void find_swept_contacts(bool warm);
   void add_joint_rows(double h, bool first);
-  void solve_contacts(double h, bool first);
+  void solve_contacts(double h, double dt, bool first);
   void report_contacts(double time);
   void remember_impulses();
   void report_ends();

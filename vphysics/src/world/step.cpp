@@ -49,6 +49,7 @@ void World::Impl::begin_step(double dt) {
   bounds.resize(n);
   movable.resize(n);
   motions.resize(n);
+  forced.assign(n, {});
   solver_bodies.resize(n);
   start_poses.resize(n);
   start_q.resize(2 * articulations.size());
@@ -63,8 +64,10 @@ void World::Impl::begin_step(double dt) {
 }
 
 void World::Impl::integrate_forces(double dt) {
-  for (Body& body : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
     if (!body.alive) continue;
+    if (body.motion == Motion::dynamic) forced[i] = {body.w, body.v};
     if (body.motion == Motion::kinematic) {
       // The origin goes along the chord to where the twist takes it.
       const SE3 end = body.T * Exp(dt * body.prescribed);
@@ -89,7 +92,11 @@ void World::Impl::integrate_forces(double dt) {
     }
   }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].alive) (void)stop_if_out_of_range(i);
+    const Body& body = bodies[i];
+    if (!body.alive) continue;
+    const bool stopped = stop_if_out_of_range(i);
+    if (body.motion != Motion::dynamic) continue;
+    forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
   }
 }
 
@@ -127,6 +134,8 @@ void World::Impl::refresh_solver_bodies() {
     s.w = body.w;
     s.v = body.v;
     s.x = reference_point(body);
+    s.forced_w = forced[i].w;
+    s.forced_v = forced[i].v;
     if (body.motion != Motion::dynamic) continue;
     if (body.is_link) {
       const Articulation& art = articulations[body.articulation];
@@ -265,7 +274,7 @@ void World::Impl::run(double dt) {
   find_discrete_contacts(dt);
   for (int solves = 0;; ++solves) {
     const double h = dt - time;
-    solve_contacts(h, solves == 0);
+    solve_contacts(h, dt, solves == 0);
     if (solves == 0) remember_impulses();
     report_contacts(time);
     refresh_motions(h);
