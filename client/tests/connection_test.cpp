@@ -163,6 +163,16 @@ TEST_F(ConnectionTest, NoticesStandUntilCleared) {
   EXPECT_TRUE(eventually([&] { return connection->notices().empty(); }));
 }
 
+TEST_F(ConnectionTest, NoticesOfAServerThatWasLostStandNoMore) {
+  open();
+  join(42);
+  server.send(wire::Notice{wire::Notice::Level::warning, 1, "the server cannot keep up"});
+  ASSERT_TRUE(eventually([&] { return connection->notices().size() == 1; }));
+  server.drop_client();
+  ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
+  EXPECT_TRUE(connection->notices().empty());
+}
+
 TEST_F(ConnectionTest, InputsCarrySessionAndTokenCountUpAndAreRepeated) {
   open();
   join(42);

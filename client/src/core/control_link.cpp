@@ -170,7 +170,6 @@ void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) 
   status_.detail.clear();
   status_.welcome = welcome;
   ++status_.joins;
-  notices_.clear();  // the server tells anew what stands
 }
 
 void ControlLink::on_notice(const wire::Notice& notice) {
@@ -190,6 +189,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
       std::max(next_try_us_, now_us + (refused ? kAskRefusedAgainUs : options_.retry_us));
   const std::lock_guard lock(mutex_);
   wishes_.clear();
+  notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;
 }
