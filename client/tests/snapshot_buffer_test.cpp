@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scripted_scene.h"
+#include "wire/limits.h"
 
 namespace client {
 namespace {
@@ -173,6 +174,19 @@ TEST_F(Buffer, APauseThatStopsTheTickIsNoStarving) {
   EXPECT_TRUE(sample.state.paused);
   EXPECT_FALSE(sample.starving);
   EXPECT_EQ(buffer.counters().lost, 0u);
+}
+
+// The most that the decoders let in: computed in 64 bits, which the sanitizer watches.
+TEST_F(Buffer, TheLastTickOfTheLongestTicksIsShownAndLeftAgain) {
+  buffer.begin_session(kSession + 1, wire::kMaxTickUs);
+  wire::Snapshot s = at_tick(wire::kMaxTick);
+  s.session = kSession + 1;
+  ASSERT_EQ(buffer.push(s, kStart), Verdict::taken);
+  EXPECT_EQ(buffer.sample(kStart + 1000).state.tick, wire::kMaxTick);
+  s.tick = 0;
+  ASSERT_EQ(buffer.push(s, kStart + 2000), Verdict::taken);
+  EXPECT_TRUE(buffer.sample(kStart + 3000).any);
+  buffer.take_events();
 }
 
 TEST_F(Buffer, AnEventRepeatedInManySnapshotsIsGivenOnceWhenItsTickIsShown) {

@@ -78,8 +78,8 @@ bool take(const fb::Welcome& t, Welcome& m) {
   m.layout = t.layout();
   m.team = t.team();
   m.multicast_port = t.multicast_port();
-  return take(t.multicast(), kMaxName, m.multicast) && m.tick_us > 0 && m.layout < kLayoutCount &&
-         is_team(m.team);
+  return take(t.multicast(), kMaxName, m.multicast) && m.tick_us > 0 && m.tick_us <= kMaxTickUs &&
+         m.layout < kLayoutCount && is_team(m.team);
 }
 bool take(const fb::Refusal& t, Refusal& m) {
   m.code = static_cast<Refusal::Code>(t.code());

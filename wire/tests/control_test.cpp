@@ -5,6 +5,7 @@
 #include "control_generated.h"
 #include "samples.h"
 #include "text.h"
+#include "wire/limits.h"
 
 namespace wire {
 namespace {
@@ -162,6 +163,11 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Hello, fb::CreateHelloDirect(b, 1, 1, "a", 1, 2))) << "team";
   EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 0, 0, 0, "", 0)))
       << "a tick of length 0";
+  const auto tick_of = [&](std::uint32_t us) {
+    return fb::CreateWelcomeDirect(b, 1, 1, 1, us, 0, 0, "", 0);
+  };
+  EXPECT_FALSE(refused(fb::Message::Welcome, tick_of(kMaxTickUs)));
+  EXPECT_TRUE(refused(fb::Message::Welcome, tick_of(kMaxTickUs + 1))) << "a tick too long";
   EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 1, 2, 0, "", 0)))
       << "layout";
   EXPECT_TRUE(refused(fb::Message::Refusal,

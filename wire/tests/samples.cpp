@@ -45,7 +45,7 @@ Snapshot random_head(std::mt19937_64& random) {
   Snapshot s;
   s.session = random();
   s.sequence = random();
-  s.tick = random();
+  s.tick = random() & kMaxTick;
   s.send_time_us = static_cast<std::int64_t>(random() >> 1);
   s.layout = below<std::uint8_t>(random, kLayoutCount);
   s.screen = below<std::uint8_t>(random, kScreenCount);

@@ -22,6 +22,7 @@ void expect_valid(const Snapshot& s) {
   EXPECT_LT(s.screen, kScreenCount);
   EXPECT_LT(s.last_scorer, kTeamCount);
   EXPECT_GE(s.send_time_us, 0);
+  EXPECT_LE(s.tick, kMaxTick);
   for (const auto character : s.character) EXPECT_LT(character, kCharacterCount);
   const auto expect_pose = [](const PoseVelocity& p, double spin) {
     double norm = 0;
@@ -339,6 +340,22 @@ TEST(Snapshot, AnAbsurdCountIsRefused) {
   Snapshot received;
   EXPECT_FALSE(decode_snapshot(bytes, received));
   EXPECT_LE(received.men.size(), static_cast<std::size_t>(kMaxMen));
+}
+
+// Of simulated time, tick * tick_us, a receiver computes differences in 64 bits.
+TEST(Snapshot, ATickWhoseTimeWouldNotFitIsRefusedAndNeverSent) {
+  Snapshot s = samples::snapshot(), decoded;
+  s.tick = kMaxTick;
+  Bytes bytes = encoded(s);
+  ASSERT_TRUE(decode_snapshot(bytes, decoded));
+  EXPECT_EQ(decoded.tick, kMaxTick);
+  constexpr std::size_t kTickAt = 4 + 2 + 4 + 8 + 8;  // magic, version, hash, session, sequence
+  bytes[kTickAt + 6] = std::byte{1};                  // bit 48
+  samples::reseal(bytes);
+  EXPECT_FALSE(decode_snapshot(bytes, decoded));
+  s.tick = ~std::uint64_t{0};
+  ASSERT_TRUE(decode_snapshot(encoded(s), decoded));
+  EXPECT_EQ(decoded.tick, kMaxTick);
 }
 
 TEST(Snapshot, TrailingBytesAreRefused) {

@@ -21,7 +21,7 @@ void SnapshotBuffer::begin_session(std::uint64_t session, std::uint32_t tick_us)
   offset_count_ = offset_next_ = 0;
   if (session == session_) return;
   session_ = session;
-  tick_us_ = std::max<std::int64_t>(tick_us, 1);
+  tick_us_ = tick_us;
   kept_.clear();
   events_.clear();
   playing_ = any_event_ = false;

@@ -34,10 +34,10 @@ struct Hello {
 
 // Server to client: accepted.
 struct Welcome {
-  std::uint64_t session = 0;   // names this run of the server
-  std::uint64_t token = 0;     // the client's secret for its input datagrams
-  std::uint16_t udp_port = 0;  // where the server takes input datagrams
-  std::uint32_t tick_us = 1000;
+  std::uint64_t session = 0;       // names this run of the server
+  std::uint64_t token = 0;         // the client's secret for its input datagrams
+  std::uint16_t udp_port = 0;      // where the server takes input datagrams
+  std::uint32_t tick_us = 1000;    // 1..kMaxTickUs (wire/limits.h)
   std::uint8_t layout = 0;         // foosball::Layout
   std::uint8_t team = kWatchOnly;  // granted
   std::string multicast;           // group address, or empty for unicast to udp_port

@@ -3,9 +3,17 @@
 // enumerations, which wire does not know; the server, which knows both, asserts that they agree.
 #pragma once
 
+#include <cstdint>
+
 #include "wire/enums.h"
 
 namespace wire {
+
+// Simulated time in microseconds is tick * tick_us: below 2^62, so that it and differences of it
+// are computed in 64 bits without looking. 2^48 ticks of a millisecond are 8900 years.
+inline constexpr std::uint64_t kMaxTick = (std::uint64_t{1} << 48) - 1;
+inline constexpr std::uint32_t kMaxTickUs = 10'000;
+static_assert(kMaxTick <= (std::uint64_t{1} << 62) / kMaxTickUs);
 
 inline constexpr unsigned kTeamCount = 2;
 inline constexpr unsigned kLayoutCount = 2;  // foosball::Layout

@@ -10,7 +10,7 @@
 namespace wire {
 
 inline constexpr std::uint64_t kSnapshotMagic = 0x4E534653;  // "SFSN"
-inline constexpr std::uint64_t kSnapshotVersion = 1;
+inline constexpr std::uint64_t kSnapshotVersion = 2;
 
 // 15 um over +-2 m: a table is 1.2 m long, and a ball that left it is of no interest further out.
 inline constexpr Fixed kPosition{"position", 18, 0x1p-16, "m", "x, y, z in the world"};
@@ -97,7 +97,7 @@ void describe_snapshot(Codec& codec, S& s) {
   codec.layout_hash(LayoutHash{"layout_hash", "of this table"});
   codec.integer(Integer{"session", 64, kAny, "", "names this run of the server"}, s.session);
   codec.integer(Integer{"sequence", 64, kAny, "", "of the datagram"}, s.sequence);
-  codec.integer(Integer{"tick", 64, kAny, "", "of the simulation"}, s.tick);
+  codec.integer(Integer{"tick", 64, kMaxTick, "", "of the simulation"}, s.tick);
   codec.integer(Integer{"send_time_us", 63, kAny >> 1, "us", "server's monotonic clock"},
                 s.send_time_us);
   describe_match_state(codec, s);
