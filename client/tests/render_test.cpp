@@ -232,6 +232,16 @@ TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
   EXPECT_GT(changed(scored, lost, {kSize.x / 2, static_cast<int>(0.42f * kSize.y)}, 60), 2000);
 }
 
+TEST_P(RenderTest, OnlyWhoHasJoinedToWatchIsSaidToWatch) {
+  const wire::Snapshot state = scripted_play(0.35);
+  HudState refused;
+  refused.connection_message = "The physics server at 127.0.0.1:7531 refuses";
+  const glm::ivec2 corner{45, 22};
+  const Image plain = draw(state);
+  EXPECT_GT(changed(plain, draw(state, HudState{}), corner, 20), 40);
+  EXPECT_EQ(changed(plain, draw(state, refused), corner, 20), 0);
+}
+
 TEST_P(RenderTest, EveryScreenHasItsWords) {
   for (std::uint8_t screen = 0; screen < 5; ++screen) {
     wire::Snapshot state = scripted_play(0.35);

@@ -100,7 +100,9 @@ void draw_corner_texts(const HudPen& pen, const HudState& hud) {
     pen.text("no news from the physics server", {Face::regular, 13.0f, 0.0f, Align::right},
              {pen.half_width - 16.0f, 46.0f}, kWarning);
   }
-  if (hud.viewer_team < 0) pen.text("watching", small, {x, 26.0f}, kFaint);
+  // Who has not joined yet, or is refused, is no watcher.
+  if (hud.viewer_team < 0 && hud.connection_message.empty())
+    pen.text("watching", small, {x, 26.0f}, kFaint);
   if (hud.automatic_rod) pen.text("automatic rod (Tab)", small, {x, 26.0f}, kFaint);
   if (hud.mouse_free && hud.viewer_team >= 0)
     pen.text("mouse released: click to play, F1 for the keys, Esc to leave", small, {x, 46.0f},
