@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,14 +23,20 @@ constexpr int kVersion = 1;
 // Eight rods are 2 KiB; what is far longer is another file.
 constexpr std::size_t kMostBytes = 64 * 1024;
 // Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
-// of 16 mm a count along the surface turns by 1 / 8 mm. A file may lie 100 times outside.
-constexpr double kLeastMetres = 1e-3 / 472 / 100, kMostMetres = 1e-3 * 100;
+// of 16 mm a count along the surface turns by 1 / 8 mm. A file may lie 4 times outside.
+constexpr double kLeastMetres = 1e-3 / 472 / 4, kMostMetres = 1e-3 * 4;
 // Sine of the angle between the two rows (1 for a square sensor): below this slide and spin can not
 // be told apart.
 constexpr double kLeastSine = 0.01;
 
 const char* const kSlideKey = "slide_m_per_count";
 const char* const kAngleKey = "angle_rad_per_count";
+
+std::string millimetres(double metres) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g mm", metres * 1e3);
+  return text.data();
+}
 
 Failure check_rod(const RodCalibration& rod) {
   const double slide = std::hypot(rod.m[0][0], rod.m[0][1]);
@@ -42,7 +50,10 @@ Failure check_rod(const RodCalibration& rod) {
            "motions and calibrate it again";
   }
   if (slide < kLeastMetres || slide > kMostMetres || arc < kLeastMetres || arc > kMostMetres) {
-    return "has a scale that no sensor has; write metres and radians per count, as in "
+    return "has a scale that no sensor has: " + millimetres(slide) + " along the rod and " +
+           millimetres(arc) + " around it a count, where " + millimetres(kLeastMetres) + " to " +
+           millimetres(kMostMetres) +
+           " are possible; write metres and radians per count, as in "
            "cabinet/calibration.example.json";
   }
   return {};

@@ -80,6 +80,11 @@ TEST(Calibration, AMirroredSensorIsFine) {
   EXPECT_EQ(complaint(file_json(rod_json("[0, 0.000125]", "[0.015625, 0]"))), "");
 }
 
+TEST(Calibration, TheCoarsestAndTheFinestSensorAreFine) {
+  EXPECT_EQ(complaint(file_json(rod_json("[0.001, 0]", "[0, 0.125]"))), "");
+  EXPECT_EQ(complaint(file_json(rod_json("[2.1e-6, 0]", "[0, 2.6e-4]"))), "");
+}
+
 struct BadFile {
   const char* what;
   std::string json;
@@ -126,6 +131,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "(rod 5) is singular"},
         BadFile{"Zero", file_json(rod_json("[0, 0]", "[0, 0]")), "(rod 5) is singular"},
         BadFile{"MetresForMillimetres", file_json(rod_json("[0.125, 0]", "[0, 0.0156]")),
+                "(rod 5) has a scale that no sensor has: 125 mm along the rod and 0.125 mm"},
+        BadFile{"ThousandTimesTheExample", file_json(rod_json("[0.1, 0]", "[0, 12.5]")),
+                "where 0.00053 mm to 4 mm are possible; write metres"},
+        BadFile{"TenTimesTheCoarsestSensor", file_json(rod_json("[0.01, 0]", "[0, 1.25]")),
+                "(rod 5) has a scale that no sensor has"},
+        BadFile{"TenTimesTheFinestSensor", file_json(rod_json("[2.1e-7, 0]", "[0, 2.6e-5]")),
                 "(rod 5) has a scale that no sensor has"},
         BadFile{"Tiny", file_json(rod_json("[0.000125, 0]", "[0, 1e-9]")),
                 "(rod 5) has a scale that no sensor has"}),

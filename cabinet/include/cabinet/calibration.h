@@ -27,7 +27,7 @@ struct Calibration {
 Calibration nominal_calibration(double counts_per_mm = 8.0, double rod_diameter = 2 * kRodRadius);
 
 // Errors are one sentence: file, what is wrong, what to do. Refused: missing, empty, not JSON, not
-// 8 rods, not finite, rows (all but) parallel, or a scale more than 100 times off any known sensor.
+// 8 rods, not finite, rows (all but) parallel, or a scale more than 4 times off any known sensor.
 tl::expected<Calibration, std::string> load_calibration(const std::string& path);
 // The same from text; name stands for the file in the sentence.
 tl::expected<Calibration, std::string> parse_calibration(std::string_view json,
