@@ -24,6 +24,11 @@ constexpr std::int64_t kLongestPauseUs = 600'000'000;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
+// What open(2) says of a device that is not plugged in; 0: it was open and hung up.
+bool means_absent(int error) {
+  return error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
+}
+
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
     int type = 0;
@@ -66,6 +71,7 @@ struct DeviceSource::Impl {
   FrameReader reader;
   SourceCounters counters;
   int fd = -1;
+  int open_error = 0;
   std::int64_t try_open_us = 0;
   bool tried = false;
   bool heard = false;  // since it was opened
@@ -85,11 +91,14 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
   if (played || (tried && now_us < try_open_us)) return;
   tried = true;
   try_open_us = now_us + options.reopen_us;
+  errno = ENOENT;
   fd = open();
   if (fd < 0) {
+    open_error = errno;
     fd = -1;
     return;
   }
+  open_error = 0;
   struct stat about {};
   const int flags = fcntl(fd, F_GETFL);
   if (fstat(fd, &about) != 0 || flags < 0 || fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
@@ -205,9 +214,13 @@ const std::string& DeviceSource::name() const {
 }
 DeviceState DeviceSource::state() const {
   const Impl& in = *impl_;
-  if (in.fd < 0) return in.played ? DeviceState::over : DeviceState::missing;
+  if (in.fd < 0 && in.played) return DeviceState::over;
+  if (in.fd < 0) return means_absent(in.open_error) ? DeviceState::missing : DeviceState::refused;
   if (in.fresh || in.pending) return DeviceState::live;
   return in.garbled() ? DeviceState::garbled : DeviceState::silent;
+}
+int DeviceSource::open_error() const {
+  return impl_->open_error;
 }
 std::uint32_t DeviceSource::last_frame_time_us() const {
   return impl_->tracker.last_frame_time_us();

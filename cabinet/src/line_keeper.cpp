@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 namespace cabinet {
@@ -14,7 +15,7 @@ void close_if_open(int fd) {
 }  // namespace
 
 LineKeeper::LineKeeper(std::function<int()> open)
-    : open_(std::move(open)), thread_([this] { run(); }) {}
+    : open_(std::move(open)), error_(ENOENT), thread_([this] { run(); }) {}
 
 LineKeeper::~LineKeeper() {
   ending_.store(true, std::memory_order_release);
@@ -34,6 +35,7 @@ int LineKeeper::take() {
     handover_.store(kAsked, std::memory_order_release);
     work_.post();
   }
+  errno = error_.load(std::memory_order_relaxed);
   return -1;
 }
 
@@ -53,6 +55,7 @@ void LineKeeper::run() {
     if (ending_.load(std::memory_order_acquire)) return;
     if (!asked) continue;
     const int fd = open_();
+    error_.store(fd >= 0 ? ENOENT : errno, std::memory_order_relaxed);
     handover_.store(fd >= 0 ? fd : kIdle, std::memory_order_release);
   }
 }

@@ -12,14 +12,16 @@ namespace cabinet {
 
 class LineKeeper {
  public:
-  // open: returns a descriptor that is ready to be read, or -1. It may wait.
+  // open: returns a descriptor that is ready to be read, or -1 and errno. It may wait.
   explicit LineKeeper(std::function<int()> open);
   ~LineKeeper();  // waits for the thread, closes what nobody took
   LineKeeper(const LineKeeper&) = delete;
   LineKeeper& operator=(const LineKeeper&) = delete;
 
   // Both on one thread, without waiting or taking memory.
-  int take();          // the descriptor, or -1 and one is asked for: try again later
+  // The descriptor; or -1, one is asked for, to be taken later, and errno says why the last attempt
+  // failed (ENOENT while there was none).
+  int take();
   void close(int fd);  // closed before the next is opened
 
  private:
@@ -31,6 +33,7 @@ class LineKeeper {
   std::function<int()> open_;
   std::atomic<int> handover_{kIdle};
   std::atomic<int> to_close_{-1};
+  std::atomic<int> error_;  // of the last attempt
   std::atomic<bool> ending_{false};
   os::ThreadSignal work_;
   std::thread thread_;

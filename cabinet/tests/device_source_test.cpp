@@ -187,6 +187,27 @@ TEST(DeviceSource, TellsSilenceNoiseAndAbsenceApart) {
   EXPECT_EQ(state(), DeviceState::silent);  // what it was before counts no more
 }
 
+TEST(DeviceSource, TellsADeviceThatMayNotBeOpenedFromOneThatIsNotThere) {
+  int error = ENOENT;
+  DeviceSource source(DeviceOptions{}, [&error] {
+    errno = error;
+    return -1;
+  });
+  std::int64_t now_us = 0;
+  const auto state_with = [&](int wanted) {
+    error = wanted;
+    source.poll(now_us += 200'000);
+    EXPECT_EQ(source.open_error(), wanted);
+    return source.state();
+  };
+  for (const int absent : {ENOENT, ENOTDIR, ENODEV, ENXIO}) {
+    EXPECT_EQ(state_with(absent), DeviceState::missing) << absent;
+  }
+  for (const int refused : {EACCES, EPERM, EBUSY, EIO}) {
+    EXPECT_EQ(state_with(refused), DeviceState::refused) << refused;
+  }
+}
+
 TEST(DeviceSource, OnePollTakesABoundedShareOfAFlood) {
   int pair[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair), 0);

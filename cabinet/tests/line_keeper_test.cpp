@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <chrono>
 #include <future>
 #include <optional>
@@ -55,6 +56,20 @@ TEST(LineKeeper, AsksAgainForADeviceThatIsNotThere) {
   LineKeeper keeper([&] { return ++tries < 4 ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC); });
   const Descriptor device(take_when_ready(keeper));
   EXPECT_EQ(tries, 4);
+}
+
+TEST(LineKeeper, SaysWhyADeviceDoesNotOpen) {
+  std::atomic<int> error{EACCES};
+  LineKeeper keeper([&] {
+    errno = error;
+    return -1;
+  });
+  const auto says = [&](int wanted) {
+    return comes_true([&] { return keeper.take() < 0 && errno == wanted; });
+  };
+  EXPECT_TRUE(says(EACCES));
+  error = EBUSY;
+  EXPECT_TRUE(says(EBUSY));
 }
 
 // A port that one program may hold only once could not be opened otherwise.

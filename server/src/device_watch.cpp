@@ -1,12 +1,31 @@
 #include "device_watch.h"
 
+#include <cerrno>
+#include <cstring>
+
 namespace server {
 namespace {
 
 using cabinet::DeviceState;
 
-std::string sentence(const std::string& name, DeviceState state, bool ever_live) {
+std::string refusal(const std::string& name, int error) {
+  const std::string what = name + " cannot be opened: " + std::strerror(error);
+  switch (error) {
+    case EACCES:
+    case EPERM:
+      return what + "; install cabinet/70-space-foosball.rules or join the device's group";
+    case EBUSY:
+      return what + "; end the other program that uses it";
+    default:
+      return what + "; plug it in anew, or give another address";
+  }
+}
+
+std::string sentence(const cabinet::DeviceSource& device, DeviceState state, bool ever_live) {
+  const std::string& name = device.name();
   switch (state) {
+    case DeviceState::refused:
+      return refusal(name, device.open_error());
     case DeviceState::missing:
       return ever_live ? name + " unplugged: its rods hold; plug it in again"
                        : name + " is not there: plug it in, or give its right address";
@@ -45,7 +64,7 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>
     const bool live = state == DeviceState::live;
     if (!live || watched.told) {
       tell(live ? Level::cleared : Level::warning, i,
-           sentence(devices[i]->name(), state, watched.ever_live));
+           sentence(*devices[i], state, watched.ever_live));
     }
     watched.ever_live = watched.ever_live || live;
     watched.told = state;

@@ -196,6 +196,32 @@ TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
   EXPECT_EQ(notice->text, "cabinet nowhere is not there: plug it in, or give its right address");
 }
 
+TEST(DeviceWatch, SaysWhyADeviceThatIsThereCannotBeOpened) {
+  const std::pair<int, const char*> reasons[] = {
+      {EACCES,
+       "cabinet locked cannot be opened: Permission denied; install "
+       "cabinet/70-space-foosball.rules or join the device's group"},
+      {EBUSY,
+       "cabinet locked cannot be opened: Device or resource busy; end the other program that uses "
+       "it"},
+      {EIO,
+       "cabinet locked cannot be opened: Input/output error; plug it in anew, or give another "
+       "address"},
+  };
+  for (const auto& [error, sentence] : reasons) {
+    cabinet::DeviceOptions options;
+    options.name = "cabinet locked";
+    const auto notice = notice_of(std::make_unique<cabinet::DeviceSource>(options,
+                                                                          [error = error] {
+                                                                            errno = error;
+                                                                            return -1;
+                                                                          }),
+                                  1100);
+    ASSERT_TRUE(notice);
+    EXPECT_EQ(notice->text, sentence);
+  }
+}
+
 TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   const std::string path = temp_path("noise.bin");
   std::ofstream(path, std::ios::binary) << std::string(5'000, 'x');

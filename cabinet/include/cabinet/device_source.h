@@ -18,7 +18,8 @@ enum class DeviceFraming : std::uint8_t { cobs, report };
 
 // What the descriptor shows of the device. A person is told something else for each.
 enum class DeviceState : std::uint8_t {
-  missing,  // not open: it is not there, may not be opened, or hung up
+  missing,  // not open: it is not there, or hung up
+  refused,  // not open, though it is there: open_error() says why
   silent,   // open, but no byte comes
   garbled,  // open, bytes come, but no frame among them is taken
   live,     // frames come, or a recording waits for the time of its next one
@@ -37,7 +38,7 @@ struct DeviceOptions {
   bool opener_sets_line = false;     // a tty comes as raw 1 Mbaud already
 };
 
-// Opens the device and returns the descriptor, which then belongs to the source, or -1: not there
+// Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno
 // (it is tried again). What it is shows from the descriptor: a tty is set to raw 1 Mbaud, a regular
 // file is a recording (either framing, seen from its bytes), paced by the micro-controller's clock
 // and played once. It is made non-blocking. Called from poll(): it must not wait.
@@ -59,6 +60,7 @@ class DeviceSource final : public InputSource {
   const std::string& name() const override;
   // As of the last poll.
   DeviceState state() const;
+  int open_error() const;  // errno of the last attempt to open it, if that failed
   bool connected() const { return state() == DeviceState::live; }
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
