@@ -40,8 +40,8 @@ class SnapshotBuffer {
       20'000;  // further ahead a guess looks worse than a stop
 
   // Snapshots of other sessions are dropped from now on. A session that goes on keeps its scene.
-  // Preconditions, which the decoders see to: tick_us in 1..wire::kMaxTickUs, and no snapshot's tick
-  // above wire::kMaxTick.
+  // Preconditions, which the decoders see to: tick_us in 1..wire::kMaxTickUs, and no snapshot's
+  // tick above wire::kMaxTick.
   void begin_session(std::uint64_t session, std::uint32_t tick_us);
 
   enum class Verdict : std::uint8_t { taken, old, foreign };
