@@ -103,6 +103,17 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
   refused([](LinkDesc& l) { l.parent = 0; });
   refused([](LinkDesc& l) { l.inertia = Inertia(); });
   refused([](LinkDesc& l) { l.inertia = Inertia(1.0, Vec3{1, 1, 0}); });
+  for (const JointKind kind : {JointKind::fixed, JointKind::prismatic, JointKind::revolute}) {
+    refused([&](LinkDesc& l) { l.joint = kind, l.inertia = Inertia(1.0, Vec3{1, 1, -1}); });
+    refused([&](LinkDesc& l) { l.joint = kind, l.inertia = Inertia(1.0, Vec3{-1, 1, 1}); });
+    // About the origin alone: the moments of the centre's mass exceed them.
+    refused([&](LinkDesc& l) {
+      l.joint = kind, l.inertia = Inertia(1.0, Vec3{0, 2, 0}, Sym3{1, 1, 1, 0, 0, 0});
+    });
+    refused([&](LinkDesc& l) {
+      l.joint = kind, l.inertia = Inertia(1.0, Vec3{}, Sym3{1, 1, 1, 2, 0, 0});
+    });
+  }
   refused([](LinkDesc& l) { l.armature[1] = -1; });
   refused([](LinkDesc& l) { l.limit[0] = {1, 2}; });
   refused([](LinkDesc& l) { l.limit[1] = {kNaN, 2}; });
@@ -120,6 +131,18 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
   expect_refused(world, [&] { return world.set_velocity(body, {}); });
   expect_refused(world, [&] { return world.destroy_body(body); });
   EXPECT_FALSE(world.link_body(id, 1));
+}
+
+TEST(CreateArticulation, TakesPointMassesAndThinRods) {
+  World world;
+  LinkDesc link;
+  link.joint = JointKind::prismatic;
+  for (const Inertia& J : {Inertia(1.0, Vec3{}), Inertia(1.0, Vec3{1, 1, 0}),
+                           Inertia(0.1, Vec3{}).Xform(SE3(Vec3{0.3, 0.7, 0.1})),
+                           Inertia(0.1, Vec3{1, 1, 0}).Xform(SE3(Vec3{30, 70, 10}))}) {
+    link.inertia = J;
+    EXPECT_TRUE(world.create_articulation({{link}}));
+  }
 }
 
 TEST(Step, RefusesATimeThatIsNone) {

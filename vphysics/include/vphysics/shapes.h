@@ -44,7 +44,10 @@ struct ColliderDesc {
   SE3 T_body_shape;  // pose of the shape in the body's frame
   Material material;
   CollisionFilter filter;
-  bool sensor = false;          // reports overlap as events, is never pushed
+  // Reports overlap as events, is never pushed; two sensors do not see one another, nor does
+  // one on a fixed body see fixed bodies. Spheres of continuous bodies are seen at any speed, all
+  // else where it is at the start of a step.
+  bool sensor = false;
   std::uint64_t user_data = 0;  // returned in events and queries
 };
 

@@ -97,13 +97,17 @@ struct ArticulationDesc {
 };
 
 struct ContactEvent {
-  enum class Kind : std::uint8_t { begin, hit, end };
+  enum class Kind : std::uint8_t {
+    begin,  // they touch, and did not before
+    hit,  // they closed faster than restitution_threshold, what the step's own forces add left out
+    end,  // they touch no more, or one was destroyed: each begin is followed by one end
+  };
   Kind kind;
-  bool sensor;      // one of the two is a sensor
-  ColliderId a, b;  // a < b by creation
-  std::uint64_t user_data_a, user_data_b;
-  Vec3 point;             // world frame [m]
-  Vec3 normal;            // world frame, from a to b
+  bool sensor;                             // one of the two is a sensor
+  ColliderId a, b;                         // a < b by creation
+  std::uint64_t user_data_a, user_data_b;  // 0 for a collider that was destroyed; its id is stale
+  Vec3 point;                              // world frame [m]
+  Vec3 normal;            // world frame, from a to b; 0 for sensors that see a swept sphere
   double approach_speed;  // just before, along the normal [m/s], >= 0
   double impulse;         // normal impulse [N s]; 0 for sensors
   double time;            // within the step, [0, dt]
@@ -143,7 +147,9 @@ class World {
 
   // --- building ---------------------------------------------------------------------------------
   Expected<BodyId> create_body(const BodyDesc& desc);
-  Expected<void> destroy_body(BodyId body);  // its colliders go with it; refused for links
+  // Its colliders go with it; the next step reports the end of what they touched. Refused for
+  // links.
+  Expected<void> destroy_body(BodyId body);
   Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
   Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
   BodyId link_body(ArticulationId articulation, int link) const;  // null if there is none
@@ -166,8 +172,9 @@ class World {
   // --- time -------------------------------------------------------------------------------------
   // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.
   Expected<StepStatus> step(double dt);
-  std::span<const ContactEvent> contact_events() const;  // of the last step, in order of time
-  const StepCounters& counters() const;                  // of the last step
+  // Of the last step, in order of time; none after restore().
+  std::span<const ContactEvent> contact_events() const;
+  const StepCounters& counters() const;  // of the last step
 
   // --- queries ----------------------------------------------------------------------------------
   std::optional<RayHit> ray_cast(const Vec3& origin, const Vec3& direction, double max_distance,
@@ -181,9 +188,12 @@ class World {
 
   // --- rollback ---------------------------------------------------------------------------------
   // The whole mutable state, warm starts and ids included, appended to bytes. A world made by the
-  // same sequence of calls restores it and then steps to the same bits.
+  // same sequence of calls to create, add and destroy, with descriptions the same bit for bit,
+  // restores it and then steps to the same bits. Poses, velocities, joint states and drives are in
+  // it; user_data is not, nor compared: it stays what the world that restores was given.
   void snapshot(std::vector<std::byte>& bytes) const;
-  // Refuses foreign, truncated or corrupt bytes with Errc::bad_data; the world is then unchanged.
+  // Refuses truncated or corrupt bytes and those of a world made otherwise with Errc::bad_data; the
+  // world is then unchanged.
   Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;  // of the same bytes as snapshot()
 

@@ -191,12 +191,16 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
 void World::Impl::emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
                        const Vec3& normal, double approach, double impulse, double time) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  // In order of time: only sensors swept between two impacts are found out of it.
+  add_event({kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
+             collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal, approach,
+             impulse, time});
+}
+
+// In order of time: only sensors swept between two impacts are found out of it.
+void World::Impl::add_event(const ContactEvent& event) {
   auto place = events.end();
-  while (place != events.begin() && std::prev(place)->time > time) --place;
-  events.insert(place, {kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
-                        collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal,
-                        approach, impulse, time});
+  while (place != events.begin() && std::prev(place)->time > event.time) --place;
+  events.insert(place, event);
 }
 
 void World::Impl::report_contacts(double time) {
@@ -265,6 +269,27 @@ void World::Impl::remember_impulses() {
       }
     }
   }
+}
+
+void World::Impl::report_ends_of_destroyed() {
+  const auto user_data = [&](ColliderId id) {
+    const Collider& c = colliders[id.index - 1];
+    return c.alive && c.generation == id.generation ? c.user_data : 0;
+  };
+  for (const DestroyedPair& pair : destroyed_pairs) {
+    add_event({ContactEvent::Kind::end,
+               pair.sensor,
+               pair.a,
+               pair.b,
+               user_data(pair.a),
+               user_data(pair.b),
+               {},
+               {},
+               0.0,
+               0.0,
+               0.0});
+  }
+  destroyed_pairs.clear();
 }
 
 // What touched in the last step and does no more. It may meet again later in this one.

@@ -102,6 +102,13 @@ struct PairRecord {
   PairPoint points[collide::kMaxPoints]{};
 };
 
+// A pair that touched when one of the two was destroyed; the next step reports its end. user_data
+// is not kept: it is the user's and no snapshot carries it.
+struct DestroyedPair {
+  ColliderId a, b;
+  bool sensor = false;
+};
+
 struct ColliderPair {
   std::uint64_t key;
   std::uint32_t a, b;
@@ -126,8 +133,9 @@ struct World::Impl {
   std::vector<Articulation> articulations;
   std::vector<std::uint32_t> free_bodies, free_colliders;
   std::uint32_t next_serial = 1;
-  std::uint64_t structure = 0;      // digest of all that was created and destroyed
+  std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key
+  std::vector<DestroyedPair> destroyed_pairs;
 
   // --- of the last step
   std::vector<ContactEvent> events;
@@ -179,6 +187,7 @@ struct World::Impl {
   void refresh_bounds(double h);
   void find_discrete_pairs(double h);
   void find_swept_pairs(double h);
+  bool swept(const Collider& a, const Collider& b) const;
   void add_swept_pairs(std::uint32_t sphere, std::uint32_t other_body, double h);
   collide::SweepQuery sweep_query(const SweptPair& pair, double h) const;
   double discrete_margin(const ColliderPair& pair, double h) const;
@@ -194,10 +203,12 @@ struct World::Impl {
   void report_contacts(double time);
   void remember_impulses();
   void report_ends();
+  void report_ends_of_destroyed();
   void report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal, double time);
   void report_swept_sensors(double h, double time);
   void emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
             const Vec3& normal, double approach, double impulse, double time);
+  void add_event(const ContactEvent& event);
 
   // snapshot.cpp
   template <class Sink>

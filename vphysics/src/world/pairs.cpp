@@ -83,14 +83,25 @@ double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
   return desc.contact_slop + travel(bodies[a], motions[a], h) + travel(bodies[b], motions[b], h);
 }
 
-// Pairs without a continuous body.
+// Spheres of a continuous body are swept. What else it carries are sensors; they look where they
+// are at the start of a step.
+bool World::Impl::swept(const Collider& a, const Collider& b) const {
+  const auto sweeps = [&](const Collider& c) {
+    return bodies[c.body].continuous && c.geometry.kind == collide::Kind::sphere;
+  };
+  return sweeps(a) || sweeps(b);
+}
+
+// Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
   body_pairs.clear();
   discrete_pairs.clear();
   broad_phase.find_pairs(bounds, movable, body_pairs);
   for (const collide::IndexPair& pair : body_pairs) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
-    if (a.continuous || b.continuous || !may_meet(a, b)) continue;
+    const bool continuous = a.continuous || b.continuous;
+    const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
+    if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
     pose_colliders(pair.a);
     pose_colliders(pair.b);
     const double margin =
@@ -102,6 +113,7 @@ void World::Impl::find_discrete_pairs(double h) {
       for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
         const Collider& cb = colliders[j];
         if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
+        if (continuous && swept(ca, cb)) continue;
         if (pushable_or_sensed(a, b, ca, cb)) discrete_pairs.push_back(make_pair(colliders, i, j));
       }
     }
@@ -134,6 +146,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   const double wa = norm(ma.w), wb = norm(mb.w);
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
     const Collider& ball = colliders[i];
+    if (ball.geometry.kind != collide::Kind::sphere) continue;  // a sensor of another shape
     const double own = speed + wa * norm(ball.T.position() - ma.x);
     const double far = norm(ball.T.position() - mb.x) + own * h;
     const double margin = desc.contact_slop + (own + wb * far) * h;
@@ -141,7 +154,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
       const Collider& cb = colliders[j];
       if (!overlap(near, cb.bounds) || !should_meet(ball, cb)) continue;
-      if (ball.geometry.kind != collide::Kind::sphere) continue;  // a sensor of another shape
+      if (b.continuous && other < index && cb.geometry.kind == collide::Kind::sphere) continue;
       const Vec3 local = inverse_times(cb.T, ball.T.position());
       const double separation = signed_distance(cb.geometry, local).distance - ball.geometry.radius;
       if (separation > margin) continue;
@@ -156,8 +169,10 @@ void World::Impl::find_swept_pairs(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].alive || !bodies[i].continuous) continue;
     for (std::uint32_t j = 0; j < bodies.size(); ++j) {
-      // Two continuous bodies meet once, in the order of their slots.
-      if (j == i || !bodies[j].alive || (bodies[j].continuous && j < i)) continue;
+      // Two continuous bodies meet once, in the order of their slots, but for sensors: those of no
+      // sphere are found by the other's spheres.
+      if (j == i || !bodies[j].alive) continue;
+      if (bodies[j].continuous && j < i && !bodies[j].has_sensor) continue;
       if (overlap(bounds[i], bounds[j]) && may_meet(bodies[i], bodies[j])) add_swept_pairs(i, j, h);
     }
   }

@@ -1,9 +1,11 @@
 // The mutable state as bytes: 8-byte little-endian words.
 //
-//   magic, format, structure digest, number of bodies, of articulations, of pair records
+//   magic, format, structure digest, numbers of bodies, articulations, pair
+//   records, destroyed pairs
 //   bodies:         pose (12), w, v, prescribed twist (6)
 //   articulations:  for slide and angle: q, drive (5), drive impulse
 //   records:        key, a | b, count | touching, rolling, 4 points
+//   destroyed pairs: a (index, generation), b, sensor
 //   digest of all words before
 #include <bit>
 #include <cstring>
@@ -17,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 1;
+constexpr std::uint64_t kFormat = 2;
 
 struct Digest {
   std::uint64_t digest = kMagic;
@@ -58,6 +60,16 @@ void put(Sink& sink, const PairRecord& r) {
     put(sink, p.friction);
     put(sink, p.position);
   }
+}
+
+std::uint64_t word_of(ColliderId id) {
+  return (std::uint64_t{id.index} << 32) | id.generation;
+}
+template <class Sink>
+void put(Sink& sink, const DestroyedPair& pair) {
+  sink.word(word_of(pair.a));
+  sink.word(word_of(pair.b));
+  sink.word(pair.sensor ? 1u : 0u);
 }
 
 // Reads words; out of bytes or out of range makes it fail for good.
@@ -144,6 +156,22 @@ void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
   }
 }
 
+ColliderId read_id(Reader& in, const std::vector<Collider>& colliders) {
+  const std::uint64_t w = in.word();
+  const ColliderId id{static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
+  in.check(id.index >= 1 && id.index <= colliders.size() && id.generation >= 1 &&
+           id.generation <= colliders[id.index - 1].generation);
+  return id;
+}
+
+void read(Reader& in, const std::vector<Collider>& colliders, DestroyedPair& pair) {
+  pair.a = read_id(in, colliders);
+  pair.b = read_id(in, colliders);
+  const std::uint64_t sensor = in.word();
+  in.check(sensor <= 1 && pair.a != pair.b);
+  pair.sensor = sensor != 0;
+}
+
 tl::unexpected<Error> bad(const char* message) {
   return tl::make_unexpected(Error{Errc::bad_data, message});
 }
@@ -158,6 +186,7 @@ void World::Impl::write(Sink& sink) const {
   sink.word(bodies.size());
   sink.word(articulations.size());
   sink.word(records.size());
+  sink.word(destroyed_pairs.size());
   for (const Body& body : bodies) {
     const Mat3& R = body.T.rotation();
     for (const Vec3* v : {&R.cx, &R.cy, &R.cz, &body.T.position(), &body.w, &body.v,
@@ -175,6 +204,7 @@ void World::Impl::write(Sink& sink) const {
     }
   }
   for (const PairRecord& record : records) put(sink, record);
+  for (const DestroyedPair& pair : destroyed_pairs) put(sink, pair);
 }
 
 void World::snapshot(std::vector<std::byte>& bytes) const {
@@ -190,7 +220,7 @@ std::uint64_t World::state_hash() const {
 }
 
 Expected<void> World::restore(std::span<const std::byte> bytes) {
-  constexpr std::size_t kHeader = 6 * sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
+  constexpr std::size_t kHeader = 7 * sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
   if (bytes.size() < kHeader + kTail || bytes.size() % sizeof(std::uint64_t) != 0) {
     return bad("restore: too short to be a snapshot; hand in what snapshot() wrote");
   }
@@ -210,14 +240,15 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     return bad(
         "restore: a snapshot of another world; build this one by the same sequence of calls");
   }
-  const std::uint64_t count = in.word();
-  constexpr std::size_t kRecord = 38 * sizeof(std::uint64_t);
-  if (count > bytes.size() / kRecord)
+  const std::uint64_t count = in.word(), destroyed_count = in.word();
+  constexpr std::size_t kRecord = 38 * sizeof(std::uint64_t), kPair = 3 * sizeof(std::uint64_t);
+  if (count > bytes.size() / kRecord || destroyed_count > bytes.size() / kPair)
     return bad("restore: more contacts announced than bytes follow");
 
   std::vector<Body> bodies = impl_->bodies;
   std::vector<Articulation> articulations = impl_->articulations;
   std::vector<PairRecord> records(count);
+  std::vector<DestroyedPair> destroyed_pairs(destroyed_count);
   for (Body& body : bodies) read(in, body);
   for (Articulation& art : articulations) {
     for (JointAxis& axis : art.axes) read(in, axis);
@@ -226,11 +257,17 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     read(in, impl_->colliders, records[i]);
     in.check(i == 0 || records[i - 1].key < records[i].key);
   }
+  for (std::size_t i = 0; i < destroyed_pairs.size() && in.ok(); ++i) {
+    read(in, impl_->colliders, destroyed_pairs[i]);
+  }
   if (!in.ok() || !in.at_end())
     return bad("restore: a value is out of range; the bytes are damaged");
   impl_->bodies.swap(bodies);
   impl_->articulations.swap(articulations);
   impl_->records.swap(records);
+  impl_->destroyed_pairs.swap(destroyed_pairs);
+  impl_->events.clear();
+  impl_->counters = {};
   return {};
 }
 

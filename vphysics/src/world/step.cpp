@@ -36,7 +36,7 @@ void World::Impl::begin_step(double dt) {
   events.clear();
   next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
-  const std::size_t room = 64 + 2 * colliders.size();
+  const std::size_t room = 64 + 2 * colliders.size() + destroyed_pairs.size();
   events.reserve(room);
   records.reserve(room);
   next_records.reserve(room);
@@ -60,6 +60,7 @@ void World::Impl::begin_step(double dt) {
     start_q[2 * i] = articulations[i].axes[0].q;
     start_q[2 * i + 1] = articulations[i].axes[1].q;
   }
+  report_ends_of_destroyed();
   integrate_forces(dt);
 }
 

@@ -1,5 +1,7 @@
 #include "world/validate.h"
 
+#include <algorithm>
+
 namespace vp {
 namespace {
 
@@ -19,6 +21,11 @@ bool positive_definite(const Sym3& A) {
                              A.xy * (A.xy * A.zz - A.yz * A.zx) +
                              A.zx * (A.xy * A.yz - A.yy * A.zx);
   return A.xx > 0.0 && minor > 0.0 && determinant > 0.0;
+}
+
+// Point masses, lines and thin plates have moments of zero; slack is what rounding may take.
+bool positive_semidefinite(const Sym3& A, double slack) {
+  return A == Sym3{} || positive_definite(A + Sym3{slack, slack, slack, 0, 0, 0});
 }
 
 bool in_range(const Sym3& A) {
@@ -93,6 +100,12 @@ std::optional<std::string> problem_with(const LinkDesc& desc) {
   if (desc.joint > JointKind::cylindrical) return "joint must be one of JointKind";
   if (!is_pose(desc.T_parent_joint)) return "T_parent_joint must be a finite rotation and position";
   if (auto problem = problem_with(desc.inertia)) return problem;
+  const Sym3& I = desc.inertia.rotational();
+  const double slack = 1e-9 * std::max({I.xx, I.yy, I.zz});
+  if (!positive_semidefinite(I, slack) || !positive_semidefinite(desc.inertia.central(), slack)) {
+    return "inertia: a moment about the centre of mass is negative; is it given about the link's "
+           "origin?";
+  }
   for (int i = 0; i < 2; ++i) {
     if (!not_negative(desc.armature[i])) return "armature must be zero or more";
     if (!not_negative(desc.joint_damping[i])) return "joint_damping must be zero or more";

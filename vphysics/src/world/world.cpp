@@ -1,11 +1,11 @@
 // Building a world, and reading and setting its state.
 #include "vphysics/world.h"
 
-#include <bit>
 #include <utility>
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/structure.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -64,6 +64,7 @@ World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   VP_ASSERT(is_finite(desc.gravity) && desc.contact_slop > 0.0 && desc.velocity_iterations > 0 &&
             desc.max_impacts_per_step >= 0 && desc.restitution_threshold >= 0.0);
   impl_->desc = desc;
+  Structure(impl_->structure).add(desc);
 }
 World::~World() = default;
 World::World(World&&) noexcept = default;
@@ -119,14 +120,23 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
     body.linear_damping = desc.linear_damping;
     body.angular_damping = desc.angular_damping;
   }
-  impl_->structure = mixed(impl_->structure, 0x100u + index);
+  Structure structure(impl_->structure);
+  structure.add(0x100u + index);
+  structure.add(desc);
   const BodyId id = body_id(impl_->bodies, index);
   if (desc.motion != Motion::fixed) (void)set_velocity(id, desc.velocity);
   return id;
 }
 
 void World::Impl::release_collider(std::uint32_t index) {
-  std::erase_if(records, [&](const PairRecord& r) { return r.a == index || r.b == index; });
+  std::erase_if(records, [&](const PairRecord& r) {
+    if (r.a != index && r.b != index) return false;
+    if (r.touching) {
+      destroyed_pairs.push_back({collider_id(colliders, r.a), collider_id(colliders, r.b),
+                                 colliders[r.a].sensor || colliders[r.b].sensor});
+    }
+    return true;
+  });
   colliders[index].alive = false;
   free_colliders.push_back(index);
 }
@@ -141,7 +151,7 @@ Expected<void> World::destroy_body(BodyId id) {
   body->alive = false;
   body->first_collider = kNone;
   impl_->free_bodies.push_back(id.index - 1);
-  impl_->structure = mixed(impl_->structure, 0x200u + id.index);
+  Structure(impl_->structure).add(0x200u + id.index);
   return {};
 }
 
@@ -179,13 +189,10 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   } else {
     body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
   }
-  std::uint64_t& digest = impl_->structure;
-  digest = mixed(digest, 0x300u + index);
-  digest = mixed(digest, static_cast<std::uint64_t>(c.geometry.kind) + 16u * body_handle.index);
-  for (const double x :
-       {c.geometry.radius, c.geometry.half.x, c.geometry.half.y, c.geometry.half.z}) {
-    digest = mixed(digest, std::bit_cast<std::uint64_t>(x));
-  }
+  Structure structure(impl_->structure);
+  structure.add(0x300u + index);
+  structure.add(body_handle.index);
+  structure.add(desc);
   return collider_id(impl_->colliders, index);
 }
 
@@ -226,7 +233,9 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   }
   impl_->articulations.push_back(art);
   impl_->place_link(art);
-  impl_->structure = mixed(impl_->structure, 0x400u + static_cast<std::uint64_t>(link.joint));
+  Structure structure(impl_->structure);
+  structure.add(0x400u + index);
+  structure.add(link);
   return ArticulationId{static_cast<std::uint32_t>(impl_->articulations.size()), 1};
 }
 
