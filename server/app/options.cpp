@@ -87,10 +87,7 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
 
 void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
-  cli.add_flag(
-         "--overwrite", o.overwrite,
-         "replace the recording that is there already; of two computer players it is replaced "
-         "without, since the same seed plays it again")
+  cli.add_flag("--overwrite", o.overwrite, "replace the recording that is there already")
       ->needs(record);
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
@@ -124,7 +121,6 @@ void translate(Options& o, const Raw& raw) {
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
-  o.overwrite = o.overwrite || (o.computer[0] && o.computer[1]);
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
   for (std::string& device : o.devices) device = with_scheme(device);

@@ -260,7 +260,7 @@ TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
   EXPECT_EQ(told.wait(), 0) << told.output();
   EXPECT_NE(text_of(path), kept);
   Process exhibition(with({"--team0", "computer", "--team1", "computer"}));
-  EXPECT_EQ(exhibition.wait(), 0) << exhibition.output();
+  EXPECT_EQ(exhibition.wait(), 2) << exhibition.output();
 
   std::ofstream(path) << "a letter";
   Process other(with({"--overwrite"}));
