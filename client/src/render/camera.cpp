@@ -15,9 +15,9 @@ namespace {
 
 // From where the whole table is seen. Lower, the men of one rod would hide each other and the ball;
 // higher, the way of the goalies' handles, which is longer than the field, would make it small.
-constexpr float kElevation = 0.74f;    // [rad] above the field
-constexpr float kFieldOfView = 0.50f;  // [rad], vertical
-constexpr float kMargin = 0.97f;       // of the picture's half that the table may take
+constexpr float kElevation = 0.74f;       // [rad] above the field
+constexpr float kFieldOfView = 0.50f;     // [rad], vertical
+constexpr float kShareOfPicture = 0.97f;  // of the picture's half that the table may take
 
 // From where the men are seen, for a choice between them.
 constexpr float kNearElevation = 0.80f;  // [rad]
@@ -57,7 +57,7 @@ std::vector<glm::vec3> outermost_points(const foosball::TableSpec& table) {
 Stand whole_table(const foosball::TableSpec& table, float aspect) {
   const glm::vec2 forward{std::cos(kElevation), -std::sin(kElevation)};  // in the plane of y and z
   const glm::vec2 up{-forward.y, forward.x};
-  const float tan_y = kMargin * std::tan(0.5f * kFieldOfView);
+  const float tan_y = kShareOfPicture * std::tan(0.5f * kFieldOfView);
   const float tan_x = aspect * tan_y;
   float top = -1e9f, bottom = -1e9f, side = -1e9f;
   for (const glm::vec3& point : outermost_points(table)) {
