@@ -3,6 +3,10 @@
 add_library(sf_options INTERFACE)
 target_compile_options(sf_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
                                             -ffp-contract=off)
+if(CMAKE_UNITY_BUILD)
+  # What one source names locally, another of the same compilation may have at its top.
+  target_compile_options(sf_options INTERFACE -Wno-shadow)
+endif()
 if(SF_WERROR)
   target_compile_options(sf_options INTERFACE -Werror)
 endif()
