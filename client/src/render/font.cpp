@@ -92,10 +92,11 @@ void Font::add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& 
   };
   const int w = reduced(x1 - x0), h = reduced(y1 - y0), wide = w * kOversize, high = h * kOversize;
   std::vector<std::uint8_t> large(static_cast<std::size_t>(wide * high));
-  constexpr int kMargin = kPadding * kOversize;
-  stbtt_MakeGlyphBitmap(&info, large.data() + kMargin * wide + kMargin, x1 - x0, y1 - y0, wide,
-                        scale, scale, index);
-  const std::vector<std::uint8_t> field = distance_field(large, wide, high, kOversize, kMargin);
+  constexpr int kGlyphMargin = kPadding * kOversize;
+  stbtt_MakeGlyphBitmap(&info, large.data() + kGlyphMargin * wide + kGlyphMargin, x1 - x0, y1 - y0,
+                        wide, scale, scale, index);
+  const std::vector<std::uint8_t> field =
+      distance_field(large, wide, high, kOversize, kGlyphMargin);
 
   if (cursor_.x + w > atlas_size_.x) {
     cursor_ = {0, cursor_.y + row_height_ + 1};
@@ -110,7 +111,7 @@ void Font::add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& 
   }
   glyph.uv_low = cursor_;
   glyph.uv_high = cursor_ + glm::ivec2(w, h);
-  glyph.offset = glm::vec2(x0 - kMargin, y0 - kMargin) / (kOversize * kGlyphSize);
+  glyph.offset = glm::vec2(x0 - kGlyphMargin, y0 - kGlyphMargin) / (kOversize * kGlyphSize);
   glyph.size = glm::vec2(w, h) / kGlyphSize;
   cursor_.x += w + 1;
 }
