@@ -182,7 +182,9 @@ def check(root):
         for line, name in tree.includes(source):
             count += 1
             target = tree.resolve(source, name)
-            if target:
+            if name.endswith('.cpp'):
+                broken = 'a source is compiled, not included'
+            elif target:
                 graph.setdefault(source, []).append(target)
                 broken = rule_broken(source, target)
             else:
@@ -236,6 +238,7 @@ BAD = [
     ('os/src/a.cpp', '#include "cabinet/hand.h"\n', 'os/src/a.cpp:1'),
     ('vphysics/src/world/clock.cpp', '#include "os/clock.h"\n', 'vphysics/src/world/clock.cpp:1'),
     ('cellar/a.cpp', '', 'cellar/a.cpp:1'),
+    ('wire/src/all.cpp', '#include "text.cpp"\n', 'wire/src/all.cpp:1'),
     ('wire/src/a.h', '#include "b.h"\n', 'a circle of includes'),
 ]
 BESIDE_BAD = {'server/src/loop.h': '', 'client/src/view.h': '', 'wire/src/b.h': '#include "a.h"\n'}
