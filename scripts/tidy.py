@@ -9,7 +9,7 @@ follows paths. So:
   main). They are copied into one file each: of a file that is included the analyzer follows no path.
 - Of what a unity build compiles alone, tests and the readers of command lines, all that changed is
   looked at, however long it takes.
-- Then, newest first and until 180 s after the beginning (SF_TIDY_SECONDS), the analyzer has the other
+- Then, newest first and until 120 s after the beginning (SF_TIDY_SECONDS), the analyzer has the other
   libraries and programs, and all checks the other sources. How many were left out is said; --all
   leaves out none.
 """
@@ -180,7 +180,7 @@ def main():
     parser.add_argument('--unity', default='build/clang-debug', help='a unity build, configured')
     parser.add_argument('--build', default='build/clang', help='a build of all sources, each alone')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 180),
+    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 120),
                         help='seconds after which no further test that did not change is begun')
     parser.add_argument('--all', action='store_true', help='every test, however long it takes')
     args = parser.parse_args()
