@@ -269,7 +269,7 @@ step_play() {
   [[ $(head -c 8 "$out/exhibition.png" | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]]
   local wanted
   for wanted in '^score +[0-9]+ : [0-9]+$' '^physics +(9[0-9]{2}|1[0-9]{3})[.0-9]* ticks/s' \
-    '^snapshots +[1-9][0-9]* received' '^picture +[0-9]*\.?[0-9]*[1-9][0-9]* frames/s'; do
+    '^snapshots +[1-9][0-9]* received' '^picture +[0-9.]*[1-9][0-9.]* frames/s'; do
     grep -Eq "$wanted" "$LOGS/play.words" || { echo "./play did not say \"$wanted\"" && return 1; }
   done
   play_refusals "$out"
