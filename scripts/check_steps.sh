@@ -247,7 +247,8 @@ await() { # await COMMAND...: until it succeeds, at most 30 s
   echo "not within 30 s: $*"
   return 1
 }
-is_gone() { ! kill -0 "$1" 2>/dev/null; }
+# Ended, though whoever adopted it may not have waited for it yet.
+is_gone() { [[ $(sed -n 's/^State:[[:space:]]*\(.\).*/\1/p' "/proc/$1/status" 2>/dev/null) =~ ^[ZX]?$ ]]; }
 larger_than() { [[ -f $2 && $(stat -c %s "$2") -gt $1 ]]; } # larger_than BYTES FILE
 children() { cat "/proc/$1/task/$1/children"; }
 has_children() { # has_children PID PROGRAM...
