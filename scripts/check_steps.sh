@@ -250,11 +250,12 @@ await() { # await COMMAND...: until it succeeds, at most 30 s
 # Ended, though whoever adopted it may not have waited for it yet.
 is_gone() { [[ $(sed -n 's/^State:[[:space:]]*\(.\).*/\1/p' "/proc/$1/status" 2>/dev/null) =~ ^[ZX]?$ ]]; }
 larger_than() { [[ -f $2 && $(stat -c %s "$2") -gt $1 ]]; } # larger_than BYTES FILE
-children() { cat "/proc/$1/task/$1/children"; }
+# Read from every process, since not every kernel lists children. One may end meanwhile.
+children() { sed -n "s/^\([0-9]*\) (.*) [A-Za-z] $1 .*/\1/p" /proc/[0-9]*/stat 2>/dev/null || true; }
 has_children() { # has_children PID PROGRAM...
   local pid program programs=' '
   for pid in $(children "$1"); do
-    programs+="$(basename "$(readlink "/proc/$pid/exe")") "
+    programs+="$(basename "$(readlink "/proc/$pid/exe" || echo ended)") "
   done
   for program in "${@:2}"; do [[ $programs == *" $program "* ]] || return 1; done
 }
