@@ -31,6 +31,25 @@ BodyId add(World& world, const Kind& kind, double restitution, double drop) {
   return add_dynamic(world, part);
 }
 
+// Steps for so long [s]; look(t) after each step.
+template <class Look>
+void play(World& world, double seconds, double dt, const Look& look) {
+  for (double t = 0.0; t < seconds; t += dt) {
+    must(world.step(dt));
+    look(t);
+  }
+}
+// Events of the kind in the last step.
+int count(const World& world, ContactEvent::Kind kind) {
+  const auto events = world.contact_events();
+  return static_cast<int>(std::count_if(events.begin(), events.end(),
+                                        [kind](const ContactEvent& e) { return e.kind == kind; }));
+}
+// Of the body's origin above the height at which it rests.
+double rise(const World& world, BodyId body, const Kind& kind) {
+  return world.pose(body).position().z - kind.height;
+}
+
 TEST(Rest, OfABouncyBodyIsOneBeginAndNoMotionAtEveryStep) {
   for (const Kind& kind : kKinds) {
     for (const double dt : {0.001, 1.0 / 240, 1.0 / 60, 0.1}) {
@@ -39,13 +58,11 @@ TEST(Rest, OfABouncyBodyIsOneBeginAndNoMotionAtEveryStep) {
       const BodyId body = add(world, kind, 0.6, 0.0);
       int begins = 0, others = 0;
       double farthest = 0.0;
-      for (double t = 0.0; t < 5.0; t += dt) {
-        must(world.step(dt));
-        for (const ContactEvent& e : world.contact_events()) {
-          ++(e.kind == ContactEvent::Kind::begin ? begins : others);
-        }
-        farthest = std::max(farthest, std::fabs(world.pose(body).position().z - kind.height));
-      }
+      play(world, 5.0, dt, [&](double) {
+        begins += count(world, ContactEvent::Kind::begin);
+        others += count(world, ContactEvent::Kind::hit) + count(world, ContactEvent::Kind::end);
+        farthest = std::max(farthest, std::fabs(rise(world, body, kind)));
+      });
       EXPECT_EQ(begins, 1) << kind.name << ", step " << dt;
       EXPECT_EQ(others, 0) << kind.name << ", step " << dt;
       // The slop is 1e-4. It was 8 mm at 1/60 s.
@@ -62,13 +79,10 @@ TEST(Rest, IsReachedByWhatBouncesLessEachTime) {
       const BodyId body = add(world, kind, 0.6, 0.2);
       int bounces = 0, late = 0;
       double highest = 0.0;
-      for (double t = 0.0; t < 5.0; t += dt) {
-        must(world.step(dt));
-        for (const ContactEvent& e : world.contact_events()) {
-          if (e.kind == ContactEvent::Kind::hit) ++(t < 2.5 ? bounces : late);
-        }
-        if (t > 2.5) highest = std::max(highest, world.pose(body).position().z - kind.height);
-      }
+      play(world, 5.0, dt, [&](double t) {
+        (t < 2.5 ? bounces : late) += count(world, ContactEvent::Kind::hit);
+        if (t > 2.5) highest = std::max(highest, rise(world, body, kind));
+      });
       EXPECT_GE(bounces, 4) << kind.name << ", step " << dt;
       EXPECT_EQ(late, 0) << kind.name << ", step " << dt;
       EXPECT_LT(highest, 1.1e-4) << kind.name << ", step " << dt;
@@ -84,13 +98,10 @@ double height_after_bounce(const Kind& kind, double e, double drop, double dt) {
   const double flight = std::sqrt(2 * drop / kG);
   bool bounced = false;
   double top = 0.0;
-  for (double t = 0.0; t < flight * (1 + 1.5 * e); t += dt) {
-    must(world.step(dt));
-    for (const ContactEvent& event : world.contact_events()) {
-      bounced |= event.kind == ContactEvent::Kind::hit;
-    }
-    if (bounced) top = std::max(top, world.pose(body).position().z - kind.height);
-  }
+  play(world, flight * (1 + 1.5 * e), dt, [&](double) {
+    bounced |= count(world, ContactEvent::Kind::hit) > 0;
+    if (bounced) top = std::max(top, rise(world, body, kind));
+  });
   return top;
 }
 
@@ -122,24 +133,22 @@ OnABox drop_on_a_box(const Kind& kind, double drop, double dt) {
   World world;
   add_ground(world, {});
   add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{0, 0, 0.5})});
-  for (double t = 0.0; t < 0.5; t += dt) must(world.step(dt));
+  play(world, 0.5, dt, [](double) {});
   Kind raised = kind;
   raised.height += 1.0;
   const BodyId body = add(world, raised, 0.6, drop);
   OnABox out;
   bool bounced = false, again = false;
-  for (double t = 0.0; t < 5.0; t += dt) {
-    must(world.step(dt));
-    for (const ContactEvent& e : world.contact_events()) {
-      if (e.kind != ContactEvent::Kind::hit) continue;
-      out.late_hits += t > 3.0;
-      again |= bounced;
-      bounced = true;
-    }
-    const double z = world.pose(body).position().z - raised.height;
+  play(world, 5.0, dt, [&](double t) {
+    const int hits = count(world, ContactEvent::Kind::hit);
+    again |= hits > (bounced ? 0 : 1);
+    bounced |= hits > 0;
+    const double z = rise(world, body, raised);
     if (bounced && !again) out.first_top = std::max(out.first_top, z);
-    if (t > 3.0) out.highest_at_end = std::max(out.highest_at_end, z);
-  }
+    if (t <= 3.0) return;
+    out.late_hits += hits;
+    out.highest_at_end = std::max(out.highest_at_end, z);
+  });
   return out;
 }
 
@@ -168,17 +177,14 @@ TEST(Bounce, OfRestitutionOneNeitherGainsNorLosesHeight) {
       const BodyId body = add(world, kind, 1.0, 1.0);
       double top = 0.0, highest = 0.0, lowest = 9.0;
       int tops = 0;
-      for (double t = 0.0; t < 9.5; t += dt) {
-        must(world.step(dt));
-        const bool hit =
-            std::any_of(world.contact_events().begin(), world.contact_events().end(),
-                        [](const ContactEvent& e) { return e.kind == ContactEvent::Kind::hit; });
+      play(world, 9.5, dt, [&](double) {
+        const bool hit = count(world, ContactEvent::Kind::hit) > 0;
         if (hit && tops++ > 0) {
           highest = std::max(highest, top);
           lowest = std::min(lowest, top);
         }
-        top = hit ? 0.0 : std::max(top, world.pose(body).position().z - kind.height);
-      }
+        top = hit ? 0.0 : std::max(top, rise(world, body, kind));
+      });
       EXPECT_GE(tops, 8) << kind.name << ", step " << dt;
       EXPECT_NEAR(highest, 1.0, 0.001) << kind.name << ", step " << dt;
       EXPECT_NEAR(lowest, 1.0, 0.001) << kind.name << ", step " << dt;

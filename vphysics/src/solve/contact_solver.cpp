@@ -16,9 +16,9 @@
 // but for (g dt)^2 / 4, which is left out. A body at rest closes at u1 = g dt in each step: whether
 // a contact bounces is decided by u1 - g h, the speed that the forces have given it by now.
 //
-// Penetration is taken out by a third
-// set of impulses that acts on positions alone and so adds no energy. Sources: Catto 2006
-// (sequential impulses); Moreau 1988 for the disc; Jolt and Box2D for correcting positions apart.
+// Penetration is taken out by a third set of impulses that acts on positions alone and so adds no
+// energy. Sources: Catto 2006 (sequential impulses); Moreau 1988 for the disc; Jolt and Box2D for
+// correcting positions apart.
 #include "solve/contact_solver.h"
 
 #include <algorithm>
