@@ -25,6 +25,8 @@ LAYERS = {
     'vphysics/include/vphysics/lie.h': 'lie',
     'vphysics/include/vphysics/lie/': 'lie',
     'vphysics/src/multibody/': 'multibody',
+    'vphysics/include/vphysics/multibody.h': 'multibody',
+    'vphysics/include/vphysics/multibody/': 'multibody',
     'vphysics/src/collide/': 'collide',
     'vphysics/include/vphysics/shapes.h': 'collide',
     'vphysics/src/solve/': 'solve',

@@ -37,6 +37,7 @@ check  clang-tidy            static checks
 check  shellcheck            static checks of the scripts
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests
+check  libeigen3-dev         6x6 matrices that the tests compare with
 check  librapidcheck-dev     property tests
 check  gcc-avr               compiles the firmware
 check  binutils-avr          links the firmware

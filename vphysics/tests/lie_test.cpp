@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <type_traits>
+#include <vector>
 
 #include "random.h"
 
@@ -93,9 +95,68 @@ TEST(Scalar, ArcTangentAgreesWithLongDoubleInEveryQuadrant) {
 const double kAngles[] = {0.0,        1e-300,     1e-160, 1e-12, 1e-8,       1e-4,
                           0.31622776,  // sqrt of kLogSeriesBelow
                           0.31622777,
-                          0.67082039,  // sqrt of kExpSeriesBelow
-                          0.67082040, 0.78539816, 1.5,    3.0,   kPi - 1e-4, kPi - 1e-8,
+                          0.49999999,  // sqrt of kExpSeriesBelow
+                          0.50000001, 0.78539816, 1.5,    3.0,   kPi - 1e-4, kPi - 1e-8,
                           kPi - 1e-12};
+
+// The coefficients of Exp and Log by their power series in long double: fewer than 40 terms reach
+// its last bit up to half a turn, where the largest term is 12 and cancels 4 bits.
+struct LongCoefficients {
+  explicit LongCoefficients(long double t) {
+    long double power = 1.0L, factorial = 1.0L;  // t^k, (2k)!
+    long double numerator = 0.0L, slope = 0.0L;  // (2 B - A) / t = 2 B D, and its slope
+    for (int k = 0; k < 40; ++k) {
+      const long double odd = factorial * (2 * k + 1), even = odd * (2 * k + 2),
+                        next = even * (2 * k + 3), sign = k % 2 == 0 ? 1.0L : -1.0L;
+      A += sign * power / odd;
+      B += sign * power / even;
+      C += sign * power / next;
+      const long double term = sign * (2.0L / even - 1.0L / odd);  // of 2 B - A
+      if (k > 0) numerator += (power / t) * term;
+      if (k > 1) slope += (k - 1) * (power / t / t) * term;
+      if (k > 0) B1 += sign * k * (power / t) / even, C1 += sign * k * (power / t) / next;
+      power *= t;
+      factorial = even;
+    }
+    D = numerator / (2 * B);
+    D1 = (slope - 2 * B1 * D) / (2 * B);
+  }
+  long double A = 0, B = 0, C = 0, D = 0, B1 = 0, C1 = 0, D1 = 0;
+};
+
+// What a coefficient is multiplied by where it is used: t^(n/2) for a term of n factors w.
+// Measured: A 2.0e-16, B t^(1/2) 3.1e-16, C t 2.1e-16, D t 3.3e-16, B' t 1.6e-16, C'
+// t^(3/2) 4.8e-16, D' t^(3/2) 6.7e-16.
+TEST(Coefficients, HoldOnBothSidesOfTheirSwitchingPoints) {
+  double worst[7] = {};
+  const double switching[] = {detail::kExpSeriesBelow, detail::kLogSeriesBelow};
+  std::vector<double> squares;
+  for (const double t : switching) {
+    squares.insert(squares.end(), {t, std::nextafter(t, 0.0), 0.99 * t, 1.01 * t, 0.5 * t, 2 * t});
+  }
+  for (int i = 1; i <= 4000; ++i) squares.push_back(kPi * kPi * i / 4000.0);
+  for (int i = 0; i < 60; ++i) squares.push_back(std::pow(10.0, -i));
+  for (const double square : squares) {
+    const double theta = std::sqrt(square);
+    const Vec3 w{theta, 0, 0};
+    const auto k = detail::exp_coefficients(w);
+    const LongCoefficients exact(static_cast<long double>(k.t));
+    const double C = detail::coefficient_C(k), D = detail::coefficient_D(k), t = k.t;
+    const auto off = [](double got, long double wanted) {
+      return static_cast<double>(std::fabs(static_cast<long double>(got) - wanted));
+    };
+    const double error[7] = {off(k.A, exact.A),
+                             theta * off(k.B, exact.B),
+                             t * off(C, exact.C),
+                             t * off(D, exact.D),
+                             t * off(detail::slope_B(k), exact.B1),
+                             t * theta * off(detail::slope_C(k, C), exact.C1),
+                             t * theta * off(detail::slope_D(k, D), exact.D1)};
+    for (int i = 0; i < 7; ++i) worst[i] = std::max(worst[i], error[i]);
+  }
+  const double bounds[7] = {2.3e-16, 3.4e-16, 2.3e-16, 4.5e-16, 2.3e-16, 5.6e-16, 7.8e-16};
+  for (int i = 0; i < 7; ++i) EXPECT_LT(worst[i], bounds[i]) << "coefficient " << i;
+}
 
 TEST(Exp, OfZeroIsIdentity) {
   EXPECT_EQ(Exp(se3{}), SE3{});
@@ -167,6 +228,71 @@ TEST(Ad, IsTheConjugationOfExp) {
   }
 }
 
+TEST(SO3, IsAGroupThatTurnsTheAxesOfItsAlgebra) {
+  Random random(14);
+  for (int i = 0; i < 2000; ++i) {
+    const SO3 A(random.rotation()), B(random.rotation());
+    const Vec3 x = random.in_cube(1);
+    ASSERT_LT(largest((A * B) * x - A * (B * x)), 3e-15);
+    ASSERT_LT(largest(Inv(A) * (A * x) - x), 3e-15);
+    ASSERT_LT(difference(SE3(Exp(Ad(A, x)), {}), SE3(A * Exp(x) * Inv(A), {})), 5e-15);
+    ASSERT_LT(difference(SE3(Exp(Log(A)), {}), SE3(A, {})), 5e-15);
+    ASSERT_LT(largest(Ad(A * B, x) - Ad(A, Ad(B, x))), 3e-15);
+  }
+}
+
+template <class A, class B>
+concept Addable = requires(A a, B b) {
+  a + b;
+};
+template <class A, class B>
+concept Subtractable = requires(A a, B b) {
+  a - b;
+};
+
+// Section 4.3: no operator that the group does not have, no sum of a velocity and a force.
+TEST(Types, HaveNoOperatorThatTheirGroupHasNot) {
+  static_assert(!Addable<SE3, SE3> && !Subtractable<SE3, SE3> && !Addable<SO3, SO3> &&
+                !Subtractable<SO3, SO3> && !Addable<SE3, se3> && !Addable<se3, dse3> &&
+                !Addable<dse3, Inertia> && !Subtractable<Inertia, Inertia>);
+  static_assert(Addable<se3, se3> && Addable<dse3, dse3> && Addable<Inertia, AInertia>);
+  static_assert(!std::is_convertible_v<Mat3, SO3> && !std::is_convertible_v<AInertia, Inertia> &&
+                std::is_convertible_v<Inertia, AInertia>);
+  static_assert(sizeof(SO3) == 9 * sizeof(double) && sizeof(SE3T<float>) == 12 * sizeof(float));
+}
+
+TEST(Interpolate, TurnsAndMovesAtAConstantRateFromOneToTheOther) {
+  Random random(15);
+  for (int i = 0; i < 500; ++i) {
+    const SE3 A = random.pose(1), B = random.pose(1);
+    ASSERT_LT(difference(interpolate(A, B, 0.0), A), 1e-15);
+    ASSERT_LT(difference(interpolate(A, B, 1.0), B), 1e-14);
+    const SE3 quarter = interpolate(A, B, 0.25), half = interpolate(A, B, 0.5);
+    ASSERT_LT(difference(interpolate(A, half, 0.5), quarter), 1e-14);
+    // The same screw wherever it is seen from.
+    const SE3 C = random.pose(1);
+    ASSERT_LT(difference(interpolate(C * A, C * B, 0.25), C * quarter), 2e-14);
+    ASSERT_LT(difference(interpolate(B, A, 0.75), quarter), 5e-14);
+    const SO3 R(A.rotation()), S(B.rotation());
+    ASSERT_LT(difference(SE3(interpolate(R, S, 0.25), {}), SE3(quarter.rotation(), {})), 1e-15);
+  }
+}
+
+TEST(Ad, OfTheInverseIsTheInverse) {
+  Random random(16);
+  for (int i = 0; i < 2000; ++i) {
+    const SE3 A = random.pose(1);
+    const se3 V{random.in_cube(1), random.in_cube(1)};
+    const dse3 F{random.in_cube(1), random.in_cube(1)};
+    const se3 a = InvAd(A, V), b = Ad(Inv(A), V);
+    const dse3 c = InvdAd(A, F), d = dAd(Inv(A), F);
+    ASSERT_LT(largest(a.w - b.w) + largest(a.v - b.v), 8e-15);
+    ASSERT_LT(largest(c.m - d.m) + largest(c.f - d.f), 8e-15);
+    ASSERT_LT(largest(InvAd(A, Ad(A, V)).v - V.v), 8e-15);
+    ASSERT_NEAR(InvAd(A, V) * F, V * InvdAd(A, F), 8e-15);
+  }
+}
+
 TEST(Ad, DualsKeepThePower) {
   Random random(9);
   for (int i = 0; i < 2000; ++i) {
@@ -224,7 +350,7 @@ TEST(Quaternion, RoundTripsAtEveryBranch) {
     ASSERT_LT(difference(SE3(from_quaternion(q), {}), SE3(R, {})), 3e-15);
   }
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
-    const Mat3 R = Exp(kPi * axis);
+    const Mat3 R = Exp(kPi * axis).matrix();
     ASSERT_LT(difference(SE3(from_quaternion(to_quaternion(R)), {}), SE3(R, {})), 3e-15);
   }
 }

@@ -97,7 +97,7 @@ TEST(Friction, HoldsUpToTheFrictionAngle) {
     const double angle = std::atan(slope);
     const Vec3 normal{std::sin(angle), 0, std::cos(angle)};
     add_ground(world, {mu, 0.0, 0.0}, normal);
-    const Mat3 R = Exp(Vec3{0, angle, 0});
+    const Mat3 R = Exp(Vec3{0, angle, 0}).matrix();
     const BodyId box = add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.05}},
                                            .material = {mu, 0.0, 0.0},
                                            .pose = SE3(R, 0.05 * normal)});
@@ -236,7 +236,7 @@ TEST(Contact, EveryPairOfShapesCarriesTheOther) {
       World world;
       const Material rough{0.9, 0.0, 0.01};
       // Capsules lie along y.
-      const Mat3 lying = Exp(Vec3{kPi / 2, 0, 0});
+      const Mat3 lying = Exp(Vec3{kPi / 2, 0, 0}).matrix();
       const double top = std::holds_alternative<Box>(ground)       ? 0.1
                          : std::holds_alternative<Capsule>(ground) ? 0.3
                          : std::holds_alternative<Sphere>(ground)  ? 0.5

@@ -31,7 +31,7 @@ class Random {
       if (n > 0.1 && n < 1.0) return (1.0 / n) * a;
     }
   }
-  Mat3 rotation() { return Exp(uniform(0.0, kPi) * direction()); }
+  Mat3 rotation() { return Exp(uniform(0.0, kPi) * direction()).matrix(); }
   SE3 pose(double half) {
     const Mat3 R = rotation();
     return {R, in_cube(half)};

@@ -4,12 +4,17 @@
 //   SE3      a pose: rotation R (9 scalars) and position p (3)
 //   se3      a generalized velocity (w, v): angular first
 //   dse3     a generalized force (m, f): moment first
+//   SO3      a rotation, with its algebra written as Vec3
 //   Inertia  a generalized inertia of a rigid body: 10 scalars
+//   AInertia an articulated inertia: 21 scalars
 //
-// Everything is a template on the scalar with the suffix T; the short names are in double.
+// Everything is a template on the scalar with the suffix T; the short names are in double. Other
+// scalars: float, DualT (lie/dual.h), PackT (lie/pack.h), Count (lie/count.h).
 #pragma once
 
+#include "vphysics/lie/ainertia.h"
 #include "vphysics/lie/inertia.h"
 #include "vphysics/lie/scalar.h"
 #include "vphysics/lie/se3.h"
+#include "vphysics/lie/so3.h"
 #include "vphysics/lie/vec3.h"

@@ -39,7 +39,7 @@ Local local_at(const SweepQuery& q, double t) {
   Vec3 d = centre - (q.other.x + t * q.other.v);
   Vec3 u = q.sphere.v + cross(q.sphere.w, arm) - q.other.v - cross(q.other.w, d);
   if (turns(q.other.w)) {
-    const Mat3 R = Exp(t * q.other.w);
+    const Mat3 R = Exp(t * q.other.w).matrix();
     d = transposed_times(R, d);
     u = transposed_times(R, u);
   }

@@ -183,7 +183,7 @@ void World::Impl::advance_body(std::uint32_t index, double h) {
   }
   const Mat3 R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
-  const Mat3 next = turns ? orthonormalized(Exp(h * m.w) * R) : R;
+  const Mat3 next = turns ? orthonormalized(Exp(h * m.w).matrix() * R) : R;
   if (body.motion == Motion::dynamic && !body.isotropic && turns) {
     // Angular momentum is what stays; the rate follows from it.
     const Vec3 momentum = body.central * transposed_times(R, body.w);
@@ -224,7 +224,7 @@ void World::Impl::apply_corrections() {
       }
       place_link(art);
     } else {
-      place(body, s.x + s.shift, orthonormalized(Exp(s.turn) * body.T.rotation()));
+      place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
     }
   }
 }

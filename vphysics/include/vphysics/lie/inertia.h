@@ -12,7 +12,7 @@ namespace vp {
 template <class T>
 struct Sym3T {
   T xx{}, yy{}, zz{}, xy{}, yz{}, zx{};
-  constexpr bool operator==(const Sym3T&) const = default;
+  bool operator==(const Sym3T&) const = default;
 };
 
 template <class T>
@@ -37,13 +37,15 @@ template <class T>
 constexpr Sym3T<T> outer(T s, const Vec3T<T>& a) {
   return {s * a.x * a.x, s * a.y * a.y, s * a.z * a.z, s * a.x * a.y, s * a.y * a.z, s * a.z * a.x};
 }
-// R A R^T
+// R^T A R and R A R^T
+template <class T>
+constexpr Sym3T<T> unrotated(const Mat3T<T>& R, const Sym3T<T>& A) {
+  const Vec3T<T> x = A * R.cx, y = A * R.cy, z = A * R.cz;
+  return {dot(R.cx, x), dot(R.cy, y), dot(R.cz, z), dot(R.cx, y), dot(R.cy, z), dot(R.cz, x)};
+}
 template <class T>
 constexpr Sym3T<T> rotated(const Mat3T<T>& R, const Sym3T<T>& A) {
-  const Mat3T<T> B = R * Mat3T<T>{{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
-  const Mat3T<T> Rt = transpose(R);
-  const Vec3T<T> cx = B * Rt.cx, cy = B * Rt.cy, cz = B * Rt.cz;
-  return {cx.x, cy.y, cz.z, cy.x, cz.y, cz.x};
+  return unrotated(transpose(R), A);
 }
 // Inverse; precondition: not singular.
 template <class T>
@@ -78,20 +80,27 @@ class InertiaT {
   // The same inertia seen from another frame: with T_b_a, from frame b to frame a. As a bilinear
   // form, J' = dAd_T J Ad_T; eq. (6) has (...).Xform(Inv(f)).
   constexpr InertiaT Xform(const SE3T<T>& A) const {
-    // Rotate into the axes of a, then move the origin by r = position of a in the axes of a.
-    const Mat3T<T> Rt = transpose(A.rotation());
-    const Vec3T<T> r = A.unrotate(A.position());
-    const Vec3T<T> h = Rt * h_;
-    const Vec3T<T> moved = h - mass_ * r;
-    // I - m [r][r] + [h][r] + [r][h], written with h and r: I' = I + m P(r) - 2 sym terms.
-    const T hr = dot(h, r);
-    const Sym3T<T> cross_terms = {T(2) * (hr - h.x * r.x),  T(2) * (hr - h.y * r.y),
-                                  T(2) * (hr - h.z * r.z),  -(h.x * r.y + h.y * r.x),
-                                  -(h.y * r.z + h.z * r.y), -(h.z * r.x + h.x * r.z)};
-    return {mass_, moved, rotated(Rt, I_) + point_inertia(mass_, r) - cross_terms};
+    const InertiaT moved = about(A.position());
+    return {mass_, A.unrotate(moved.h_), unrotated(A.rotation(), moved.I_)};
+  }
+  // Xform(Inv(A)), without building the inverse: with T_a_b, from frame b to frame a.
+  constexpr InertiaT InvXform(const SE3T<T>& A) const {
+    return InertiaT(mass_, A.rotate(h_), rotated(A.rotation(), I_)).about(-A.position());
+  }
+  // The same axes, about the point p: with h' = h - m p and g = h + h',
+  //   I' = I + (p g^T + g p^T) / 2 - (g . p) 1.
+  constexpr InertiaT about(const Vec3T<T>& p) const {
+    const Vec3T<T> moved = h_ - mass_ * p;
+    const Vec3T<T> g = h_ + moved, k = T(0.5) * g;
+    const T xx = g.x * p.x, yy = g.y * p.y, zz = g.z * p.z;
+    return {mass_,
+            moved,
+            {I_.xx - (yy + zz), I_.yy - (zz + xx), I_.zz - (xx + yy),
+             I_.xy + (k.x * p.y + k.y * p.x), I_.yz + (k.y * p.z + k.z * p.y),
+             I_.zx + (k.z * p.x + k.x * p.z)}};
   }
 
-  constexpr bool operator==(const InertiaT&) const = default;
+  bool operator==(const InertiaT&) const = default;
 
  private:
   // m (|c|^2 - c c^T): rotational inertia of a point mass at c.

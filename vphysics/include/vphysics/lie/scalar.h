@@ -1,9 +1,11 @@
-// Elementary functions whose result feeds the state of a simulation.
+// What the Lie groups ask of their scalar: + - * /, comparisons, sqrt, sin_cos, arc_tangent and a
+// choice between two formulas. double and float are here; in headers of their own a counting scalar
+// (count.h), a dual number (dual.h) and a pack of SIMD lanes (pack.h).
 //
 // libm's sin, cos and atan2 differ in the last bit between libraries (glibc, musl, emscripten), and
 // a simulation that must be the same to the bit cannot use them. These use only IEEE 754 operations
 // that are exact or correctly rounded (+ - * / sqrt floor fmod), so that they give the same bits
-// wherever contraction is off. Accuracy: within 2 units in the last place for |x| < 2^20.
+// wherever contraction is off, lane by lane in a pack too.
 #pragma once
 
 #include <cmath>
@@ -18,37 +20,124 @@ struct SinCosT {
   T sin, cos;
 };
 
-namespace detail {
+// The number in which a scalar holds its values: that of a lane, of a dual number's value.
+template <class T>
+struct BaseOf {
+  using type = T;
+};
+template <class T>
+using base_t = typename BaseOf<T>::type;
 
-// pi/2 in three parts: the first two have 33 bits, so that n * part is exact for |n| < 2^20.
-inline constexpr double kHalfPi1 = 1.57079632673412561417e+00;
-inline constexpr double kHalfPi2 = 6.07710050630396597660e-11;
-inline constexpr double kHalfPi3 = 2.02226624879595063154e-21;
-
-// Taylor polynomials on |r| <= pi/4: the first term left out is below 8e-20 (sin) and 2e-18 (cos).
-inline constexpr double sin_kernel(double r) {
-  const double z = r * r;
-  double s = 1.0 / 355687428096000.0;
-  s = s * z - 1.0 / 1307674368000.0;
-  s = s * z + 1.0 / 6227020800.0;
-  s = s * z - 1.0 / 39916800.0;
-  s = s * z + 1.0 / 362880.0;
-  s = s * z - 1.0 / 5040.0;
-  s = s * z + 1.0 / 120.0;
-  s = s * z - 1.0 / 6.0;
-  return r + r * z * s;
+// Conditions of one state; a pack has its own.
+constexpr bool all(bool condition) {
+  return condition;
+}
+constexpr bool both(bool a, bool b) {
+  return a && b;
+}
+// One of two formulas, by a condition: of one state only the chosen one is evaluated; of a pack
+// both where its lanes disagree, so neither may do harm where it does not hold.
+template <class F, class G>
+constexpr auto choose(bool condition, const F& f, const G& g) {
+  return condition ? f() : g();
+}
+// One of two values.
+template <class T>
+constexpr T select(bool condition, const T& a, const T& b) {
+  return condition ? a : b;
 }
 
-inline constexpr double cos_kernel(double r) {
-  const double z = r * r;
-  double c = 1.0 / 20922789888000.0;
-  c = c * z - 1.0 / 87178291200.0;
-  c = c * z + 1.0 / 479001600.0;
-  c = c * z - 1.0 / 3628800.0;
-  c = c * z + 1.0 / 40320.0;
-  c = c * z - 1.0 / 720.0;
-  c = c * z + 1.0 / 24.0;
-  return 1.0 - (0.5 * z - z * z * c);
+namespace detail {
+
+// pi/2 in three parts, the first two so short that n * part is exact; adding and subtracting 1.5 *
+// 2^(mantissa bits) rounds to an integer.
+template <class T>
+struct Angle;
+template <>
+struct Angle<double> {
+  static constexpr double kHalfPi1 = 1.57079632673412561417e+00;  // 33 bits
+  static constexpr double kHalfPi2 = 6.07710050630396597660e-11;  // 33 bits
+  static constexpr double kHalfPi3 = 2.02226624879595063154e-21;
+  static constexpr double kRounder = 6755399441055744.0;
+  static constexpr double kExactBelow = 1048576.0;
+};
+template <>
+struct Angle<float> {
+  static constexpr float kHalfPi1 = 1.5703125f;                // 11 bits
+  static constexpr float kHalfPi2 = 4.837512969970703125e-4f;  // 11 bits
+  static constexpr float kHalfPi3 = 7.549790e-8f;
+  static constexpr float kRounder = 12582912.0f;
+  static constexpr float kExactBelow = 4096.0f;
+};
+
+// Taylor polynomials on |r| <= pi/4. In double the first term left out is below 8e-20 (sin) and
+// 2e-18 (cos), in float 2e-9 and 2e-10.
+template <class T>
+constexpr T sin_kernel(const T& r, double) {
+  const T z = r * r;
+  T s = T(1.0 / 355687428096000.0);
+  s = s * z - T(1.0 / 1307674368000.0);
+  s = s * z + T(1.0 / 6227020800.0);
+  s = s * z - T(1.0 / 39916800.0);
+  s = s * z + T(1.0 / 362880.0);
+  s = s * z - T(1.0 / 5040.0);
+  s = s * z + T(1.0 / 120.0);
+  s = s * z - T(1.0 / 6.0);
+  return r + r * z * s;
+}
+template <class T>
+constexpr T cos_kernel(const T& r, double) {
+  const T z = r * r;
+  T c = T(1.0 / 20922789888000.0);
+  c = c * z - T(1.0 / 87178291200.0);
+  c = c * z + T(1.0 / 479001600.0);
+  c = c * z - T(1.0 / 3628800.0);
+  c = c * z + T(1.0 / 40320.0);
+  c = c * z - T(1.0 / 720.0);
+  c = c * z + T(1.0 / 24.0);
+  return T(1.0) - (T(0.5) * z - z * z * c);
+}
+template <class T>
+constexpr T sin_kernel(const T& r, float) {
+  const T z = r * r;
+  T s = T(1.0f / 362880.0f);
+  s = s * z - T(1.0f / 5040.0f);
+  s = s * z + T(1.0f / 120.0f);
+  s = s * z - T(1.0f / 6.0f);
+  return r + r * z * s;
+}
+template <class T>
+constexpr T cos_kernel(const T& r, float) {
+  const T z = r * r;
+  T c = T(-1.0f / 3628800.0f);
+  c = c * z + T(1.0f / 40320.0f);
+  c = c * z - T(1.0f / 720.0f);
+  c = c * z + T(1.0f / 24.0f);
+  return T(1.0f) - (T(0.5f) * z - z * z * c);
+}
+
+template <class T>
+constexpr T nearest_integer(const T& x) {
+  return (x + T(Angle<base_t<T>>::kRounder)) - T(Angle<base_t<T>>::kRounder);
+}
+
+// |x| < kExactBelow. Without a branch, hence for packs as it stands: the quadrant n mod 4 is read
+// from whether n and floor(n / 2) are odd.
+template <class T>
+constexpr SinCosT<T> sin_cos_near(const T& x) {
+  using B = base_t<T>;
+  const T n = nearest_integer(x * T(B(2.0 / kPi)));
+  const T r =
+      ((x - n * T(Angle<B>::kHalfPi1)) - n * T(Angle<B>::kHalfPi2)) - n * T(Angle<B>::kHalfPi3);
+  const T s = sin_kernel(r, B()), c = cos_kernel(r, B());
+  const T half = n * T(B(0.5));
+  const T rounded = nearest_integer(half);
+  const auto odd = half != rounded;
+  const T below = select(rounded > half, rounded - T(B(1)), rounded);  // floor(n / 2)
+  const T quarter = below * T(B(0.5));
+  const auto flip = quarter != nearest_integer(quarter);
+  const T sine = select(odd, c, s), cosine = select(odd, -s, c);
+  return {select(flip, -sine, sine), select(flip, -cosine, cosine)};
 }
 
 // atan(k / 8)
@@ -80,28 +169,15 @@ inline double atan_unit(double x) {
 
 }  // namespace detail
 
-// Sine and cosine of x [rad]; finite x. Beyond 2^20 the angle is first taken modulo the double
-// nearest to 2 pi: still deterministic, with an absolute error that grows as 4e-17 |x|.
+// Sine and cosine of x [rad]; finite x. Within 2 units in the last place for |x| < 2^20 (float:
+// 4096). Beyond, the angle is first taken modulo the double nearest to 2 pi: still deterministic,
+// with an absolute error that grows as 4e-17 |x|.
 inline SinCosT<double> sin_cos(double x) {
-  constexpr double kExactBelow = 1048576.0;
-  if (!(std::fabs(x) < kExactBelow)) x = std::fmod(x, 2.0 * kPi);
-  const double n = std::floor(x * (2.0 / kPi) + 0.5);
-  const double r = ((x - n * detail::kHalfPi1) - n * detail::kHalfPi2) - n * detail::kHalfPi3;
-  const double s = detail::sin_kernel(r);
-  const double c = detail::cos_kernel(r);
-  switch (static_cast<int>(n - 4.0 * std::floor(n * 0.25))) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
+  if (!(std::fabs(x) < detail::Angle<double>::kExactBelow)) x = std::fmod(x, 2.0 * kPi);
+  return detail::sin_cos_near(x);
 }
-
 inline SinCosT<float> sin_cos(float x) {
+  if (std::fabs(x) < detail::Angle<float>::kExactBelow) return detail::sin_cos_near(x);
   const auto [s, c] = sin_cos(static_cast<double>(x));
   return {static_cast<float>(s), static_cast<float>(c)};
 }

@@ -9,21 +9,20 @@
 // SE3 is a group: there is multiplication and substitution, no addition (section 4.3).
 #pragma once
 
-#include "vphysics/lie/scalar.h"
-#include "vphysics/lie/vec3.h"
+#include "vphysics/lie/so3.h"
 
 namespace vp {
 
 template <class T>
 struct se3T {
   Vec3T<T> w, v;
-  constexpr bool operator==(const se3T&) const = default;
+  bool operator==(const se3T&) const = default;
 };
 
 template <class T>
 struct dse3T {
   Vec3T<T> m, f;
-  constexpr bool operator==(const dse3T&) const = default;
+  bool operator==(const dse3T&) const = default;
 };
 
 template <class T>
@@ -32,13 +31,14 @@ class SE3T {
   constexpr SE3T() : R_(Mat3T<T>::identity()) {}
   // Precondition: R is a rotation.
   constexpr SE3T(const Mat3T<T>& R, const Vec3T<T>& p) : R_(R), p_(p) {}
+  constexpr SE3T(const SO3T<T>& R, const Vec3T<T>& p) : R_(R.matrix()), p_(p) {}
   constexpr explicit SE3T(const Vec3T<T>& p) : R_(Mat3T<T>::identity()), p_(p) {}
 
   constexpr const Mat3T<T>& rotation() const { return R_; }
   constexpr const Vec3T<T>& position() const { return p_; }
   constexpr Vec3T<T> rotate(const Vec3T<T>& v) const { return R_ * v; }
   constexpr Vec3T<T> unrotate(const Vec3T<T>& v) const { return transposed_times(R_, v); }
-  constexpr bool operator==(const SE3T&) const = default;
+  bool operator==(const SE3T&) const = default;
 
  private:
   Mat3T<T> R_;
@@ -49,7 +49,7 @@ template <class T>
 constexpr SE3T<T> operator*(const SE3T<T>& A, const SE3T<T>& B) {
   return {A.rotation() * B.rotation(), A.position() + A.rotate(B.position())};
 }
-// A point, from frame b to frame a with T_a_b.
+// The coordinates of a point, from frame b to frame a with T_a_b.
 template <class T>
 constexpr Vec3T<T> operator*(const SE3T<T>& A, const Vec3T<T>& point) {
   return A.position() + A.rotate(point);
@@ -116,113 +116,151 @@ constexpr dse3T<T> dad(const se3T<T>& V, const dse3T<T>& F) {
   return {cross(F.m, V.w) + cross(F.f, V.v), cross(F.f, V.w)};
 }
 
-namespace detail {
-
-// Squared angles [rad^2] below which (theta - sin theta) / theta^3 and the coefficient of Log come
-// from their series. There the seven (six) terms leave out less than 2^-53 of the value, and above
-// the closed form loses at most 4 bits of a coefficient that is multiplied by theta^2: the result
-// is within some 1e-16 on either side.
-inline constexpr double kExpSeriesBelow = 0.45;
-inline constexpr double kLogSeriesBelow = 0.1;
-
-// C = (theta - sin theta) / theta^3 from theta^2 and A = sin theta / theta.
+// Ad and dAd of the inverse, without building it.
 template <class T>
-T exp_c(T t2, T A) {
-  if (t2 >= T(kExpSeriesBelow)) return (T(1) - A) / t2;
-  T c = T(1.0 / 1307674368000.0);
-  c = T(1.0 / 6227020800.0) - t2 * c;
-  c = T(1.0 / 39916800.0) - t2 * c;
-  c = T(1.0 / 362880.0) - t2 * c;
-  c = T(1.0 / 5040.0) - t2 * c;
-  c = T(1.0 / 120.0) - t2 * c;
-  return T(1.0 / 6.0) - t2 * c;
+constexpr se3T<T> InvAd(const SE3T<T>& A, const se3T<T>& V) {
+  return {A.unrotate(V.w), A.unrotate(V.v - cross(A.position(), V.w))};
+}
+template <class T>
+constexpr dse3T<T> InvdAd(const SE3T<T>& A, const dse3T<T>& F) {
+  const Vec3T<T> f = A.rotate(F.f);
+  return {A.rotate(F.m) + cross(A.position(), f), f};
 }
 
-// D = (1 - (theta/2) cot(theta/2)) / theta^2, c = (theta/2) cot(theta/2).
-template <class T>
-T log_d(T t2, T c) {
-  if (t2 >= T(kLogSeriesBelow)) return (T(1) - c) / t2;
-  T d = T(691.0 / 1307674368000.0);
-  d = T(1.0 / 47900160.0) + t2 * d;
-  d = T(1.0 / 1209600.0) + t2 * d;
-  d = T(1.0 / 30240.0) + t2 * d;
-  d = T(1.0 / 720.0) + t2 * d;
-  return T(1.0 / 12.0) + t2 * d;
-}
-
-template <class T>
-Mat3T<T> rotation_of(const Vec3T<T>& w, T A, T B) {
-  const T xy = B * w.x * w.y, yz = B * w.y * w.z, zx = B * w.z * w.x;
-  const T xx = B * w.x * w.x, yy = B * w.y * w.y, zz = B * w.z * w.z;
-  return {{T(1) - yy - zz, xy + A * w.z, zx - A * w.y},
-          {xy - A * w.z, T(1) - zz - xx, yz + A * w.x},
-          {zx + A * w.y, yz - A * w.x, T(1) - xx - yy}};
-}
-
-// A = sin(theta)/theta and B = (1 - cos(theta))/theta^2 without cancellation at any angle: with
-// s = sin(theta/2)/(theta/2), B = s^2/2 and A = s cos(theta/2).
-template <class T>
-struct ExpCoefficients {
-  T t2, A, B;
-};
-template <class T>
-ExpCoefficients<T> exp_coefficients(const Vec3T<T>& w) {
-  const T t2 = dot(w, w);
-  const T half = T(0.5) * std::sqrt(t2);
-  const auto [s, c] = sin_cos(half);
-  const T sinc = half > T(0) ? s / half : T(1);
-  return {t2, sinc * c, T(0.5) * sinc * sinc};
-}
-
-}  // namespace detail
-
-// Rotation about w by |w| radians.
-template <class T>
-Mat3T<T> Exp(const Vec3T<T>& w) {
-  const auto k = detail::exp_coefficients(w);
-  return detail::rotation_of(w, k.A, k.B);
-}
+// --- Exp, Log and the Jacobians
+// -------------------------------------------------------------------
 
 // p = v + B w x v + C w x (w x v)
 template <class T>
 SE3T<T> Exp(const se3T<T>& V) {
   const auto k = detail::exp_coefficients(V.w);
   const Vec3T<T> wv = cross(V.w, V.v);
-  const T C = detail::exp_c(k.t2, k.A);
-  return {detail::rotation_of(V.w, k.A, k.B), V.v + k.B * wv + C * cross(V.w, wv)};
+  const T C = detail::coefficient_C(k);
+  return {detail::quadratic(V.w, k.A, k.B), V.v + k.B * wv + C * cross(V.w, wv)};
 }
 
-// The inverse of Exp with |w| <= pi. The angle is taken from the quaternion, which is well
-// conditioned near 0 and near pi alike; at a half turn exactly, either axis may be returned.
+// The inverse of Exp with |w| <= pi: v = J_l^-1(w) p.
 template <class T>
 se3T<T> Log(const SE3T<T>& A) {
-  const QuaternionT<T> q = to_quaternion(A.rotation());
-  const Vec3T<T> u{q.x, q.y, q.z};
-  const T n = norm(u);  // sin(theta/2)
-  const T half = arc_tangent(n, q.w);
-  // Below n = 2^-500 squares underflow; half/n is then 1 to the last bit, as it is for n < 1e-8.
-  const Vec3T<T> w = (n > T(0) ? T(2) * half / n : T(2)) * u;
-  const T t2 = T(4) * half * half;
-  const T D = detail::log_d(t2, n > T(0) ? half * q.w / n : T(1));
+  const Vec3T<T> w = Log(SO3T<T>(A.rotation()));
+  const T D = detail::coefficient_D(detail::exp_coefficients(w));
   const Vec3T<T> wp = cross(w, A.position());
   return {w, A.position() - T(0.5) * wp + D * cross(w, wp)};
 }
 
-// The rotation nearest to R, for an R that rounding has moved a little from SO(3): one Newton step
-// of the polar decomposition, R (3 - R^T R) / 2; the error is squared.
+// A Jacobian of Exp on SE(3), 6x6 of the form [J 0; Q J]: it takes a change of V to a velocity.
 template <class T>
-Mat3T<T> orthonormalized(const Mat3T<T>& R) {
-  const T xx = dot(R.cx, R.cx), yy = dot(R.cy, R.cy), zz = dot(R.cz, R.cz);
-  const T xy = T(0.5) * dot(R.cx, R.cy), yz = T(0.5) * dot(R.cy, R.cz),
-          zx = T(0.5) * dot(R.cz, R.cx);
-  const T half = T(0.5), k = T(1.5);
-  return {(k - half * xx) * R.cx - xy * R.cy - zx * R.cz,
-          (k - half * yy) * R.cy - yz * R.cz - xy * R.cx,
-          (k - half * zz) * R.cz - zx * R.cx - yz * R.cy};
+struct SE3JacobianT {
+  Mat3T<T> J, Q;
+
+  constexpr se3T<T> operator*(const se3T<T>& V) const { return {J * V.w, Q * V.w + J * V.v}; }
+  // Its transpose takes a force to one along the coordinates.
+  constexpr dse3T<T> transposed_times(const dse3T<T>& F) const {
+    return {vp::transposed_times(J, F.m) + vp::transposed_times(Q, F.f),
+            vp::transposed_times(J, F.f)};
+  }
+};
+
+namespace detail {
+
+// The slope along v, at w, of 1 + a [w] + b [w]^2, when a and b have slopes a1 and b1 in t = |w|^2.
+template <class T>
+Mat3T<T> quadratic_slope(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, const T& a1, const T& b,
+                         const T& b1) {
+  const T wv = dot(w, v), t1 = T(2) * wv, t = dot(w, w);
+  const T k1 = t1 * a1, k2 = t1 * b1;
+  const Vec3T<T> c = k1 * w + a * v;  // of a [w]
+  const Vec3T<T> d = k2 * w + b * v;  // of b w w^T: d w^T + b w v^T
+  const T s = k2 * t + b * t1;        // of b t
+  const Vec3T<T> e = b * w;
+  const auto column = [&](const T& wi, const T& vi) { return wi * d + vi * e; };
+  Mat3T<T> out = skew(c) + Mat3T<T>{column(w.x, v.x), column(w.y, v.y), column(w.z, v.z)};
+  out.cx.x -= s;
+  out.cy.y -= s;
+  out.cz.z -= s;
+  return out;
+}
+
+// dB/dt = (A - 2 B) / (2 t) and dC/dt = (B - 3 C) / (2 t), dD/dt; their series where t is small.
+// Above, they lose up to 5 bits, but are multiplied by theta^2 or more.
+inline constexpr double kSlopeB[] = {
+    -1.0 / 24,        2.0 / 720,           -3.0 / 40320,           4.0 / 3628800,
+    -5.0 / 479001600, 6.0 / 87178291200.0, -7.0 / 20922789888000.0};
+inline constexpr double kSlopeC[] = {-1.0 / 120,
+                                     2.0 / 5040,
+                                     -3.0 / 362880,
+                                     4.0 / 39916800,
+                                     -5.0 / 6227020800.0,
+                                     6.0 / 1307674368000.0,
+                                     -7.0 / 355687428096000.0};
+inline constexpr double kSlopeD[] = {1.0 / 720,
+                                     2.0 / 30240,
+                                     3.0 / 1209600,
+                                     4.0 / 47900160,
+                                     5 * 691.0 / 1307674368000.0,
+                                     6.0 / 74724249600.0,
+                                     7 * 3617.0 / 10670622842880000.0};
+template <class T>
+T slope_B(const ExpCoefficients<T>& k) {
+  return choose(
+      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kSlopeB); },
+      [&] { return (k.A - T(2) * k.B) / (T(2) * k.t); });
+}
+template <class T>
+T slope_C(const ExpCoefficients<T>& k, const T& C) {
+  return choose(
+      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kSlopeC); },
+      [&] { return (k.B - T(3) * C) / (T(2) * k.t); });
+}
+// From D = (1 - A / (2 B)) / t with dA/dt = (C - B) / 2.
+template <class T>
+T slope_D(const ExpCoefficients<T>& k, const T& D) {
+  return choose(
+      k.t < T(kLogSeriesBelow), [&] { return polynomial(k.t, kSlopeD); },
+      [&] {
+        const T A1 = T(0.5) * (coefficient_C(k) - k.B), B1 = slope_B(k);
+        return -(T(0.5) * (A1 - k.A * B1 / k.B) / k.B + D) / k.t;
+      });
+}
+
+}  // namespace detail
+
+// Exp(V + d) = Exp(J d) Exp(V) to first order. se(3) is so(3) over the dual numbers w + e v, so Q
+// is the slope of J_l along v.
+template <class T>
+SE3JacobianT<T> left_jacobian(const se3T<T>& V) {
+  const auto k = detail::exp_coefficients(V.w);
+  const T C = detail::coefficient_C(k);
+  return {detail::quadratic(V.w, k.B, C),
+          detail::quadratic_slope(V.w, V.v, k.B, detail::slope_B(k), C, detail::slope_C(k, C))};
+}
+// Exp(V + d) = Exp(V) Exp(J d)
+template <class T>
+SE3JacobianT<T> right_jacobian(const se3T<T>& V) {
+  return left_jacobian(T(-1) * V);
+}
+// Precondition: |w| < 2 pi.
+template <class T>
+SE3JacobianT<T> left_jacobian_inverse(const se3T<T>& V) {
+  const auto k = detail::exp_coefficients(V.w);
+  const T D = detail::coefficient_D(k);
+  return {detail::quadratic(V.w, T(-0.5), D),
+          detail::quadratic_slope(V.w, V.v, T(-0.5), T(0), D, detail::slope_D(k, D))};
+}
+template <class T>
+SE3JacobianT<T> right_jacobian_inverse(const se3T<T>& V) {
+  return left_jacobian_inverse(T(-1) * V);
+}
+
+// The pose a share s of the way from A to B, along the screw that joins them.
+template <class T>
+SE3T<T> interpolate(const SE3T<T>& A, const SE3T<T>& B, const std::type_identity_t<T>& s) {
+  return A * Exp(s * Log(Inv(A) * B));
 }
 
 using SE3 = SE3T<double>;
 using se3 = se3T<double>;
+using SE3Jacobian = SE3JacobianT<double>;
 using dse3 = dse3T<double>;
 
 static_assert(sizeof(SE3) == 12 * sizeof(double));

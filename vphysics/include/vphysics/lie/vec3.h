@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 namespace vp {
 
@@ -12,7 +13,7 @@ struct Vec3T {
   constexpr Vec3T& operator+=(const Vec3T& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
   constexpr Vec3T& operator-=(const Vec3T& b) { return *this = {x - b.x, y - b.y, z - b.z}; }
   constexpr Vec3T& operator*=(T s) { return *this = {x * s, y * s, z * s}; }
-  constexpr bool operator==(const Vec3T&) const = default;
+  bool operator==(const Vec3T&) const = default;
 
   constexpr T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
   constexpr T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
@@ -48,7 +49,8 @@ constexpr Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) {
 }
 template <class T>
 T norm(const Vec3T<T>& a) {
-  return std::sqrt(dot(a, a));
+  using std::sqrt;
+  return sqrt(dot(a, a));
 }
 template <class T>
 bool is_finite(const Vec3T<T>& a) {
@@ -64,7 +66,7 @@ struct Mat3T {
   constexpr T operator()(int row, int column) const {
     return column == 0 ? cx[row] : column == 1 ? cy[row] : cz[row];
   }
-  constexpr bool operator==(const Mat3T&) const = default;
+  bool operator==(const Mat3T&) const = default;
 };
 
 template <class T>
@@ -85,47 +87,30 @@ constexpr Mat3T<T> transpose(const Mat3T<T>& A) {
   return {{A.cx.x, A.cy.x, A.cz.x}, {A.cx.y, A.cy.y, A.cz.y}, {A.cx.z, A.cy.z, A.cz.z}};
 }
 
-// Unit quaternion (x, y, z, w) of a rotation, for the wire; w >= 0.
+// [a], with [a] b = a x b.
 template <class T>
-struct QuaternionT {
-  T x{}, y{}, z{}, w{1};
-};
-
-// Shepperd's method: the largest of the four components is found first, so that nothing is divided
-// by a small number and the result is exact near every half turn.
-template <class T>
-QuaternionT<T> to_quaternion(const Mat3T<T>& R) {
-  const T xx = R.cx.x, yy = R.cy.y, zz = R.cz.z;
-  const T trace = xx + yy + zz;
-  QuaternionT<T> q;
-  if (trace >= xx && trace >= yy && trace >= zz) {
-    q = {R.cy.z - R.cz.y, R.cz.x - R.cx.z, R.cx.y - R.cy.x, T(1) + trace};
-  } else if (xx >= yy && xx >= zz) {
-    q = {T(1) + xx - yy - zz, R.cx.y + R.cy.x, R.cz.x + R.cx.z, R.cy.z - R.cz.y};
-  } else if (yy >= zz) {
-    q = {R.cx.y + R.cy.x, T(1) + yy - zz - xx, R.cy.z + R.cz.y, R.cz.x - R.cx.z};
-  } else {
-    q = {R.cz.x + R.cx.z, R.cy.z + R.cz.y, T(1) + zz - xx - yy, R.cx.y - R.cy.x};
-  }
-  const T n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  const T s = (q.w < T(0) ? T(-1) : T(1)) / n;
-  return {q.x * s, q.y * s, q.z * s, q.w * s};
+constexpr Mat3T<T> skew(const Vec3T<T>& a) {
+  return {{T(0), a.z, -a.y}, {-a.z, T(0), a.x}, {a.y, -a.x, T(0)}};
 }
-
-// Any quaternion but zero: it is normalised.
 template <class T>
-Mat3T<T> from_quaternion(const QuaternionT<T>& q) {
-  const T s = T(2) / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  const T xx = s * q.x * q.x, yy = s * q.y * q.y, zz = s * q.z * q.z;
-  const T xy = s * q.x * q.y, yz = s * q.y * q.z, zx = s * q.z * q.x;
-  const T wx = s * q.w * q.x, wy = s * q.w * q.y, wz = s * q.w * q.z;
-  return {{T(1) - yy - zz, xy + wz, zx - wy},
-          {xy - wz, T(1) - zz - xx, yz + wx},
-          {zx + wy, yz - wx, T(1) - xx - yy}};
+constexpr Mat3T<T> operator+(const Mat3T<T>& A, const Mat3T<T>& B) {
+  return {A.cx + B.cx, A.cy + B.cy, A.cz + B.cz};
+}
+template <class T>
+constexpr Mat3T<T> operator-(const Mat3T<T>& A, const Mat3T<T>& B) {
+  return {A.cx - B.cx, A.cy - B.cy, A.cz - B.cz};
+}
+template <class T>
+constexpr Mat3T<T> operator*(const std::type_identity_t<T>& s, const Mat3T<T>& A) {
+  return {s * A.cx, s * A.cy, s * A.cz};
+}
+// A^T B, without building A^T.
+template <class T>
+constexpr Mat3T<T> transposed_times(const Mat3T<T>& A, const Mat3T<T>& B) {
+  return {transposed_times(A, B.cx), transposed_times(A, B.cy), transposed_times(A, B.cz)};
 }
 
 using Vec3 = Vec3T<double>;
 using Mat3 = Mat3T<double>;
-using Quaternion = QuaternionT<double>;
 
 }  // namespace vp

@@ -1,0 +1,62 @@
+// The equations of motion of a tree:  M(q) a + h(q, v) = tau.
+//
+//   q    coordinates, v velocities, a their rates, tau the joints' forces (joint.h)
+//   M    mass matrix, h the bias force: gravity, Coriolis and centrifugal
+//
+// Each call is templated on the scalar: double, float, PackT<double, 4 or 8> and PackT<float, 8 or
+// 16>. Preconditions (asserted): the lengths of q, v, a and tau are those of the model, quaternions
+// are of unit length, the data was made for the model. Nothing is allocated. Results are those of
+// the paper's appendix A; the passes run in one common frame instead (docs/decisions/0012).
+//
+// Errors: Errc::singular where the articulated inertia of a joint is not positive; the results are
+// then unspecified.
+#pragma once
+
+#include <span>
+
+#include "vphysics/multibody/data.h"
+
+namespace vp {
+
+// What acts on the links besides the joints.
+template <class T>
+struct LoadsT {
+  Vec3T<T> gravity{T(0), T(0), T(-9.81)};  // [m/s^2]
+  std::span<const dse3T<T>> external{};    // of each link, in its frame; empty: none
+};
+using Loads = LoadsT<double>;
+
+// Poses of all links, and their velocities with v.
+template <class T>
+void forward_kinematics(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                        std::span<const T> v);
+// After any call that was given q: the pose of a link in the world, and where v was given too its
+// velocity in its own frame.
+template <class T>
+SE3T<T> T_world_link(const ModelT<base_t<T>>& model, const DataT<T>& data, int link);
+template <class T>
+se3T<T> link_velocity(const ModelT<base_t<T>>& model, const DataT<T>& data, int link);
+
+// a from tau: the articulated body algorithm, O(links).
+template <class T>
+Expected<void> forward_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data,
+                                std::span<const T> q, std::span<const T> v, std::span<const T> tau,
+                                const LoadsT<T>& loads, std::span<T> a);
+// M in factors, by the articulated body algorithm, O(links), and x <- M^-1 x with the factors that
+// the data has, from this call or from forward_dynamics, O(links) too: the response of the
+// velocities to joint impulses x.
+template <class T>
+Expected<void> factor_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q);
+template <class T>
+void solve_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<T> x);
+// tau from a: the recursive Newton-Euler algorithm, O(links).
+template <class T>
+void inverse_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                      std::span<const T> v, std::span<const T> a, const LoadsT<T>& loads,
+                      std::span<T> tau);
+// M, velocities x velocities, row by row: the composite body algorithm, O(links * depth).
+template <class T>
+void mass_matrix(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                 std::span<T> M);
+
+}  // namespace vp

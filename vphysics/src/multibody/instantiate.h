@@ -1,0 +1,19 @@
+// The scalars for which the algorithms are compiled, once, into the library.
+#pragma once
+
+#include "vphysics/lie/pack.h"
+
+namespace vp::detail {
+using Double4 = PackT<double, 4>;
+using Double8 = PackT<double, 8>;
+using Float8 = PackT<float, 8>;
+using Float16 = PackT<float, 16>;
+}  // namespace vp::detail
+
+#define VP_FOR_EACH_SCALAR(X) \
+  X(double)                   \
+  X(float)                    \
+  X(detail::Double4)          \
+  X(detail::Double8)          \
+  X(detail::Float8)           \
+  X(detail::Float16)
