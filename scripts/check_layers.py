@@ -20,6 +20,8 @@ from pathlib import Path
 LAYERS = {
     'os/': 'os',
     'vphysics/src/lie/': 'lie',
+    'vphysics/include/vphysics/assert.h': 'lie',
+    'vphysics/src/assert.cpp': 'lie',
     'vphysics/include/vphysics/error.h': 'lie',
     'vphysics/include/vphysics/ids.h': 'lie',
     'vphysics/include/vphysics/lie.h': 'lie',

@@ -99,6 +99,25 @@ Mat3T<T> from_quaternion(const QuaternionT<T>& q) {
           {zx + wy, yz - wx, T(1) - xx - yy}};
 }
 
+// The group of unit quaternions: R(p q) = R(p) R(q), R(conjugate(q)) = R(q)^T.
+template <class T>
+constexpr QuaternionT<T> operator*(const QuaternionT<T>& p, const QuaternionT<T>& q) {
+  return {
+      p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y, p.w * q.y + p.y * q.w + p.z * q.x - p.x * q.z,
+      p.w * q.z + p.z * q.w + p.x * q.y - p.y * q.x, p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z};
+}
+template <class T>
+constexpr QuaternionT<T> conjugate(const QuaternionT<T>& q) {
+  return {-q.x, -q.y, -q.z, q.w};
+}
+// Precondition: not zero.
+template <class T>
+QuaternionT<T> normalized(const QuaternionT<T>& q) {
+  using std::sqrt;
+  const T s = T(1) / sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return {s * q.x, s * q.y, s * q.z, s * q.w};
+}
+
 // --- the coefficients A to D
 // ----------------------------------------------------------------------
 
@@ -190,6 +209,27 @@ SO3T<T> Exp(const Vec3T<T>& w) {
   const auto k = detail::exp_coefficients(w);
   return SO3T<T>(detail::quadratic(w, k.A, k.B));
 }
+// The quaternion of Exp(w): (sin(theta/2) w / theta, cos(theta/2)). It follows w without a jump, so
+// its real part may be negative.
+template <class T>
+QuaternionT<T> exp_quaternion(const Vec3T<T>& w) {
+  using std::sqrt;
+  const T u = T(0.25) * dot(w, w);
+  const auto small = u < T(detail::kExpSeriesBelow);
+  SinCosT<T> half{};
+  if (!all(small)) {
+    const T h = sqrt(u);
+    half = sin_cos(h);
+    half.sin = half.sin / h;
+  }
+  const T s = choose(
+      small, [&] { return detail::polynomial(u, detail::kSeriesA); }, [&] { return half.sin; });
+  const T c = choose(
+      small, [&] { return T(1) - u * detail::polynomial(u, detail::kSeriesB); },
+      [&] { return half.cos; });
+  const T k = T(0.5) * s;
+  return {k * w.x, k * w.y, k * w.z, c};
+}
 // The inverse of Exp with |w| <= pi. The angle is taken from the quaternion, which is well
 // conditioned near 0 and near pi alike; at a half turn exactly, either axis may be returned.
 template <class T>
@@ -214,11 +254,12 @@ Mat3T<T> right_jacobian_inverse(const Vec3T<T>& w) {
   return left_jacobian_inverse(-w);
 }
 
+// Of a unit quaternion of either sign.
 template <class T>
-Vec3T<T> Log(const SO3T<T>& R) {
+Vec3T<T> Log(const QuaternionT<T>& q) {
   using std::sqrt;
-  const QuaternionT<T> q = to_quaternion(R);
-  const Vec3T<T> u{q.x, q.y, q.z};
+  const T sign = select(q.w < T(0), T(-1), T(1));
+  const Vec3T<T> u{sign * q.x, sign * q.y, sign * q.z};
   const T n2 = dot(u, u);  // sin^2(theta/2)
   // theta / sin(theta/2) = 2 asin(n) / n
   static constexpr double kSeries[] = {2.0,        1.0 / 3,     3.0 / 20,     5.0 / 56,
@@ -227,9 +268,13 @@ Vec3T<T> Log(const SO3T<T>& R) {
       n2 < T(0.01), [&] { return detail::polynomial(n2, kSeries); },
       [&] {
         const T n = sqrt(n2);
-        return T(2) * arc_tangent(n, q.w) / n;
+        return T(2) * arc_tangent(n, sign * q.w) / n;
       });
   return scale * u;
+}
+template <class T>
+Vec3T<T> Log(const SO3T<T>& R) {
+  return Log(to_quaternion(R.matrix()));
 }
 
 // The rotation nearest to R, for an R that rounding has moved a little from SO(3): one Newton step
