@@ -62,6 +62,22 @@ se3T<T> column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, in
   if (block < 0) return work.nodes[i].S;
   return work.blocks[static_cast<std::size_t>(block)].S[static_cast<std::size_t>(k)];
 }
+// What factoring has left, of the k-th column: the articulated inertia times it, J^ S, with the
+// columns before it (inwards) taken out; and 1 / Omega.
+template <class T>
+dse3T<T> gain_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
+  const auto i = static_cast<std::size_t>(node);
+  const int block = tree.nodes[i].block;
+  if (block < 0) return work.nodes[i].U;
+  return work.blocks[static_cast<std::size_t>(block)].U[static_cast<std::size_t>(k)];
+}
+template <class T>
+T omega_inverse_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
+  const auto i = static_cast<std::size_t>(node);
+  const int block = tree.nodes[i].block;
+  if (block < 0) return work.nodes[i].D_inverse;
+  return work.blocks[static_cast<std::size_t>(block)].D_inverse[static_cast<std::size_t>(k)];
+}
 // Where the origin of the node's tree is in the world.
 template <class T>
 Vec3T<T> origin_of(const Work<T>& work, int node) {
