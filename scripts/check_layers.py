@@ -29,6 +29,8 @@ LAYERS = {
     'vphysics/src/multibody/': 'multibody',
     'vphysics/include/vphysics/multibody.h': 'multibody',
     'vphysics/include/vphysics/multibody/': 'multibody',
+    'vphysics/src/urdf/': 'urdf',
+    'vphysics/include/vphysics/multibody/urdf.h': 'urdf',
     'vphysics/src/collide/': 'collide',
     'vphysics/include/vphysics/shapes.h': 'collide',
     'vphysics/src/solve/': 'solve',
@@ -63,7 +65,8 @@ MAY_USE = {
     'collide': {'lie'},
     'solve': {'lie', 'multibody', 'collide'},
     'world': {'lie', 'multibody', 'collide', 'solve'},
-    'vphysics-tests': ENGINE,
+    'urdf': {'lie', 'multibody'},  # reads files; the engine proper is pure
+    'vphysics-tests': ENGINE | {'urdf'},
     'vphysics-samples': {ENGINE_FACE},
     'table': {ENGINE_FACE},
     'foosball': {ENGINE_FACE, 'table'},

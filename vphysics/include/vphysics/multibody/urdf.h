@@ -1,0 +1,78 @@
+// Models from URDF, the Unified Robot Description Format 1.0 (wiki.ros.org/urdf/XML).
+//
+// Of a library of its own, VirtualPhysics::urdf, which needs urdfdom and tinyxml2; the engine
+// itself needs neither. Units are URDF's: metres, kilograms, radians, seconds. Nothing is printed,
+// nothing is thrown, and numbers read the same in every locale. Any number of threads may read at
+// once.
+//
+//   fixed                  FixedJoint
+//   revolute, continuous   RevoluteJoint about the axis
+//   prismatic              PrismaticJoint along the axis
+//   floating               FreeJoint
+//   planar                 PlanarJoint in the plane across the axis. An axis other than z needs a
+//                          link more, without a name and before the joint's own, as the plane's
+//                          frame
+//
+// What a model has no place for is told in notes: visual and collision geometry, materials,
+// transmissions and other extensions are left out; a joint that mimics another keeps a coordinate
+// of its own, and UrdfJoint says what it shall follow.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vphysics/multibody/model.h"
+
+namespace vp {
+
+enum class UrdfBase {
+  fixed,     // the root link stands in the world
+  floating,  // it is free: a FreeJoint comes first
+};
+
+struct UrdfOptions {
+  UrdfBase base = UrdfBase::fixed;
+  // The root link's pose in the world; of a floating base, at zero coordinates.
+  SE3 T_world_root{};
+};
+
+// What the file says of a joint beside its kind and place. Units: [m] and [N] of a prismatic joint,
+// [rad] and [N m] of one that turns.
+struct UrdfJoint {
+  std::string name{};
+  int link = 0;  // the link that it carries: Model::first_coordinate(link) is its first of q
+  double lower = -std::numeric_limits<double>::infinity();  // of its coordinate
+  double upper = std::numeric_limits<double>::infinity();
+  double velocity = std::numeric_limits<double>::infinity();  // largest, either way, a second
+  double effort = std::numeric_limits<double>::infinity();    // largest of its motor, either way
+  double friction = 0.0;                                      // Coulomb friction
+  // If not empty, a joint that it shall follow: q = multiplier * q of that joint + offset.
+  std::string mimics{};
+  double multiplier = 1.0, offset = 0.0;
+};
+
+struct UrdfModel {
+  std::string name{};  // the robot's
+  Model model;         // links in the order of the joints in the file, parents before children
+  std::vector<UrdfJoint> joints{};   // of the file, in the order of the links
+  std::vector<std::string> notes{};  // what was left out, with the line where it first stands
+
+  // The joint of this name, or null; valid as long as the joints are.
+  const UrdfJoint* find_joint(std::string_view joint_name) const;
+};
+
+// Reads a robot from the text of a file. An error's message begins with the line: "line 12: ...".
+// Errc::bad_data: not well-formed XML (also nested more than 100 deep), not a <robot>, an element
+// or attribute missing or twice, a value that is no finite number, a joint of unknown type or axis
+// zero, a name that is unknown or taken, links that are no single tree, a negative mass, friction
+// or damping, an inertia that no body has, a joint that moves no mass. Errc::unsupported: more than
+// 16 MiB of text. Errc::invalid_argument: T_world_root is no pose.
+Expected<UrdfModel> parse_urdf(std::string_view text, const UrdfOptions& options = {});
+
+// The same from a file; Errc::bad_data too where it cannot be read. The message begins with the
+// path.
+Expected<UrdfModel> load_urdf(const std::string& path, const UrdfOptions& options = {});
+
+}  // namespace vp

@@ -1,0 +1,379 @@
+#include "urdf/check.h"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+
+namespace vp::detail {
+namespace {
+
+using tinyxml2::XMLElement;
+using tinyxml2::XMLNode;
+
+constexpr std::string_view kBlank = " \t\r\n";
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  std::string out(1, '"');
+  out += text.substr(0, kShown);
+  return out += text.size() > kShown ? "...\"" : "\"";
+}
+std::string tag(const XMLElement& element) {
+  std::string out(1, '<');
+  out += element.Name();
+  return out += '>';
+}
+
+// Takes one finite number off the front. Unlike strtod it asks no locale and takes no hexadecimals.
+std::optional<double> take_number(std::string_view& text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed != std::errc() || !std::isfinite(value)) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (!text.empty() && kBlank.find(text[0]) == std::string_view::npos) return std::nullopt;
+  return value;
+}
+
+std::string written(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+// Walks the document. The first fault is kept; what comes after it is not looked at.
+class Checker {
+ public:
+  explicit Checker(std::vector<std::string>& notes) : notes_(notes) {}
+
+  Expected<UrdfLines> check(XMLElement& robot) {
+    if (std::strcmp(robot.Name(), "robot") != 0) {
+      fail(robot, "the root element is " + tag(robot) + ", not <robot>");
+    } else {
+      this->robot(robot);
+    }
+    if (fault_) return tl::make_unexpected(*std::move(fault_));
+    for (const auto& [name, seen] : left_out_) {
+      notes_.push_back("line " + std::to_string(seen.line) + ": " + name + " left out" +
+                       (seen.count > 1 ? ", " + std::to_string(seen.count) + " in all" : ""));
+    }
+    return std::move(lines_);
+  }
+
+ private:
+  struct Seen {
+    int line, count;
+  };
+  enum class Need { optional, required };
+
+  void fail(int line, const std::string& what) {
+    if (!fault_) fault_ = urdf_error(line, what);
+  }
+  void fail(const XMLElement& at, const std::string& what) { fail(at.GetLineNum(), what); }
+  void leave_out(const std::string& what, int line) {
+    ++left_out_.try_emplace(what, Seen{line, 0}).first->second.count;
+  }
+
+  void robot(XMLElement& robot) {
+    attributes(robot, {"name", "version"});
+    (void)name_of(robot);
+    if (const char* version = robot.Attribute("version");
+        version && std::string_view(version) != "1.0") {
+      fail(robot, "version " + quoted(version) + " of URDF is not known, only 1.0");
+    }
+    robot.DeleteAttribute("version");
+    children(robot, {"link", "joint"});
+    for (XMLElement* e = robot.FirstChildElement(); e && !fault_; e = e->NextSiblingElement()) {
+      std::strcmp(e->Name(), "link") == 0 ? link(*e) : joint(*e);
+    }
+    if (lines_.links.empty()) fail(robot, "the robot has no link");
+  }
+
+  void link(XMLElement& link) {
+    attributes(link, {"name"});
+    const std::string name = name_of(link);
+    if (const auto [at, fresh] = lines_.links.try_emplace(name, link.GetLineNum()); !fresh) {
+      fail(link, "the link " + quoted(name) + " stands on line " + std::to_string(at->second) +
+                     " already");
+    }
+    children(link, {"inertial"});
+    XMLElement* inertial = once(link, "inertial", Need::optional);
+    if (!inertial) return;
+    lines_.inertials[name] = inertial->GetLineNum();
+    attributes(*inertial, {});
+    children(*inertial, {"origin", "mass", "inertia"});
+    origin(*inertial);
+    if (XMLElement* mass = once(*inertial, "mass", Need::required)) {
+      attributes(*mass, {"value"});
+      if (number(*mass, "value", Need::required) < 0.0) fail(*mass, "a mass must not be negative");
+    }
+    if (XMLElement* inertia = once(*inertial, "inertia", Need::required)) {
+      attributes(*inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
+      for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) {
+        number(*inertia, moment, Need::required);
+      }
+    }
+  }
+
+  void joint(XMLElement& joint) {
+    attributes(joint, {"name", "type"});
+    const std::string name = name_of(joint);
+    const std::string type = text(joint, "type", Need::required);
+    bool known = false;
+    for (const char* kind :
+         {"fixed", "revolute", "continuous", "prismatic", "floating", "planar"}) {
+      known = known || type == kind;
+    }
+    if (!known) {
+      fail(joint, "the type " + quoted(type) + " of joint " + quoted(name) +
+                      " is not known; it is fixed, revolute, continuous, prismatic, floating or "
+                      "planar");
+    }
+    children(joint, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
+    origin(joint);
+    UrdfLines::Joint place{};
+    place.line = joint.GetLineNum();
+    place.order = static_cast<int>(lines_.joints.size());
+    end(joint, "parent", place.parent, place.parent_line);
+    end(joint, "child", place.child, place.child_line);
+    axis(joint);
+    const bool bounded = type == "revolute" || type == "prismatic";
+    limit(joint, bounded ? Need::required : Need::optional);
+    dynamics(joint);
+    mimic(joint, place);
+    if (const auto [at, fresh] = lines_.joints.try_emplace(name, std::move(place)); !fresh) {
+      fail(joint, "the joint " + quoted(name) + " stands on line " +
+                      std::to_string(at->second.line) + " already");
+    }
+  }
+
+  void origin(XMLElement& parent) {
+    XMLElement* origin = once(parent, "origin", Need::optional);
+    if (!origin) return;
+    attributes(*origin, {"xyz", "rpy"});
+    numbers<3>(*origin, "xyz", Need::optional);
+    numbers<3>(*origin, "rpy", Need::optional);
+  }
+
+  void end(XMLElement& joint, const char* which, std::string& name, int& line) {
+    XMLElement* end = once(joint, which, Need::required);
+    if (!end) return;
+    attributes(*end, {"link"});
+    name = text(*end, "link", Need::required);
+    line = end->GetLineNum();
+  }
+
+  void axis(XMLElement& joint) {
+    XMLElement* axis = once(joint, "axis", Need::optional);
+    if (!axis) return;
+    attributes(*axis, {"xyz"});
+    const auto [x, y, z] = numbers<3>(*axis, "xyz", Need::required);
+    const double length = std::hypot(x, y, z);
+    if (!(length > 1e-100 && length < 1e100)) fail(*axis, "the axis has no length");
+  }
+
+  void limit(XMLElement& joint, Need need) {
+    XMLElement* limit = once(joint, "limit", need);
+    if (!limit) return;
+    attributes(*limit, {"lower", "upper", "effort", "velocity"});
+    const double lower = number(*limit, "lower", Need::optional);
+    if (lower > number(*limit, "upper", Need::optional)) {
+      fail(*limit, "the lower limit is above the upper one (either is 0 if it is not given)");
+    }
+    if (number(*limit, "effort", Need::required) < 0.0 ||
+        number(*limit, "velocity", Need::required) < 0.0) {
+      fail(*limit, "effort and velocity must not be negative");
+    }
+  }
+
+  void dynamics(XMLElement& joint) {
+    XMLElement* dynamics = once(joint, "dynamics", Need::optional);
+    if (!dynamics) return;
+    attributes(*dynamics, {"damping", "friction"});
+    if (number(*dynamics, "damping", Need::optional) < 0.0 ||
+        number(*dynamics, "friction", Need::optional) < 0.0) {
+      fail(*dynamics, "damping and friction must not be negative");
+    }
+    // An empty one is a fault to urdfdom.
+    if (!dynamics->FirstAttribute()) joint.DeleteChild(dynamics);
+  }
+
+  void mimic(XMLElement& joint, UrdfLines::Joint& place) {
+    XMLElement* mimic = once(joint, "mimic", Need::optional);
+    if (!mimic) return;
+    attributes(*mimic, {"joint", "multiplier", "offset"});
+    place.mimics = text(*mimic, "joint", Need::required);
+    place.mimic_line = mimic->GetLineNum();
+    number(*mimic, "multiplier", Need::optional);
+    number(*mimic, "offset", Need::optional);
+  }
+
+  // Leaves the known attributes.
+  void attributes(XMLElement& element, std::initializer_list<const char*> known) {
+    for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a && !fault_;) {
+      const std::string name = a->Name();
+      const int line = a->GetLineNum();
+      a = a->Next();
+      bool wanted = false;
+      for (const char* each : known) wanted = wanted || name == each;
+      if (wanted) continue;
+      leave_out("attribute " + quoted(name) + " of " + tag(element), line);
+      element.DeleteAttribute(name.c_str());
+    }
+  }
+
+  // Leaves the known elements.
+  void children(XMLElement& parent, std::initializer_list<const char*> known) {
+    for (XMLNode* node = parent.FirstChild(); node && !fault_;) {
+      XMLNode* const next = node->NextSibling();
+      const XMLElement* element = node->ToElement();
+      bool wanted = false;
+      for (const char* each : known) {
+        wanted = wanted || (element && std::strcmp(element->Name(), each) == 0);
+      }
+      if (!wanted) {
+        if (element) leave_out(tag(*element) + " of " + tag(parent), element->GetLineNum());
+        parent.DeleteChild(node);
+      }
+      node = next;
+    }
+  }
+
+  XMLElement* once(XMLElement& parent, const char* name, Need need) {
+    XMLElement* found = parent.FirstChildElement(name);
+    if (!found && need == Need::required) {
+      fail(parent, tag(parent) + " needs a <" + name + ">");
+    }
+    if (const XMLElement* second = found ? found->NextSiblingElement(name) : nullptr) {
+      fail(*second, tag(parent) + " has a second <" + name + ">");
+    }
+    return fault_ ? nullptr : found;
+  }
+
+  std::string text(XMLElement& element, const char* attribute, Need need) {
+    const char* value = element.Attribute(attribute);
+    if (!value && need == Need::required) {
+      fail(element, tag(element) + " needs the attribute \"" + attribute + "\"");
+    }
+    return value ? value : "";
+  }
+
+  std::string name_of(XMLElement& element) {
+    std::string name = text(element, "name", Need::required);
+    if (name.empty()) fail(element, "the name of " + tag(element) + " is empty");
+    for (const char c : name) {
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+        fail(element, "the name of " + tag(element) + " has a control character");
+      }
+    }
+    return name;
+  }
+
+  double number(XMLElement& element, const char* attribute, Need need) {
+    return numbers<1>(element, attribute, need)[0];
+  }
+  // The numbers of an attribute, zeros where it is not given. They are written anew.
+  template <std::size_t N>
+  std::array<double, N> numbers(XMLElement& element, const char* attribute, Need need) {
+    std::array<double, N> values{};
+    const std::string given = text(element, attribute, need);
+    if (fault_ || !element.Attribute(attribute)) return values;
+    std::string_view rest = given;
+    std::string anew;
+    std::size_t count = 0;
+    for (;; ++count) {
+      rest.remove_prefix(std::min(rest.find_first_not_of(kBlank), rest.size()));
+      if (rest.empty() || count == N) break;
+      const std::optional<double> value = take_number(rest);
+      if (!value) break;
+      values[count] = *value;
+      if (count) anew += ' ';
+      anew += written(*value);
+    }
+    if (count != N || !rest.empty()) {
+      fail(element, std::string(attribute) + "=" + quoted(given) + " of " + tag(element) +
+                        (N == 1 ? " is no finite number"
+                                : " is not " + std::to_string(N) + " finite numbers"));
+    }
+    element.SetAttribute(attribute, anew.c_str());
+    return values;
+  }
+
+  std::vector<std::string>& notes_;
+  UrdfLines lines_;
+  std::map<std::string, Seen> left_out_;
+  std::optional<Error> fault_;
+};
+
+}  // namespace
+
+Error urdf_error(int line, const std::string& what) {
+  return {Errc::bad_data, "line " + std::to_string(line) + ": " + what};
+}
+
+Expected<UrdfLines> check_urdf(XMLElement& robot, std::vector<std::string>& notes) {
+  return Checker(notes).check(robot);
+}
+
+Expected<void> check_tree(const UrdfLines& lines) {
+  const auto fault = [](int line, const std::string& what) {
+    return tl::make_unexpected(urdf_error(line, what));
+  };
+  std::map<std::string, const UrdfLines::Joint*> above;  // the joint that carries a link
+  for (const auto& [name, joint] : lines.joints) {
+    if (!lines.links.contains(joint.parent)) {
+      return fault(joint.parent_line, "joint " + quoted(name) + " has the parent link " +
+                                          quoted(joint.parent) + ", and there is none");
+    }
+    if (!lines.links.contains(joint.child)) {
+      return fault(joint.child_line, "joint " + quoted(name) + " has the child link " +
+                                         quoted(joint.child) + ", and there is none");
+    }
+    if (joint.mimic_line && !lines.joints.contains(joint.mimics)) {
+      return fault(joint.mimic_line, "joint " + quoted(name) + " mimics the joint " +
+                                         quoted(joint.mimics) + ", and there is none");
+    }
+    const auto [other, fresh] = above.try_emplace(joint.child, &joint);
+    if (!fresh) {
+      const auto [first, second] = std::minmax(other->second->line, joint.line);
+      return fault(second, "the link " + quoted(joint.child) +
+                               " has a parent already, by the joint on line " +
+                               std::to_string(first) + "; a loop is closed by a constraint");
+    }
+  }
+  const std::string* root = nullptr;
+  for (const auto& [name, line] : lines.links) {
+    if (above.contains(name)) continue;
+    if (root) {
+      const auto [first, second] = std::minmax(lines.links.at(*root), line);
+      return fault(second, "two links have no parent, " + quoted(*root) + " and " + quoted(name) +
+                               " (lines " + std::to_string(first) + " and " +
+                               std::to_string(second) + "); join them by a joint");
+    }
+    root = &name;
+  }
+  // Upwards from each link to one that is known to hang on the root, or back to where one was.
+  std::map<std::string, int> reached;  // by the walk of this number
+  int walk = 0;
+  for (const auto& [start, line] : lines.links) {
+    ++walk;
+    for (const std::string* at = &start; !root || *at != *root;) {
+      const auto [seen, fresh] = reached.try_emplace(*at, walk);
+      const UrdfLines::Joint& joint = *above.at(*at);
+      if (!fresh && seen->second == walk) {
+        return fault(joint.line, "the joints lead in a circle through the link " + quoted(*at));
+      }
+      if (!fresh) break;
+      at = &joint.parent;
+    }
+  }
+  return {};
+}
+
+}  // namespace vp::detail

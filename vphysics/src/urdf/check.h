@@ -1,0 +1,39 @@
+// A URDF document checked and cleaned, before urdfdom sees it.
+//
+// urdfdom tells no lines, recurses as deep as its input, prints, and leaves circles of links aside.
+// So every fault that a file can have is found here, by line; what is kept is only what it needs,
+// with every number written anew.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "vphysics/error.h"
+
+namespace tinyxml2 {
+class XMLElement;
+}
+
+namespace vp::detail {
+
+struct UrdfLines {
+  struct Joint {
+    int line, order;  // order: its place among the joints
+    std::string parent, child, mimics;
+    int parent_line, child_line, mimic_line;
+  };
+  std::map<std::string, int> links;      // line of each
+  std::map<std::string, int> inertials;  // by the link's name
+  std::map<std::string, Joint> joints;
+};
+
+Error urdf_error(int line, const std::string& what);
+
+// Leaves of the document what builds a model; tells where it stood, and in notes what was left out.
+Expected<UrdfLines> check_urdf(tinyxml2::XMLElement& robot, std::vector<std::string>& notes);
+
+// The links are one tree: every name is known, one root, one parent each, no circle.
+Expected<void> check_tree(const UrdfLines& lines);
+
+}  // namespace vp::detail

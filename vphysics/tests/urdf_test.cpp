@@ -1,0 +1,442 @@
+// Models from URDF: against models built by hand and closed forms, and what is refused, by line.
+#include "vphysics/multibody/urdf.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cstdio>
+#include <fstream>
+#include <locale>
+#include <thread>
+
+#include "trees.h"
+
+namespace vp::test {
+namespace {
+
+std::string robot(const std::string& inside) {
+  return "<robot name=\"r\">\n" + inside + "</robot>\n";
+}
+// One line.
+std::string body(const std::string& name) {
+  return "<link name=\"" + name +
+         "\"><inertial><mass value=\"2\"/><inertia ixx=\"0.3\" ixy=\"0\" ixz=\"0\" iyy=\"0.4\" "
+         "iyz=\"0\" izz=\"0.5\"/></inertial></link>\n";
+}
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/>" + more + "</joint>\n";
+}
+std::string one_joint(const std::string& type, const std::string& more) {
+  return robot("<link name=\"base\"/>\n" + body("b") + joint("j", type, "base", "b", more));
+}
+const std::string kLimit = "<limit effort=\"1\" velocity=\"1\"/>";
+
+UrdfModel must_parse(const std::string& text, const UrdfOptions& options = {}) {
+  return must_build(parse_urdf(text, options));
+}
+
+SE3 pose_at(const Model& model, const std::vector<double>& q, const char* link) {
+  Data data(model);
+  const std::vector<double> v(static_cast<std::size_t>(model.velocities()));
+  forward_kinematics<double>(model, data, q, v);
+  return T_world_link(model, data, model.find_link(link));
+}
+double distance(const SE3& a, const SE3& b) {
+  double worst = norm(a.position() - b.position());
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      worst = std::max(worst, std::fabs(a.rotation()(i, k) - b.rotation()(i, k)));
+    }
+  }
+  return worst;
+}
+SE3 turn(const Vec3& axis, double angle) {
+  return SE3(Exp(angle * axis), {});
+}
+
+// --- what a model is made of ------------------------------------------------------------------
+
+TEST(Urdf, AnArmIsTheModelBuiltByHand) {
+  const UrdfModel read = must_parse(
+      robot("<link name=\"base\"/>\n"
+            "<link name=\"upper\"><inertial><origin xyz=\"0.1 0.2 0.3\" rpy=\"0.4 -0.5 0.6\"/>"
+            "<mass value=\"2.5\"/><inertia ixx=\"0.3\" ixy=\"0.01\" ixz=\"0.02\" iyy=\"0.4\" "
+            "iyz=\"-0.03\" izz=\"0.5\"/></inertial></link>\n" +
+            body("lower") +
+            joint("shoulder", "revolute", "base", "upper",
+                  "<origin xyz=\"0 0 0.5\" rpy=\"0.1 0.2 0.3\"/><axis xyz=\"0 2 0\"/>"
+                  "<dynamics damping=\"0.7\"/>" +
+                      kLimit) +
+            joint("slide", "prismatic", "upper", "lower",
+                  "<origin xyz=\"0.3 0 0\"/><axis xyz=\"1 1 0\"/>" + kLimit)));
+
+  const auto rpy = [](double r, double p, double y) {
+    return turn({0, 0, 1}, y) * turn({0, 1, 0}, p) * turn({1, 0, 0}, r);
+  };
+  ModelBuilder builder;
+  must_build(builder.add({}));
+  LinkSpec upper;
+  upper.parent = 0;
+  upper.joint = RevoluteJoint{{0, 1, 0}};
+  upper.T_parent_joint = SE3(Vec3{0, 0, 0.5}) * rpy(0.1, 0.2, 0.3);
+  upper.damping = 0.7;
+  // From the frame of the inertia's axes to the link's.
+  const SE3 T = SE3(Vec3{0.1, 0.2, 0.3}) * rpy(0.4, -0.5, 0.6);
+  upper.inertia = Inertia(2.5, {}, {0.3, 0.4, 0.5, 0.01, -0.03, 0.02}).Xform(Inv(T));
+  must_build(builder.add(upper));
+  LinkSpec lower;
+  lower.parent = 1;
+  lower.joint = PrismaticJoint{{1, 1, 0}};
+  lower.T_parent_joint = SE3(Vec3{0.3, 0, 0});
+  lower.inertia = Inertia(2.0, Vec3{0.3, 0.4, 0.5});
+  must_build(builder.add(lower));
+  const Model by_hand = must_build(builder.build());
+
+  ASSERT_EQ(read.model.velocities(), 2);
+  const std::vector<double> q{0.3, -0.4}, v{0.5, 0.6}, tau{0.7, -0.8};
+  std::vector<double> a(2), b(2);
+  Data data(read.model), data_by_hand(by_hand);
+  ASSERT_TRUE(forward_dynamics<double>(read.model, data, q, v, tau, {}, a));
+  ASSERT_TRUE(forward_dynamics<double>(by_hand, data_by_hand, q, v, tau, {}, b));
+  EXPECT_LT(largest_difference(a, b), 1e-13 * largest_of(b));
+}
+
+TEST(Urdf, EveryTypeOfJointMovesAsTheFormatSays) {
+  const Vec3 axis{0.6, 0, 0.8};
+  const std::string text_of_axis = "<axis xyz=\"0.6 0 0.8\"/>";
+  const auto pose = [&](const std::string& type, const std::vector<double>& q) {
+    const UrdfModel read = must_parse(one_joint(type, text_of_axis + kLimit));
+    EXPECT_EQ(static_cast<std::size_t>(read.model.coordinates()), q.size()) << type;
+    return pose_at(read.model, q, "b");
+  };
+  EXPECT_LT(distance(pose("revolute", {0.7}), turn(axis, 0.7)), 1e-15);
+  EXPECT_LT(distance(pose("continuous", {7.0}), turn(axis, 7.0)), 1e-15);
+  EXPECT_LT(distance(pose("prismatic", {0.7}), SE3(0.7 * axis)), 1e-15);
+  const Quaternion q = to_quaternion(Exp(Vec3{0.1, 0.2, 0.3}));
+  EXPECT_LT(distance(pose("floating", {1, 2, 3, q.x, q.y, q.z, q.w}),
+                     SE3(Exp(Vec3{0.1, 0.2, 0.3}), {1, 2, 3})),
+            1e-15);
+}
+
+TEST(Urdf, WithoutAnAxisItIsX) {
+  const UrdfModel read = must_parse(one_joint("continuous", ""));
+  EXPECT_LT(distance(pose_at(read.model, {0.7}, "b"), turn({1, 0, 0}, 0.7)), 1e-15);
+}
+
+// A plane is spanned by two directions across its axis; which two is the joint's own.
+TEST(Urdf, APlanarJointStaysInThePlaneAcrossItsAxis) {
+  for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, 0, -1}, Vec3{0.48, 0.64, 0.6}}) {
+    char text[100];
+    std::snprintf(text, sizeof text, "<axis xyz=\"%.17g %.17g %.17g\"/>", axis.x, axis.y, axis.z);
+    const UrdfModel read = must_parse(one_joint("planar", text));
+    ASSERT_EQ(read.model.coordinates(), 3);
+    ASSERT_EQ(read.joints.size(), 1u);
+    EXPECT_EQ(read.model.first_coordinate(read.joints[0].link), 0);
+    EXPECT_LT(distance(pose_at(read.model, {0, 0, 0}, "b"), SE3()), 1e-15);
+    const SE3 slid = pose_at(read.model, {0.3, 0.4, 0}, "b");
+    EXPECT_NEAR(dot(slid.position(), axis), 0.0, 1e-15);
+    EXPECT_NEAR(norm(slid.position()), 0.5, 1e-15);
+    EXPECT_LT(distance(pose_at(read.model, {0, 0, 0.7}, "b"), turn(axis, 0.7)), 1e-15);
+  }
+}
+
+TEST(Urdf, AFloatingBaseFalls) {
+  UrdfOptions options;
+  options.base = UrdfBase::floating;
+  options.T_world_root = SE3(Vec3{0, 0, 5});
+  const UrdfModel read = must_parse(robot(body("b")), options);
+  ASSERT_EQ(read.model.velocities(), 6);
+  const std::vector<double> q = read.model.zero_coordinates(), zero(6);
+  EXPECT_EQ(pose_at(read.model, q, "b").position(), (Vec3{0, 0, 5}));
+  std::vector<double> a(6);
+  Data data(read.model);
+  ASSERT_TRUE(forward_dynamics<double>(read.model, data, q, zero, zero, {}, a));
+  EXPECT_NEAR(a[5], -9.81, 1e-14);
+}
+
+TEST(Urdf, LinksStandInTheOrderOfTheJointsParentsFirst) {
+  const UrdfModel read = must_parse(robot(
+      body("leaf") + body("root") + body("z") + body("a") + joint("4", "continuous", "a", "leaf") +
+      joint("3", "continuous", "root", "z") + joint("1", "continuous", "root", "a")));
+  std::string order;
+  for (int i = 0; i < read.model.links(); ++i) order += read.model.link(i).name + " ";
+  EXPECT_EQ(order, "root z a leaf ");
+  ASSERT_EQ(read.joints.size(), 3u);
+  for (const UrdfJoint& each : read.joints) {
+    const char* carried = each.name == "4" ? "leaf" : each.name == "3" ? "z" : "a";
+    EXPECT_EQ(read.model.link(each.link).name, carried);
+    EXPECT_EQ(read.find_joint(each.name), &each);
+  }
+  EXPECT_EQ(read.find_joint("2"), nullptr);
+}
+
+TEST(Urdf, AJointTellsItsLimitsFrictionAndMimic) {
+  const UrdfModel read =
+      must_parse(robot(body("base") + body("b") + body("c") +
+                       joint("j", "revolute", "base", "b",
+                             "<limit lower=\"-1.5\" upper=\"+2.5e0\" effort=\"30\" velocity=\"4\"/>"
+                             "<dynamics friction=\"0.25\"/>") +
+                       joint("k", "continuous", "b", "c",
+                             "<mimic joint=\"j\" multiplier=\"-2\" offset=\"0.5\"/><dynamics/>")));
+  const UrdfJoint& j = *read.find_joint("j");
+  EXPECT_EQ(j.lower, -1.5);
+  EXPECT_EQ(j.upper, 2.5);
+  EXPECT_EQ(j.effort, 30.0);
+  EXPECT_EQ(j.velocity, 4.0);
+  EXPECT_EQ(j.friction, 0.25);
+  EXPECT_EQ(j.mimics, "");
+  const UrdfJoint& k = *read.find_joint("k");
+  EXPECT_EQ(k.mimics, "j");
+  EXPECT_EQ(k.multiplier, -2.0);
+  EXPECT_EQ(k.offset, 0.5);
+  EXPECT_EQ(k.upper, std::numeric_limits<double>::infinity());
+  ASSERT_EQ(read.notes.size(), 1u);
+  EXPECT_EQ(read.notes[0],
+            "line 6: joint \"k\" keeps a coordinate of its own, though it mimics \"j\"");
+}
+
+TEST(Urdf, WhatIsLeftOutIsTold) {
+  const UrdfModel read = must_parse(
+      robot(
+          "<material name=\"m\"/>\n<link name=\"b\" colour=\"red\">\n<visual><geometry><mesh "
+          "filename=\"x.dae\"/></geometry></visual>\n<collision/><visual/>words<!-- more -->\n"
+          "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+          "izz=\"1\"/></inertial></link>\n<gazebo/>\n"),
+      {UrdfBase::floating, {}});
+  const std::vector<std::string> notes{
+      "line 5: <collision> of <link> left out", "line 7: <gazebo> of <robot> left out",
+      "line 2: <material> of <robot> left out", "line 4: <visual> of <link> left out, 2 in all",
+      "line 3: attribute \"colour\" of <link> left out"};
+  EXPECT_EQ(read.notes, notes);
+}
+
+// --- what is refused --------------------------------------------------------------------------
+
+struct Broken {
+  std::string text;
+  int line;
+  const char* reason;
+};
+void expect_refused(const Broken& broken) {
+  const auto read = parse_urdf(broken.text);
+  ASSERT_FALSE(read) << broken.reason << "\n" << broken.text.substr(0, 500);
+  EXPECT_EQ(read.error().code, Errc::bad_data);
+  const std::string& message = read.error().message;
+  EXPECT_EQ(message.rfind("line " + std::to_string(broken.line) + ": ", 0), 0u)
+      << message << "\nwanted: line " << broken.line;
+  EXPECT_NE(message.find(broken.reason), std::string::npos) << message;
+}
+
+TEST(UrdfRefusal, OfWhatIsNoXmlNamesTheLine) {
+  for (const Broken& broken : std::vector<Broken>{
+           {"", 1, "there is no element"},
+           {" \n ", 1, "there is no element"},
+           {"<?xml version=\"1.0\"?>\n<!-- nothing -->\n", 1, "there is no element"},
+           {"words", 1, "XML"},
+           {"<robot name=\"r\">\n<link name=\"a\">\n</robot>", 2, "closed"},
+           {"<robot name=\"r\">\n<link name=\"a\"/>\n", 1, "closed"},
+           {"<robot name=\"r\">\n<link name=a/>\n</robot>", 2, "attribute"},
+           {"<robot name=\"r\">\n<link name=\"a/>\n</robot>", 2, "attribute"},
+           {"<robot name=\"r\">\n<!-- \n</robot>", 2, "comment"},
+           {std::string("<robot>\n\0</robot>", 17), 2, "zero byte"},
+       }) {
+    expect_refused(broken);
+  }
+}
+
+TEST(UrdfRefusal, OfElementsAndAttributesNamesTheLine) {
+  const std::string good = body("base") + body("b");  // lines 2 and 3
+  const auto with = [&](const std::string& type, const std::string& more) {
+    return robot(good + joint("j", type, "base", "b", "\n" + more));  // joint on 4, more on 5
+  };
+  std::string many_attributes = "<!-- \" --><![CDATA[<a b=\"]]><visual";
+  for (int i = 0; i <= 200; ++i) many_attributes += " a" + std::to_string(i) + "='>'";
+  many_attributes += "/>";
+  const auto inertial = [](const std::string& inside) {
+    return robot("<link name=\"a\">\n<inertial>\n" + inside + "</inertial></link>\n");
+  };
+  const std::string inertia =
+      "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>\n";
+  for (const Broken& broken : std::vector<Broken>{
+           {"<sdf/>", 1, "the root element is <sdf>"},
+           {"<robot><link name=\"a\"/></robot>", 1, "needs the attribute \"name\""},
+           {"<robot name=\"\"><link name=\"a\"/></robot>", 1, "is empty"},
+           {"<robot name=\"r\" version=\"2.0\"><link name=\"a\"/></robot>", 1, "version \"2.0\""},
+           {robot(""), 1, "no link"},
+           {robot("<link/>"), 2, "needs the attribute \"name\""},
+           {robot("<link name=\"a\"/>\n<link name=\"a\"/>"), 3, "line 2 already"},
+           {robot("<link name=\"a&#10;b\"/>"), 2, "control character"},
+           {robot("<link name=\"a\"\nname=\"b\"/>"), 3, "stands twice"},
+           {robot("<link name=\"a\">\n" + many_attributes + "</link>"), 3, "more than 200"},
+           {inertial(inertia), 3, "needs a <mass>"},
+           {inertial("<mass value=\"1\"/>"), 3, "needs a <inertia>"},
+           {inertial("<mass/>" + inertia), 4, "needs the attribute \"value\""},
+           {inertial("<mass value=\"heavy\"/>" + inertia), 4, "value=\"heavy\" of <mass>"},
+           {inertial("<mass value=\"\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"1 2\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"1,5\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"0x10\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"nan\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"inf\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"1e999\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"+-1\"/>" + inertia), 4, "no finite number"},
+           {inertial("<mass value=\"-1\"/>" + inertia), 4, "negative"},
+           {inertial("<mass value=\"0\"/>" + inertia), 3, "no body has this inertia"},
+           {inertial("<mass value=\"1\"/>\n<mass value=\"1\"/>\n" + inertia), 5, "second <mass>"},
+           {inertial("<mass value=\"1\"/>\n<inertia ixx=\"1\"/>"), 5, "needs the attribute"},
+           {inertial("<mass value=\"1\"/>\n<inertia ixx=\"3\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
+                     "iyz=\"0\" izz=\"1\"/>"),
+            3, "no body has this inertia"},
+           {inertial("<mass value=\"1\"/>\n<inertia ixx=\"1\" ixy=\"2\" ixz=\"0\" iyy=\"1\" "
+                     "iyz=\"0\" izz=\"1\"/>"),
+            3, "no body has this inertia"},
+           {inertial("<origin xyz=\"1 2\"/>"), 4, "is not 3 finite numbers"},
+           {inertial("<origin rpy=\"1 2 3 4\"/>"), 4, "is not 3 finite numbers"},
+           {robot(good + "<joint name=\"j\"/>"), 4, "needs the attribute \"type\""},
+           {with("hinge", ""), 4, "type \"hinge\""},
+           {with("continuous", "<axis/>"), 5, "needs the attribute \"xyz\""},
+           {with("continuous", "<axis xyz=\"0 0 0\"/>"), 5, "no length"},
+           {with("continuous", "<axis xyz=\"0 0 1e-200\"/>"), 5, "no length"},
+           {with("revolute", ""), 4, "needs a <limit>"},
+           {with("prismatic", "<limit effort=\"1\"/>"), 5, "needs the attribute \"velocity\""},
+           {with("prismatic", "<limit effort=\"-1\" velocity=\"1\"/>"), 5, "negative"},
+           {with("revolute", "<limit lower=\"1\" effort=\"1\" velocity=\"1\"/>"), 5, "above"},
+           {with("continuous", "<dynamics damping=\"-1\"/>"), 5, "negative"},
+           {with("continuous", "<mimic/>"), 5, "needs the attribute \"joint\""},
+           {with("continuous", "<mimic joint=\"k\"/>"), 5, "mimics the joint \"k\""},
+           {with("continuous", "<parent link=\"b\"/>"), 5, "second <parent>"},
+           {with("continuous", "<origin xyz=\"a b c\"/>"), 5, "\"a b c\""},
+           {robot(good + "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/></joint>"), 4,
+            "needs a <child>"},
+           {robot(good + "<joint name=\"j\" type=\"fixed\"><child link=\"b\"/></joint>"), 4,
+            "needs a <parent>"},
+           {robot(good + "<joint name=\"j\" type=\"fixed\"><parent/></joint>"), 4,
+            "needs the attribute \"link\""},
+       }) {
+    expect_refused(broken);
+  }
+}
+
+TEST(UrdfRefusal, OfLinksThatAreNoTreeNamesTheLine) {
+  const std::string abc = body("a") + body("b") + body("c");  // lines 2 to 4
+  for (const Broken& broken : std::vector<Broken>{
+           {robot(abc + joint("j", "fixed", "a", "d")), 5, "child link \"d\""},
+           {robot(abc + joint("j", "fixed", "d", "a")), 5, "parent link \"d\""},
+           {robot(abc + joint("j", "fixed", "a", "b")), 4, "two links have no parent"},
+           {robot(body("a") + joint("j", "fixed", "a", "a")), 3, "circle"},
+           {robot(abc + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b")), 6,
+            "circle"},
+           {robot(body("b") + body("c") + joint("j", "fixed", "b", "c") +
+                  joint("k", "fixed", "c", "b")),
+            5, "circle"},
+           {robot(abc + joint("j", "fixed", "a", "b") + joint("k", "fixed", "a", "c") +
+                  joint("l", "fixed", "b", "c")),
+            7, "has a parent already, by the joint on line 6"},
+           {robot(abc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")), 6,
+            "line 5 already"},
+           {robot(body("a") + "<link name=\"b\"/>\n" + joint("j", "continuous", "a", "b")), 3,
+            "moves no mass"},
+           {robot(body("a")), 1, "no joint that moves"},
+       }) {
+    expect_refused(broken);
+  }
+}
+
+TEST(UrdfRefusal, OfWhatIsTooMuchNeedsNoStack) {
+  const auto refused = [](const std::string& text) { return parse_urdf(text).error(); };
+  std::string deep = "<robot name=\"r\">";
+  for (int i = 0; i < 200000; ++i) deep += "<link>";
+  EXPECT_NE(refused(deep).message.find("100 deep"), std::string::npos);
+  EXPECT_EQ(refused(std::string((16u << 20) + 1, ' ')).code, Errc::unsupported);
+  // As deep as links can be: a chain of 20000, whose recursive end would take a deep stack.
+  std::string chain = body("link 0");
+  for (int i = 1; i < 20000; ++i) {
+    const std::string name = "link " + std::to_string(i);
+    chain += body(name) + joint(name, "continuous", "link " + std::to_string(i - 1), name);
+  }
+  EXPECT_EQ(must_parse(robot(chain)).model.velocities(), 19999);
+}
+
+TEST(UrdfRefusal, OfAFileThatEndsEarlyNamesALineInIt) {
+  const std::string text = one_joint("revolute", kLimit);
+  for (std::size_t size = 0; size + 2 < text.size(); ++size) {
+    const auto read = parse_urdf(text.substr(0, size));
+    ASSERT_FALSE(read) << size;
+    int line = 0;
+    ASSERT_EQ(std::sscanf(read.error().message.c_str(), "line %d: ", &line), 1);
+    ASSERT_GE(line, 1);
+    ASSERT_LE(line, 5);
+  }
+}
+
+TEST(UrdfRefusal, OfARootThatStandsNowhere) {
+  UrdfOptions options;
+  options.T_world_root = SE3(Vec3{std::nan(""), 0, 0});
+  EXPECT_EQ(parse_urdf(one_joint("continuous", ""), options).error().code, Errc::invalid_argument);
+}
+
+// --- files, locales, silence, threads ---------------------------------------------------------
+
+TEST(UrdfFile, IsReadAsItsTextIs) {
+  const std::string path = testing::TempDir() + "vphysics_urdf_test.urdf";
+  std::ofstream(path) << one_joint("continuous", "");
+  const UrdfModel read = must_build(load_urdf(path));
+  EXPECT_EQ(read.model.velocities(), 1);
+  std::ofstream(path) << "<robot name=\"r\">\n<link/>\n</robot>";
+  EXPECT_EQ(load_urdf(path).error().message,
+            path + ": line 2: <link> needs the attribute \"name\"");
+  std::remove(path.c_str());
+  for (const std::string& none : {path, testing::TempDir(), std::string()}) {
+    EXPECT_NE(load_urdf(none).error().message.find("cannot be read"), std::string::npos) << none;
+  }
+  EXPECT_EQ(load_urdf("/dev/zero").error().code, Errc::unsupported);
+}
+
+struct CommaForPoint : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Urdf, NumbersReadTheSameInEveryLocale) {
+  const std::string text =
+      robot("<link name=\"base\"/>\n" + body("b") +
+            joint("j", "continuous", "base", "b", "<origin xyz=\"1234.5 -0.25 1e-3\"/>"));
+  const std::locale before = std::locale::global(std::locale(std::locale(), new CommaForPoint));
+  const char* named = std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
+  const auto read = parse_urdf(text);
+  std::locale::global(before);
+  if (named) std::setlocale(LC_ALL, "C");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->model.link(1).T_parent_joint.position(), (Vec3{1234.5, -0.25, 1e-3}));
+  EXPECT_EQ(read->model.link(1).inertia.rotational().xx, 0.3);
+}
+
+TEST(Urdf, NothingIsPrinted) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  (void)parse_urdf(one_joint("revolute", kLimit));
+  (void)parse_urdf(one_joint("revolute", ""));
+  (void)parse_urdf("<robot name=\"r\"");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Urdf, ManyThreadsMayReadAtOnce) {
+  const std::string text = one_joint("planar", "");
+  std::array<bool, 4> good{};
+  std::vector<std::thread> threads;
+  for (bool& each : good) {
+    threads.emplace_back([&] {
+      each = true;
+      for (int i = 0; i < 50; ++i) each = parse_urdf(text).has_value() && each;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(good, (std::array{true, true, true, true}));
+}
+
+}  // namespace
+}  // namespace vp::test
