@@ -364,6 +364,16 @@ TEST(Model, RefusesWhatNoLinkIs) {
   EXPECT_EQ(why({.inertia = Inertia(1.0, Vec3{0, 1, 1})}), "");  // a needle
 }
 
+TEST(Model, JudgesAnInertiaAlikeHoweverItsAxesLie) {
+  Random random(49);
+  for (int round = 0; round < 200; ++round) {
+    const SE3 place = random.pose(0.5);
+    const Inertia rod(2.0, Vec3{1.0, 0.98, 0.03}), no_body(2.0, Vec3{1.0, 0.9, 0.05});
+    EXPECT_EQ(why({.inertia = rod.Xform(place)}), "");
+    EXPECT_NE(why({.inertia = no_body.Xform(place)}), "");
+  }
+}
+
 TEST(Model, RefusesAJointThatMovesNoMass) {
   ModelBuilder builder;
   must_build(builder.add({.name = "empty", .joint = RevoluteJoint{}}));

@@ -65,8 +65,8 @@ bool of_a_body(const Inertia& J) {
                                std::fabs(J.rotational().zz));
   const double a = half - I.xx + slack, b = half - I.yy + slack, c = half - I.zz + slack;
   const double minor = a * b - I.xy * I.xy;
-  const double det = a * (b * c - I.yz * I.yz) - I.xy * (I.xy * c - I.yz * I.zx) +
-                     (-I.zx) * (I.xy * I.yz + b * I.zx);
+  const double det =
+      a * (b * c - I.yz * I.yz) - I.xy * (I.xy * c + I.yz * I.zx) - I.zx * (I.xy * I.yz + b * I.zx);
   const double scale = slack * trace;
   return a >= 0 && b >= 0 && c >= 0 && minor >= -scale && b * c - I.yz * I.yz >= -scale &&
          a * c - I.zx * I.zx >= -scale && det >= -scale * trace;
