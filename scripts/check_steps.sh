@@ -35,6 +35,17 @@ step_docs() {
   python3 scripts/readme_figures.py --check
 }
 
+step_doxygen() {
+  python3 scripts/doxygen_filter.py --self-test
+  mkdir -p build
+  rm -rf build/doxygen
+  doxygen docs/Doxyfile
+  local pages
+  pages=$(find build/doxygen/html -name '*.html' | wc -l)
+  ((pages > 50)) || { echo "doxygen wrote only $pages pages" && return 1; }
+  said "$pages pages"
+}
+
 step_scripts() {
   local files
   mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench .ci/run))

@@ -36,6 +36,7 @@ check  clang                 the second compiler, sanitizers and fuzzing
 check  libclang-rt-14-dev    the run-time libraries of clang's sanitizers and libFuzzer
 check  clang-format          formatting
 check  clang-tidy            static checks
+check  doxygen               the engine's headers as pages: what their comments say must be well formed
 check  shellcheck            static checks of the scripts
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests

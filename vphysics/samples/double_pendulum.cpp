@@ -14,6 +14,7 @@ constexpr double kMass = 1.0, kLength = 1.0, kGravity = 9.81;
 const vp::Inertia kRod(kMass, kMass* vp::Vec3{0, 0, -kLength / 2},
                        {kMass * kLength * kLength / 3, kMass* kLength* kLength / 3, 0, 0, 0, 0});
 
+// begin: model
 vp::Expected<vp::Model> make_pendulum() {
   vp::LinkSpec upper;
   upper.name = "upper";
@@ -31,6 +32,7 @@ vp::Expected<vp::Model> make_pendulum() {
   }
   return builder.build();
 }
+// end: model
 
 // Kinetic and potential, after a call that was given q and v.
 double energy(const vp::Model& model, const vp::Data& data) {
