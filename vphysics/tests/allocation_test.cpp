@@ -6,6 +6,11 @@
 
 #include "random.h"
 #include "rig.h"
+#include "trees.h"
+#include "vphysics/multibody/configuration.h"
+#include "vphysics/multibody/derivatives.h"
+#include "vphysics/multibody/jacobians.h"
+#include "vphysics/multibody/quantities.h"
 
 namespace {
 long g_allocations = 0;
@@ -57,6 +62,43 @@ TEST(Step, AllocatesNothingOnceWarm) {
   EXPECT_GT(g_allocations, 0);  // the counter counts
   EXPECT_GT(hits, 10);          // and there was something to do
   EXPECT_EQ(during, 0);
+}
+
+// Every call beside the dynamics, on a tree with every joint.
+TEST(TreeAlgorithms, AllocateNothing) {
+  Random random(52);
+  const Model model = random_tree(random, 40);
+  const State s = random_state(random, model);
+  const std::size_t n = s.v.size();
+  Data data(model);
+  DerivativesData memory(model);
+  std::vector<double> q(s.q.size()), x(n), A(n * n), B(n * n), C(n * n);
+  std::vector<se3> J(n);
+  std::vector<Vec3> P(n);
+  std::vector<dse3> H(n);
+  const int last = model.links() - 1;
+  const long before = g_allocations;
+  integrate<double>(model, s.q, s.v, q);
+  difference<double>(model, s.q, q, x);
+  forward_kinematics<double>(model, data, s.q, s.v);
+  link_jacobian<double>(model, data, last, Frame::link, J);
+  point_jacobian<double>(model, data, last, {1, 2, 3}, Frame::world, P);
+  const bool rates =
+      link_jacobian_rate<double>(model, data, s.q, s.v, last, Frame::world, J).has_value() &&
+      point_jacobian_rate<double>(model, data, s.q, s.v, last, {}, Frame::link, P).has_value();
+  link_drift<double>(model, data, s.q, s.v, last, Frame::world_at_link);
+  momentum_matrix<double>(model, data, centre_of_mass<double>(model, data), H);
+  centre_of_mass_jacobian<double>(model, data, P);
+  bias_forces<double>(model, data, s.q, s.v, {}, x);
+  gravity_forces<double>(model, data, s.q, {0, 0, -9.81}, x);
+  const bool inverse =
+      inverse_dynamics_derivatives<double>(model, data, memory, s.q, s.v, s.a, {}, {A, B, C})
+          .has_value();
+  const bool forward =
+      forward_dynamics_derivatives<double>(model, data, memory, s.q, s.v, s.tau, {}, {x, A, B, C})
+          .has_value();
+  EXPECT_EQ(g_allocations - before, 0);
+  EXPECT_TRUE(rates && inverse && forward);
 }
 
 }  // namespace

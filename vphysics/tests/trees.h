@@ -29,7 +29,13 @@ class SliderOnACurve final : public UserJoint {
     const Mat3 R = {{-sine, cosine, 0}, {-cosine, -sine, 0}, {0, 0, 1}};
     T_joint_link = SE3(R, {cosine, sine, 0.5 * s * s});
     S[0] = {{0, 0, 1}, {1, 0, s}};  // seen from the link
-    rate = {{0, 0, 0}, {0, 0, v[0]}};
+    rate = {{0, 0, 0}, {0, 0, v[0] * v[0]}};
+  }
+  bool slopes(std::span<const double> /*q*/, std::span<const double> /*v*/, std::span<se3> dS_dq,
+              std::span<se3> drate_dq) const override {
+    dS_dq[0] = {{0, 0, 0}, {0, 0, 1}};
+    drate_dq[0] = {};
+    return true;
   }
 };
 

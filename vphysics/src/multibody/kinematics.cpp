@@ -179,7 +179,8 @@ detail::Work<T>::Work(const Tree<base_t<T>>& tree)
       blocks(static_cast<std::size_t>(tree.blocks)),
       composites(tree.nodes.size()),
       added(tree.nodes.size()),
-      origins(tree.nodes.size()) {}
+      origins(tree.nodes.size()),
+      zeros(static_cast<std::size_t>(tree.velocities), T(0)) {}
 
 #define VP_KINEMATICS(T)                                                                    \
   template struct detail::Work<T>;                                                          \

@@ -43,6 +43,7 @@ struct Work {
   std::vector<InertiaT<T>> composites;  // of the mass matrix
   std::vector<se3T<T>> added;           // what the joints add to A
   std::vector<Vec3T<T>> origins;        // of each node's tree in the world
+  std::vector<T> zeros;                 // velocities or accelerations of a tree at rest
 };
 
 // What a pass has left, of one node. Poses, subspaces and velocities are in the tree's frame.

@@ -55,6 +55,14 @@ class UserJoint {
   // (dS/dt) v, in the link's frame. S must have full rank wherever the joint is used.
   virtual void evaluate(std::span<const double> q, std::span<const double> v, SE3& T_joint_link,
                         std::span<se3> S, se3& rate) const = 0;
+  // For derivatives of the dynamics and rates of Jacobians, if they are wanted of a model with this
+  // joint: the slopes of what evaluate gives. With n degrees, dS[k]/dq[l] in dS_dq[n * k + l], and
+  // d rate/dq[l] at fixed v in drate_dq[l], in the link's frame. A joint that does not have them
+  // returns false, as here; calls that need them then say so.
+  virtual bool slopes(std::span<const double> /*q*/, std::span<const double> /*v*/,
+                      std::span<se3> /*dS_dq*/, std::span<se3> /*drate_dq*/) const {
+    return false;
+  }
 };
 
 using Joint = std::variant<FixedJoint, RevoluteJoint, PrismaticJoint, HelicalJoint,

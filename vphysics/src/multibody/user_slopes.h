@@ -1,0 +1,86 @@
+// What a joint of one's own says of its slopes, in any scalar of one state.
+#pragma once
+
+#include <array>
+
+#include "multibody/tree.h"
+
+namespace vp::detail {
+
+// Of n degrees, in the link's frame.
+template <class T>
+struct UserSlopes {
+  std::array<se3T<T>, 36> S{};    // dS[k]/dq[l] at [n * k + l]
+  std::array<se3T<T>, 6> rate{};  // d rate/dq[l]
+};
+
+template <class T>
+se3T<T> cast_twist(const se3& V) {
+  const auto each = [](const Vec3& a) {
+    return Vec3T<T>{static_cast<T>(a.x), static_cast<T>(a.y), static_cast<T>(a.z)};
+  };
+  return {each(V.w), each(V.v)};
+}
+
+// The joint's coordinates and velocities, in the joint's scalar.
+struct UserState {
+  std::array<double, 6> q{}, v{};
+  std::size_t n;
+
+  template <class T>
+  UserState(const Node<T>& node, std::span<const T> all_q, std::span<const T> all_v)
+      : n(static_cast<std::size_t>(node.dofs)) {
+    for (std::size_t k = 0; k < n; ++k) {
+      q[k] = static_cast<double>(all_q[static_cast<std::size_t>(node.q) + k]);
+      v[k] = static_cast<double>(all_v[static_cast<std::size_t>(node.v) + k]);
+    }
+  }
+  std::span<const double> coordinates() const { return std::span(q).first(n); }
+  std::span<const double> velocities() const { return std::span(v).first(n); }
+};
+
+// False where the joint does not say them.
+template <class T>
+bool user_slopes(const Node<T>& node, const UserState& at, UserSlopes<T>& out) {
+  UserSlopes<double> found;
+  if (!node.user->slopes(at.coordinates(), at.velocities(), std::span(found.S).first(at.n * at.n),
+                         std::span(found.rate).first(at.n))) {
+    return false;
+  }
+  for (std::size_t i = 0; i < at.n * at.n; ++i) out.S[i] = cast_twist<T>(found.S[i]);
+  for (std::size_t i = 0; i < at.n; ++i) out.rate[i] = cast_twist<T>(found.rate[i]);
+  return true;
+}
+
+// (dS/dt) v
+template <class T>
+se3T<T> user_rate(const Node<T>& node, const UserState& at) {
+  SE3 pose;
+  std::array<se3, 6> S{};
+  se3 rate;
+  node.user->evaluate(at.coordinates(), at.velocities(), pose, std::span(S).first(at.n), rate);
+  return cast_twist<T>(rate);
+}
+
+// The rates of the columns: sum over l of dS[k]/dq[l] v[l]. Of one degree, evaluate's rate at unit
+// velocity is dS/dq.
+template <class T>
+bool user_column_rates(const Node<T>& node, const UserState& at, std::array<se3T<T>, 6>& rates) {
+  if (at.n == 1) {
+    UserState unit = at;
+    unit.v[0] = 1.0;
+    rates[0] = static_cast<T>(at.v[0]) * user_rate(node, unit);
+    return true;
+  }
+  UserSlopes<T> slopes;
+  if (!user_slopes(node, at, slopes)) return false;
+  for (std::size_t k = 0; k < at.n; ++k) {
+    rates[k] = {};
+    for (std::size_t l = 0; l < at.n; ++l) {
+      rates[k] = rates[k] + static_cast<T>(at.v[l]) * slopes.S[at.n * k + l];
+    }
+  }
+  return true;
+}
+
+}  // namespace vp::detail
