@@ -9,6 +9,7 @@
 #include "trees.h"
 #include "vphysics/multibody/configuration.h"
 #include "vphysics/multibody/derivatives.h"
+#include "vphysics/multibody/integrators.h"
 #include "vphysics/multibody/jacobians.h"
 #include "vphysics/multibody/quantities.h"
 
@@ -99,6 +100,28 @@ TEST(TreeAlgorithms, AllocateNothing) {
           .has_value();
   EXPECT_EQ(g_allocations - before, 0);
   EXPECT_TRUE(rates && inverse && forward);
+}
+
+TEST(Integrators, AllocateNothingInAStep) {
+  Random random(52);
+  const Model model = random_tree(random, 20);
+  State s = random_state(random, model);
+  IntegratorData data(model);
+  const double spring = 2.0;
+  const auto forces = [&](std::span<const double> q, std::span<const double> v, double,
+                          std::span<double> tau) {
+    for (std::size_t i = 0; i < tau.size(); ++i) tau[i] = -spring * q[i] - v[i];
+  };
+  const StepT<double> step{.h = 1e-3, .forces = forces};
+  AdaptiveReport report;
+  const long before = g_allocations;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(step_semi_implicit<double>(model, data, s.q, s.v, step));
+    ASSERT_TRUE(step_rk4<double>(model, data, s.q, s.v, step));
+    ASSERT_TRUE(step_variational<double>(model, data, s.q, s.v, step));
+    ASSERT_TRUE(advance_adaptive<double>(model, data, s.q, s.v, step, {}, report));
+  }
+  EXPECT_EQ(g_allocations - before, 0);
 }
 
 }  // namespace

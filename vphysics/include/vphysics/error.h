@@ -11,6 +11,7 @@ enum class Errc : std::uint8_t {
   invalid_argument,  // NaN, infinity, negative size, an id that no longer exists
   unsupported,       // well formed, but not within what this version can simulate
   singular,          // the equations have no unique solution, as of a joint that moves no mass
+  not_converged,     // an iteration or a step's control reached no answer within its limits
   bad_data,          // bytes handed to restore() are not a snapshot of this world's version
 };
 
