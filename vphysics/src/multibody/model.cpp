@@ -72,6 +72,44 @@ bool of_a_body(const Inertia& J) {
          a * c - I.zx * I.zx >= -scale && det >= -scale * trace;
 }
 
+bool has_own_coordinates(const Joint& joint) {
+  return !std::holds_alternative<BallJoint>(joint) && !std::holds_alternative<FreeJoint>(joint);
+}
+
+// Why a joint cannot have these forces, or nothing.
+const char* wrong_with(const JointForces& f) {
+  if (!(f.lower <= f.upper) || f.lower == JointForces::kNever || f.upper == -JointForces::kNever) {
+    return "the lower limit must not be above the upper one";
+  }
+  if (!(f.limit_stiffness > 0.0)) return "the stiffness of its limits must be positive";
+  if (!(f.limit_damping >= 0.0 && f.limit_damping < 1e300)) {
+    return "the damping of its limits must be finite and not negative";
+  }
+  if (!(f.stiffness >= 0.0 && f.stiffness < 1e300) || !std::isfinite(f.rest)) {
+    return "its spring must be finite, of a stiffness that is not negative";
+  }
+  if (!(f.friction >= 0.0 && f.motor_limit >= 0.0)) {
+    return "its friction and its motor's limit must not be negative";
+  }
+  return nullptr;
+}
+const char* wrong_with_forces(const LinkSpec& link) {
+  if (link.forces.empty()) return nullptr;
+  if (static_cast<int>(link.forces.size()) != velocities_of(link.joint)) {
+    return "its forces must be none, or one for each of its joint's velocities";
+  }
+  for (const JointForces& f : link.forces) {
+    if (const char* why = wrong_with(f)) return why;
+    const bool by_coordinate =
+        f.lower > -JointForces::kNever || f.upper < JointForces::kNever || f.stiffness > 0.0;
+    if (by_coordinate && !has_own_coordinates(link.joint)) {
+      return "a ball or free joint has no coordinate for a spring or a limit; take a chain of "
+             "simple joints";
+    }
+  }
+  return nullptr;
+}
+
 // Adds the nodes of one joint, parent first, and tells the place of its link.
 class NodeMaker {
  public:
@@ -227,6 +265,7 @@ Expected<int> ModelBuilder::add(LinkSpec link) {
         link.damping < 1e300)) {
     return refuse(link, "armature and damping must be finite and not negative");
   }
+  if (const char* why = wrong_with_forces(link)) return refuse(link, why);
   links_.push_back(std::move(link));
   return count;
 }

@@ -9,6 +9,7 @@
 // Source: paper, appendix A, M_i e^(S_i q_i).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <variant>
@@ -68,6 +69,25 @@ class UserJoint {
 using Joint = std::variant<FixedJoint, RevoluteJoint, PrismaticJoint, HelicalJoint,
                            CylindricalJoint, UniversalJoint, PlanarJoint, BallJoint, FreeJoint,
                            std::shared_ptr<const UserJoint>>;
+
+// What acts in one of a joint's velocities besides armature and viscous damping: forces and metres
+// of a slide, moments and radians of a turn. joint_forces.h and constrained_step.h apply them.
+struct JointForces {
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  // The coordinate's limits. A limit of infinite stiffness is a stop: rigid, and nothing bounces
+  // off it. A softer one pushes back by stiffness and damping where the coordinate is beyond it.
+  double lower = -kNever, upper = kNever;
+  double limit_stiffness = kNever;  // [N/m], [N m/rad]
+  double limit_damping = 0.0;       // [N s/m], [N m s/rad]; none for a stop
+  // A spring, at rest at the coordinate `rest`.
+  double stiffness = 0.0, rest = 0.0;
+  // Coulomb's: what the joint resists with at most, and where it slides [N], [N m]. Infinite: the
+  // joint is locked.
+  double friction = 0.0;
+  // What a motor can do at most, whatever it is told [N], [N m].
+  double motor_limit = kNever;
+};
 
 // How many numbers a joint's coordinates and velocities are.
 int coordinates_of(const Joint& joint);

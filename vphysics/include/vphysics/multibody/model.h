@@ -27,6 +27,9 @@ struct LinkSpec {
   Inertia inertia{};      // about the link's origin, in its frame; may be zero
   double armature = 0.0;  // rotor inertia, added to each of the joint's own in joint space
   double damping = 0.0;   // viscous, of each of its velocities [N s/m] or [N m s/rad]
+  // None, or one for each of its velocities. Those of a ball or free joint, which have no
+  // coordinate of their own, know friction and the motor's limit only.
+  std::vector<JointForces> forces{};
 };
 
 namespace detail {
@@ -68,8 +71,9 @@ class ModelBuilder {
  public:
   // The link's number. Refused: a parent that does not exist, a number that is not finite, an axis
   // of length zero, parallel axes, an inertia that no body has (negative mass, not positive
-  // semidefinite, moments against the triangle inequality), negative armature or damping, a user
-  // joint that says less than 1 or more than 6 degrees of freedom.
+  // semidefinite, moments against the triangle inequality), negative armature or damping, forces
+  // that are not the joint's or contradict themselves, a user joint that says less than 1 or more
+  // than 6 degrees of freedom.
   Expected<int> add(LinkSpec link);
   // Refused: no link at all; a joint that moves no mass, neither by itself nor through its
   // children.
