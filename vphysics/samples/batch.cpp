@@ -48,14 +48,15 @@ int main() {
   }
 
   const double dt = 1e-4;
-  for (double time = 0.0; time < 2.0; time += dt) {
+  for (int step = 0; step < 20000; ++step) {
     if (!vp::forward_dynamics<Pack>(*model, data, q, v, tau, {}, a)) return 1;
     v[0] += Pack(dt) * a[0];
     q[0] += Pack(dt) * v[0];
     for (int lane = 0; lane < kLanes; ++lane) {
       double& at_bottom = quarter[static_cast<std::size_t>(lane)];
       // Within the step, where the angle was 0.
-      if (at_bottom == 0.0 && q[0][lane] <= 0.0) at_bottom = time + dt - q[0][lane] / v[0][lane];
+      if (at_bottom == 0.0 && q[0][lane] <= 0.0)
+        at_bottom = dt * (step + 1) - q[0][lane] / v[0][lane];
     }
   }
 

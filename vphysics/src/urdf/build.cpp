@@ -166,7 +166,7 @@ class Builder {
     const auto inertial = lines_.inertials.find(link.name);
     const int line =
         inertial != lines_.inertials.end() ? inertial->second : lines_.links.at(link.name);
-    const auto number = add(std::move(spec), line);
+    auto number = add(std::move(spec), line);
     if (!number) return number;
     const std::size_t first = waiting_.size();
     for (const auto& joint : link.child_joints) waiting_.push_back({joint.get(), *number});
@@ -194,7 +194,7 @@ class Builder {
       // The plane's frame is turned against the link's, and turned back by a fixed joint.
       const Mat3 Q = frame_of_plane(axis);
       spec.T_parent_joint = spec.T_parent_joint * SE3(Q, {});
-      const auto plane = add(std::move(spec), lines_.joints.at(joint.name).line);
+      auto plane = add(std::move(spec), lines_.joints.at(joint.name).line);
       if (!plane) return plane;
       spec = {};
       spec.parent = *plane;

@@ -1,7 +1,5 @@
 #include "urdf/check.h"
 
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>

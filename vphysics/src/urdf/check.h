@@ -5,15 +5,13 @@
 // with every number written anew.
 #pragma once
 
+#include <tinyxml2.h>
+
 #include <map>
 #include <string>
 #include <vector>
 
 #include "vphysics/error.h"
-
-namespace tinyxml2 {
-class XMLElement;
-}
 
 namespace vp::detail {
 
