@@ -17,14 +17,14 @@ namespace vp {
 namespace detail {
 namespace {
 
-// One column of a joint: L <- P L P^T + d S S^T. With y = L U this is
-//   L - d (S y^T + y S^T) + d (1 + d <U, y>) S S^T.
+// One column of a joint: L <- P L P^T + d S S^T. With W = U d and y = L W this is
+//   L - (S y^T + y S^T) + (<W, y> + d) S S^T.
 template <class T>
-InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const dse3T<T>& U,
+InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const dse3T<T>& W,
                            const T& d) {
-  const se3T<T> y = L * U;
-  const T half = T(0.5) * d * (T(1) + d * (U * y));
-  const se3T<T> z = half * S - d * y;  // the sum is S z^T + z S^T
+  const se3T<T> y = L * W;
+  const T half = T(0.5) * (W * y + d);
+  const se3T<T> z = half * S - y;  // the sum is S z^T + z S^T
   const auto symmetric = [](const Vec3T<T>& a, const Vec3T<T>& b) {
     return Sym3T<T>{T(2) * a.x * b.x,      T(2) * a.y * b.y,      T(2) * a.z * b.z,
                     a.x * b.y + b.x * a.y, a.y * b.z + b.y * a.z, a.z * b.x + b.z * a.x};
@@ -38,9 +38,8 @@ InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const 
 // An impulse on a node, as its parent feels it.
 template <class T>
 dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int node, dse3T<T> F) {
-  for (int k = 0; k < tree.nodes[static_cast<std::size_t>(node)].dofs; ++k) {
-    const T x = (column_of<T>(tree, work, node, k) * F) * omega_inverse_of<T>(tree, work, node, k);
-    F = F - x * gain_of<T>(tree, work, node, k);
+  for (int k = tree.nodes[static_cast<std::size_t>(node)].dofs; k-- > 0;) {
+    F = F - (column_of<T>(tree, work, node, k) * F) * gain_of<T>(tree, work, node, k);
   }
   return F;
 }
@@ -99,7 +98,7 @@ void InverseInertiasT<T>::update(const ModelT<base_t<T>>& model, const DataT<T>&
     const int node = static_cast<int>(i), parent = tree.nodes[i].parent;
     InverseInertiaT<T> L{};
     if (parent != kWorld) L = of_node_[static_cast<std::size_t>(parent)];
-    for (int k = tree.nodes[i].dofs; k-- > 0;) {
+    for (int k = 0; k < tree.nodes[i].dofs; ++k) {
       L = detail::through<T>(L, detail::column_of<T>(tree, work, node, k),
                              detail::gain_of<T>(tree, work, node, k),
                              detail::omega_inverse_of<T>(tree, work, node, k));

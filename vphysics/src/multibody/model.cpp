@@ -170,7 +170,6 @@ class NodeMaker {
     node.q = tree_.coordinates;
     node.v = tree_.velocities;
     node.dofs = dofs;
-    node.block = dofs > 1 || kind == NodeKind::user ? tree_.blocks++ : -1;
     node.T_parent = place_.T_node_link * SE3(Q, {});
     node.pitch = pitch;
     node.armature = link_.armature;
@@ -298,6 +297,7 @@ Expected<Model> ModelBuilder::build() const {
       }
     }
   }
+  tree->lay_out();
   return Model(std::move(tree));
 }
 
@@ -307,8 +307,8 @@ ModelT<B>::ModelT(const ModelT<C>& other) {
   auto tree = std::make_shared<Tree<B>>();
   const Tree<C>& from = other.tree();
   for (const Node<C>& n : from.nodes) {
-    tree->nodes.push_back({n.parent, n.kind, n.q, n.v, n.dofs, n.block, cast<B>(n.T_parent),
-                           cast<B>(n.J), static_cast<B>(n.pitch), static_cast<B>(n.armature),
+    tree->nodes.push_back({n.parent, n.kind, n.q, n.v, n.dofs, 0, cast<B>(n.T_parent), cast<B>(n.J),
+                           static_cast<B>(n.pitch), static_cast<B>(n.armature),
                            static_cast<B>(n.damping), n.user});
   }
   for (const LinkPlace<C>& p : from.places) {
@@ -317,7 +317,7 @@ ModelT<B>::ModelT(const ModelT<C>& other) {
   tree->links = from.links;
   tree->coordinates = from.coordinates;
   tree->velocities = from.velocities;
-  tree->blocks = from.blocks;
+  tree->lay_out();
   tree_ = std::move(tree);
 }
 

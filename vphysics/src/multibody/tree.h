@@ -1,14 +1,19 @@
-// What a model is inside: its joints taken apart into nodes, in the order of the passes.
+// What a model is inside: its joints taken apart into nodes and slots, in the order of the passes.
 //
 // A node moves about or along the z axis of its own frame, or is a ball, a free or a user's joint.
 // A cylindrical, universal or planar joint is a chain of simple nodes, all but the last without
 // mass; a fixed joint is none: its link's inertia is its parent's. So the passes know few kinds,
 // and most joints cost what a revolute one does.
+//
+// A slot is one degree of freedom, numbered as the velocities are. A node of several has that many,
+// all in its frame, with nothing between them; its body is at the last. So the recursions take one
+// column of the motion subspace at a time and never see a matrix to invert.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "multibody/lanes.h"
 #include "vphysics/multibody/model.h"
 
 namespace vp::detail {
@@ -21,12 +26,15 @@ struct Node {
   NodeKind kind;
   int q, v;  // first coordinate and velocity
   int dofs;
-  int block;         // of more than one degree: its number among these
+  int root;          // the root of its tree: a number, counted from 0
   SE3T<B> T_parent;  // at zero coordinates, from the parent node's frame
   InertiaT<B> J;     // in the node's frame: of its link and all that is fixed to it
   B pitch;           // helical [m/rad]
   B armature, damping;
   const UserJoint* user;
+
+  bool simple() const { return kind <= NodeKind::helical; }
+  int body_slot() const { return v + dofs - 1; }
 };
 
 template <class B>
@@ -36,12 +44,87 @@ struct LinkPlace {
   int q, v;
 };
 
+struct Slot {
+  int parent;  // a slot, or kWorld
+  int q;       // of a simple node its coordinate, else -1
+  int node;
+  // What flows inwards comes in registers from the next slot and through sums in memory from
+  // others (inflow.h).
+  bool from_next, to_previous;
+  int from_sum, to_sum;  // or -1
+  bool opens_sum;        // the first to add to it
+  bool forks;            // somebody else than the next slot hangs on it
+};
+
+// Slots that follow each other.
+struct SlotRun {
+  int begin, end;
+};
+
+// A slot's constants: numbers of the fields (lanes.h).
+enum Constant : int {
+  kTurn0 = 0,   // rotation of the node against its parent's at zero coordinates
+  kShift0 = 9,  // and its place there; a root is at the origin of its tree
+  kTurn = 12,   // [rad] of turn about z for a unit of the coordinate
+  kSlide = 13,  // [m] of slide along z
+  kMass = 14,
+  kCentre = 15,  // centre of mass
+  kSpin = 18,    // central inertia: kSpin 1 + a a^T + b b^T, two axes of a length
+  kAxisA = 19,
+  kAxisB = 22,
+  kArmature = 25,
+  kDamping = 26,
+  kComposite = 27,  // mass of all that hangs on it, itself included
+  kConstants = 28
+};
+
+// The constants by groups of slots, and what the slots of a group have in common.
+template <class B>
+struct Layout {
+  struct Group {
+    int count;      // of slots; the others are zero
+    bool revolute;  // all of them
+    bool simple;    // all of them
+    int first_q;    // where the coordinates follow each other and fill the group, else -1
+  };
+  std::vector<Group> groups;
+  AlignedArray<B> constants;
+};
+
 template <class B>
 struct Tree {
   std::vector<Node<B>> nodes;
   std::vector<LinkPlace<B>> places;  // of the links
   std::vector<LinkSpec> links;
-  int coordinates = 0, velocities = 0, blocks = 0;
+  int coordinates = 0, velocities = 0;
+
+  // Made of the above (layout.cpp).
+  std::vector<Slot> slots;
+  std::vector<Vec3T<B>> roots;  // where they are at zero coordinates
+  int sums = 0;
+  std::vector<SlotRun> runs;       // the slots between a root and each slot, both included
+  std::vector<int> first_run;  // of each slot; one more for the end
+  bool all_related = false;    // of any two slots one is above the other
+  Layout<B> one;               // for one state: groups of eight slots
+  Layout<B> states;            // for packs of states: groups of one
+  void lay_out();
 };
+
+template <class T>
+const Layout<base_t<T>>& layout_of(const Tree<base_t<T>>& tree) {
+  return kSlots<T> == 1 ? tree.states : tree.one;
+}
+
+// The constants of a slot, and those of a group of them.
+template <class T>
+Constants<T, T> constants_of(const Tree<base_t<T>>& tree, int slot) {
+  const auto* all = layout_of<T>(tree).constants.data();
+  return Constants<T, T>(all + (slot / kSlots<T>)*kConstants * kSlots<T> + slot % kSlots<T>);
+}
+template <class T>
+Constants<T, Wide<T>> group_constants(const Tree<base_t<T>>& tree, int group) {
+  const auto* all = layout_of<T>(tree).constants.data();
+  return Constants<T, Wide<T>>(all + group * kConstants * kSlots<T>);
+}
 
 }  // namespace vp::detail

@@ -1,4 +1,4 @@
-// What a data is inside: one record a node, in the order of the passes.
+// What a data is inside: the numbers of each slot, in the order of the passes.
 //
 // Everything is in one frame, the tree's: the axes of the world, the origin where the root is now
 // (at its coordinates, if it is free). Then no inertia, twist or wrench changes frame between a
@@ -14,75 +14,118 @@
 
 namespace vp::detail {
 
-template <class T>
-struct NodeState {
-  SE3T<T> X;   // pose
-  se3T<T> S;   // motion subspace, of a node of one degree
-  se3T<T> V;   // velocity
-  se3T<T> A;   // acceleration: without the joints' own at first, as of the gravity field
-  dse3T<T> p;  // bias force; its articulated sum; in inverse dynamics the force through the joint
-  AInertiaT<T> J;  // articulated inertia
-  dse3T<T> U;      // J S
-  T D_inverse, u;  // 1 / (S, J S + armature), and what is left of tau
+// A slot's numbers (lanes.h).
+enum Field : int {
+  kX = 0,     // pose
+  kS = 12,    // motion subspace
+  kV = 18,    // velocity
+  kA = 24,    // acceleration that the velocities make, on top of that of the gravity field
+  kH = 30,    // of the body: first moment,
+  kI = 33,    // rotational inertia,
+  kF = 39,    // and bias force
+  kOwn = 45,  // velocity relative to the parent
+  kFields = 51
 };
 
-// A node of several degrees: what a node of one degree has, of each.
+// What the inward pass leaves for the outward one.
 template <class T>
-struct BlockState {
+struct Factor {
+  dse3T<T> W;  // J^ S / Omega
+  T inverse;   // 1 / Omega, Omega = <S, J^ S> + armature
+  T x;         // u / Omega, u what is left of tau
+};
+
+// What flows inwards: an articulated inertia and its bias force, a force alone, or what is left of
+// a composite rigid body when its mass is known.
+template <class T>
+struct Articulated {
+  AInertiaT<T> J;
+  dse3T<T> p;
+};
+template <class T>
+Articulated<T> operator+(const Articulated<T>& a, const Articulated<T>& b) {
+  return {a.J + b.J, a.p + b.p};
+}
+template <class T>
+struct Moments {
+  Vec3T<T> h;
+  Sym3T<T> I;
+};
+template <class T>
+Moments<T> operator+(const Moments<T>& a, const Moments<T>& b) {
+  return {a.h + b.h, a.I + b.I};
+}
+
+// Of a ball's, a free or a user's node.
+template <class T>
+struct Columns {
   std::array<se3T<T>, 6> S;
-  std::array<dse3T<T>, 6> U;
-  std::array<T, 6> D_inverse, u;
+  se3T<T> rate;  // S' q'
 };
 
 template <class T>
 struct Work {
   explicit Work(const Tree<base_t<T>>& tree);
 
-  std::vector<NodeState<T>> nodes;
-  std::vector<BlockState<T>> blocks;
-  std::vector<InertiaT<T>> composites;  // of the mass matrix
-  std::vector<se3T<T>> added;           // what the joints add to A
-  std::vector<Vec3T<T>> origins;        // of each node's tree in the world
-  std::vector<T> zeros;                 // velocities or accelerations of a tree at rest
+  Fields<T, T> slot(int i) const { return Fields<T, T>(fields_at(i)); }
+  Fields<T, Wide<T>> group(int g) const { return Fields<T, Wide<T>>(fields_at(g * kSlots<T>)); }
+
+  // What the roots hang on rests, under an acceleration.
+  void set_world(const Vec3T<T>& acceleration) {
+    Fields<T, T>(world.data()).set(kA + 3, acceleration);
+  }
+
+  mutable AlignedArray<T> fields;
+  AlignedArray<T> world;  // the fields of what the roots hang on
+  std::vector<Factor<T>> factors;
+  std::vector<Articulated<T>> articulated_sums;
+  std::vector<dse3T<T>> force_sums;
+  std::vector<Moments<T>> moment_sums;
+  std::vector<se3T<T>> added;       // what the joints add to A
+  std::vector<Columns<T>> columns;  // of each node that is not simple
+  std::vector<int> columns_of;      // a node's, or -1
+  std::vector<int> body_slot;       // of each node
+  std::vector<int> root;            // of each node
+  std::vector<Vec3T<T>> origins;    // of each root's tree in the world
+  std::vector<T> zeros;             // velocities or accelerations of a tree at rest
+
+ private:
+  T* fields_at(int i) const {
+    return fields.data() + (i / kSlots<T>)*kFields * kSlots<T> + i % kSlots<T>;
+  }
 };
 
 // What a pass has left, of one node. Poses, subspaces and velocities are in the tree's frame.
 template <class T>
 SE3T<T> pose_of(const Work<T>& work, int node) {
-  return work.nodes[static_cast<std::size_t>(node)].X;
+  return work.slot(work.body_slot[static_cast<std::size_t>(node)]).pose(kX);
 }
 template <class T>
 se3T<T> velocity_of(const Work<T>& work, int node) {
-  return work.nodes[static_cast<std::size_t>(node)].V;
+  return work.slot(work.body_slot[static_cast<std::size_t>(node)]).twist(kV);
 }
 // The k-th column of a node's motion subspace.
 template <class T>
 se3T<T> column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const auto i = static_cast<std::size_t>(node);
-  const int block = tree.nodes[i].block;
-  if (block < 0) return work.nodes[i].S;
-  return work.blocks[static_cast<std::size_t>(block)].S[static_cast<std::size_t>(k)];
+  return work.slot(tree.nodes[static_cast<std::size_t>(node)].v + k).twist(kS);
 }
-// What factoring has left, of the k-th column: the articulated inertia times it, J^ S, with the
-// columns before it (inwards) taken out; and 1 / Omega.
+// What factoring has left of it: the articulated inertia times it, without what the columns after
+// it have taken out, by Omega; and 1 / Omega.
 template <class T>
 dse3T<T> gain_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const auto i = static_cast<std::size_t>(node);
-  const int block = tree.nodes[i].block;
-  if (block < 0) return work.nodes[i].U;
-  return work.blocks[static_cast<std::size_t>(block)].U[static_cast<std::size_t>(k)];
+  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
+  return work.factors[static_cast<std::size_t>(slot)].W;
 }
 template <class T>
 T omega_inverse_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const auto i = static_cast<std::size_t>(node);
-  const int block = tree.nodes[i].block;
-  if (block < 0) return work.nodes[i].D_inverse;
-  return work.blocks[static_cast<std::size_t>(block)].D_inverse[static_cast<std::size_t>(k)];
+  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
+  return work.factors[static_cast<std::size_t>(slot)].inverse;
 }
 // Where the origin of the node's tree is in the world.
 template <class T>
 Vec3T<T> origin_of(const Work<T>& work, int node) {
-  return work.origins[static_cast<std::size_t>(node)];
+  const int root = work.root[static_cast<std::size_t>(node)];
+  return work.origins[static_cast<std::size_t>(root)];
 }
 
 }  // namespace vp::detail

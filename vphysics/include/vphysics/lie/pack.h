@@ -4,7 +4,7 @@
 // lanes of double are one AVX register, two of SSE2; whatever the target has is used.
 #pragma once
 
-#include <array>
+#include <cstring>
 #include <type_traits>
 
 #include "vphysics/lie/scalar.h"
@@ -34,17 +34,22 @@ PackMaskT<T, N> both(const PackMaskT<T, N>& a, const PackMaskT<T, N>& b) {
 }
 template <class T, int N>
 bool all(const PackMaskT<T, N>& m) {
-  bool yes = true;
-  for (int i = 0; i < N; ++i) yes &= m.lanes[i] != 0;
-  return yes;
+  constexpr int kWords = static_cast<int>(sizeof m.lanes / sizeof(long long));
+  long long words[kWords];
+  std::memcpy(words, &m.lanes, sizeof words);
+  for (int half = kWords / 2; half > 0; half /= 2) {
+    for (int i = 0; i < half; ++i) words[i] &= words[i + half];
+  }
+  return words[0] == -1;
 }
 template <class T, int N>
 bool none(const PackMaskT<T, N>& m) {
   return all(!m);
 }
 
+// Aligned to its size whatever the target, so that code built for a wider one may read it.
 template <class T, int N>
-struct PackT {
+struct alignas(sizeof(T) * N) PackT {
   static_assert(std::is_floating_point_v<T> && (N & (N - 1)) == 0);
   typedef T Lanes __attribute__((vector_size(sizeof(T) * N)));
   using Mask = PackMaskT<T, N>;
@@ -55,7 +60,7 @@ struct PackT {
   // The same number in every lane.
   template <class S>
   requires std::is_arithmetic_v<S> PackT(S s) {
-    for (int i = 0; i < N; ++i) lanes[i] = static_cast<T>(s);
+    lanes = static_cast<T>(s) - Lanes{};  // in every lane, zeros with their sign
   }
 
   T operator[](int lane) const { return lanes[lane]; }

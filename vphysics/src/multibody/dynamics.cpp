@@ -1,0 +1,226 @@
+// The public calls: each finds its kernel, for its scalar and for this machine's instruction set.
+#include "vphysics/multibody/dynamics.h"
+
+#include <string>
+
+#include "multibody/instantiate.h"
+#include "multibody/joints.h"
+#include "multibody/kernels.h"
+#include "vphysics/assert.h"
+
+namespace vp {
+namespace detail {
+namespace {
+
+using vphysics_kernels::Arguments;
+using vphysics_kernels::Kernels;
+
+const Kernels* best_kernels() {
+#ifdef VP_INSTRUCTION_SETS
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("bmi2")) {
+    return vphysics_kernels::kAvx512;
+  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) {
+    return vphysics_kernels::kAvx2;
+  }
+#endif
+  return vphysics_kernels::kBaseline;
+}
+
+template <class T>
+constexpr std::size_t scalar_index();
+template <>
+constexpr std::size_t scalar_index<double>() {
+  return 0;
+}
+template <>
+constexpr std::size_t scalar_index<float>() {
+  return 1;
+}
+template <>
+constexpr std::size_t scalar_index<Double4>() {
+  return 2;
+}
+template <>
+constexpr std::size_t scalar_index<Double8>() {
+  return 3;
+}
+template <>
+constexpr std::size_t scalar_index<Float8>() {
+  return 4;
+}
+template <>
+constexpr std::size_t scalar_index<Float16>() {
+  return 5;
+}
+
+template <class T>
+const Kernels& kernels() {
+  static const Kernels* const best = best_kernels();
+  return best[scalar_index<T>()];
+}
+
+template <class T>
+Arguments start(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q) {
+  VP_ASSERT(q.size() == static_cast<std::size_t>(model.coordinates()));
+  Arguments args{&model.tree(), &data.work()};
+  args.q = q.data();
+  return args;
+}
+// Those numbers of which there is one for each velocity.
+template <class T>
+const void* checked([[maybe_unused]] const ModelT<base_t<T>>& model, std::span<const T> x) {
+  VP_ASSERT(x.size() == static_cast<std::size_t>(model.velocities()));
+  return x.data();
+}
+template <class T>
+void add_loads(Arguments& args, [[maybe_unused]] const ModelT<base_t<T>>& model,
+               const LoadsT<T>& loads) {
+  args.gravity = &loads.gravity;
+  if (loads.external.empty()) return;
+  VP_ASSERT(loads.external.size() == static_cast<std::size_t>(model.links()));
+  args.external = loads.external.data();
+}
+
+Expected<void> no_inertia(const char* call) {
+  return tl::make_unexpected(
+      Error{Errc::singular, std::string(call) +
+                                ": a joint moves no inertia in this configuration, or a number "
+                                "given is not finite; give its links an inertia, or the joint an "
+                                "armature"});
+}
+
+}  // namespace
+
+template <class T>
+Work<T>::Work(const Tree<base_t<T>>& tree)
+    : fields(static_cast<std::size_t>(kFields * kSlots<T>) * layout_of<T>(tree).groups.size()),
+      world(static_cast<std::size_t>(kFields * kSlots<T>)),
+      factors(tree.slots.size()),
+      articulated_sums(static_cast<std::size_t>(tree.sums)),
+      force_sums(static_cast<std::size_t>(tree.sums)),
+      moment_sums(static_cast<std::size_t>(tree.sums)),
+      added(tree.slots.size()),
+      zeros(tree.slots.size(), T(0)) {
+  Fields<T, T>(world.data()).set(kX, SE3T<T>());
+  int general = 0;
+  for (const auto& node : tree.nodes) {
+    columns_of.push_back(node.simple() ? -1 : general++);
+    body_slot.push_back(node.body_slot());
+    root.push_back(node.root);
+  }
+  columns.resize(static_cast<std::size_t>(general));
+  for (const auto& p : tree.roots) origins.push_back({T(p.x), T(p.y), T(p.z)});
+}
+
+}  // namespace detail
+
+template <class T>
+DataT<T>::DataT(const ModelT<base_t<T>>& model)
+    : work_(std::make_unique<detail::Work<T>>(model.tree())) {}
+template <class T>
+DataT<T>::~DataT() = default;
+template <class T>
+DataT<T>::DataT(DataT&&) noexcept = default;
+template <class T>
+DataT<T>& DataT<T>::operator=(DataT&&) noexcept = default;
+
+template <class T>
+void forward_kinematics(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                        std::span<const T> v) {
+  auto args = detail::start<T>(model, data, q);
+  if (!v.empty()) args.v = detail::checked<T>(model, v);
+  detail::kernels<T>().kinematics(args);
+}
+
+template <class T>
+SE3T<T> T_world_link(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
+  const auto& place = model.tree().places[static_cast<std::size_t>(link)];
+  const SE3T<T> T_node_link = detail::wide<T>(place.T_node_link);
+  if (place.node == kWorld) return T_node_link;
+  const SE3T<T> X = detail::pose_of<T>(data.work(), place.node);
+  const Vec3T<T> origin = detail::origin_of<T>(data.work(), place.node);
+  return SE3T<T>(X.rotation(), X.position() + origin) * T_node_link;
+}
+
+template <class T>
+se3T<T> link_velocity(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
+  const auto& place = model.tree().places[static_cast<std::size_t>(link)];
+  if (place.node == kWorld) return {};
+  const SE3T<T> X = detail::pose_of<T>(data.work(), place.node);
+  return InvAd(X * detail::wide<T>(place.T_node_link),
+               detail::velocity_of<T>(data.work(), place.node));
+}
+
+template <class T>
+Expected<void> forward_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data,
+                                std::span<const T> q, std::span<const T> v, std::span<const T> tau,
+                                const LoadsT<T>& loads, std::span<T> a) {
+  auto args = detail::start<T>(model, data, q);
+  args.v = detail::checked<T>(model, v);
+  args.given = detail::checked<T>(model, tau);
+  detail::add_loads<T>(args, model, loads);
+  detail::checked<T>(model, a);
+  args.out = a.data();
+  if (detail::kernels<T>().forward_dynamics(args)) return {};
+  return detail::no_inertia("forward_dynamics");
+}
+
+template <class T>
+Expected<void> factor_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q) {
+  if (detail::kernels<T>().factor_mass(detail::start<T>(model, data, q))) return {};
+  return detail::no_inertia("factor_mass");
+}
+
+template <class T>
+void solve_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<T> x) {
+  detail::Arguments args{&model.tree(), &data.work()};
+  detail::checked<T>(model, x);
+  args.out = x.data();
+  detail::kernels<T>().solve_mass(args);
+}
+
+template <class T>
+void inverse_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                      std::span<const T> v, std::span<const T> a, const LoadsT<T>& loads,
+                      std::span<T> tau) {
+  auto args = detail::start<T>(model, data, q);
+  args.v = detail::checked<T>(model, v);
+  args.given = detail::checked<T>(model, a);
+  detail::add_loads<T>(args, model, loads);
+  detail::checked<T>(model, tau);
+  args.out = tau.data();
+  detail::kernels<T>().inverse_dynamics(args);
+}
+
+template <class T>
+void mass_matrix(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q,
+                 std::span<T> M) {
+  auto args = detail::start<T>(model, data, q);
+  VP_ASSERT(M.size() == static_cast<std::size_t>(model.velocities() * model.velocities()));
+  args.out = M.data();
+  detail::kernels<T>().mass_matrix(args);
+}
+
+#define VP_DYNAMICS(T)                                                                          \
+  template struct detail::Work<T>;                                                              \
+  template class DataT<T>;                                                                      \
+  template void forward_kinematics(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>,     \
+                                   std::span<const T>);                                         \
+  template SE3T<T> T_world_link(const ModelT<base_t<T>>&, const DataT<T>&, int);                \
+  template se3T<T> link_velocity(const ModelT<base_t<T>>&, const DataT<T>&, int);               \
+  template Expected<void> forward_dynamics(const ModelT<base_t<T>>&, DataT<T>&,                 \
+                                           std::span<const T>, std::span<const T>,              \
+                                           std::span<const T>, const LoadsT<T>&, std::span<T>); \
+  template Expected<void> factor_mass(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>); \
+  template void solve_mass(const ModelT<base_t<T>>&, DataT<T>&, std::span<T>);                  \
+  template void inverse_dynamics(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>,       \
+                                 std::span<const T>, std::span<const T>, const LoadsT<T>&,      \
+                                 std::span<T>);                                                 \
+  template void mass_matrix(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>, std::span<T>);
+VP_FOR_EACH_SCALAR(VP_DYNAMICS)
+
+}  // namespace vp

@@ -1,0 +1,106 @@
+// One instruction set's passes for every scalar (kernels.h). The build names the set: VP_KERNELS is
+// the table's name, and but for the baseline vp is the set's own namespace.
+#include "multibody/kernels.h"
+
+#include "multibody/forward_dynamics.h"
+#include "multibody/instantiate.h"
+#include "multibody/inverse_dynamics.h"
+#include "multibody/mass_matrix.h"
+
+namespace vp {
+namespace detail {
+namespace {
+
+using vphysics_kernels::Arguments;
+using vphysics_kernels::Kernels;
+
+template <class T>
+struct Call {
+  explicit Call(const Arguments& arguments)
+      : args(arguments),
+        tree(*static_cast<const Tree<base_t<T>>*>(args.tree)),
+        work(*static_cast<Work<T>*>(args.work)) {}
+
+  std::size_t velocities() const { return static_cast<std::size_t>(tree.velocities); }
+  Span<T> q() const {
+    return {static_cast<const T*>(args.q), static_cast<std::size_t>(tree.coordinates)};
+  }
+  Span<T> v() const { return of_velocities(args.v); }
+  Span<T> given() const { return of_velocities(args.given); }
+  const Vec3T<T>& gravity() const { return *static_cast<const Vec3T<T>*>(args.gravity); }
+  Span<dse3T<T>> external() const {
+    if (args.external == nullptr) return {};
+    return {static_cast<const dse3T<T>*>(args.external), tree.places.size()};
+  }
+  std::span<T> out(std::size_t size) const { return {static_cast<T*>(args.out), size}; }
+
+  const Arguments& args;
+  const Tree<base_t<T>>& tree;
+  Work<T>& work;
+
+ private:
+  Span<T> of_velocities(const void* at) const {
+    if (at == nullptr) return {};
+    return {static_cast<const T*>(at), velocities()};
+  }
+};
+
+template <class T>
+bool run_kinematics(const Arguments& args) {
+  const Call<T> c(args);
+  if (c.v().empty()) {
+    outwards<T, Reach::poses>(c.tree, c.work, c.q(), {}, {}, [](int, const auto&) {});
+  } else {
+    outwards<T, Reach::velocities>(c.tree, c.work, c.q(), c.v(), {}, [](int, const auto&) {});
+  }
+  return true;
+}
+template <class T>
+bool run_forward_dynamics(const Arguments& args) {
+  const Call<T> c(args);
+  return forward_dynamics_kernel<T>(c.tree, c.work, c.q(), c.v(), c.given(), c.gravity(),
+                                    c.external(), c.out(c.velocities()));
+}
+template <class T>
+bool run_factor_mass(const Arguments& args) {
+  const Call<T> c(args);
+  return factor_mass_kernel<T>(c.tree, c.work, c.q());
+}
+template <class T>
+bool run_solve_mass(const Arguments& args) {
+  const Call<T> c(args);
+  solve_mass_kernel<T>(c.tree, c.work, c.out(c.velocities()));
+  return true;
+}
+template <class T>
+bool run_inverse_dynamics(const Arguments& args) {
+  const Call<T> c(args);
+  inverse_dynamics_kernel<T>(c.tree, c.work, c.q(), c.v(), c.given(), c.gravity(), c.external(),
+                             c.out(c.velocities()));
+  return true;
+}
+template <class T>
+bool run_mass_matrix(const Arguments& args) {
+  const Call<T> c(args);
+  mass_matrix_kernel<T>(c.tree, c.work, c.q(), c.out(c.velocities() * c.velocities()));
+  return true;
+}
+
+template <class T>
+constexpr Kernels kernels() {
+  return {run_kinematics<T>, run_forward_dynamics<T>, run_factor_mass<T>,
+          run_solve_mass<T>, run_inverse_dynamics<T>, run_mass_matrix<T>};
+}
+
+}  // namespace
+}  // namespace detail
+}  // namespace vp
+
+namespace vphysics_kernels {
+const Kernels VP_KERNELS[kScalars] = {vp::detail::kernels<double>(),
+                                      vp::detail::kernels<float>(),
+                                      vp::detail::kernels<vp::detail::Double4>(),
+                                      vp::detail::kernels<vp::detail::Double8>(),
+                                      vp::detail::kernels<vp::detail::Float8>(),
+                                      vp::detail::kernels<vp::detail::Float16>()};
+}  // namespace vphysics_kernels

@@ -1,0 +1,38 @@
+// The passes, compiled for several instruction sets, and the choice among them when the program
+// starts: docs/decisions/0012.
+//
+// All give the same bits: wider registers, never another order of operations, and no contraction.
+// kernels.cpp is compiled once for each set, in a namespace of its own, so that the linker can
+// never take an inline function of one for another's. What crosses between the namespaces is this
+// header's: addresses.
+#pragma once
+
+#include <cstddef>
+
+namespace vphysics_kernels {
+
+// Of the arguments of a call of dynamics.h those that it has; lengths are the tree's.
+struct Arguments {
+  const void* tree;
+  void* work;
+  const void* q = nullptr;
+  const void* v = nullptr;
+  const void* given = nullptr;  // tau of forward dynamics, a of inverse
+  const void* gravity = nullptr;
+  const void* external = nullptr;  // of each link, or null
+  void* out = nullptr;
+};
+using Kernel = bool (*)(const Arguments&);
+
+struct Kernels {
+  Kernel kinematics, forward_dynamics, factor_mass, solve_mass, inverse_dynamics, mass_matrix;
+};
+// One for each scalar, in the order of VP_FOR_EACH_SCALAR (instantiate.h).
+inline constexpr std::size_t kScalars = 6;
+
+extern const Kernels kBaseline[kScalars];
+// Only in libraries built with VP_INSTRUCTION_SETS.
+extern const Kernels kAvx2[kScalars];
+extern const Kernels kAvx512[kScalars];
+
+}  // namespace vphysics_kernels

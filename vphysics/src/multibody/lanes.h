@@ -1,0 +1,143 @@
+// Numbers side by side: how the passes use SIMD lanes.
+//
+// The passes are written once. Where they go through the joints one after another they compute
+// with T; where all joints are alike they compute with Wide<T>. For a pack of states Wide<T> is T:
+// the lanes are states. For one state the lanes are eight joints at once.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "vphysics/lie/ainertia.h"
+#include "vphysics/lie/pack.h"
+
+// Where registers are wide a pass is one function: what it calls becomes a part of it, so that its
+// numbers stay in registers. Where they are not, the lanes of a pack overflow them anyway, and it
+// would only take long to compile. What a pass rarely needs stays apart.
+#ifdef __AVX2__
+#define VP_FLATTEN [[gnu::flatten]]
+#else
+#define VP_FLATTEN
+#endif
+#define VP_APART [[gnu::noinline]]
+
+namespace vp::detail {
+
+template <class T>
+struct WideOf {
+  using type = PackT<T, 8>;
+  static constexpr int kSlots = 8;
+};
+template <class B, int N>
+struct WideOf<PackT<B, N>> {
+  using type = PackT<B, N>;
+  static constexpr int kSlots = 1;
+};
+template <class T>
+using Wide = typename WideOf<T>::type;
+// How many slots (tree.h) one Wide<T> holds.
+template <class T>
+inline constexpr int kSlots = WideOf<T>::kSlots;
+
+template <class N, class T>
+inline N load(const T* from) {
+  N x;
+  std::memcpy(static_cast<void*>(&x), from, sizeof x);
+  return x;
+}
+template <class N, class T>
+inline void store(T* to, const N& x) {
+  std::memcpy(static_cast<void*>(to), &x, sizeof x);
+}
+
+// Zeros, at the boundary of a cache line.
+template <class T>
+class AlignedArray {
+ public:
+  AlignedArray() = default;
+  explicit AlignedArray(std::size_t size) : size_(size) {
+    static_assert(alignof(T) <= kAlignment);
+    data_.reset(new (std::align_val_t{kAlignment}) T[size]());
+  }
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  static constexpr std::size_t kAlignment = 64;
+  struct Delete {
+    void operator()(T* p) const { operator delete[](p, std::align_val_t{kAlignment}); }
+  };
+  std::unique_ptr<T[], Delete> data_;
+  std::size_t size_ = 0;
+};
+
+// Numbers of one slot, or of a group of kSlots slots: number f of a slot is kSlots behind number
+// f - 1. N is T for a slot, Wide<T> for a group, whose numbers begin where its first slot's do.
+template <class T, class N>
+class Fields {
+ public:
+  explicit Fields(T* at) : at_(at) {}
+
+  N get(int f) const { return load<N>(at_ + f * kSlots<T>); }
+  Vec3T<N> vec(int f) const { return {get(f), get(f + 1), get(f + 2)}; }
+  se3T<N> twist(int f) const { return {vec(f), vec(f + 3)}; }
+  dse3T<N> wrench(int f) const { return {vec(f), vec(f + 3)}; }
+  Mat3T<N> mat(int f) const { return {vec(f), vec(f + 3), vec(f + 6)}; }
+  SE3T<N> pose(int f) const { return {mat(f), vec(f + 9)}; }
+  Sym3T<N> sym(int f) const {
+    return {get(f), get(f + 1), get(f + 2), get(f + 3), get(f + 4), get(f + 5)};
+  }
+
+  void set(int f, const N& x) const { store(at_ + f * kSlots<T>, x); }
+  void set(int f, const Vec3T<N>& a) const {
+    set(f, a.x);
+    set(f + 1, a.y);
+    set(f + 2, a.z);
+  }
+  void set(int f, const se3T<N>& V) const {
+    set(f, V.w);
+    set(f + 3, V.v);
+  }
+  void set(int f, const dse3T<N>& F) const {
+    set(f, F.m);
+    set(f + 3, F.f);
+  }
+  void set(int f, const SE3T<N>& X) const {
+    set(f, X.rotation().cx);
+    set(f + 3, X.rotation().cy);
+    set(f + 6, X.rotation().cz);
+    set(f + 9, X.position());
+  }
+  void set(int f, const Sym3T<N>& A) const {
+    set(f, Vec3T<N>{A.xx, A.yy, A.zz});
+    set(f + 3, Vec3T<N>{A.xy, A.yz, A.zx});
+  }
+
+ private:
+  T* at_;
+};
+
+// The same for a model's constants, which all states share.
+template <class T, class N>
+class Constants {
+ public:
+  explicit Constants(const base_t<T>* at) : at_(at) {}
+
+  N get(int f) const {
+    if constexpr (kSlots<T> == 1) {
+      return N(at_[f]);
+    } else {
+      return load<N>(at_ + f * kSlots<T>);
+    }
+  }
+  Vec3T<N> vec(int f) const { return {get(f), get(f + 1), get(f + 2)}; }
+  Mat3T<N> mat(int f) const { return {vec(f), vec(f + 3), vec(f + 6)}; }
+
+ private:
+  const base_t<T>* at_;
+};
+
+}  // namespace vp::detail

@@ -1,0 +1,213 @@
+// From nodes to slots: what the passes read (tree.h).
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "multibody/tree.h"
+
+namespace vp::detail {
+namespace {
+
+template <class B>
+double wider(B x) {
+  return static_cast<double>(x);
+}
+template <class B>
+Vec3 wider(const Vec3T<B>& a) {
+  return {wider(a.x), wider(a.y), wider(a.z)};
+}
+
+struct Principal {
+  std::array<double, 3> moments;  // the least first
+  std::array<Vec3, 3> axes;
+};
+// By Jacobi's rotations, in a fixed order; five sweeps leave nothing beside the diagonal.
+Principal principal_of(const Sym3& A) {
+  double m[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
+  double Q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    for (const auto& pair : kPairs) {
+      const int i = pair[0], j = pair[1];
+      if (m[i][j] == 0.0) continue;
+      // The turn by atan t that makes m[i][j] zero: t = cot - sqrt, the smaller of two.
+      const double cot = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
+      const double t = (cot >= 0.0 ? 1.0 : -1.0) / (std::fabs(cot) + std::sqrt(cot * cot + 1.0));
+      const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+      for (auto& row : m) {
+        const double x = row[i], y = row[j];
+        row[i] = c * x - s * y;
+        row[j] = s * x + c * y;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const double x = m[i][k], y = m[j][k];
+        m[i][k] = c * x - s * y;
+        m[j][k] = s * x + c * y;
+        const double u = Q[k][i], v = Q[k][j];
+        Q[k][i] = c * u - s * v;
+        Q[k][j] = s * u + c * v;
+      }
+    }
+  }
+  std::array<int, 3> order = {0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return m[a][a] < m[b][b]; });
+  Principal out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int i = order[k];
+    out.moments[k] = m[i][i];
+    out.axes[k] = {Q[0][i], Q[1][i], Q[2][i]};
+  }
+  return out;
+}
+
+template <class B>
+class LayOut {
+ public:
+  explicit LayOut(Tree<B>& tree) : tree_(tree) {}
+
+  void run() {
+    make_slots();
+    link_slots();
+    list_runs();
+    composites_.assign(tree_.slots.size(), 0.0);
+    for (std::size_t i = tree_.slots.size(); i-- > 0;) {
+      if (ends_node(i)) composites_[i] += wider(node_of(i).J.mass());
+      if (tree_.slots[i].parent != kWorld) {
+        composites_[static_cast<std::size_t>(tree_.slots[i].parent)] += composites_[i];
+      }
+    }
+    group(tree_.one, 8);
+    group(tree_.states, 1);
+  }
+
+ private:
+  const Node<B>& node_of(std::size_t slot) const {
+    return tree_.nodes[static_cast<std::size_t>(tree_.slots[slot].node)];
+  }
+  bool ends_node(std::size_t slot) const {
+    return static_cast<int>(slot) == node_of(slot).body_slot();
+  }
+
+  void make_slots() {
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
+      Node<B>& node = tree_.nodes[n];
+      if (node.parent == kWorld) {
+        node.root = static_cast<int>(tree_.roots.size());
+        tree_.roots.push_back(node.T_parent.position());
+      } else {
+        node.root = tree_.nodes[static_cast<std::size_t>(node.parent)].root;
+      }
+      for (int k = 0; k < node.dofs; ++k) {
+        Slot slot{};
+        slot.parent = k > 0 ? node.v + k - 1
+                      : node.parent == kWorld
+                          ? kWorld
+                          : tree_.nodes[static_cast<std::size_t>(node.parent)].body_slot();
+        slot.q = node.simple() ? node.q : -1;
+        slot.node = static_cast<int>(n);
+        slot.from_sum = slot.to_sum = -1;
+        tree_.slots.push_back(slot);
+      }
+    }
+  }
+
+  void link_slots() {
+    for (int i = static_cast<int>(tree_.slots.size()); i-- > 0;) {
+      Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
+      if (slot.parent == kWorld) continue;
+      Slot& parent = tree_.slots[static_cast<std::size_t>(slot.parent)];
+      if (slot.parent == i - 1) {
+        slot.to_previous = parent.from_next = true;
+        continue;
+      }
+      parent.forks = true;
+      slot.opens_sum = parent.from_sum < 0;
+      if (slot.opens_sum) parent.from_sum = tree_.sums++;
+      slot.to_sum = parent.from_sum;
+    }
+  }
+
+  void list_runs() {
+    tree_.all_related = true;
+    for (int i = 0; i < static_cast<int>(tree_.slots.size()); ++i) {
+      tree_.first_run.push_back(static_cast<int>(tree_.runs.size()));
+      tree_.all_related &= tree_.slots[static_cast<std::size_t>(i)].parent == i - 1;
+      for (int j = i; j != kWorld;) {
+        SlotRun run{j, j + 1};
+        while (tree_.slots[static_cast<std::size_t>(run.begin)].parent == run.begin - 1 &&
+               run.begin > 0) {
+          --run.begin;
+        }
+        tree_.runs.push_back(run);
+        j = tree_.slots[static_cast<std::size_t>(run.begin)].parent;
+      }
+    }
+    tree_.first_run.push_back(static_cast<int>(tree_.runs.size()));
+  }
+
+  void group(Layout<B>& layout, int width) {
+    const int slots = static_cast<int>(tree_.slots.size());
+    const int groups = (slots + width - 1) / width;
+    layout.constants = AlignedArray<B>(static_cast<std::size_t>(groups * kConstants * width));
+    for (int g = 0; g < groups; ++g) {
+      const int first = g * width, count = std::min(width, slots - first);
+      typename Layout<B>::Group group{count, true, true, -1};
+      bool follow = count == width;
+      for (int i = first; i < first + count; ++i) {
+        const Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
+        const NodeKind kind = node_of(static_cast<std::size_t>(i)).kind;
+        group.revolute &= kind == NodeKind::revolute;
+        group.simple &= kind <= NodeKind::helical;
+        follow &= slot.q == tree_.slots[static_cast<std::size_t>(first)].q + i - first;
+        write(static_cast<std::size_t>(i),
+              layout.constants.data() + g * kConstants * width + i - first, width);
+      }
+      if (group.simple && follow) group.first_q = tree_.slots[static_cast<std::size_t>(first)].q;
+      layout.groups.push_back(group);
+    }
+  }
+
+  void write(std::size_t i, B* to, int width) const {
+    const Node<B>& node = node_of(i);
+    const auto set = [&](int f, double x) { to[f * width] = static_cast<B>(x); };
+    const auto set3 = [&](int f, const Vec3& a) {
+      for (int k = 0; k < 3; ++k) set(f + k, a[k]);
+    };
+    const auto& R = node.T_parent.rotation();
+    set3(kTurn0, wider(R.cx));
+    set3(kTurn0 + 3, wider(R.cy));
+    set3(kTurn0 + 6, wider(R.cz));
+    if (node.parent != kWorld) set3(kShift0, wider(node.T_parent.position()));
+    const bool revolute = node.kind == NodeKind::revolute, helical = node.kind == NodeKind::helical;
+    set(kTurn, revolute || helical ? 1.0 : 0.0);
+    set(kSlide, node.kind == NodeKind::prismatic ? 1.0 : helical ? wider(node.pitch) : 0.0);
+    set(kArmature, wider(node.armature));
+    set(kDamping, wider(node.damping));
+    set(kComposite, composites_[i]);
+    if (!ends_node(i) || !(node.J.mass() > B(0))) return;
+    const auto& I = node.J.rotational();
+    const Inertia J(wider(node.J.mass()), wider(node.J.first_moment()),
+                    {wider(I.xx), wider(I.yy), wider(I.zz), wider(I.xy), wider(I.yz), wider(I.zx)});
+    const Principal p = principal_of(J.central());
+    set(kMass, J.mass());
+    set3(kCentre, J.centre_of_mass());
+    set(kSpin, p.moments[0]);
+    set3(kAxisA, std::sqrt(p.moments[1] - p.moments[0]) * p.axes[1]);
+    set3(kAxisB, std::sqrt(p.moments[2] - p.moments[0]) * p.axes[2]);
+  }
+
+  Tree<B>& tree_;
+  std::vector<double> composites_;
+};
+
+}  // namespace
+
+template <class B>
+void Tree<B>::lay_out() {
+  LayOut<B>(*this).run();
+}
+
+template struct Tree<double>;
+template struct Tree<float>;
+
+}  // namespace vp::detail
