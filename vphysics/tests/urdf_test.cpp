@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "trees.h"
+#include "vphysics/multibody/constrained_dynamics.h"
 
 namespace vp::test {
 namespace {
@@ -194,9 +195,25 @@ TEST(Urdf, AJointTellsItsLimitsFrictionAndMimic) {
   EXPECT_EQ(k.multiplier, -2.0);
   EXPECT_EQ(k.offset, 0.5);
   EXPECT_EQ(k.upper, std::numeric_limits<double>::infinity());
-  ASSERT_EQ(read.notes.size(), 1u);
-  EXPECT_EQ(read.notes[0],
-            "line 6: joint \"k\" keeps a coordinate of its own, though it mimics \"j\"");
+  EXPECT_TRUE(read.notes.empty());
+
+  // The model knows them too, and the coupling holds where k follows j.
+  const JointForces& forces = read.model.link(j.link).forces.at(0);
+  EXPECT_EQ(forces.lower, -1.5);
+  EXPECT_EQ(forces.upper, 2.5);
+  EXPECT_EQ(forces.motor_limit, 30.0);
+  EXPECT_EQ(forces.friction, 0.25);
+  ConstrainedData data(read.model, must_build(ConstraintSet::make(read.model, read.couplings)));
+  const std::vector<double> rest(2);
+  std::vector<double> q(2);
+  q[static_cast<std::size_t>(read.model.first_coordinate(j.link))] = 0.7;
+  q[static_cast<std::size_t>(read.model.first_coordinate(k.link))] = -2 * 0.7 + 0.5;
+  evaluate_constraints(read.model, data, q, rest);
+  ASSERT_EQ(data.residual().size(), 1u);
+  EXPECT_NEAR(data.residual()[0], 0.0, 1e-15);
+  q[0] += 0.1;
+  evaluate_constraints(read.model, data, q, rest);
+  EXPECT_GT(std::fabs(data.residual()[0]), 0.05);
 }
 
 TEST(Urdf, WhatIsLeftOutIsTold) {
@@ -308,6 +325,8 @@ TEST(UrdfRefusal, OfElementsAndAttributesNamesTheLine) {
            {with("continuous", "<dynamics damping=\"-1\"/>"), 5, "negative"},
            {with("continuous", "<mimic/>"), 5, "needs the attribute \"joint\""},
            {with("continuous", "<mimic joint=\"k\"/>"), 5, "mimics the joint \"k\""},
+           {with("continuous", "<mimic joint=\"j\"/>"), 5, "may mimic another"},
+           {with("floating", "<mimic joint=\"j\"/>"), 5, "may mimic another"},
            {with("continuous", "<parent link=\"b\"/>"), 5, "second <parent>"},
            {with("continuous", "<origin xyz=\"a b c\"/>"), 5, "\"a b c\""},
            {robot(good + "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/></joint>"), 4,

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 namespace vp::detail {
@@ -123,6 +125,16 @@ UrdfJoint to_urdf_joint(const urdf::Joint& joint, int link) {
   return out;
 }
 
+// Limits, friction and effort, for each of the joint's velocities.
+std::vector<JointForces> to_forces(const UrdfJoint& joint, int velocities) {
+  JointForces forces;
+  forces.lower = joint.lower;
+  forces.upper = joint.upper;
+  forces.friction = joint.friction;
+  forces.motor_limit = joint.effort;
+  return std::vector<JointForces>(static_cast<std::size_t>(velocities), forces);
+}
+
 class Builder {
  public:
   explicit Builder(const UrdfLines& lines) : lines_(lines) {}
@@ -146,7 +158,10 @@ class Builder {
     if (auto good = every_joint_moves_mass(); !good) return tl::make_unexpected(good.error());
     auto model = builder_.build();
     if (!model) return tl::make_unexpected(urdf_error(1, model.error().message));
-    return UrdfModel{tree->getName(), *std::move(model), std::move(joints_), {}};
+    auto couplings = this->couplings(*model);
+    if (!couplings) return tl::make_unexpected(couplings.error());
+    return UrdfModel{
+        tree->getName(), *std::move(model), std::move(joints_), *std::move(couplings), {}};
   }
 
  private:
@@ -189,7 +204,8 @@ class Builder {
     spec.T_parent_joint = to_pose(joint.parent_to_joint_origin_transform);
     if (joint.dynamics) spec.damping = joint.dynamics->damping;
     const Vec3 axis = to_vec3(joint.axis);
-    int carried = static_cast<int>(added_.size());
+    joints_.push_back(to_urdf_joint(joint, static_cast<int>(added_.size())));
+    spec.forces = to_forces(joints_.back(), velocities_of(spec.joint));
     if (joint.type == urdf::Joint::PLANAR && !(axis.x == 0.0 && axis.y == 0.0 && axis.z > 0.0)) {
       // The plane's frame is turned against the link's, and turned back by a fixed joint.
       const Mat3 Q = frame_of_plane(axis);
@@ -200,8 +216,26 @@ class Builder {
       spec.parent = *plane;
       spec.T_parent_joint = SE3(transpose(Q), {});
     }
-    joints_.push_back(to_urdf_joint(joint, carried));
     return add(std::move(spec), child);
+  }
+
+  // q - multiplier q of the other = offset.
+  Expected<std::vector<ConstraintPtr>> couplings(const Model& model) const {
+    std::map<std::string_view, int> links;
+    for (const UrdfJoint& joint : joints_) links[joint.name] = joint.link;
+    std::vector<ConstraintPtr> out;
+    for (const UrdfJoint& joint : joints_) {
+      if (joint.mimics.empty()) continue;
+      const int other = links.at(joint.mimics);
+      if (joint.link == other || coordinates_of(model.link(joint.link).joint) != 1 ||
+          coordinates_of(model.link(other).joint) != 1) {
+        return tl::make_unexpected(urdf_error(
+            lines_.joints.at(joint.name).mimic_line,
+            "a joint of one coordinate may mimic another joint of one coordinate, no other"));
+      }
+      out.push_back(couple({{joint.link, 0, 1.0}, {other, 0, -joint.multiplier}}, joint.offset));
+    }
+    return out;
   }
 
   Expected<void> every_joint_moves_mass() const {

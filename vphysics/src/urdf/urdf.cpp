@@ -99,12 +99,6 @@ Expected<UrdfModel> parse(std::string_view text, const UrdfOptions& options) {
   robot->Accept(&cleaned);
   auto model = detail::build_urdf(cleaned.CStr(), *lines, options);
   if (!model) return model;
-  for (const UrdfJoint& joint : model->joints) {
-    if (joint.mimics.empty()) continue;
-    notes.push_back("line " + std::to_string(lines->joints.at(joint.name).mimic_line) +
-                    ": joint \"" + joint.name +
-                    "\" keeps a coordinate of its own, though it mimics \"" + joint.mimics + "\"");
-  }
   model->notes = std::move(notes);
   return model;
 }

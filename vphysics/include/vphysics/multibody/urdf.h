@@ -23,6 +23,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vphysics/multibody/constraint.h"
 #include "vphysics/multibody/model.h"
 
 namespace vp {
@@ -42,7 +43,9 @@ struct UrdfOptions {
 // [rad] and [N m] of one that turns.
 struct UrdfJoint {
   std::string name{};
-  int link = 0;  // the link that it carries: Model::first_coordinate(link) is its first of q
+  // Whose joint it is: Model::first_coordinate(link) is its first of q. The link that it carries,
+  // or that of the plane before it.
+  int link = 0;
   double lower = -std::numeric_limits<double>::infinity();  // of its coordinate
   double upper = std::numeric_limits<double>::infinity();
   double velocity = std::numeric_limits<double>::infinity();  // largest, either way, a second
@@ -56,7 +59,9 @@ struct UrdfJoint {
 struct UrdfModel {
   std::string name{};  // the robot's
   Model model;         // links in the order of the joints in the file, parents before children
-  std::vector<UrdfJoint> joints{};   // of the file, in the order of the links
+  std::vector<UrdfJoint> joints{};  // of the file, in the order of the links
+  // One for each joint that mimics another: for a ConstraintSet. Both have one coordinate.
+  std::vector<ConstraintPtr> couplings{};
   std::vector<std::string> notes{};  // what was left out, with the line where it first stands
 
   // The joint of this name, or null; valid as long as the joints are.
@@ -66,9 +71,10 @@ struct UrdfModel {
 // Reads a robot from the text of a file. An error's message begins with the line: "line 12: ...".
 // Errc::bad_data: not well-formed XML (also nested more than 100 deep), not a <robot>, an element
 // or attribute missing or twice, a value that is no finite number, a joint of unknown type or axis
-// zero, a name that is unknown or taken, links that are no single tree, a negative mass, friction
-// or damping, an inertia that no body has, a joint that moves no mass. Errc::unsupported: more than
-// 16 MiB of text. Errc::invalid_argument: T_world_root is no pose.
+// zero, a name that is unknown or taken, a joint that mimics itself or one of not one coordinate,
+// links that are no single tree, a negative mass, friction or damping, an inertia that no body has,
+// a joint that moves no mass. Errc::unsupported: more than 16 MiB of text. Errc::invalid_argument:
+// T_world_root is no pose.
 Expected<UrdfModel> parse_urdf(std::string_view text, const UrdfOptions& options = {});
 
 // The same from a file; Errc::bad_data too where it cannot be read. The message begins with the
