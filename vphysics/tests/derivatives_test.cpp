@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "screws_joint.h"
 
@@ -457,6 +458,34 @@ TEST(ForwardDerivatives, OfFloatsAreThoseOfDoubles) {
   }
   std::printf("worst: %.1e\n", worst);
   EXPECT_LT(worst, 1e-4);
+}
+
+// What a call leaves in the memory is no part of the next one's answer, not even what is no number.
+TEST(ForwardDerivatives, DependOnNothingButTheirArguments) {
+  Random random(108);
+  const Model model = tree_with_screws(random, 12);
+  const State s = random_state(random, model), other = random_state(random, model);
+  const std::size_t n = s.v.size();
+  const Forward fresh = forward_slopes(model, s, {});
+  Data data(model);
+  DerivativesData memory(model);
+  Forward out{Numbers(n), Numbers(n * n), Numbers(n * n), Numbers(n * n)};
+  const auto call = [&](const State& at) {
+    return forward_dynamics_derivatives<double>(model, data, memory, at.q, at.v, at.tau, {},
+                                                {out.a, out.q, out.v, out.tau});
+  };
+  ASSERT_TRUE(call(other));
+  State broken = s;
+  broken.v[0] = std::numeric_limits<double>::quiet_NaN();
+  (void)call(broken);
+  broken = s;
+  broken.q.back() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(call(broken));
+  ASSERT_TRUE(call(s));
+  EXPECT_EQ(out.a, fresh.a);
+  EXPECT_EQ(out.q, fresh.q);
+  EXPECT_EQ(out.v, fresh.v);
+  EXPECT_EQ(out.tau, fresh.tau);
 }
 
 // --- what is refused

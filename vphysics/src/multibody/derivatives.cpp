@@ -185,68 +185,60 @@ Factors<T> factors_of(const Composite<T>& c, const DerivativesWork<T>& memory, s
           {b.x, b.y, b.z}};
 }
 
-template <class T>
-T along(const std::array<const T*, 6>& x, const std::array<T, 6>& f, std::size_t j) {
-  return ((x[0][j] * f[0] + x[1][j] * f[1]) + (x[2][j] * f[2] + x[3][j] * f[3])) +
-         (x[4][j] * f[4] + x[5][j] * f[5]);
-}
-template <class T>
-T turning(const std::array<const T*, 6>& x, const std::array<T, 3>& b, std::size_t j) {
-  return x[0][j] * b[0] + (x[1][j] * b[1] + x[2][j] * b[2]);
-}
-template <class T>
-std::array<const T*, 6> pointers(const TwistArray<T>& x) {
-  return {x.x[0].data(), x.x[1].data(), x.x[2].data(), x.x[3].data(), x.x[4].data(), x.x[5].data()};
-}
+// What is filled along the velocities before one.
+enum Along : std::size_t { kRowQ, kRowV, kRowA, kColumnQ, kColumnV };
 
-// Row i, and column i for now along the memory's two, over the velocities of one run.
 template <class T>
-void fill_run(const DerivativesWork<T>& memory, const Factors<T>& f, std::size_t begin,
-              std::size_t end, T* __restrict row_q, T* __restrict row_v, T* __restrict row_a,
-              T* __restrict column_q, T* __restrict column_v) {
-  const auto S = pointers(memory.S), S1 = pointers(memory.S1), S2 = pointers(memory.S2),
-             Sv = pointers(memory.Sv);
-  for (std::size_t j = begin; j < end; ++j) row_a[j] = along(S, f.F_a, j);
-  for (std::size_t j = begin; j < end; ++j) {
-    row_q[j] = along(S2, f.F_a, j) + turning(S1, f.b, j);
+void fill_run(DerivativesWork<T>& memory, const Factors<T>& f, std::size_t begin, std::size_t end) {
+  for (std::size_t j = begin; j < end; j += kPack<T>) {
+    std::array<Lanes<T>, 5> sum{};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Lanes<T> S = memory.S.lanes(k, j), F_a(f.F_a[k]);
+      sum[kRowQ] += memory.S2.lanes(k, j) * F_a;
+      sum[kRowV] += memory.Sv.lanes(k, j) * F_a;
+      sum[kRowA] += S * F_a;
+      sum[kColumnQ] += S * Lanes<T>(f.F_q[k]);
+      sum[kColumnV] += S * Lanes<T>(f.F_v[k]);
+      if (k >= 3) continue;
+      sum[kRowQ] += memory.S1.lanes(k, j) * Lanes<T>(f.b[k]);
+      sum[kRowV] += S * Lanes<T>(f.b[k]);
+    }
+    for (std::size_t which = 0; which < 5; ++which) {
+      store_lanes(&memory.along[which][j], sum[which]);
+    }
   }
-  for (std::size_t j = begin; j < end; ++j) row_v[j] = along(Sv, f.F_a, j) + turning(S, f.b, j);
-  for (std::size_t j = begin; j < end; ++j) column_q[j] = along(S, f.F_q, j);
-  for (std::size_t j = begin; j < end; ++j) column_v[j] = along(S, f.F_v, j);
 }
 
 // Row and column i as far as velocity i: those before it, then itself.
 template <class T>
 void fill_velocity(const Node<T>& node, const Composite<T>& composite, DerivativesWork<T>& memory,
-                   std::size_t i, const InverseDerivativesT<T>& out) {
-  const std::size_t n = memory.branches.size();
+                   std::size_t i, const InverseMatrices<T>& out) {
   const Branch& branch = memory.branches[i];
   const Factors<T> f = factors_of(composite, memory, i);
-  T *column_q = memory.column[0].data(), *column_v = memory.column[1].data();
-  for (int r = branch.first_run; r < branch.end_run; ++r) {
-    const Run& run = memory.runs[static_cast<std::size_t>(r)];
+  for (const Run& run : memory.way(branch)) {
     const auto begin = static_cast<std::size_t>(run.first), end = static_cast<std::size_t>(run.end);
-    fill_run(memory, f, begin, end, &out.tau_q[i * n], &out.tau_v[i * n], &out.tau_a[i * n],
-             column_q, column_v);
-    const std::size_t before = std::min(end, i);
-    for (std::size_t j = begin; j < before; ++j) {
-      out.tau_q[j * n + i] = column_q[j];
-      out.tau_v[j * n + i] = column_v[j];
-      out.tau_a[j * n + i] = out.tau_a[i * n + j];
+    fill_run(memory, f, begin, end);
+    for (std::size_t j = begin; j < end; ++j) {
+      out.q(j, i) = memory.along[kColumnQ][j];
+      out.v(j, i) = memory.along[kColumnV][j];
+      out.a(j, i) = memory.along[kRowA][j];
+      out.q(i, j) = memory.along[kRowQ][j];
+      out.v(i, j) = memory.along[kRowV][j];
+      out.a(i, j) = memory.along[kRowA][j];
     }
   }
-  out.tau_a[i * n + i] += node.armature;
-  out.tau_v[i * n + i] += node.damping;
+  out.a(i, i) += node.armature;
+  out.v(i, i) += node.damping;
 }
 
 // Between velocities of one node.
 template <class T>
 void turn_columns(const Node<T>& node, const dse3T<T>& F, const UserSlopes<T>* slopes,
-                  const TwistArray<T>& columns, std::size_t n, std::span<T> tau_q) {
+                  const TwistArray<T>& columns, const MatrixView<T>& tau_q) {
   const auto first = static_cast<std::size_t>(node.v), dofs = static_cast<std::size_t>(node.dofs);
   for (std::size_t k = 0; k < dofs; ++k) {
     for (std::size_t i = 0; i < dofs; ++i) {
-      T& tau = tau_q[(first + k) * n + first + i];
+      T& tau = tau_q(first + k, first + i);
       if (k < i) tau += ad(columns.get(first + i), columns.get(first + k)) * F;
       if (slopes != nullptr) tau += slopes->S[dofs * k + i] * F;
     }
@@ -303,10 +295,17 @@ DerivativesWork<T>::DerivativesWork(const Tree<T>& tree)
     : branches(static_cast<std::size_t>(tree.velocities)),
       A(tree.nodes.size()),
       composites(tree.nodes.size()),
-      L(branches.size() * branches.size()),
+      S(branches.size()),
+      S1(branches.size()),
+      S2(branches.size()),
+      Sv(branches.size()),
+      L(branches.size()),
+      L_transposed(branches.size()),
+      Q(branches.size()),
+      V(branches.size()),
+      inverse(branches.size()),
       D_inverse(branches.size()) {
-  for (TwistArray<T>* x : {&S, &S1, &S2, &Sv}) x->resize(branches.size());
-  for (auto& numbers : column) numbers.resize(branches.size());
+  for (auto& numbers : along) numbers.resize(padded<T>(branches.size() + 64 / sizeof(T)));
   for (const Node<T>& node : tree.nodes) {
     const bool user = node.kind == NodeKind::user;
     slopes_of.push_back(user ? static_cast<int>(slopes.size()) : -1);
@@ -318,8 +317,7 @@ DerivativesWork<T>::DerivativesWork(const Tree<T>& tree)
 template <class T>
 Expected<void> differentiate(const char* call, const Tree<T>& tree, const Work<T>& work,
                              DerivativesWork<T>& memory, Span<T> q, Span<T> v, Span<T> a,
-                             const LoadsT<T>& loads, const InverseDerivativesT<T>& out) {
-  const std::size_t n = memory.branches.size();
+                             const LoadsT<T>& loads, const InverseMatrices<T>& out) {
   const se3T<T> A_root{{}, -loads.gravity};
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     if (!open_node(tree, work, memory, static_cast<int>(i), q, v, a, A_root)) {
@@ -331,9 +329,6 @@ Expected<void> differentiate(const char* call, const Tree<T>& tree, const Work<T
   }
   take_loads(tree, work, memory, loads);
   add_up(tree, memory.composites);
-  for (const auto& matrix : {out.tau_q, out.tau_v, out.tau_a}) {
-    std::fill(matrix.begin(), matrix.end(), T(0));
-  }
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const Node<T>& node = tree.nodes[i];
     const Composite<T>& composite = memory.composites[i];
@@ -344,7 +339,7 @@ Expected<void> differentiate(const char* call, const Tree<T>& tree, const Work<T
     const int slopes = memory.slopes_of[i];
     turn_columns(node, composite.F,
                  slopes < 0 ? nullptr : &memory.slopes[static_cast<std::size_t>(slopes)], memory.S,
-                 n, out.tau_q);
+                 out.q);
   }
   return {};
 }
@@ -372,8 +367,13 @@ Expected<void> inverse_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
   VP_ASSERT(detail::is_square(out.tau_q, v.size()) && detail::is_square(out.tau_v, v.size()) &&
             detail::is_square(out.tau_a, v.size()));
   forward_kinematics<T>(model, data, q, v);
-  return detail::differentiate<T>("inverse_dynamics_derivatives", model.tree(), data.work(),
-                                  memory.work(), q, v, a, loads, out);
+  for (const auto& matrix : {out.tau_q, out.tau_v, out.tau_a}) {
+    std::fill(matrix.begin(), matrix.end(), T(0));
+  }
+  const std::size_t n = v.size();
+  return detail::differentiate<T>(
+      "inverse_dynamics_derivatives", model.tree(), data.work(), memory.work(), q, v, a, loads,
+      {{out.tau_q.data(), n}, {out.tau_v.data(), n}, {out.tau_a.data(), n}});
 }
 
 #define VP_INVERSE_DERIVATIVES(T)                                                                \
@@ -382,7 +382,7 @@ Expected<void> inverse_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
   template Expected<void> detail::differentiate(                                                 \
       const char*, const detail::Tree<T>&, const detail::Work<T>&, detail::DerivativesWork<T>&,  \
       std::span<const T>, std::span<const T>, std::span<const T>, const LoadsT<T>&,              \
-      const InverseDerivativesT<T>&);                                                            \
+      const detail::InverseMatrices<T>&);                                                        \
   template Expected<void> inverse_dynamics_derivatives(                                          \
       const ModelT<T>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>, std::span<const T>, \
       std::span<const T>, const LoadsT<T>&, const InverseDerivativesT<T>&);

@@ -1,7 +1,9 @@
 // The memory of the derivatives, and the passes that forward and inverse dynamics share.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <vector>
 
 #include "multibody/kinematics.h"
@@ -33,26 +35,94 @@ struct Branch {
   int tree_end;            // one more than the largest of its tree
 };
 
-// Six numbers of each velocity, each kind contiguous: the inner loops run along velocities.
+// Lanes of the inner loops: a register of the target's, for wider packs pass through memory. Arrays
+// are padded to 64 bytes, so that whole packs may be read and written past the end of a run.
+#if defined(__AVX512F__)
+inline constexpr std::size_t kRegister = 64;
+#elif defined(__AVX__)
+inline constexpr std::size_t kRegister = 32;
+#else
+inline constexpr std::size_t kRegister = 16;
+#endif
 template <class T>
-struct TwistArray {
-  std::array<std::vector<T>, 6> x;
+inline constexpr std::size_t kPack = kRegister / sizeof(T);
+template <class T>
+using Lanes = PackT<T, static_cast<int>(kPack<T>)>;
+template <class T>
+std::size_t padded(std::size_t n) {
+  constexpr std::size_t kAll = 64 / sizeof(T);
+  return (n + kAll - 1) / kAll * kAll;
+}
 
-  void resize(std::size_t n) {
-    for (auto& column : x) column.resize(n);
-  }
+template <class T>
+Lanes<T> load_lanes(const T* from) {
+  Lanes<T> x;
+  std::memcpy(&x.lanes, from, sizeof x.lanes);
+  return x;
+}
+template <class T>
+void store_lanes(T* to, const Lanes<T>& x) {
+  std::memcpy(to, &x.lanes, sizeof x.lanes);
+}
+
+// Twists of every velocity, each of their numbers contiguous: the inner loops run along velocities.
+template <class T>
+class TwistArray {
+ public:
+  explicit TwistArray(std::size_t n) : stride_(padded<T>(n + 64 / sizeof(T))), x_(6 * stride_) {}
+
   void set(std::size_t i, const se3T<T>& V) {
-    x[0][i] = V.w.x, x[1][i] = V.w.y, x[2][i] = V.w.z;
-    x[3][i] = V.v.x, x[4][i] = V.v.y, x[5][i] = V.v.z;
+    T* x = &x_[i];
+    x[0] = V.w.x, x[stride_] = V.w.y, x[2 * stride_] = V.w.z;
+    x[3 * stride_] = V.v.x, x[4 * stride_] = V.v.y, x[5 * stride_] = V.v.z;
   }
   se3T<T> get(std::size_t i) const {
-    return {{x[0][i], x[1][i], x[2][i]}, {x[3][i], x[4][i], x[5][i]}};
+    const T* x = &x_[i];
+    return {{x[0], x[stride_], x[2 * stride_]}, {x[3 * stride_], x[4 * stride_], x[5 * stride_]}};
   }
+  // Number f of velocities i and after.
+  Lanes<T> lanes(std::size_t f, std::size_t i) const { return load_lanes(&x_[f * stride_ + i]); }
+
+ private:
+  std::size_t stride_;
+  std::vector<T> x_;
+};
+
+// A square matrix by rows; its rows may be longer than it is wide.
+template <class T>
+struct MatrixView {
+  T* at;
+  std::size_t stride;
+  T* row(std::size_t i) const { return at + i * stride; }
+  T& operator()(std::size_t i, std::size_t k) const { return at[i * stride + k]; }
+};
+// One with room for whole packs.
+template <class T>
+class PaddedMatrix {
+ public:
+  explicit PaddedMatrix(std::size_t n) : stride_(padded<T>(n)), x_(n * stride_) {}
+  operator MatrixView<T>() { return {x_.data(), stride_}; }
+  MatrixView<T> view() { return *this; }
+  void clear() { std::fill(x_.begin(), x_.end(), T(0)); }
+
+ private:
+  std::size_t stride_;
+  std::vector<T> x_;
+};
+template <class T>
+struct InverseMatrices {
+  MatrixView<T> q, v, a;
 };
 
 template <class T>
 struct DerivativesWork {
   explicit DerivativesWork(const Tree<T>& tree);
+
+  // All on the way from the root to a velocity, with itself as the last.
+  std::span<const Run> way(const Branch& branch) const {
+    return std::span(runs).subspan(static_cast<std::size_t>(branch.first_run),
+                                   static_cast<std::size_t>(branch.end_run - branch.first_run));
+  }
 
   std::vector<Branch> branches;  // of each velocity
   std::vector<Run> runs;
@@ -61,8 +131,10 @@ struct DerivativesWork {
   std::vector<UserSlopes<T>> slopes;     // of each user's node, in the tree's frame
   std::vector<int> slopes_of;            // a node's, or -1
   TwistArray<T> S, S1, S2, Sv;           // of each velocity: derivatives.cpp
-  std::array<std::vector<T>, 2> column;  // of one velocity, along those before it
-  std::vector<T> L, D_inverse;           // M = L^T D L
+  std::array<std::vector<T>, 5> along;   // of one velocity, along those before it
+  // Of forward dynamics: M = L^T D L, L's transpose, and what the solution works in.
+  PaddedMatrix<T> L, L_transposed, Q, V, inverse;
+  std::vector<T> D_inverse;
 };
 
 template <class T>
@@ -70,10 +142,10 @@ bool is_square(std::span<T> matrix, std::size_t n) {
   return matrix.size() == n * n;
 }
 
-// Fills out, from what a call with the same q, v and a has left in the data's work.
+// Adds to zeros in out, from what a call with the same q and v has left in the data's work.
 template <class T>
 Expected<void> differentiate(const char* call, const Tree<T>& tree, const Work<T>& work,
                              DerivativesWork<T>& memory, Span<T> q, Span<T> v, Span<T> a,
-                             const LoadsT<T>& loads, const InverseDerivativesT<T>& out);
+                             const LoadsT<T>& loads, const InverseMatrices<T>& out);
 
 }  // namespace vp::detail

@@ -8,9 +8,11 @@
 //   inwards    row j -= L_ij row i   for each j before i
 //   outwards   row i = row i / D_i - sum over j of L_ij row j
 //
-// solve for all columns at once, along contiguous rows. On the way inwards the rows of dtau/dq keep
-// the zeros of M: nothing but the range from the root to the last velocity that i moves is touched.
-// M^-1 is symmetric, so only what is right of the diagonal is computed.
+// solve for all columns at once, along contiguous rows: a row takes up all that is subtracted from
+// it while a few packs of its numbers are in registers. On the way inwards the rows of dtau/dq keep
+// the zeros of M, so that nothing but the range from the root to the last velocity that j moves is
+// touched; M^-1 is symmetric, so nothing left of the diagonal is computed, but for what a whole
+// pack takes along and nobody reads.
 #include <algorithm>
 
 #include "multibody/derivatives.h"
@@ -20,97 +22,122 @@ namespace vp {
 namespace detail {
 namespace {
 
-// L and 1/D, in place of M. False where M is not positive definite.
+// Of a row, the numbers that are touched: whole packs.
+template <class T>
+struct Columns {
+  std::size_t begin, end;
+  Columns(std::size_t first, std::size_t last)
+      : begin(first / kPack<T> * kPack<T>), end((last + kPack<T> - 1) / kPack<T> * kPack<T>) {}
+};
+
+// to -= share * from
+template <class T>
+void subtract_row(T share, const T* from, T* to, const Columns<T>& columns) {
+  const Lanes<T> k(share);
+  for (std::size_t c = columns.begin; c < columns.end; c += kPack<T>) {
+    store_lanes(to + c, load_lanes(to + c) - k * load_lanes(from + c));
+  }
+}
+
+// L and 1/D, in place of M. On the diagonal of L, where ones would be, is zero; what is right of it
+// is lost. False where M is not positive definite.
 template <class T>
 bool factor_by_rows(DerivativesWork<T>& memory) {
-  const std::size_t n = memory.branches.size();
+  const MatrixView<T> L = memory.L, transposed = memory.L_transposed;
   const auto before = [&](std::size_t i) { return memory.branches[i].parent; };
-  for (std::size_t k = n; k-- > 0;) {
-    T* row = &memory.L[k * n];
+  for (std::size_t k = memory.branches.size(); k-- > 0;) {
+    T* row = L.row(k);
     if (!(row[k] > T(0))) return false;
     memory.D_inverse[k] = T(1) / row[k];
-    for (int i = before(k); i >= 0; i = before(static_cast<std::size_t>(i))) {
-      const auto at = static_cast<std::size_t>(i);
-      const T share = row[at] * memory.D_inverse[k];
-      T* other = &memory.L[at * n];
-      for (int j = i; j >= 0; j = before(static_cast<std::size_t>(j))) {
-        other[j] -= share * row[j];
-      }
-      row[at] = share;
+    const auto first = static_cast<std::size_t>(memory.branches[k].first);
+    for (int at = before(k); at >= 0; at = before(static_cast<std::size_t>(at))) {
+      const auto i = static_cast<std::size_t>(at);
+      const T share = row[i] * memory.D_inverse[k];
+      // Before i, row k is zero but for those before i on the way to the root.
+      subtract_row(share, row, L.row(i), {first, i + 1});
+      row[i] = share;
+      transposed(i, k) = share;
     }
+    row[k] = T(0);
   }
   return true;
 }
 
-template <class T>
-void subtract_row(T share, const T* __restrict from, T* __restrict to, std::size_t begin,
-                  std::size_t end) {
-  for (std::size_t c = begin; c < end; ++c) to[c] -= share * from[c];
-}
-
-// What of the rows the two sweeps touch.
-struct Columns {
-  std::size_t inwards_begin, inwards_end, outwards_begin, outwards_end;
-};
-Columns columns_of(const Branch& branch) {
-  const auto first = static_cast<std::size_t>(branch.first);
-  return {first, static_cast<std::size_t>(branch.end), first,
-          static_cast<std::size_t>(branch.tree_end)};
-}
-Columns columns_right_of(const Branch& branch, std::size_t i) {
-  return {i, static_cast<std::size_t>(branch.end), i, static_cast<std::size_t>(branch.tree_end)};
-}
-
-template <class T, class Range>
-void sweep_inwards(const DerivativesWork<T>& memory, std::span<T> X, const Range& range) {
-  const std::size_t n = memory.branches.size();
-  for (std::size_t i = n; i-- > 0;) {
-    const Columns columns = range(i);
-    for (int j = memory.branches[i].parent; j >= 0;
-         j = memory.branches[static_cast<std::size_t>(j)].parent) {
-      const auto at = static_cast<std::size_t>(j);
-      subtract_row(memory.L[i * n + at], &X[i * n], &X[at * n], columns.inwards_begin,
-                   columns.inwards_end);
+// Row `to` of X: scale times itself less factors[i] times row i for those in a run; N packs from
+// column c.
+template <class T, std::size_t N>
+void take_up(const MatrixView<T>& X, std::size_t to, std::size_t c, T scale, const T* factors,
+             std::span<const Run> runs) {
+  std::array<Lanes<T>, N> sum;
+  for (std::size_t p = 0; p < N; ++p) {
+    sum[p] = Lanes<T>(scale) * load_lanes(X.row(to) + c + p * kPack<T>);
+  }
+  for (const Run& run : runs) {
+    for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end); ++i) {
+      const Lanes<T> factor(factors[i]);
+      const T* from = X.row(i) + c;
+      for (std::size_t p = 0; p < N; ++p) {
+        sum[p] -= factor * load_lanes(from + p * kPack<T>);
+      }
     }
+  }
+  for (std::size_t p = 0; p < N; ++p) store_lanes(X.row(to) + c + p * kPack<T>, sum[p]);
+}
+template <class T>
+void take_up(const MatrixView<T>& X, std::size_t to, const Columns<T>& columns, T scale,
+             const T* factors, std::span<const Run> runs) {
+  std::size_t c = columns.begin;
+  for (; c + 6 * kPack<T> <= columns.end; c += 6 * kPack<T>) {
+    take_up<T, 6>(X, to, c, scale, factors, runs);
+  }
+  for (; c + 2 * kPack<T> <= columns.end; c += 2 * kPack<T>) {
+    take_up<T, 2>(X, to, c, scale, factors, runs);
+  }
+  for (; c < columns.end; c += kPack<T>) take_up<T, 1>(X, to, c, scale, factors, runs);
+}
+
+// X <- sign M^-1 X. The columns of row i begin at first(i).
+template <class T, class First>
+void solve(DerivativesWork<T>& memory, const MatrixView<T>& X, T sign, const First& first) {
+  const MatrixView<T> L = memory.L, transposed = memory.L_transposed;
+  for (std::size_t j = memory.branches.size(); j-- > 0;) {
+    const Branch& branch = memory.branches[j];
+    const Run after{static_cast<int>(j) + 1, branch.end};
+    take_up<T>(X, j, {first(j), static_cast<std::size_t>(branch.end)}, T(1), transposed.row(j),
+               std::span(&after, 1));
+  }
+  for (std::size_t i = 0; i < memory.branches.size(); ++i) {
+    const Branch& branch = memory.branches[i];
+    take_up<T>(X, i, {first(i), static_cast<std::size_t>(branch.tree_end)},
+               sign * memory.D_inverse[i], L.row(i), memory.way(branch));
   }
 }
 
-template <class T, class Range>
-void sweep_outwards(const DerivativesWork<T>& memory, std::span<T> X, T sign, const Range& range) {
-  const std::size_t n = memory.branches.size();
+template <class T>
+void copy_out(std::size_t n, const MatrixView<T>& X, std::span<T> out) {
   for (std::size_t i = 0; i < n; ++i) {
-    const Columns columns = range(i);
-    T* row = &X[i * n];
-    const T scale = sign * memory.D_inverse[i];
-    for (std::size_t c = columns.outwards_begin; c < columns.outwards_end; ++c) row[c] *= scale;
-    for (int j = memory.branches[i].parent; j >= 0;
-         j = memory.branches[static_cast<std::size_t>(j)].parent) {
-      const auto at = static_cast<std::size_t>(j);
-      subtract_row(memory.L[i * n + at], &X[at * n], row, columns.outwards_begin,
-                   columns.outwards_end);
-    }
+    std::copy(X.row(i), X.row(i) + n, out.begin() + static_cast<std::ptrdiff_t>(i * n));
   }
 }
 
-// X <- -M^-1 X, of a matrix with the zeros of M.
+// out <- -M^-1 X, of a matrix with the zeros of M.
 template <class T>
-void solve(const DerivativesWork<T>& memory, std::span<T> X) {
-  const auto range = [&](std::size_t i) { return columns_of(memory.branches[i]); };
-  sweep_inwards(memory, X, range);
-  sweep_outwards(memory, X, T(-1), range);
+void solve(DerivativesWork<T>& memory, const MatrixView<T>& X, std::span<T> out) {
+  solve(memory, X, T(-1),
+        [&](std::size_t i) { return static_cast<std::size_t>(memory.branches[i].first); });
+  copy_out(memory.branches.size(), X, out);
 }
 
-// X <- M^-1
+// out <- M^-1
 template <class T>
-void invert(const DerivativesWork<T>& memory, std::span<T> X) {
+void invert(DerivativesWork<T>& memory, std::span<T> out) {
   const std::size_t n = memory.branches.size();
-  std::fill(X.begin(), X.end(), T(0));
-  for (std::size_t i = 0; i < n; ++i) X[i * n + i] = T(1);
-  const auto range = [&](std::size_t i) { return columns_right_of(memory.branches[i], i); };
-  sweep_inwards(memory, X, range);
-  sweep_outwards(memory, X, T(1), range);
+  const MatrixView<T> X = memory.inverse;
+  memory.inverse.clear();
+  for (std::size_t i = 0; i < n; ++i) X(i, i) = T(1);
+  solve(memory, X, T(1), [](std::size_t i) { return i; });
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t c = 0; c < i; ++c) X[i * n + c] = X[c * n + i];
+    for (std::size_t c = i; c < n; ++c) out[i * n + c] = out[c * n + i] = X(i, c);
   }
 }
 
@@ -130,9 +157,12 @@ Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
   const auto solved = forward_dynamics<T>(model, data, q, v, tau, loads, out.a);
   if (!solved) return solved;
   detail::DerivativesWork<T>& work = memory.work();
-  const auto differentiated = detail::differentiate<T>(
-      "forward_dynamics_derivatives", model.tree(), data.work(), work, q, v, out.a, loads,
-      {.tau_q = out.a_q, .tau_v = out.a_v, .tau_a = work.L});
+  // L has its zeros where M has them, in every configuration; X does not keep them.
+  work.Q.clear();
+  work.V.clear();
+  const auto differentiated =
+      detail::differentiate<T>("forward_dynamics_derivatives", model.tree(), data.work(), work, q,
+                               v, out.a, loads, {work.Q, work.V, work.L});
   if (!differentiated) return differentiated;
   if (!detail::factor_by_rows(work)) {
     return tl::make_unexpected(
@@ -140,8 +170,8 @@ Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
               "forward_dynamics_derivatives: the mass matrix is not positive definite in this "
               "configuration; give the links an inertia, or the joints an armature"});
   }
-  detail::solve<T>(work, out.a_q);
-  detail::solve<T>(work, out.a_v);
+  detail::solve<T>(work, work.Q, out.a_q);
+  detail::solve<T>(work, work.V, out.a_v);
   detail::invert<T>(work, out.a_tau);
   return {};
 }
