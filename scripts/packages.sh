@@ -2,7 +2,8 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does).
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), bench (the
+# engines that ./bench multibody compares with).
 
 packages_table() {
   cat <<'TABLE'
@@ -47,6 +48,12 @@ check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
 check  libelf-dev            simavr reads the firmware through it
+bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
+bench  libdart-dev           DART, another one to compare with
+bench  liborocos-kdl-dev     KDL, another one
+bench  libbullet-dev         Bullet's btMultiBody, another one
+bench  libsimbody-dev        Simbody, another one
+bench  libeigen3-dev         matrices of DART and KDL, principal axes
 TABLE
 }
 
@@ -134,10 +141,10 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
   verb=${1:-list}
   [[ $# -gt 0 ]] && shift
   case $verb in
-    list) packages_table | awk -v groups=" ${*:-build play check} " 'index(groups, " " $1 " ")' ;;
+    list) packages_table | awk -v groups=" ${*:-build play check bench} " 'index(groups, " " $1 " ")' ;;
     install) packages_install build/log/packages.log "${@:-build}" ;;
     *)
-      echo "usage: scripts/packages.sh list|install [build|play|check]..." >&2
+      echo "usage: scripts/packages.sh list|install [build|play|check|bench]..." >&2
       exit 2
       ;;
   esac

@@ -17,6 +17,61 @@ BLOCK = re.compile(r'(<!-- figures: (\w+) -->\n)(.*?)(<!-- end of figures -->)',
 COLUMNS = ['subject', 'engine', 'metric', 'value', 'unit']
 
 
+def grid(corner, rows, columns, cell):
+    """A table whose cells are told by cell(row, column); rows without any cell are left out."""
+    lines = [f'| {corner} | {" | ".join(columns)} |', f'| --- |{" ---: |" * len(columns)}']
+    for row in rows:
+        cells = [cell(row, column) for column in columns]
+        if any(cells):
+            lines.append(f'| {row} | {" | ".join(c or "-" for c in cells)} |')
+    return [*lines, '']
+
+
+def in_order(words):
+    return list(dict.fromkeys(words))
+
+
+def flat(rows):
+    lines = ['| subject | engine | metric | value |', '| --- | --- | --- | ---: |']
+    lines += [f'| {r["subject"]} | {r["engine"]} | {r["metric"]} | {r["value"]} {r["unit"]} |'.replace(' |  |', ' | |')
+              for r in rows]
+    return [*lines, '']
+
+
+def multibody(rows):
+    """Times by model and engine, batches by model and lanes, and what was reached beside its goal."""
+    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
+    engines = in_order(r['engine'] for r in rows if r['metric'] == 'forward_us')
+    models = in_order(r['subject'] for r in rows if r['metric'] == 'forward_us')
+    lines = []
+    for metric, title in [('forward_us', 'forward dynamics [us]'), ('inverse_us', 'inverse dynamics [us]'),
+                          ('mass_us', 'mass matrix [us]')]:
+        lines += grid(title, models, engines, lambda model, engine: value.get((model, engine, metric)))
+    lanes = in_order(m.group(1) for r in rows if (m := re.fullmatch(r'forward_batch_(\w+)_us', r['metric'])))
+    lines += grid('forward dynamics in batches [us a state]', models, lanes,
+                  lambda model, lane: value.get((model, 'Virtual Physics', f'forward_batch_{lane}_us')))
+    lines += ['| what | of | reached | goal | |', '| --- | --- | ---: | ---: | --- |']
+    for r in rows:
+        reached = value.get((r['subject'], 'Virtual Physics', r['metric']))
+        if r['engine'] == 'goal' and reached:
+            verdict = 'met' if float(reached) <= float(r['value']) else 'short'
+            lines.append(f'| {r["metric"].replace("_", " ")} | {r["subject"]} | {reached} | {r["value"]} '
+                         f'{r["unit"]} | {verdict} |')
+    return [*lines, '']
+
+
+def operations(rows):
+    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
+
+    def cell(subject, engine):
+        return f'{value[subject, engine, "multiplications"]} / {value[subject, engine, "additions"]}'
+    return grid('multiplications / additions', in_order(r['subject'] for r in rows),
+                in_order(r['engine'] for r in rows), cell)
+
+
+LAYOUTS = {'multibody': multibody, 'operations': operations}  # all others: flat
+
+
 def table(name, root):
     lines = []
     for path in sorted((root / 'benchmarks/results').glob(f'*/{name}.csv')):
@@ -24,11 +79,7 @@ def table(name, root):
             rows = list(csv.DictReader(file))
         if not rows or list(rows[0]) != COLUMNS:
             raise ValueError(f'{path.relative_to(root)}: expected the columns {",".join(COLUMNS)}')
-        lines += [f'On {path.parent.name}:', '', '| subject | engine | metric | value |',
-                  '| --- | --- | --- | ---: |']
-        lines += [f'| {r["subject"]} | {r["engine"]} | {r["metric"]} | {r["value"]} {r["unit"]} |'.replace(' |  |', ' | |')
-                  for r in rows]
-        lines.append('')
+        lines += [f'On {path.parent.name}:', '', *LAYOUTS.get(name, flat)(rows)]
     if not lines:
         raise ValueError(f'README.md shows {name}, which nobody has measured: run ./bench {name} and '
                          f'keep its file in benchmarks/results')

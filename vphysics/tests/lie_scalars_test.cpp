@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "operation_counts.h"
 #include "random.h"
 #include "vphysics/lie.h"
 #include "vphysics/lie/count.h"
@@ -221,47 +222,17 @@ TEST(Float, LogInvertsExp) {
 
 // --- the paper's Table 3, and equation (6)
 
-class Table3 : public testing::Test {
- protected:
-  // Not more than the paper; a division counts as a multiplication.
-  template <class F>
-  void expect_at_most(const char* what, long multiplications, long additions, const F& f) {
-    const OperationCount n = count_operations(f);
-    std::printf("%-16s %4ld x %4ld +   paper %4ld x %4ld +\n", what,
-                n.multiplications + n.divisions, n.additions, multiplications, additions);
-    EXPECT_LE(n.multiplications + n.divisions, multiplications) << what;
-    EXPECT_LE(n.additions, additions) << what;
-    EXPECT_GT(n.multiplications, 0) << what;
-    EXPECT_EQ(n.others, 0) << what;
+TEST(Table3, IsReachedOrBetterAndEquationSixToo) {
+  const auto rows = count_operations_of_the_paper();
+  ASSERT_EQ(rows.size(), 6u);
+  for (const OperationRow& row : rows) {
+    std::printf("%-16s %4ld x %4ld +   paper %4ld x %4ld +\n", row.name, row.multiplications(),
+                row.ours.additions, row.paper_multiplications, row.paper_additions);
+    EXPECT_LE(row.multiplications(), row.paper_multiplications) << row.name;
+    EXPECT_LE(row.ours.additions, row.paper_additions) << row.name;
+    EXPECT_GT(row.ours.multiplications, 0) << row.name;
+    EXPECT_EQ(row.ours.others, 0) << row.name;
   }
-  const se3T<Count> V{{0.1, 0.2, 0.3}, {1, 2, 3}};
-  const SE3T<Count> A = Exp(V);
-  const InertiaT<Count> rigid{2, Vec3T<Count>{1, 2, 3}};
-};
-
-TEST_F(Table3, IsReachedOrBetter) {
-  const AInertiaT<Count> articulated = rigid;
-  expect_at_most("Ad(SE3, se3)", 24, 18, [&] { (void)Ad(A, V); });
-  expect_at_most("ad(se3, se3)", 18, 12, [&] { (void)ad(V, V); });
-  expect_at_most("Inertia * se3", 24, 18, [&] { (void)(rigid * V); });
-  expect_at_most("Inertia.Xform", 101, 66, [&] { (void)rigid.Xform(A); });
-  expect_at_most("AInertia.Xform", 294, 210, [&] { (void)articulated.Xform(A); });
-}
-
-TEST_F(Table3, EquationSixCostsLessThanThePaperSays) {
-  SE3T<Count> f[2] = {A, A};
-  InertiaT<Count> I[2] = {rigid, rigid};
-  AInertiaT<Count> J[2] = {I[0], I[1]};
-  se3T<Count> S[2] = {V, V};
-  dse3T<Count> eta;
-  const int i = 1;
-  expect_at_most("equation (6)", 360, 269, [&] {
-    eta = J[i] * S[i];
-    // clang-format off
-    J[i-1] = I[i-1]
-    + (J[i] - (eta*eta) / (S[i]*eta)) .Xform(Inv(f[i]));
-    // clang-format on
-  });
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+// What the comparison asks of an engine, ours or a peer.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "models.h"
+#include "states.h"
+
+namespace vp::bench {
+
+enum class Metric { forward, inverse, mass };
+inline constexpr Metric kMetrics[] = {Metric::forward, Metric::inverse, Metric::mass};
+const char* name_of(Metric metric);
+
+inline constexpr Vec3 kGravity{0, 0, -9.81};
+
+// A model with its states, in the engine's own terms: what is converted is converted when it is
+// made, so that a call costs what it costs a user of that engine.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  // Why it has no such call; empty if it has.
+  virtual std::string lacks(Metric) const { return {}; }
+  // Hands the engine the state and has it computed; all that is timed. Nothing stays from one call
+  // to the next. Returns some number of the result, so that nobody can leave the call out.
+  virtual double call(Metric metric, std::size_t state) = 0;
+  // The same, and all of the result in our terms: accelerations, forces, or the matrix by rows.
+  virtual std::vector<double> result(Metric metric, std::size_t state) = 0;
+};
+
+// The engine, or why it cannot have this model.
+using MadeEngine = tl::expected<std::unique_ptr<Engine>, std::string>;
+MadeEngine make_ours(const BenchModel& model, const std::vector<State>& states);
+MadeEngine make_mujoco(const BenchModel& model, const std::vector<State>& states);
+MadeEngine make_dart(const BenchModel& model, const std::vector<State>& states);
+MadeEngine make_kdl(const BenchModel& model, const std::vector<State>& states);
+MadeEngine make_bullet(const BenchModel& model, const std::vector<State>& states);
+MadeEngine make_simbody(const BenchModel& model, const std::vector<State>& states);
+
+struct EngineKind {
+  const char* option;  // on the command line
+  const char* name;    // in tables
+  MadeEngine (*make)(const BenchModel&, const std::vector<State>&);
+};
+inline constexpr EngineKind kEngines[] = {
+    {"vphysics", "Virtual Physics", make_ours},
+    {"mujoco", "MuJoCo", make_mujoco},
+    {"dart", "DART", make_dart},
+    {"kdl", "KDL", make_kdl},
+    {"bullet", "Bullet", make_bullet},
+    {"simbody", "Simbody", make_simbody},
+};
+
+// Ours again, over several states at once: forward dynamics.
+class Batch {
+ public:
+  virtual ~Batch() = default;
+  virtual std::string name() const = 0;  // "double4"
+  virtual int lanes() const = 0;
+  virtual bool single() const = 0;  // float
+  virtual std::size_t packs() const = 0;
+  // Forward dynamics of all states of a pack.
+  virtual double call(std::size_t pack) = 0;
+  virtual std::vector<double> result(std::size_t pack, int lane) = 0;
+};
+// Lane l of pack p has the state p * lanes + l. Precondition: a multiple of 16 states.
+std::vector<std::unique_ptr<Batch>> make_batches(const BenchModel& model,
+                                                 const std::vector<State>& states);
+
+}  // namespace vp::bench
