@@ -49,9 +49,10 @@ inline constexpr std::size_t kPack = kRegister / sizeof(T);
 template <class T>
 using Lanes = PackT<T, static_cast<int>(kPack<T>)>;
 template <class T>
+inline constexpr std::size_t kWidestPack = 64 / sizeof(T);
+template <class T>
 std::size_t padded(std::size_t n) {
-  constexpr std::size_t kAll = 64 / sizeof(T);
-  return (n + kAll - 1) / kAll * kAll;
+  return (n + kWidestPack<T> - 1) / kWidestPack<T> * kWidestPack<T>;
 }
 
 template <class T>
@@ -69,23 +70,25 @@ void store_lanes(T* to, const Lanes<T>& x) {
 template <class T>
 class TwistArray {
  public:
-  explicit TwistArray(std::size_t n) : stride_(padded<T>(n + 64 / sizeof(T))), x_(6 * stride_) {}
+  explicit TwistArray(std::size_t n) : stride_(padded<T>(n + kWidestPack<T>)), x_(6 * stride_) {}
 
   void set(std::size_t i, const se3T<T>& V) {
-    T* x = &x_[i];
+    T* x = x_.data() + i;
     x[0] = V.w.x, x[stride_] = V.w.y, x[2 * stride_] = V.w.z;
     x[3 * stride_] = V.v.x, x[4 * stride_] = V.v.y, x[5 * stride_] = V.v.z;
   }
   se3T<T> get(std::size_t i) const {
-    const T* x = &x_[i];
+    const T* x = x_.data() + i;
     return {{x[0], x[stride_], x[2 * stride_]}, {x[3 * stride_], x[4 * stride_], x[5 * stride_]}};
   }
   // Number f of velocities i and after.
-  Lanes<T> lanes(std::size_t f, std::size_t i) const { return load_lanes(&x_[f * stride_ + i]); }
+  Lanes<T> lanes(std::size_t f, std::size_t i) const {
+    return load_lanes(x_.data() + f * stride_ + i);
+  }
 
  private:
   std::size_t stride_;
-  std::vector<T> x_;
+  AlignedArray<T> x_;
 };
 
 // A square matrix by rows; its rows may be longer than it is wide.
@@ -103,11 +106,11 @@ class PaddedMatrix {
   explicit PaddedMatrix(std::size_t n) : stride_(padded<T>(n)), x_(n * stride_) {}
   operator MatrixView<T>() { return {x_.data(), stride_}; }
   MatrixView<T> view() { return *this; }
-  void clear() { std::fill(x_.begin(), x_.end(), T(0)); }
+  void clear() { std::fill_n(x_.data(), x_.size(), T(0)); }
 
  private:
   std::size_t stride_;
-  std::vector<T> x_;
+  AlignedArray<T> x_;
 };
 template <class T>
 struct InverseMatrices {
@@ -131,7 +134,7 @@ struct DerivativesWork {
   std::vector<UserSlopes<T>> slopes;     // of each user's node, in the tree's frame
   std::vector<int> slopes_of;            // a node's, or -1
   TwistArray<T> S, S1, S2, Sv;           // of each velocity: derivatives.cpp
-  std::array<std::vector<T>, 5> along;   // of one velocity, along those before it
+  std::array<AlignedArray<T>, 5> along;  // of one velocity, along those before it
   // Of forward dynamics: M = L^T D L, L's transpose, and what the solution works in.
   PaddedMatrix<T> L, L_transposed, Q, V, inverse;
   std::vector<T> D_inverse;
@@ -141,11 +144,5 @@ template <class T>
 bool is_square(std::span<T> matrix, std::size_t n) {
   return matrix.size() == n * n;
 }
-
-// Adds to zeros in out, from what a call with the same q and v has left in the data's work.
-template <class T>
-Expected<void> differentiate(const char* call, const Tree<T>& tree, const Work<T>& work,
-                             DerivativesWork<T>& memory, Span<T> q, Span<T> v, Span<T> a,
-                             const LoadsT<T>& loads, const InverseMatrices<T>& out);
 
 }  // namespace vp::detail

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "multibody/instantiate.h"
+#include "multibody/instruction_set.h"
 #include "multibody/joints.h"
 #include "multibody/kernels.h"
 #include "vphysics/assert.h"
@@ -17,15 +18,9 @@ using vphysics_kernels::Kernels;
 
 const Kernels* best_kernels() {
 #ifdef VP_INSTRUCTION_SETS
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("bmi2")) {
-    return vphysics_kernels::kAvx512;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) {
-    return vphysics_kernels::kAvx2;
-  }
+  const InstructionSet best = best_instruction_set();
+  if (best == InstructionSet::avx512) return vphysics_kernels::kAvx512;
+  if (best == InstructionSet::avx2) return vphysics_kernels::kAvx2;
 #endif
   return vphysics_kernels::kBaseline;
 }

@@ -13,21 +13,21 @@
 // the zeros of M, so that nothing but the range from the root to the last velocity that j moves is
 // touched; M^-1 is symmetric, so nothing left of the diagonal is computed, but for what a whole
 // pack takes along and nobody reads.
+#pragma once
+
 #include <algorithm>
 
 #include "multibody/derivatives.h"
-#include "vphysics/assert.h"
 
-namespace vp {
-namespace detail {
-namespace {
+namespace vp::detail::slopes {
 
-// Of a row, the numbers that are touched: whole packs.
+// Of a row, the numbers that are touched: as many for every instruction set, so that even the signs
+// of zeros are the same.
 template <class T>
 struct Columns {
   std::size_t begin, end;
   Columns(std::size_t first, std::size_t last)
-      : begin(first / kPack<T> * kPack<T>), end((last + kPack<T> - 1) / kPack<T> * kPack<T>) {}
+      : begin(first / kWidestPack<T> * kWidestPack<T>), end(padded<T>(last)) {}
 };
 
 // to -= share * from
@@ -141,46 +141,16 @@ void invert(DerivativesWork<T>& memory, std::span<T> out) {
   }
 }
 
-}  // namespace
-}  // namespace detail
-
+// From dtau/dq, dtau/dv and M, where `differentiate_kernel` has put them. False where M is not
+// positive definite.
 template <class T>
-Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& data,
-                                            DerivativesDataT<T>& memory, std::span<const T> q,
-                                            std::span<const T> v, std::span<const T> tau,
-                                            const LoadsT<T>& loads,
-                                            const ForwardDerivativesT<T>& out) {
-  VP_ASSERT(q.size() == static_cast<std::size_t>(model.coordinates()));
-  VP_ASSERT(v.size() == static_cast<std::size_t>(model.velocities()) && tau.size() == v.size());
-  VP_ASSERT(out.a.size() == v.size() && detail::is_square(out.a_q, v.size()) &&
-            detail::is_square(out.a_v, v.size()) && detail::is_square(out.a_tau, v.size()));
-  const auto solved = forward_dynamics<T>(model, data, q, v, tau, loads, out.a);
-  if (!solved) return solved;
-  detail::DerivativesWork<T>& work = memory.work();
-  // L has its zeros where M has them, in every configuration; X does not keep them.
-  work.Q.clear();
-  work.V.clear();
-  const auto differentiated =
-      detail::differentiate<T>("forward_dynamics_derivatives", model.tree(), data.work(), work, q,
-                               v, out.a, loads, {work.Q, work.V, work.L});
-  if (!differentiated) return differentiated;
-  if (!detail::factor_by_rows(work)) {
-    return tl::make_unexpected(
-        Error{Errc::singular,
-              "forward_dynamics_derivatives: the mass matrix is not positive definite in this "
-              "configuration; give the links an inertia, or the joints an armature"});
-  }
-  detail::solve<T>(work, work.Q, out.a_q);
-  detail::solve<T>(work, work.V, out.a_v);
-  detail::invert<T>(work, out.a_tau);
-  return {};
+bool solve_kernel(DerivativesWork<T>& memory, std::span<T> a_q, std::span<T> a_v,
+                  std::span<T> a_tau) {
+  if (!factor_by_rows(memory)) return false;
+  solve<T>(memory, memory.Q, a_q);
+  solve<T>(memory, memory.V, a_v);
+  invert<T>(memory, a_tau);
+  return true;
 }
 
-#define VP_FORWARD_DERIVATIVES(T)                                                                \
-  template Expected<void> forward_dynamics_derivatives(                                          \
-      const ModelT<T>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>, std::span<const T>, \
-      std::span<const T>, const LoadsT<T>&, const ForwardDerivativesT<T>&);
-VP_FORWARD_DERIVATIVES(double)
-VP_FORWARD_DERIVATIVES(float)
-
-}  // namespace vp
+}  // namespace vp::detail::slopes
