@@ -54,6 +54,7 @@ bench  liborocos-kdl-dev     KDL, another one
 bench  libbullet-dev         Bullet's btMultiBody, another one
 bench  libsimbody-dev        Simbody, another one
 bench  libeigen3-dev         matrices of DART and KDL, principal axes
+bench  python3-matplotlib    draws the curves of ./bench drift
 TABLE
 }
 

@@ -56,6 +56,16 @@ Displacement<T> operator*(const Displacement<T>& A, const Displacement<T>& B) {
   return {A.c * B.u + B.c * A.u + cross(A.u, B.u), A.c * B.c - dot(A.u, B.u),
           A.d + turned_by(A, B.d)};
 }
+// dAd_D F - F, with the precision of its own size.
+template <class T>
+dse3T<T> change_of(const Displacement<T>& D, const dse3T<T>& F) {
+  const auto change = [&](const Vec3T<T>& x) {  // R^T x - x
+    const Vec3T<T> ux = cross(D.u, x);
+    return T(2) * (cross(D.u, ux) - D.c * ux);
+  };
+  const Vec3T<T> moved = cross(D.d, F.f);
+  return {change(F.m) - (moved + change(moved)), change(F.f)};
+}
 // With h the half angle, A = sin(h) cos(h) / h and B = (sin(h) / h)^2 / 2 (so3.h).
 template <class T>
 Displacement<T> displacement(const se3T<T>& W) {
@@ -298,21 +308,24 @@ class VariationalStep {
                          "dampers");
   }
 
-  // (2). What rounding has left of (1) is added, so that it is not lost from step to step.
+  // (2), as what (1) has on its left side and how that changes over the step: rounding is then that
+  // of the change, and what (1) is off by is not lost.
   Expected<void> end() {
     integrate<T>(model_, q_, work_.u, work_.q);
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
       const Node<T>& node = tree_.nodes[n];
-      const SE3T<T> D = pose(work_.nodes[n].D);
+      const VariationalNode<T>& own = work_.nodes[n];
       const bool user = node.kind == NodeKind::user;
       UserPlace<T> place{};
       if (user) place = user_place<T>(node, q_, work_.u);
-      // In the frame in which the columns stand still: the tree's at q0, or the link's at q1.
-      const dse3T<T> Pi = dAd(user ? D * work_.nodes[n].link : D, work_.nodes[n].momentum);
+      const dse3T<T> Pi = user ? dAd(pose(own.D) * own.link, own.momentum) : dse3T<T>{};
+      const dse3T<T> change = change_of(own.D, own.momentum);
       for (int k = 0; k < node.dofs; ++k) {
         const auto i = static_cast<std::size_t>(node.v + k);
-        const se3T<T>& S = user ? place.S[static_cast<std::size_t>(k)] : work_.S[i];
-        work_.v[i] = S * Pi + node.armature * mean()[i] + residual()[i];
+        const se3T<T>& S = work_.S[i];
+        const T grown =
+            user ? place.S[static_cast<std::size_t>(k)] * Pi - S * own.momentum : S * change;
+        work_.v[i] = slope()[i] + residual()[i] + grown;
       }
     }
     inverse_dynamics<T>(model_, work_.data, work_.q, work_.rest, work_.rest, step_.loads,
