@@ -57,20 +57,18 @@ void lay_out_branches(const Tree<T>& tree, DerivativesWork<T>& memory) {
 }
 
 template <class T>
-const vphysics_kernels::DerivativeKernels& derivative_kernels() {
-  static const auto* const best = [] {
-    switch (best_instruction_set()) {
+const vphysics_kernels::DerivativeKernels& derivative_kernels_of(const DataT<T>& data) {
+  constexpr std::size_t kScalar = std::is_same_v<T, double> ? 0 : 1;
+  switch (data.work().instruction_set) {
 #ifdef VP_INSTRUCTION_SETS
-      case InstructionSet::avx512:
-        return vphysics_kernels::kAvx512Derivatives;
-      case InstructionSet::avx2:
-        return vphysics_kernels::kAvx2Derivatives;
+    case InstructionSet::avx512:
+      return vphysics_kernels::kAvx512Derivatives[kScalar];
+    case InstructionSet::avx2:
+      return vphysics_kernels::kAvx2Derivatives[kScalar];
 #endif
-      default:
-        return vphysics_kernels::kBaselineDerivatives;
-    }
-  }();
-  return best[std::is_same_v<T, double> ? 0 : 1];
+    default:
+      return vphysics_kernels::kBaselineDerivatives[kScalar];
+  }
 }
 
 template <class T>
@@ -79,7 +77,7 @@ Expected<void> differentiate(const char* call, const ModelT<T>& model, const Dat
                              const LoadsT<T>& loads, const InverseMatrices<T>& out) {
   VP_ASSERT(loads.external.empty() ||
             loads.external.size() == static_cast<std::size_t>(model.links()));
-  if (derivative_kernels<T>().differentiate(
+  if (derivative_kernels_of(data).differentiate(
           {&model.tree(), &data.work(), &memory, q.data(), v.data(), a.data(), &loads, &out})) {
     return {};
   }
@@ -168,7 +166,7 @@ Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
       detail::differentiate<T>("forward_dynamics_derivatives", model, data, work, q, v, out.a,
                                loads, {work.Q, work.V, work.L});
   if (!differentiated) return differentiated;
-  if (!detail::derivative_kernels<T>().solve(
+  if (!detail::derivative_kernels_of(data).solve(
           {&work, v.size(), out.a_q.data(), out.a_v.data(), out.a_tau.data()})) {
     return tl::make_unexpected(
         Error{Errc::singular,

@@ -16,15 +16,6 @@ namespace {
 using vphysics_kernels::Arguments;
 using vphysics_kernels::Kernels;
 
-const Kernels* best_kernels() {
-#ifdef VP_INSTRUCTION_SETS
-  const InstructionSet best = best_instruction_set();
-  if (best == InstructionSet::avx512) return vphysics_kernels::kAvx512;
-  if (best == InstructionSet::avx2) return vphysics_kernels::kAvx2;
-#endif
-  return vphysics_kernels::kBaseline;
-}
-
 template <class T>
 constexpr std::size_t scalar_index();
 template <>
@@ -53,9 +44,17 @@ constexpr std::size_t scalar_index<Float16>() {
 }
 
 template <class T>
-const Kernels& kernels() {
-  static const Kernels* const best = best_kernels();
-  return best[scalar_index<T>()];
+const Kernels& kernels_of(const DataT<T>& data) {
+  switch (data.work().instruction_set) {
+#ifdef VP_INSTRUCTION_SETS
+    case InstructionSet::avx512:
+      return vphysics_kernels::kAvx512[scalar_index<T>()];
+    case InstructionSet::avx2:
+      return vphysics_kernels::kAvx2[scalar_index<T>()];
+#endif
+    default:
+      return vphysics_kernels::kBaseline[scalar_index<T>()];
+  }
 }
 
 template <class T>
@@ -91,13 +90,18 @@ Expected<void> no_inertia(const char* call) {
 }  // namespace
 
 template <class T>
-Work<T>::Work(const Tree<base_t<T>>& tree)
-    : fields(static_cast<std::size_t>(kFields * kSlots<T>) * layout_of<T>(tree).groups.size()),
+Work<T>::Work(const Tree<base_t<T>>& tree, Arithmetic arithmetic)
+    : instruction_set(instruction_set_for(arithmetic)),
+      rows(kSlots<T> > 1
+               ? static_cast<std::size_t>(kRowSize * kSlots<T>) * layout_of<T>(tree).groups.size()
+               : 0),
+      fields(static_cast<std::size_t>(kFields * kSlots<T>) * layout_of<T>(tree).groups.size()),
       world(static_cast<std::size_t>(kFields * kSlots<T>)),
       factors(tree.slots.size()),
-      articulated_sums(static_cast<std::size_t>(tree.sums)),
-      force_sums(static_cast<std::size_t>(tree.sums)),
-      moment_sums(static_cast<std::size_t>(tree.sums)),
+      articulated_flow(static_cast<std::size_t>(tree.inflow_places)),
+      row_flow(static_cast<std::size_t>(tree.inflow_places)),
+      force_flow(static_cast<std::size_t>(tree.inflow_places)),
+      moment_flow(static_cast<std::size_t>(tree.inflow_places)),
       added(tree.slots.size()),
       zeros(tree.slots.size(), T(0)) {
   Fields<T, T>(world.data()).set(kX, SE3T<T>());
@@ -114,8 +118,8 @@ Work<T>::Work(const Tree<base_t<T>>& tree)
 }  // namespace detail
 
 template <class T>
-DataT<T>::DataT(const ModelT<base_t<T>>& model)
-    : work_(std::make_unique<detail::Work<T>>(model.tree())) {}
+DataT<T>::DataT(const ModelT<base_t<T>>& model, Arithmetic arithmetic)
+    : work_(std::make_unique<detail::Work<T>>(model.tree(), arithmetic)) {}
 template <class T>
 DataT<T>::~DataT() = default;
 template <class T>
@@ -128,7 +132,7 @@ void forward_kinematics(const ModelT<base_t<T>>& model, DataT<T>& data, std::spa
                         std::span<const T> v) {
   auto args = detail::start<T>(model, data, q);
   if (!v.empty()) args.v = detail::checked<T>(model, v);
-  detail::kernels<T>().kinematics(args);
+  detail::kernels_of(data).kinematics(args);
 }
 
 template <class T>
@@ -160,13 +164,13 @@ Expected<void> forward_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data,
   detail::add_loads<T>(args, model, loads);
   detail::checked<T>(model, a);
   args.out = a.data();
-  if (detail::kernels<T>().forward_dynamics(args)) return {};
+  if (detail::kernels_of(data).forward_dynamics(args)) return {};
   return detail::no_inertia("forward_dynamics");
 }
 
 template <class T>
 Expected<void> factor_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q) {
-  if (detail::kernels<T>().factor_mass(detail::start<T>(model, data, q))) return {};
+  if (detail::kernels_of(data).factor_mass(detail::start<T>(model, data, q))) return {};
   return detail::no_inertia("factor_mass");
 }
 
@@ -175,7 +179,7 @@ void solve_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<T> x) 
   detail::Arguments args{&model.tree(), &data.work()};
   detail::checked<T>(model, x);
   args.out = x.data();
-  detail::kernels<T>().solve_mass(args);
+  detail::kernels_of(data).solve_mass(args);
 }
 
 template <class T>
@@ -188,7 +192,7 @@ void inverse_dynamics(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<
   detail::add_loads<T>(args, model, loads);
   detail::checked<T>(model, tau);
   args.out = tau.data();
-  detail::kernels<T>().inverse_dynamics(args);
+  detail::kernels_of(data).inverse_dynamics(args);
 }
 
 template <class T>
@@ -197,7 +201,7 @@ void mass_matrix(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const
   auto args = detail::start<T>(model, data, q);
   VP_ASSERT(M.size() == static_cast<std::size_t>(model.velocities() * model.velocities()));
   args.out = M.data();
-  detail::kernels<T>().mass_matrix(args);
+  detail::kernels_of(data).mass_matrix(args);
 }
 
 #define VP_DYNAMICS(T)                                                                          \

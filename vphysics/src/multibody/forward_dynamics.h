@@ -11,6 +11,7 @@
 // identity.
 #pragma once
 
+#include "multibody/free_root.h"
 #include "multibody/inflow.h"
 #include "multibody/outwards.h"
 
@@ -54,28 +55,113 @@ dse3T<T> force_out(const dse3T<T>& p, const se3T<T>& S, const T& x, Factor<T>& f
   return p + u * factor.W;
 }
 
+// The same by rows: of bodies and forces as put_rows has left them.
+template <class T, bool kForces>
+void put_rows(const Work<T>& work, int g, const Body<Row<T>>& body, const dse3T<Row<T>>& F) {
+  const Vec3T<Row<T>> h = body.mass * body.centre;
+  const Sym3T<Row<T>> I = rotational(body, h);
+  const Row<T> zero(0);
+  Row<T> inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx, body.mass, zero};
+  Row<T> moment[8] = {h.x, h.y, h.z, -h.x, -h.y, -h.z, zero, zero};
+  Row<T> force[8] = {F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z, zero, zero};
+  transpose_rows(inertia);
+  transpose_rows(moment);
+  if constexpr (kForces) transpose_rows(force);
+  for (int k = 0; k < kSlots<T>; ++k) {
+    T* const row = work.row(g * kSlots<T> + k);
+    store(row + kRowInertia, inertia[k]);
+    store(row + kRowMoment, moment[k]);
+    if constexpr (kForces) store(row + kRowForce, force[k]);
+  }
+}
+template <class T>
+dse3T<T> wrench_from(const T* at) {
+  return {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}};
+}
+template <class T, bool kForces>
+bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
+  Inflow<ArticulatedRows<T>> inflow(work.row_flow);
+  AllPositive<T> positive;
+  for (int i = tree.velocities; i-- > 0;) {
+    const auto n = static_cast<std::size_t>(i);
+    const Slot& slot = tree.slots[n];
+    const T* const row = work.row(i);
+    const auto k = constants_of<T>(tree, i);
+    Factor<T>& factor = work.factors[n];
+    const se3T<T> S = work.slot(i).twist(kS);
+    ArticulatedRows<T> load{columns_of<T>(vp::detail::load<Row<T>>(row + kRowInertia),
+                                          vp::detail::load<Row<T>>(row + kRowMoment)),
+                            vp::detail::load<Row<T>>(row + kRowForce)};
+    load = load + inflow.take(slot);
+    alignas(64) T u[8], p[8];
+    if (slot.kind == SlotKind::root) {
+      const FreeRoot<T> root(tree, work, i);
+      root.factor(triangle_of(load.J), positive);
+      if constexpr (kForces) {
+        store(p, load.p);
+        root.take_forces(tau, v, wrench_from(p));
+      }
+      i -= 5;
+      continue;
+    }
+    const Row<T> U = times(load.J, S);
+    spread(u, U);
+    const T omega = S * wrench_from(u) + k.get(kArmature);
+    positive.see(omega);
+    const T inverse = T(1) / omega;
+    load.J = without(load.J, U, u, inverse);
+    const Row<T> W = Row<T>(inverse) * U;
+    store(&factor.W.m.x, W);
+    T x(0);
+    if constexpr (kForces) {
+      spread(p, load.p);
+      const T left = (tau[n] - k.get(kDamping) * v[n]) - S * wrench_from(p);
+      x = left * inverse;
+      load.p = load.p + Row<T>(left) * W;
+    }
+    factor.inverse = inverse;
+    factor.x = x;
+    inflow.give(slot, load);
+  }
+  return positive.fine();
+}
+
 // Without the velocities' part, for factors alone, bodies' forces are not needed.
 template <class T, bool kForces>
-bool factor(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
-  Inflow<Articulated<T>> inflow(work.articulated_sums);
+bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
+  Inflow<Articulated<T>> inflow(work.articulated_flow);
   AllPositive<T> positive;
   for (int i = tree.velocities; i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto fields = work.slot(i);
     const auto k = constants_of<T>(tree, i);
     Factor<T>& factor = work.factors[static_cast<std::size_t>(i)];
-    Articulated<T> load = inflow.take(slot);
-    load.J = InertiaT<T>(k.get(kMass), fields.vec(kH), fields.sym(kI)) + load.J;
+    const InertiaT<T> body(k.get(kMass), fields.vec(kH), fields.sym(kI));
+    const Articulated<T>& in = inflow.take(slot);
+    Articulated<T> load{body + in.J, fields.wrench(kF) + in.p};
+    if (slot.kind == SlotKind::root) {
+      const FreeRoot<T> root(tree, work, i);
+      root.factor(triangle_of(load.J), positive);
+      if constexpr (kForces) root.take_forces(tau, v, load.p);
+      i -= 5;
+      continue;
+    }
     const se3T<T> S = fields.twist(kS);
     load.J = factor_out(load.J, S, k.get(kArmature), factor, positive);
     if constexpr (kForces) {
       const auto n = static_cast<std::size_t>(i);
       const T x = tau[n] - k.get(kDamping) * v[n];
-      load.p = force_out(load.p + fields.wrench(kF), S, x, factor);
+      load.p = force_out(load.p, S, x, factor);
     }
     inflow.give(slot, load);
   }
   return positive.fine();
+}
+
+template <class T, bool kForces>
+bool factor(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
+  if constexpr (kByRows<T>) return factor_by_rows<T, kForces>(tree, work, v, tau);
+  return factor_by_slots<T, kForces>(tree, work, v, tau);
 }
 
 // x <- the joints' accelerations that the factors have left.
@@ -85,6 +171,12 @@ void expand(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
   for (int i = 0; i < tree.velocities; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const Slot& slot = tree.slots[n];
+    if (slot.kind == SlotKind::root) {
+      a = FreeRoot<T>(tree, work, i + 5).expand(x);
+      i += 5;
+      work.added[n + 5] = a;
+      continue;
+    }
     if (!slot.to_previous) {
       a = slot.parent == kWorld ? se3T<T>{} : work.added[static_cast<std::size_t>(slot.parent)];
     }
@@ -111,10 +203,15 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
   outwards<T, Reach::accelerations>(tree, work, q, v, {}, [&](int g, const auto& k) {
     const auto fields = work.group(g);
     const auto body = body_in_tree(k, fields.pose(kX));
-    set_inertia(work, g, body);
-    fields.set(kF, body_force(body, fields.twist(kV), fields.twist(kA)));
+    const auto F = body_force(body, fields.twist(kV), fields.twist(kA));
+    if constexpr (kByRows<T>) {
+      put_rows<T, true>(work, g, body, F);
+    } else {
+      set_inertia(work, g, body);
+      fields.set(kF, F);
+    }
   });
-  subtract_external<T>(tree, work, external);
+  subtract_external<T, kByRows<T>>(tree, work, external);
   if (!factor<T, true>(tree, work, v, tau)) return false;
   expand<T>(tree, work, a);
   return true;
@@ -123,18 +220,29 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
 template <class T>
 VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q) {
   outwards<T, Reach::poses>(tree, work, q, {}, {}, [&](int g, const auto& k) {
-    set_inertia(work, g, body_in_tree(k, work.group(g).pose(kX)));
+    const auto body = body_in_tree(k, work.group(g).pose(kX));
+    if constexpr (kByRows<T>) {
+      put_rows<T, false>(work, g, body, {});
+    } else {
+      set_inertia(work, g, body);
+    }
   });
   return factor<T, false>(tree, work, {}, {});
 }
 
 template <class T>
 VP_FLATTEN void solve_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
-  Inflow<dse3T<T>> inflow(work.force_sums);
+  LightInflow<dse3T<T>> inflow(work.force_flow);
   for (int i = tree.velocities; i-- > 0;) {
     const auto n = static_cast<std::size_t>(i);
     const Slot& slot = tree.slots[n];
-    inflow.give(slot, force_out(inflow.take(slot), work.slot(i).twist(kS), x[n], work.factors[n]));
+    const dse3T<T> p = inflow.add(slot, {});
+    if (slot.kind == SlotKind::root) {
+      FreeRoot<T>(tree, work, i).take_forces(x, {}, p);
+      i -= 5;
+      continue;
+    }
+    inflow.give(slot, force_out(p, work.slot(i).twist(kS), x[n], work.factors[n]));
   }
   expand<T>(tree, work, x);
 }

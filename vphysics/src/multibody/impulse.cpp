@@ -39,7 +39,7 @@ InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const 
 template <class T>
 dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int node, dse3T<T> F) {
   for (int k = tree.nodes[static_cast<std::size_t>(node)].dofs; k-- > 0;) {
-    F = F - (column_of<T>(tree, work, node, k) * F) * gain_of<T>(tree, work, node, k);
+    F = F - (factored_column_of<T>(tree, work, node, k) * F) * gain_of<T>(tree, work, node, k);
   }
   return F;
 }
@@ -99,7 +99,7 @@ void InverseInertiasT<T>::update(const ModelT<base_t<T>>& model, const DataT<T>&
     InverseInertiaT<T> L{};
     if (parent != kWorld) L = of_node_[static_cast<std::size_t>(parent)];
     for (int k = 0; k < tree.nodes[i].dofs; ++k) {
-      L = detail::through<T>(L, detail::column_of<T>(tree, work, node, k),
+      L = detail::through<T>(L, detail::factored_column_of<T>(tree, work, node, k),
                              detail::gain_of<T>(tree, work, node, k),
                              detail::omega_inverse_of<T>(tree, work, node, k));
     }

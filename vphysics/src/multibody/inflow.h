@@ -1,7 +1,6 @@
-// What flows inwards, from slots to their parents.
-//
-// Along a chain it stays in registers: the next slot's comes straight to the slot before it. Where
-// a tree forks, the other branches wait in a sum in memory.
+// What flows inwards, from slots to their parents: loads, in places of a data's memory (Slot::from,
+// Slot::to). The first place is always empty, the second is the next slot's; where a tree forks the
+// other branches have places of their own.
 #pragma once
 
 #include "multibody/work.h"
@@ -11,26 +10,49 @@ namespace vp::detail {
 template <class Load>
 class Inflow {
  public:
-  explicit Inflow(std::vector<Load>& sums) : sums_(sums) {}
+  explicit Inflow(std::vector<Load>& places) : places_(places.data()) {}
 
   // Of the slots inwards from the last, each once: all that its children gave,
-  Load take(const Slot& slot) const {
-    Load load = slot.from_next ? next_ : Load{};
-    if (slot.from_sum >= 0) load = load + sums_[static_cast<std::size_t>(slot.from_sum)];
-    return load;
+  const Load& take(const Slot& slot) {
+    if (!slot.from_next_too) return places_[slot.from];
+    places_[Slot::kNext] = places_[Slot::kNext] + places_[slot.from];
+    return places_[Slot::kNext];
   }
   // then what it gives itself.
   void give(const Slot& slot, const Load& load) {
-    if (slot.to_previous) {
-      next_ = load;
-    } else if (slot.to_sum >= 0) {
-      Load& sum = sums_[static_cast<std::size_t>(slot.to_sum)];
-      sum = slot.opens_sum ? load : sum + load;
+    Load& place = places_[slot.to];
+    if (slot.adds) {
+      place = place + load;
+    } else {
+      place = load;
     }
   }
 
  private:
-  std::vector<Load>& sums_;
+  Load* places_;
+};
+
+// The same for loads so small that the next slot's stays in registers.
+template <class Load>
+class LightInflow {
+ public:
+  explicit LightInflow(std::vector<Load>& places) : places_(places.data()) {}
+
+  // What its children gave comes on top of the slot's own.
+  Load add(const Slot& slot, Load load) const {
+    if (slot.from == Slot::kNext || slot.from_next_too) load = load + next_;
+    if (slot.from >= Slot::kOthers) load = load + places_[slot.from];
+    return load;
+  }
+  void give(const Slot& slot, const Load& load) {
+    next_ = load;
+    if (slot.to < Slot::kOthers) return;
+    Load& place = places_[slot.to];
+    place = slot.adds ? place + load : load;
+  }
+
+ private:
+  Load* places_;
   Load next_{};
 };
 

@@ -1,21 +1,26 @@
-// Which of the instruction sets that the kernels are compiled for is this machine's widest.
+// Which of the instruction sets that the kernels are compiled for a data uses.
 #pragma once
+
+#include <cstdint>
+
+#include "vphysics/multibody/data.h"
 
 namespace vp::detail {
 
-enum class InstructionSet { baseline, avx2, avx512 };
+enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
 
-inline InstructionSet best_instruction_set() {
+// The wider sets multiply and add at once, hence round differently: not for reproducible results.
+inline InstructionSet instruction_set_for([[maybe_unused]] Arithmetic arithmetic) {
 #ifdef VP_INSTRUCTION_SETS
+  if (arithmetic == Arithmetic::reproducible) return InstructionSet::baseline;
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("bmi2")) {
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("bmi2");
+  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
     return InstructionSet::avx512;
   }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) {
-    return InstructionSet::avx2;
-  }
+  if (avx2) return InstructionSet::avx2;
 #endif
   return InstructionSet::baseline;
 }

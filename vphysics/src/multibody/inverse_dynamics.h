@@ -20,14 +20,14 @@ VP_FLATTEN void inverse_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
     const auto body = body_in_tree(k, fields.pose(kX));
     fields.set(kF, body_force(body, fields.twist(kV), fields.twist(kA)));
   });
-  subtract_external<T>(tree, work, external);
-  Inflow<dse3T<T>> inflow(work.force_sums);
+  subtract_external<T, false>(tree, work, external);
+  LightInflow<dse3T<T>> inflow(work.force_flow);
   for (int i = tree.velocities; i-- > 0;) {
     const auto n = static_cast<std::size_t>(i);
     const Slot& slot = tree.slots[n];
     const auto fields = work.slot(i);
     const auto k = constants_of<T>(tree, i);
-    const dse3T<T> F = inflow.take(slot) + fields.wrench(kF);
+    const dse3T<T> F = inflow.add(slot, fields.wrench(kF));
     tau[n] = fields.twist(kS) * F + (k.get(kArmature) * a[n] + k.get(kDamping) * v[n]);
     inflow.give(slot, F);
   }

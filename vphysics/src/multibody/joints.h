@@ -11,10 +11,13 @@ template <class T>
 using Span = std::span<const T>;
 
 template <class T>
+Vec3T<T> wide(const Vec3T<base_t<T>>& a) {
+  return {T(a.x), T(a.y), T(a.z)};
+}
+template <class T>
 SE3T<T> wide(const SE3T<base_t<T>>& A) {
-  const auto each = [](const auto& a) { return Vec3T<T>{T(a.x), T(a.y), T(a.z)}; };
   const auto& R = A.rotation();
-  return {Mat3T<T>{each(R.cx), each(R.cy), each(R.cz)}, each(A.position())};
+  return {Mat3T<T>{wide<T>(R.cx), wide<T>(R.cy), wide<T>(R.cz)}, wide<T>(A.position())};
 }
 template <class T>
 InertiaT<T> wide(const InertiaT<base_t<T>>& J) {
@@ -87,12 +90,10 @@ QuaternionT<T> quaternion_at(Span<T> q, int i) {
   return {q[k], q[k + 1], q[k + 2], q[k + 3]};
 }
 
-// The node's pose under its parent's and, in the tree's frame, its columns. A free root carries the
-// origin of its tree along.
+// The node's pose under its parent's and, in the tree's frame, its columns; not of a free root.
 template <class T>
 VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, const SE3T<T>& parent, Span<T> q,
-                               Span<T> v, Columns<T>& columns, Vec3T<T>& origin,
-                               const Vec3T<base_t<T>>& root) {
+                               Span<T> v, Columns<T>& columns) {
   const Vec3T<T> nowhere{T(0), T(0), T(0)};
   SE3T<T> zero = wide<T>(node.T_parent);
   if (node.parent == kWorld) zero = {zero.rotation(), nowhere};
@@ -107,25 +108,19 @@ VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, const SE3T<T>& paren
     columns.rate = Ad(X, columns.rate);
     return X;
   }
-  Mat3T<T> R;
+  const bool free = node.kind == NodeKind::free;
+  const Mat3T<T> R =
+      zero.rotation() * from_quaternion(quaternion_at<T>(q, free ? node.q + 3 : node.q));
   Vec3T<T> p = zero.position();
-  if (node.kind == NodeKind::ball) {
-    R = zero.rotation() * from_quaternion(quaternion_at<T>(q, node.q));
-  } else {
-    R = zero.rotation() * from_quaternion(quaternion_at<T>(q, node.q + 3));
+  if (free) {
     const auto i = static_cast<std::size_t>(node.q);
-    const Vec3T<T> moved = zero.rotation() * Vec3T<T>{q[i], q[i + 1], q[i + 2]};
-    if (node.parent == kWorld) {
-      origin = Vec3T<T>{T(root.x), T(root.y), T(root.z)} + moved;
-    } else {
-      p += moved;
-    }
+    p += zero.rotation() * Vec3T<T>{q[i], q[i + 1], q[i + 2]};
   }
   // The axes of the link.
   for (int k = 0; k < 3; ++k) {
     const Vec3T<T>& axis = k == 0 ? R.cx : k == 1 ? R.cy : R.cz;
     columns.S[static_cast<std::size_t>(k)] = {axis, cross(p, axis)};
-    if (node.dofs == 6) columns.S[static_cast<std::size_t>(k + 3)] = {nowhere, axis};
+    if (free) columns.S[static_cast<std::size_t>(k + 3)] = {nowhere, axis};
   }
   return {R, p};
 }

@@ -1,10 +1,10 @@
 // The passes, compiled for several instruction sets, and the choice among them when the program
 // starts: docs/decisions/0012.
 //
-// All give the same bits: wider registers, never another order of operations, and no contraction.
-// kernels.cpp is compiled once for each set, in a namespace of its own, so that the linker can
-// never take an inline function of one for another's. What crosses between the namespaces is this
-// header's: addresses.
+// The baseline gives the same bits everywhere; the wider sets have fused multiply-add and give
+// their own. kernels.cpp is compiled once for each set, in a namespace of its own, so that the
+// linker can never take an inline function of one for another's. What crosses between the
+// namespaces is this header's: addresses.
 #pragma once
 
 #include <cstddef>

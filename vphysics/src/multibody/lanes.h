@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <type_traits>
 
 #include "vphysics/lie/ainertia.h"
 #include "vphysics/lie/pack.h"
@@ -41,15 +42,29 @@ using Wide = typename WideOf<T>::type;
 template <class T>
 inline constexpr int kSlots = WideOf<T>::kSlots;
 
+// From an aligned place. As numbers, which no pointer or count can be: what the compiler holds in
+// registers of those stays there.
 template <class N, class T>
 inline N load(const T* from) {
-  N x;
-  std::memcpy(static_cast<void*>(&x), from, sizeof x);
-  return x;
+  if constexpr (std::is_same_v<N, T>) {
+    return *from;
+  } else {
+    return N(*reinterpret_cast<const typename N::Lanes*>(from));
+  }
 }
 template <class N, class T>
 inline void store(T* to, const N& x) {
-  std::memcpy(static_cast<void*>(to), &x, sizeof x);
+  if constexpr (std::is_same_v<N, T>) {
+    *to = x;
+  } else {
+    *reinterpret_cast<typename N::Lanes*>(to) = x.lanes;
+  }
+}
+template <class N, class T>
+inline N load_unaligned(const T* from) {
+  N x;
+  std::memcpy(static_cast<void*>(&x), from, sizeof x);
+  return x;
 }
 
 // Zeros, at the boundary of a cache line.

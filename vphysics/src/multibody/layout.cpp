@@ -103,9 +103,14 @@ class LayOut {
                       : node.parent == kWorld
                           ? kWorld
                           : tree_.nodes[static_cast<std::size_t>(node.parent)].body_slot();
+        slot.kind = node.simple()                                          ? SlotKind::simple
+                    : node.kind == NodeKind::free && node.parent == kWorld ? SlotKind::root
+                                                                           : SlotKind::column;
+        slot.last = k == node.dofs - 1;
         slot.q = node.simple() ? node.q : -1;
         slot.node = static_cast<int>(n);
-        slot.from_sum = slot.to_sum = -1;
+        slot.from = Slot::kNone;
+        slot.to = Slot::kNext;
         tree_.slots.push_back(slot);
       }
     }
@@ -117,13 +122,18 @@ class LayOut {
       if (slot.parent == kWorld) continue;
       Slot& parent = tree_.slots[static_cast<std::size_t>(slot.parent)];
       if (slot.parent == i - 1) {
-        slot.to_previous = parent.from_next = true;
+        slot.to_previous = true;
+        if (parent.from == Slot::kNone) {
+          parent.from = Slot::kNext;
+        } else {
+          parent.from_next_too = true;
+        }
         continue;
       }
       parent.forks = true;
-      slot.opens_sum = parent.from_sum < 0;
-      if (slot.opens_sum) parent.from_sum = tree_.sums++;
-      slot.to_sum = parent.from_sum;
+      slot.adds = parent.from >= Slot::kOthers;
+      if (!slot.adds) parent.from = tree_.inflow_places++;
+      slot.to = parent.from;
     }
   }
 
@@ -151,12 +161,13 @@ class LayOut {
     layout.constants = AlignedArray<B>(static_cast<std::size_t>(groups * kConstants * width));
     for (int g = 0; g < groups; ++g) {
       const int first = g * width, count = std::min(width, slots - first);
-      typename Layout<B>::Group group{count, true, true, -1};
+      typename Layout<B>::Group group{count, true, true, true, -1};
       bool follow = count == width;
       for (int i = first; i < first + count; ++i) {
         const Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
         const NodeKind kind = node_of(static_cast<std::size_t>(i)).kind;
         group.revolute &= kind == NodeKind::revolute;
+        group.idle &= slot.kind == SlotKind::root && !slot.last;
         group.simple &= kind <= NodeKind::helical;
         follow &= slot.q == tree_.slots[static_cast<std::size_t>(first)].q + i - first;
         write(static_cast<std::size_t>(i),

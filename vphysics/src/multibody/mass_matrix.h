@@ -41,11 +41,11 @@ VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
   outwards<T, Reach::poses>(tree, work, q, {}, {}, [&](int g, const auto& k) {
     set_inertia(work, g, body_in_tree(k, work.group(g).pose(kX)));
   });
-  Inflow<Moments<T>> inflow(work.moment_sums);
+  LightInflow<Moments<T>> inflow(work.moment_flow);
   for (int i = tree.velocities; i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto fields = work.slot(i);
-    const Moments<T> C = inflow.take(slot) + Moments<T>{fields.vec(kH), fields.sym(kI)};
+    const Moments<T> C = inflow.add(slot, {fields.vec(kH), fields.sym(kI)});
     fields.set(kH, C.h);
     fields.set(kI, C.I);
     inflow.give(slot, C);

@@ -44,16 +44,22 @@ struct LinkPlace {
   int q, v;
 };
 
+// column: of a node that is not simple; root: of one that is free and hangs on the world.
+enum class SlotKind : std::uint8_t { simple, column, root };
+
 struct Slot {
   int parent;  // a slot, or kWorld
-  int q;       // of a simple node its coordinate, else -1
+  SlotKind kind;
+  bool last;  // of its node: the body's
+  int q;      // of a simple node its coordinate, else -1
   int node;
-  // What flows inwards comes in registers from the next slot and through sums in memory from
-  // others (inflow.h).
-  bool from_next, to_previous;
-  int from_sum, to_sum;  // or -1
-  bool opens_sum;        // the first to add to it
-  bool forks;            // somebody else than the next slot hangs on it
+  // Inwards (inflow.h): the places where its children's loads are, and where its own goes.
+  static constexpr int kNone = 0, kNext = 1, kOthers = 2;
+  int from, to;
+  bool from_next_too;  // besides from: the next slot's
+  bool adds;           // others have given to that place before
+  bool to_previous;    // the slot before it is its parent
+  bool forks;          // somebody else than the next slot hangs on it
 };
 
 // Slots that follow each other.
@@ -84,6 +90,7 @@ struct Layout {
   struct Group {
     int count;      // of slots; the others are zero
     bool revolute;  // all of them
+    bool idle;      // slots of a free root, without its last
     bool simple;    // all of them
     int first_q;    // where the coordinates follow each other and fill the group, else -1
   };
@@ -101,8 +108,8 @@ struct Tree {
   // Made of the above (layout.cpp).
   std::vector<Slot> slots;
   std::vector<Vec3T<B>> roots;  // where they are at zero coordinates
-  int sums = 0;
-  std::vector<SlotRun> runs;       // the slots between a root and each slot, both included
+  int inflow_places = Slot::kOthers;
+  std::vector<SlotRun> runs;   // the slots between a root and each slot, both included
   std::vector<int> first_run;  // of each slot; one more for the end
   bool all_related = false;    // of any two slots one is above the other
   Layout<B> one;               // for one state: groups of eight slots

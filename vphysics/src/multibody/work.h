@@ -9,6 +9,8 @@
 #include <array>
 #include <vector>
 
+#include "multibody/instruction_set.h"
+#include "multibody/rows.h"
 #include "multibody/tree.h"
 #include "vphysics/multibody/data.h"
 
@@ -16,20 +18,31 @@ namespace vp::detail {
 
 // A slot's numbers (lanes.h).
 enum Field : int {
-  kX = 0,     // pose
-  kS = 12,    // motion subspace
-  kV = 18,    // velocity
-  kA = 24,    // acceleration that the velocities make, on top of that of the gravity field
-  kH = 30,    // of the body: first moment,
-  kI = 33,    // rotational inertia,
-  kF = 39,    // and bias force
-  kOwn = 45,  // velocity relative to the parent
+  kX = 0,        // pose
+  kS = 12,       // motion subspace
+  kV = 18,       // velocity
+  kA = 24,       // acceleration that the velocities make, on top of that of the gravity field
+  kH = 30,       // of the body: first moment,
+  kI = 33,       // rotational inertia,
+  kF = 39,       // and bias force
+  kOwn = 45,     // velocity relative to the parent; before that:
+  kTurned = 45,  // sine and cosine of the joint's angle, and its slide
   kFields = 51
+};
+
+// Numbers of a slot for the recursions by rows (rows.h): the pose; the body's rotational inertia,
+// mass and a zero; its first moment, the same with the other sign and two zeros; its bias force.
+enum RowField : int {
+  kRowPose = 0,
+  kRowInertia = 16,
+  kRowMoment = 24,
+  kRowForce = 32,
+  kRowSize = 40
 };
 
 // What the inward pass leaves for the outward one.
 template <class T>
-struct Factor {
+struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Factor {
   dse3T<T> W;  // J^ S / Omega
   T inverse;   // 1 / Omega, Omega = <S, J^ S> + armature
   T x;         // u / Omega, u what is left of tau
@@ -65,7 +78,7 @@ struct Columns {
 
 template <class T>
 struct Work {
-  explicit Work(const Tree<base_t<T>>& tree);
+  Work(const Tree<base_t<T>>& tree, Arithmetic arithmetic);
 
   Fields<T, T> slot(int i) const { return Fields<T, T>(fields_at(i)); }
   Fields<T, Wide<T>> group(int g) const { return Fields<T, Wide<T>>(fields_at(g * kSlots<T>)); }
@@ -75,12 +88,18 @@ struct Work {
     Fields<T, T>(world.data()).set(kA + 3, acceleration);
   }
 
+  T* row(int i) const { return rows.data() + i * kRowSize; }
+
+  InstructionSet instruction_set;
+  mutable AlignedArray<T> rows;  // of one state: kRowSize for each slot
   mutable AlignedArray<T> fields;
   AlignedArray<T> world;  // the fields of what the roots hang on
   std::vector<Factor<T>> factors;
-  std::vector<Articulated<T>> articulated_sums;
-  std::vector<dse3T<T>> force_sums;
-  std::vector<Moments<T>> moment_sums;
+  std::vector<Articulated<T>> articulated_flow;
+  struct None {};
+  std::vector<std::conditional_t<(kSlots<T> > 1), ArticulatedRows<T>, None>> row_flow;
+  std::vector<dse3T<T>> force_flow;
+  std::vector<Moments<T>> moment_flow;
   std::vector<se3T<T>> added;       // what the joints add to A
   std::vector<Columns<T>> columns;  // of each node that is not simple
   std::vector<int> columns_of;      // a node's, or -1
@@ -109,8 +128,19 @@ template <class T>
 se3T<T> column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
   return work.slot(tree.nodes[static_cast<std::size_t>(node)].v + k).twist(kS);
 }
-// What factoring has left of it: the articulated inertia times it, without what the columns after
-// it have taken out, by Omega; and 1 / Omega.
+// The columns in which the inertia is factored: a free root's are the axes of the tree.
+template <class T>
+se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
+  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
+  if (tree.slots[static_cast<std::size_t>(slot)].kind != SlotKind::root) {
+    return column_of(tree, work, node, k);
+  }
+  se3T<T> S{};
+  (k < 3 ? S.w : S.v)[k % 3] = T(1);
+  return S;
+}
+// What factoring has left of such a column: the articulated inertia times it, without what the
+// columns after it have taken out, by Omega; and 1 / Omega.
 template <class T>
 dse3T<T> gain_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
   const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;

@@ -70,50 +70,29 @@ struct Angle<float> {
   static constexpr float kExactBelow = 4096.0f;
 };
 
-// Taylor polynomials on |r| <= pi/4. In double the first term left out is below 8e-20 (sin) and
-// 2e-18 (cos), in float 2e-9 and 2e-10.
+// Taylor polynomials on |r| <= pi/4, by Estrin's scheme: four short chains of operations instead of
+// a long one. In double the first term left out is below 8e-20 (sin) and 2e-18 (cos), in float 2e-9
+// and 2e-10.
 template <class T>
-constexpr T sin_kernel(const T& r, double) {
-  const T z = r * r;
-  T s = T(1.0 / 355687428096000.0);
-  s = s * z - T(1.0 / 1307674368000.0);
-  s = s * z + T(1.0 / 6227020800.0);
-  s = s * z - T(1.0 / 39916800.0);
-  s = s * z + T(1.0 / 362880.0);
-  s = s * z - T(1.0 / 5040.0);
-  s = s * z + T(1.0 / 120.0);
-  s = s * z - T(1.0 / 6.0);
-  return r + r * z * s;
+constexpr SinCosT<T> sin_cos_kernel(const T& r, double) {
+  const T z = r * r, z2 = z * z, z4 = z2 * z2;
+  const T s =
+      ((T(-1.0 / 6.0) + z * T(1.0 / 120.0)) + z2 * (T(-1.0 / 5040.0) + z * T(1.0 / 362880.0))) +
+      z4 * ((T(-1.0 / 39916800.0) + z * T(1.0 / 6227020800.0)) +
+            z2 * (T(-1.0 / 1307674368000.0) + z * T(1.0 / 355687428096000.0)));
+  const T c =
+      ((T(1.0 / 24.0) - z * T(1.0 / 720.0)) + z2 * (T(1.0 / 40320.0) - z * T(1.0 / 3628800.0))) +
+      z4 * ((T(1.0 / 479001600.0) - z * T(1.0 / 87178291200.0)) + z2 * T(1.0 / 20922789888000.0));
+  return {r + (r * z) * s, T(1.0) - (T(0.5) * z - z2 * c)};
 }
 template <class T>
-constexpr T cos_kernel(const T& r, double) {
-  const T z = r * r;
-  T c = T(1.0 / 20922789888000.0);
-  c = c * z - T(1.0 / 87178291200.0);
-  c = c * z + T(1.0 / 479001600.0);
-  c = c * z - T(1.0 / 3628800.0);
-  c = c * z + T(1.0 / 40320.0);
-  c = c * z - T(1.0 / 720.0);
-  c = c * z + T(1.0 / 24.0);
-  return T(1.0) - (T(0.5) * z - z * z * c);
-}
-template <class T>
-constexpr T sin_kernel(const T& r, float) {
-  const T z = r * r;
-  T s = T(1.0f / 362880.0f);
-  s = s * z - T(1.0f / 5040.0f);
-  s = s * z + T(1.0f / 120.0f);
-  s = s * z - T(1.0f / 6.0f);
-  return r + r * z * s;
-}
-template <class T>
-constexpr T cos_kernel(const T& r, float) {
-  const T z = r * r;
-  T c = T(-1.0f / 3628800.0f);
-  c = c * z + T(1.0f / 40320.0f);
-  c = c * z - T(1.0f / 720.0f);
-  c = c * z + T(1.0f / 24.0f);
-  return T(1.0f) - (T(0.5f) * z - z * z * c);
+constexpr SinCosT<T> sin_cos_kernel(const T& r, float) {
+  const T z = r * r, z2 = z * z;
+  const T s = (T(-1.0f / 6.0f) + z * T(1.0f / 120.0f)) +
+              z2 * (T(-1.0f / 5040.0f) + z * T(1.0f / 362880.0f));
+  const T c = (T(1.0f / 24.0f) - z * T(1.0f / 720.0f)) +
+              z2 * (T(1.0f / 40320.0f) - z * T(1.0f / 3628800.0f));
+  return {r + (r * z) * s, T(1.0f) - (T(0.5f) * z - z2 * c)};
 }
 
 template <class T>
@@ -129,7 +108,7 @@ constexpr SinCosT<T> sin_cos_near(const T& x) {
   const T n = nearest_integer(x * T(B(2.0 / kPi)));
   const T r =
       ((x - n * T(Angle<B>::kHalfPi1)) - n * T(Angle<B>::kHalfPi2)) - n * T(Angle<B>::kHalfPi3);
-  const T s = sin_kernel(r, B()), c = cos_kernel(r, B());
+  const auto [s, c] = sin_cos_kernel(r, B());
   const T half = n * T(B(0.5));
   const T rounded = nearest_integer(half);
   const auto odd = half != rounded;

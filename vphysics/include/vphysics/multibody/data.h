@@ -18,10 +18,20 @@ template <class T>
 struct Work;
 }
 
+// How a data's results are rounded.
+enum class Arithmetic {
+  // With the widest registers and the fused multiply-add that the machine has: the same bits in
+  // every run on one machine and build, the last bits may differ on another.
+  fastest,
+  // The same bits on every machine and compiler, as lockstep, rollback and replays need. World
+  // always computes so.
+  reproducible
+};
+
 template <class T>
 class DataT {
  public:
-  explicit DataT(const ModelT<base_t<T>>& model);
+  explicit DataT(const ModelT<base_t<T>>& model, Arithmetic arithmetic = Arithmetic::fastest);
   ~DataT();
   DataT(DataT&&) noexcept;
   DataT& operator=(DataT&&) noexcept;

@@ -1,0 +1,134 @@
+// A free root: six slots at once.
+//
+// Its velocities are those of the link in its own axes. For the factors they are turned into the
+// axes of the tree, where the subspace is the identity: the articulated inertia itself is what is
+// to be inverted, as L D L^T with the last slot first. Turning changes neither damping nor
+// armature, of which the joint has one number, nor is there a bias: nothing moves the origin but
+// the root.
+#pragma once
+
+#include "multibody/joints.h"
+
+namespace vp::detail {
+
+template <class T>
+struct Six {
+  T x[6];
+
+  static Six of(const dse3T<T>& F) { return {{F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z}}; }
+  Vec3T<T> head() const { return {x[0], x[1], x[2]}; }
+  Vec3T<T> tail() const { return {x[3], x[4], x[5]}; }
+};
+
+// The lower triangle of J by rows: (i, j) with j <= i.
+template <class T>
+struct Triangle {
+  T m[6][6];
+};
+template <class T>
+Triangle<T> triangle_of(const AInertiaT<T>& J) {
+  const Sym3T<T>&A = J.angular(), &C = J.linear();
+  const Mat3T<T>& H = J.coupling();
+  return {{{A.xx},
+           {A.xy, A.yy},
+           {A.zx, A.yz, A.zz},
+           {H.cx.x, H.cx.y, H.cx.z, C.xx},
+           {H.cy.x, H.cy.y, H.cy.z, C.xy, C.yy},
+           {H.cz.x, H.cz.y, H.cz.z, C.zx, C.yz, C.zz}}};
+}
+template <class T>
+Triangle<T> triangle_of(const ColumnInertia<T>& J) {
+  Triangle<T> out;
+  for (int k = 0; k < 6; ++k) {
+    alignas(64) T column[8];
+    store(column, J.c[k]);
+    for (int i = 0; i <= k; ++i) out.m[k][i] = column[i];
+  }
+  return out;
+}
+
+template <class T>
+class FreeRoot {
+ public:
+  // By its last slot.
+  FreeRoot(const Tree<base_t<T>>& tree, Work<T>& work, int last)
+      : work_(work),
+        first_(last - 5),
+        k_(constants_of<T>(tree, last)),
+        R_(work.slot(last).mat(kX)) {}
+
+  // Factors of J; false where one is not positive.
+  template <class Positive>
+  void factor(Triangle<T> J, Positive& positive) const {
+    const T armature = k_.get(kArmature);
+    for (int k = 6; k-- > 0;) {
+      const T omega = J.m[k][k] + armature;
+      positive.see(omega);
+      const T inverse = T(1) / omega;
+      T w[6] = {};
+      for (int i = 0; i < k; ++i) w[i] = inverse * J.m[k][i];
+      for (int i = 0; i < k; ++i) {
+        for (int j = 0; j <= i; ++j) J.m[i][j] = J.m[i][j] - J.m[k][i] * w[j];
+      }
+      w[k] = T(1);
+      Factor<T>& f = at(k);
+      f.inverse = inverse;
+      f.W = {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
+    }
+  }
+  // What the joint's forces tau, less damping, and the bias force p leave in the factors.
+  void take_forces(Span<T> tau, Span<T> v, const dse3T<T>& bias) const {
+    Six<T> u = numbers(tau);
+    if (!v.empty()) {
+      const Six<T> rate = numbers(v);
+      const T damping = k_.get(kDamping);
+      for (int k = 0; k < 6; ++k) u.x[k] = u.x[k] - damping * rate.x[k];
+    }
+    Six<T> p = Six<T>::of(bias);
+    const Six<T> turned = Six<T>::of({out_of_link(u.head()), out_of_link(u.tail())});
+    for (int k = 6; k-- > 0;) {
+      Factor<T>& f = at(k);
+      const T left = turned.x[k] - p.x[k];
+      f.x = left * f.inverse;
+      const Six<T> w = Six<T>::of(f.W);
+      for (int i = 0; i < k; ++i) p.x[i] = p.x[i] + left * w.x[i];
+    }
+  }
+  // Outwards: the acceleration, of which the joint's part goes to x.
+  se3T<T> expand(std::span<T> x) const {
+    Six<T> a;
+    for (int k = 0; k < 6; ++k) {
+      const Factor<T>& f = at(k);
+      const Six<T> w = Six<T>::of(f.W);
+      a.x[k] = f.x;
+      for (int i = 0; i < k; ++i) a.x[k] = a.x[k] - w.x[i] * a.x[i];
+    }
+    const Six<T> own = Six<T>::of({transposed_times(R_, a.head()), transposed_times(R_, a.tail())});
+    for (int k = 0; k < 6; ++k) x[static_cast<std::size_t>(first_ + k)] = own.x[k];
+    return {a.head(), a.tail()};
+  }
+
+ private:
+  Six<T> numbers(Span<T> from) const {
+    Six<T> out;
+    for (int k = 0; k < 6; ++k) out.x[k] = from[static_cast<std::size_t>(first_ + k)];
+    return out;
+  }
+  // R^-T and R^-1.
+  Vec3T<T> out_of_link(const Vec3T<T>& a) const {
+    const Vec3T<T> b = R_ * a;
+    return b + R_ * (a - transposed_times(R_, b));
+  }
+  Vec3T<T> into_link(const Vec3T<T>& a) const {
+    const Vec3T<T> b = transposed_times(R_, a);
+    return b + transposed_times(R_, a - R_ * b);
+  }
+  Factor<T>& at(int k) const { return work_.factors[static_cast<std::size_t>(first_ + k)]; }
+
+  Work<T>& work_;
+  int first_;
+  Constants<T, T> k_;
+  Mat3T<T> R_;
+};
+
+}  // namespace vp::detail
