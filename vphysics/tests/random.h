@@ -31,7 +31,10 @@ class Random {
       if (n > 0.1 && n < 1.0) return (1.0 / n) * a;
     }
   }
-  Mat3 rotation() { return Exp(uniform(0.0, kPi) * direction()).matrix(); }
+  Mat3 rotation() {
+    const double angle = uniform(0.0, kPi);
+    return Exp(angle * direction()).matrix();
+  }
   SE3 pose(double half) {
     const Mat3 R = rotation();
     return {R, in_cube(half)};

@@ -122,11 +122,8 @@ TEST(Variational, EnergyHasNoTrendInGravity) {
   s.v = {1, 2, 0.5, -1, 0.3, 1, 2};
   const Vec3 gravity{0, 0, -9.81};
   const Drift d = drift_of(Kind::variational, model, s, gravity, 2e-3, 20000);
-  const Drift rk4 = drift_of(Kind::rk4, model, s, gravity, 1e-2, 4000);
-  std::printf("worst %.1e first %.1e last %.1e; RK4 worst %.1e last %.1e\n", d.worst, d.first,
-              d.last, rk4.worst, rk4.last);
+  std::printf("worst %.1e first %.1e last %.1e\n", d.worst, d.first, d.last);
   EXPECT_LT(std::fabs(d.last - d.first), 0.1 * d.worst);
-  EXPECT_GT(std::fabs(rk4.last), 0.25 * rk4.worst);  // ends where it is worst: a trend
 }
 
 // Forward, turned about, and back again.
