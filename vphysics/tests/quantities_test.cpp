@@ -226,7 +226,7 @@ TEST(Quantities, OfFloatsAndOfLanesAreThoseOfDoubles) {
   Random random(98);
   const Model model = random_tree(random, 12);
   const ModelT<float> narrow(model);
-  using P = PackT<double, 8>;
+  using P = PackT<double, 4>;
   Data data(model);
   DataT<float> floats(narrow);
   DataT<P> lanes(model);
@@ -238,10 +238,10 @@ TEST(Quantities, OfFloatsAndOfLanesAreThoseOfDoubles) {
   forward_kinematics<P>(model, lanes, qp, vp);
   const double energy = kinetic_energy<double>(model, data);
   EXPECT_NEAR(static_cast<double>(kinetic_energy<float>(narrow, floats)), energy, 1e-5 * energy);
-  EXPECT_NEAR((kinetic_energy<P>(model, lanes)[5]), energy, 1e-13 * energy);
+  EXPECT_NEAR((kinetic_energy<P>(model, lanes)[2]), energy, 1e-13 * energy);
   const dse3 p = momentum<double>(model, data, {});
   EXPECT_NEAR(static_cast<double>(momentum<float>(narrow, floats, {}).m.x), p.m.x, 1e-4);
-  EXPECT_NEAR((momentum<P>(model, lanes, {}).m.x[7]), p.m.x, 1e-12);
+  EXPECT_NEAR((momentum<P>(model, lanes, {}).m.x[3]), p.m.x, 1e-12);
   EXPECT_NEAR(static_cast<double>(total_mass(narrow)), total_mass(model), 1e-5);
 }
 

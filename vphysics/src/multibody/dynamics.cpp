@@ -2,6 +2,7 @@
 #include "vphysics/multibody/dynamics.h"
 
 #include <string>
+#include <type_traits>
 
 #include "multibody/instantiate.h"
 #include "multibody/instruction_set.h"
@@ -16,31 +17,15 @@ namespace {
 using vphysics_kernels::Arguments;
 using vphysics_kernels::Kernels;
 
+// Where T stands in VP_FOR_EACH_SCALAR.
 template <class T>
-constexpr std::size_t scalar_index();
-template <>
-constexpr std::size_t scalar_index<double>() {
-  return 0;
-}
-template <>
-constexpr std::size_t scalar_index<float>() {
-  return 1;
-}
-template <>
-constexpr std::size_t scalar_index<Double4>() {
-  return 2;
-}
-template <>
-constexpr std::size_t scalar_index<Double8>() {
-  return 3;
-}
-template <>
-constexpr std::size_t scalar_index<Float8>() {
-  return 4;
-}
-template <>
-constexpr std::size_t scalar_index<Float16>() {
-  return 5;
+constexpr std::size_t scalar_index() {
+  std::size_t index = 0, found = 0;
+#define VP_LOOK_AT(Scalar)                      \
+  if (std::is_same_v<T, Scalar>) found = index; \
+  ++index;
+  VP_FOR_EACH_SCALAR(VP_LOOK_AT)
+  return found;
 }
 
 template <class T>

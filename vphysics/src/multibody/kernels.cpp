@@ -93,14 +93,15 @@ constexpr Kernels kernels() {
 }
 
 }  // namespace
+
+constexpr vphysics_kernels::Table table() {
+#define VP_TABLE_ENTRY(T) kernels<T>(),
+  return {{VP_FOR_EACH_SCALAR(VP_TABLE_ENTRY)}};
+}
+
 }  // namespace detail
 }  // namespace vp
 
 namespace vphysics_kernels {
-const Kernels VP_KERNELS[kScalars] = {vp::detail::kernels<double>(),
-                                      vp::detail::kernels<float>(),
-                                      vp::detail::kernels<vp::detail::Double4>(),
-                                      vp::detail::kernels<vp::detail::Double8>(),
-                                      vp::detail::kernels<vp::detail::Float8>(),
-                                      vp::detail::kernels<vp::detail::Float16>()};
-}  // namespace vphysics_kernels
+const Table VP_KERNELS = vp::detail::table();
+}

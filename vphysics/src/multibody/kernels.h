@@ -7,6 +7,7 @@
 // namespaces is this header's: addresses.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace vphysics_kernels {
@@ -28,11 +29,17 @@ struct Kernels {
   Kernel kinematics, forward_dynamics, factor_mass, solve_mass, inverse_dynamics, mass_matrix;
 };
 // One for each scalar, in the order of VP_FOR_EACH_SCALAR (instantiate.h).
+#ifdef VP_FEW_SCALARS
+inline constexpr std::size_t kScalars = 3;
+#else
 inline constexpr std::size_t kScalars = 6;
+#endif
 
-extern const Kernels kBaseline[kScalars];
+using Table = std::array<Kernels, kScalars>;
+
+extern const Table kBaseline;
 // Only in libraries built with VP_INSTRUCTION_SETS.
-extern const Kernels kAvx2[kScalars];
-extern const Kernels kAvx512[kScalars];
+extern const Table kAvx2;
+extern const Table kAvx512;
 
 }  // namespace vphysics_kernels

@@ -93,11 +93,11 @@ class InertiaT {
     const Vec3T<T> moved = h_ - mass_ * p;
     const Vec3T<T> g = h_ + moved, k = T(0.5) * g;
     const T xx = g.x * p.x, yy = g.y * p.y, zz = g.z * p.z;
-    return {mass_,
-            moved,
-            {I_.xx - (yy + zz), I_.yy - (zz + xx), I_.zz - (xx + yy),
-             I_.xy + (k.x * p.y + k.y * p.x), I_.yz + (k.y * p.z + k.z * p.y),
-             I_.zx + (k.z * p.x + k.x * p.z)}};
+    return {
+        mass_,
+        moved,
+        {I_.xx - (yy + zz), I_.yy - (zz + xx), I_.zz - (xx + yy), I_.xy + (k.x * p.y + k.y * p.x),
+         I_.yz + (k.y * p.z + k.z * p.y), I_.zx + (k.z * p.x + k.x * p.z)}};
   }
 
   bool operator==(const InertiaT&) const = default;
