@@ -8,7 +8,9 @@
 #include "rig.h"
 #include "trees.h"
 #include "vphysics/multibody/configuration.h"
+#include "vphysics/multibody/constrained_step.h"
 #include "vphysics/multibody/derivatives.h"
+#include "vphysics/multibody/impulse.h"
 #include "vphysics/multibody/integrators.h"
 #include "vphysics/multibody/jacobians.h"
 #include "vphysics/multibody/quantities.h"
@@ -122,6 +124,40 @@ TEST(Integrators, AllocateNothingInAStep) {
     ASSERT_TRUE(advance_adaptive<double>(model, data, s.q, s.v, step, {}, report));
   }
   EXPECT_EQ(g_allocations - before, 0);
+}
+
+// A linkage with friction, a stop, a motor: everything that has been sized for the model once.
+TEST(ConstrainedDynamics, AllocatesNothing) {
+  const Inertia bar = Inertia(1.0, Vec3{1e-3, 0.02, 0.02}).InvXform(SE3(Vec3{0.25, 0, 0}));
+  ModelBuilder builder;
+  LinkSpec crank{.joint = RevoluteJoint{}, .inertia = bar, .damping = 0.1};
+  crank.forces = {{.lower = 0.2, .upper = 2.0, .stiffness = 1.0, .friction = 0.5}};
+  must(builder.add(crank));
+  must(builder.add({"coupler", 0, RevoluteJoint{}, SE3(Vec3{0.5, 0, 0}), bar}));
+  must(builder.add({"rocker", kWorld, RevoluteJoint{}, SE3(Vec3{1, 0, 0}), bar}));
+  const Model model = must(builder.build());
+  ConstrainedData data(
+      model, must(ConstraintSet::make(
+                 model, {close_hinge({1, SE3(Vec3{1, 0, 0})}, {2, SE3(Vec3{0.5, 0, 0})})})));
+  InverseInertias inertias(model);
+  std::vector<double> q{0.8, -0.7, 0.9}, v(3), tau(3), a(3);
+  std::vector<Motor> motors(3);
+  const int held[] = {0};
+  const long before = g_allocations;
+  ASSERT_TRUE(close_loops(model, data, q, {.held = held}));
+  for (int i = 0; i < 300; ++i) {
+    motors[0] = {i < 150 ? 3.0 : -3.0, 0.0, 1e6, 1.0, 40.0};
+    ASSERT_TRUE(constrained_step(model, data, q, v, tau, motors, {}, 0.01));
+    ASSERT_TRUE(constrained_forward_dynamics(model, data, q, v, tau, {}, 1.0, a));
+    ASSERT_TRUE(project_velocities(model, data, q, v));
+    joint_forces<double>(model, q, v, motors, tau);
+    inertias.update(model, data.links());
+    impulse_response<double>(model, data.links(), 1, {{1, 2, 3}, {4, 5, 6}}, a);
+    ASSERT_NE(inertias.between(model, data.links(), 0, 1).columns[2].w.z, 0.0);
+    std::fill(tau.begin(), tau.end(), 0.0);
+  }
+  EXPECT_EQ(g_allocations - before, 0);
+  EXPECT_NEAR(q[0], 0.2, 1e-9);  // it went to its stop
 }
 
 }  // namespace

@@ -49,7 +49,13 @@ ConstraintWork::ConstraintWork(const Model& model, ConstraintSet constraints)
       terms(capacity()),
       step(velocities),
       q_trial(static_cast<std::size_t>(model.coordinates())),
-      v_zero(velocities) {
+      v_zero(velocities),
+      laws(velocities),
+      warm(velocities),
+      tau(velocities),
+      q_before(q_trial.size()),
+      law_force(velocities),
+      motor_force(velocities) {
   joints.reserve(velocities);
   for (int l = 0; l < model.links(); ++l) {
     const Joint& joint = model.link(l).joint;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "multibody/law_solver.h"
 #include "multibody/pivoted_cholesky.h"
 #include "vphysics/multibody/constrained_dynamics.h"
 
@@ -25,6 +26,9 @@ struct ConstraintWork {
   std::vector<double> floor;        // of G's diagonal, below which a row is zero
   PivotedCholesky cholesky;
   std::vector<double> rhs, left, terms, step, q_trial, v_zero;
+  // Of constrained_step: the joints' laws, and for each velocity the impulse that its law had last.
+  LawSolver laws;
+  std::vector<double> warm, tau, q_before, law_force, motor_force;
 
   std::size_t capacity() const { return rows + velocities; }
   std::size_t in_use() const { return rows + joints.size(); }

@@ -26,8 +26,8 @@ namespace detail {
 struct ConstraintWork;
 }
 
-// Memory for a model under constraints, and what the calls leave in it. It keeps the constraints;
-// the model must outlive it no more than the call that uses it. 24 (rows + velocities)^2 bytes.
+// Memory for a model under constraints, the constraints themselves, and what the calls leave: 48
+// (rows + velocities)^2 bytes at most.
 class ConstrainedData {
  public:
   ConstrainedData(const Model& model, ConstraintSet constraints);
@@ -47,6 +47,7 @@ class ConstrainedData {
   int rank() const;
 
   detail::ConstraintWork& work() { return *work_; }
+  const detail::ConstraintWork& work() const { return *work_; }
 
  private:
   std::unique_ptr<detail::ConstraintWork> work_;
