@@ -51,6 +51,25 @@ vp::Inertia rod_inertia(const TableSpec& table, const RodSpec& rod, const Charac
   return {mass, Vec3{across, across, axial}};
 }
 
+// Two joints: the slide along the rod, which has no mass of its own, and the turn about it. At each
+// the hand's inertia is felt.
+constexpr int kSlide = 0, kTurn = 1;  // links
+vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const CharacterSpec& c) {
+  vp::ModelBuilder builder;
+  vp::LinkSpec slide;
+  slide.joint = vp::PrismaticJoint{};
+  slide.T_parent_joint = SE3(kRodAxes, Vec3{rod.x, 0.0, table.rod_height});
+  slide.armature = tuning::kHandMass;
+  slide.forces = {{.lower = -rod.slide_limit, .upper = rod.slide_limit}};
+  vp::LinkSpec turn;
+  turn.parent = must(builder.add(slide));
+  turn.joint = vp::RevoluteJoint{};
+  turn.inertia = rod_inertia(table, rod, c);
+  turn.armature = tuning::kHandInertia;
+  must(builder.add(turn));
+  return builder.build().value();
+}
+
 }  // namespace
 
 BallContact ball_contact(const vp::ContactEvent& event) {
@@ -177,16 +196,8 @@ void TableWorld::add_ball() {
 void TableWorld::add_rod(int rod, int character) {
   const RodSpec& spec = table_.rods[rod];
   const CharacterSpec& c = character_spec(character);
-  vp::LinkDesc link;
-  link.joint = vp::JointKind::cylindrical;
-  link.T_parent_joint = SE3(kRodAxes, Vec3{spec.x, 0.0, table_.rod_height});
-  link.inertia = rod_inertia(table_, spec, c);
-  link.armature[0] = tuning::kHandMass;
-  link.armature[1] = tuning::kHandInertia;
-  link.limit[0] = {-spec.slide_limit, spec.slide_limit};
-  rods_[rod] = must(world_.create_articulation({{link}}));
-
-  const vp::BodyId body = world_.link_body(rods_[rod], 0);
+  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, c)}));
+  const vp::BodyId body = world_.link_body(rods_[rod], kTurn);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
   for (int man = 0; man < spec.men; ++man) {
     const auto boxes = man_boxes(character);
@@ -232,23 +243,23 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   // The heaviest rod's figures serve all: a lighter one is only damped a little more.
   constexpr double kSlideInertia = 1.9;     // [kg]
   constexpr double kAngleInertia = 1.2e-3;  // [kg m^2]
-  must(world_.set_drive(rods_[rod], 0, 0,
+  must(world_.set_drive(rods_[rod], kSlide, 0,
                         drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide,
                                       kSlideInertia, tuning::kHandForce, tuning::kMaxSlideRate)));
-  must(world_.set_drive(rods_[rod], 0, 1,
+  must(world_.set_drive(rods_[rod], kTurn, 0,
                         drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia,
                                       tuning::kHandTorque, tuning::kMaxAngleRate)));
 }
 
 RodState TableWorld::rod(int rod) const {
   const vp::ArticulationId id = rods_[rod];
-  return {world_.joint_position(id, 0, 0), world_.joint_position(id, 0, 1),
-          world_.joint_velocity(id, 0, 0), world_.joint_velocity(id, 0, 1)};
+  return {world_.joint_position(id, kSlide, 0), world_.joint_position(id, kTurn, 0),
+          world_.joint_velocity(id, kSlide, 0), world_.joint_velocity(id, kTurn, 0)};
 }
 
 void TableWorld::set_rod(int rod, const RodState& state) {
-  must(world_.set_joint_state(rods_[rod], 0, 0, state.slide, state.slide_rate));
-  must(world_.set_joint_state(rods_[rod], 0, 1, state.angle, state.angle_rate));
+  must(world_.set_joint_state(rods_[rod], kSlide, 0, state.slide, state.slide_rate));
+  must(world_.set_joint_state(rods_[rod], kTurn, 0, state.angle, state.angle_rate));
 }
 
 // --- ball ----------------------------------------------------------------------------------------

@@ -23,10 +23,15 @@ vp::World make_world() {
   ball.continuous = true;
   collider.shape = Sphere{0.1};
   (void)world.add_collider(world.create_body(ball).value(), collider);
-  LinkDesc link;
-  link.joint = JointKind::cylindrical;
+  // A floating link and one that hangs on it.
+  ModelBuilder builder;
+  LinkSpec link;
+  link.joint = FreeJoint{};
   link.inertia = Inertia(1.0, Vec3{1, 1, 1});
-  (void)world.create_articulation(ArticulationDesc{{link}});
+  link.parent = builder.add(link).value();
+  link.joint = CylindricalJoint{};
+  (void)builder.add(link);
+  (void)world.create_articulation({builder.build().value()});
   (void)world.step(0.001);
   return world;
 }

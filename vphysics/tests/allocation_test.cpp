@@ -5,7 +5,7 @@
 #include <new>
 
 #include "random.h"
-#include "rig.h"
+#include "tree_scenes.h"
 #include "trees.h"
 #include "vphysics/multibody/configuration.h"
 #include "vphysics/multibody/constrained_step.h"
@@ -48,6 +48,7 @@ TEST(Step, AllocatesNothingOnceWarm) {
     add_dynamic(world,
                 {.shape = Box{{0.02, 0.02, 0.02}}, .pose = SE3(Vec3{-0.1, 0.1, 0.03 + 0.05 * i})});
   }
+  add_walker(world, {-0.1, -0.1, 0.8}, m);
   Random random(51);
   long during = 0, hits = 0;
   for (int i = 0; i < 4000; ++i) {

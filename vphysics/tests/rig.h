@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "vphysics/world.h"
 
 namespace vp::test {
@@ -60,14 +62,29 @@ inline BodyId add_dynamic(World& world, const Part& part) {
   return body;
 }
 
+inline JointForces stops(double lower, double upper) {
+  JointForces forces;
+  forces.lower = lower;
+  forces.upper = upper;
+  return forces;
+}
+inline Model model_of(const std::vector<LinkSpec>& links) {
+  ModelBuilder builder;
+  for (const LinkSpec& link : links) must(builder.add(link));
+  return must(builder.build());
+}
+
 // A foosball rod along y, its axis at height h: a cylindrical joint, z of the joint frame along y.
-inline LinkDesc rod_link(double x, double height) {
-  LinkDesc link;
-  link.joint = JointKind::cylindrical;
+inline LinkSpec rod_link(double x, double height) {
+  LinkSpec link;
+  link.joint = CylindricalJoint{};
   link.T_parent_joint = SE3(Mat3{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {x, 0, height});
   link.inertia = Inertia(1.5, Vec3{0.2, 0.2, 0.0015});
-  link.limit[0] = {-0.12, 0.12};
+  link.forces = {stops(-0.12, 0.12), {}};
   return link;
+}
+inline ArticulationDesc rod_desc(double x, double height) {
+  return {model_of({rod_link(x, height)})};
 }
 
 // The boxes of a man in the rod's frame (z along the rod, y up, x fore and aft): foot, leg, torso,
@@ -86,8 +103,7 @@ struct Rod {
 };
 inline Rod add_rod(World& world, double x, double height, int men, double spacing,
                    const Material& material) {
-  const ArticulationId articulation =
-      must(world.create_articulation(ArticulationDesc{{rod_link(x, height)}}));
+  const ArticulationId articulation = must(world.create_articulation(rod_desc(x, height)));
   const BodyId body = world.link_body(articulation, 0);
   for (int man = 0; man < men; ++man) {
     const double along = spacing * (man - 0.5 * (men - 1));

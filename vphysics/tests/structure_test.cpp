@@ -9,12 +9,21 @@
 namespace vp::test {
 namespace {
 
+LinkSpec swinging_link() {
+  LinkSpec link;
+  link.parent = 0;
+  link.joint = RevoluteJoint{{1, 0, 0}};
+  link.T_parent_joint = SE3(Vec3{0, 0.1, 0});
+  link.inertia = Inertia(0.1, Vec3{1e-4, 1e-4, 1e-4});
+  return link;
+}
+
 struct Recipe {
   WorldDesc world;
   BodyDesc body;
   ColliderDesc collider;
   Shape second = Box{{1, 1, 1}}, third = Capsule{0.2, 0.3};
-  LinkDesc link = rod_link(0, 0.1);
+  LinkSpec link = rod_link(0, 0.1), swinging = swinging_link();
 };
 using Change = std::function<void(Recipe&)>;
 
@@ -37,7 +46,7 @@ World make(const Recipe& r) {
   must(world.add_collider(other, collider));
   collider.shape = r.third;
   must(world.add_collider(other, collider));
-  must(world.create_articulation({{r.link}}));
+  must(world.create_articulation({model_of({r.link, r.swinging})}));
   return world;
 }
 bool takes(const Change& change) {
@@ -67,7 +76,7 @@ TEST(Restore, TakesWhatDiffersInStateOrUserDataOnly) {
   EXPECT_TRUE(takes([](Recipe& r) { r.body.velocity.v.x = 3; }));
   EXPECT_TRUE(takes([](Recipe& r) { r.body.user_data = 3; }));
   EXPECT_TRUE(takes([](Recipe& r) { r.collider.user_data = 3; }));
-  EXPECT_TRUE(takes([](Recipe& r) { r.link.user_data = 3; }));
+  EXPECT_TRUE(takes([](Recipe& r) { r.link.name = "another"; }));
 }
 
 TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
@@ -125,7 +134,15 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
       {"category", [](Recipe& r) { r.collider.filter.category = 3; }},
       {"mask", [](Recipe& r) { r.collider.filter.mask = 1; }},
       {"sensor", [](Recipe& r) { r.collider.sensor = true; }},
-      {"joint", [](Recipe& r) { r.link.joint = JointKind::revolute; }},
+      {"joint",
+       [](Recipe& r) {
+         r.swinging.joint = PrismaticJoint{{1, 0, 0}};
+       }},
+      {"axis",
+       [&](Recipe& r) {
+         r.swinging.joint = RevoluteJoint{{next(1.0), 0, 0}};
+       }},
+      {"parent", [](Recipe& r) { r.swinging.parent = kWorld; }},
       {"T_parent_joint",
        [](Recipe& r) {
          r.link.T_parent_joint = SE3(Vec3{0, 0, 0.2});
@@ -138,12 +155,16 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
        [](Recipe& r) {
          r.link.inertia = Inertia(1.5, Vec3{0.2, 0.2, 0.0016});
        }},
-      {"armature of the slide", [](Recipe& r) { r.link.armature[0] = 0.1; }},
-      {"armature of the angle", [](Recipe& r) { r.link.armature[1] = 0.1; }},
-      {"joint_damping of the slide", [](Recipe& r) { r.link.joint_damping[0] = 0.1; }},
-      {"joint_damping of the angle", [](Recipe& r) { r.link.joint_damping[1] = 0.1; }},
-      {"lower limit", [](Recipe& r) { r.link.limit[0].lower = -0.13; }},
-      {"upper limit", [](Recipe& r) { r.link.limit[1].upper = 0.13; }},
+      {"armature", [](Recipe& r) { r.link.armature = 0.1; }},
+      {"damping", [](Recipe& r) { r.swinging.damping = 0.1; }},
+      {"lower limit", [](Recipe& r) { r.link.forces[0].lower = -0.13; }},
+      {"spring", [](Recipe& r) { r.link.forces[1].stiffness = 1.0; }},
+      {"rest of the spring", [](Recipe& r) { r.link.forces[1].rest = 0.1; }},
+      {"stiffness of a limit", [](Recipe& r) { r.link.forces[0].limit_stiffness = 1e4; }},
+      {"damping of a limit", [](Recipe& r) { r.link.forces[0].limit_damping = 1.0; }},
+      {"friction", [](Recipe& r) { r.link.forces[0].friction = 1.0; }},
+      {"motor_limit", [](Recipe& r) { r.link.forces[0].motor_limit = 1.0; }},
+      {"upper limit", [](Recipe& r) { r.link.forces[1].upper = 0.13; }},
   };
   for (const auto& [name, change] : changes) EXPECT_FALSE(takes(change)) << name;
 }

@@ -87,37 +87,42 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
 
 TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
   World world;
-  expect_refused(world, [&] { return world.create_articulation({}); });
-  LinkDesc link = rod_link(0, 0);
-  expect_refused(
-      world,
-      [&] {
-        return world.create_articulation({{link, link}});
-      },
-      Errc::unsupported);
-  const auto refused = [&](auto change) {
-    LinkDesc bad = link;
+  const LinkSpec link = rod_link(0, 0);
+  const auto refused = [&](auto change, Errc code = Errc::invalid_argument) {
+    LinkSpec bad = link;
     change(bad);
-    expect_refused(world, [&] { return world.create_articulation({{bad}}); });
+    const ArticulationDesc desc{model_of({bad})};
+    expect_refused(
+        world, [&] { return world.create_articulation(desc); }, code);
   };
-  refused([](LinkDesc& l) { l.parent = 0; });
-  refused([](LinkDesc& l) { l.inertia = Inertia(); });
-  refused([](LinkDesc& l) { l.inertia = Inertia(1.0, Vec3{1, 1, 0}); });
-  for (const JointKind kind : {JointKind::fixed, JointKind::prismatic, JointKind::revolute}) {
-    refused([&](LinkDesc& l) { l.joint = kind, l.inertia = Inertia(1.0, Vec3{1, 1, -1}); });
-    refused([&](LinkDesc& l) { l.joint = kind, l.inertia = Inertia(1.0, Vec3{-1, 1, 1}); });
-    // About the origin alone: the moments of the centre's mass exceed them.
-    refused([&](LinkDesc& l) {
-      l.joint = kind, l.inertia = Inertia(1.0, Vec3{0, 2, 0}, Sym3{1, 1, 1, 0, 0, 0});
-    });
-    refused([&](LinkDesc& l) {
-      l.joint = kind, l.inertia = Inertia(1.0, Vec3{}, Sym3{1, 1, 1, 2, 0, 0});
-    });
-  }
-  refused([](LinkDesc& l) { l.armature[1] = -1; });
-  refused([](LinkDesc& l) { l.limit[0] = {1, 2}; });
-  refused([](LinkDesc& l) { l.limit[1] = {kNaN, 2}; });
-  const ArticulationId id = must(world.create_articulation({{link}}));
+  // Nothing turns about its axis.
+  refused([](LinkSpec& l) { l.inertia = Inertia(1.0, Vec3{1, 1, 0}); }, Errc::singular);
+  refused([](LinkSpec& l) { l.inertia = Inertia(1.0, Vec3{}); }, Errc::singular);
+  refused([](LinkSpec& l) { l.inertia = Inertia(1e10, Vec3{1, 1, 1}); });
+  refused([](LinkSpec& l) { l.armature = 1e10; });
+  refused([](LinkSpec& l) { l.T_parent_joint = SE3(Vec3{1e10, 0, 0}); });
+  refused([](LinkSpec& l) { l.forces[0].rest = 1e10; });
+  refused([](LinkSpec& l) { l.forces[1].lower = 1e10; });
+  LinkSpec floating = link;
+  floating.joint = FreeJoint{};
+  floating.forces.clear();
+  const ArticulationId free = must(world.create_articulation({model_of({floating})}));
+  expect_refused(world, [&] { return world.set_drive(free, 0, 0, {0, 0, 1, 1, 1}); });
+  must(world.set_drive(free, 0, 0, {0, 0, 0, 1, 1}));
+  expect_refused(world, [&] { return world.set_joint_state(free, 0, 0, 0, 0); });
+  const std::vector<double> rest(6);
+  const auto states_refused = [&](const std::vector<double>& q, const std::vector<double>& v) {
+    expect_refused(world, [&] { return world.set_joint_states(free, q, v); });
+  };
+  states_refused({0, 0, 0, 0, 0, 0}, rest);
+  states_refused({0, 0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0});
+  states_refused({0, 0, 0, 0, 0, 0, 1.1}, rest);
+  states_refused({0, 0, 0, 0, 0, 0, 0}, rest);
+  states_refused({kNaN, 0, 0, 0, 0, 0, 1}, rest);
+  states_refused({0, 0, 0, 0, 0, 0, 1}, {0, 0, kInf, 0, 0, 0});
+  must(world.set_joint_states(free, std::vector<double>{1, 2, 3, 0, 0, 1, 0}, rest));
+  expect_refused(world, [&] { return world.set_joint_states({}, rest, rest); });
+  const ArticulationId id = must(world.create_articulation(rod_desc(0, 0)));
   expect_refused(world, [&] { return world.set_drive(id, 0, 2, {}); });
   expect_refused(world, [&] { return world.set_drive(id, 1, 0, {}); });
   expect_refused(world, [&] { return world.set_drive({}, 0, 0, {}); });
@@ -135,13 +140,13 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
 
 TEST(CreateArticulation, TakesPointMassesAndThinRods) {
   World world;
-  LinkDesc link;
-  link.joint = JointKind::prismatic;
+  LinkSpec link;
+  link.joint = PrismaticJoint{};
   for (const Inertia& J : {Inertia(1.0, Vec3{}), Inertia(1.0, Vec3{1, 1, 0}),
                            Inertia(0.1, Vec3{}).Xform(SE3(Vec3{0.3, 0.7, 0.1})),
                            Inertia(0.1, Vec3{1, 1, 0}).Xform(SE3(Vec3{30, 70, 10}))}) {
     link.inertia = J;
-    EXPECT_TRUE(world.create_articulation({{link}}));
+    EXPECT_TRUE(world.create_articulation({model_of({link})}));
   }
 }
 

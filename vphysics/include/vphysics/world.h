@@ -21,6 +21,7 @@
 #include "vphysics/error.h"
 #include "vphysics/ids.h"
 #include "vphysics/lie.h"
+#include "vphysics/multibody/model.h"
 #include "vphysics/shapes.h"
 
 namespace vp {
@@ -50,26 +51,9 @@ struct BodyDesc {
   std::uint64_t user_data = 0;
 };
 
-// A joint's coordinates q are metres along and radians around its axis, z of the joint frame.
-enum class JointKind : std::uint8_t {
-  fixed,        // no freedom
-  prismatic,    // q = (slide)
-  revolute,     // q = (angle)
-  cylindrical,  // q = (slide, angle) along and around the same axis
-};
-
-constexpr int degrees_of_freedom(JointKind kind) {
-  return kind == JointKind::fixed ? 0 : kind == JointKind::cylindrical ? 2 : 1;
-}
-
-// Hard stops of one coordinate. Units: of a slide | of an angle.
-struct JointLimit {
-  double lower = -1e30;  // [m] | [rad]
-  double upper = 1e30;   // [m] | [rad]
-};
-
-// A motor: force = clamp(stiffness (position - q) + damping (velocity - qdot), +-max_force),
-// integrated implicitly, so that any stiffness is stable. Units: of a slide | of an angle.
+// A motor: force = clamp(stiffness (position - q) + damping (velocity - v), +-max_force),
+// integrated implicitly, so that any stiffness is stable. Units: of a slide | of an angle. Of a
+// ball or a free joint it drives one of the velocities: stiffness must be 0.
 struct JointDrive {
   double position = 0.0;   // [m] | [rad]
   double velocity = 0.0;   // [m/s] | [rad/s]
@@ -78,22 +62,16 @@ struct JointDrive {
   double max_force = 0.0;  // [N] | [N m]; 0: no motor
 };
 
-struct LinkDesc {
-  int parent = -1;  // index of an earlier link; -1: the world
-  JointKind joint = JointKind::fixed;
-  SE3 T_parent_joint;  // joint frame at q = 0, in the parent's frame; the link's frame moves with
-                       // it
-  Inertia inertia;     // about the link's origin; mass > 0
-  double armature[2] = {0.0, 0.0};       // added to the diagonal of the joint-space inertia
-  double joint_damping[2] = {0.0, 0.0};  // viscous, [N s/m] or [N m s/rad]
-  JointLimit limit[2];
-  std::uint64_t user_data = 0;
-};
-
-// A tree of links. This version simulates articulations of one link on the world; a longer tree is
-// refused with Errc::unsupported.
+// A tree of links with any joints (multibody/model.h). Each link is a body of the world, which
+// takes colliders as others do, but is moved by its joints alone. Links of one articulation do not
+// meet each other. Armature, damping, stops, springs and friction of the joints are the model's;
+// stops, springs and friction are solved together with the contacts, springs implicitly.
+//
+// A tree whose root is a free joint without damping and armature keeps its momentum to rounding
+// where nothing touches it. The forces that velocities make are integrated explicitly: a tree that
+// swings by more than about half a radian a step gains energy.
 struct ArticulationDesc {
-  std::vector<LinkDesc> links;
+  Model model;
 };
 
 struct ContactEvent {
@@ -117,7 +95,8 @@ struct ContactEvent {
 struct StepStatus {
   bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it
                               // and what it touches were held for the rest of the step
-  bool non_finite = false;    // a body left the range of numbers and was stopped where it was
+  bool non_finite = false;    // a body or an articulation left the range of numbers, or a joint
+                              // moved no inertia, and it was stopped where it was
   double time_held = 0.0;     // the part of dt lost to impact_limit [s]
 };
 
@@ -151,6 +130,8 @@ class World {
   // links.
   Expected<void> destroy_body(BodyId body);
   Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
+  // With every joint at zero, or at the stop next to it, at rest. Refused with Errc::singular: a
+  // joint that moves no inertia.
   Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
   BodyId link_body(ArticulationId articulation, int link) const;  // null if there is none
 
@@ -162,11 +143,22 @@ class World {
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
 
-  // Joint coordinates of one link; dof < degrees_of_freedom(joint).
+  const Model* model(ArticulationId articulation) const;  // what it was created of; null: no such
+  // All coordinates and velocities of an articulation, as its model orders them; valid until the
+  // next call that changes the world. Precondition: the articulation exists.
+  std::span<const double> coordinates(ArticulationId articulation) const;
+  std::span<const double> velocities(ArticulationId articulation) const;
+  // Refused: other lengths, numbers that are not finite or beyond 1e9, coordinates beyond a limit,
+  // a quaternion that is not of unit length.
+  Expected<void> set_joint_states(ArticulationId articulation, std::span<const double> coordinates,
+                                  std::span<const double> velocities);
+
+  // One degree of freedom of a link's joint, counted from 0; not of a ball or a free joint.
   double joint_position(ArticulationId articulation, int link, int dof) const;
   double joint_velocity(ArticulationId articulation, int link, int dof) const;
   Expected<void> set_joint_state(ArticulationId articulation, int link, int dof, double position,
                                  double velocity);
+  // Of any joint.
   Expected<void> set_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
 
   // --- time -------------------------------------------------------------------------------------

@@ -28,7 +28,10 @@ class BroadPhase {
   int widest_axis(std::span<const Bounds> bounds) const;
   void sort_along(int axis, std::span<const Bounds> bounds);
 
+  static constexpr std::uint32_t kCallsPerAxis = 64;
   std::vector<std::uint32_t> order_;
+  std::uint32_t calls_ = 0;
+  int axis_ = 0;
 };
 
 }  // namespace vp::collide

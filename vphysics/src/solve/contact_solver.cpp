@@ -1,6 +1,6 @@
 // Rows: with J the wrench of a unit impulse on both bodies and W the inverse inertia, an impulse p
-// changes the row's speed by k p, k = J W J^T. Each row is set right in turn (projected
-// Gauss-Seidel):
+// changes the row's speed by k p, k = J W J^T; a link's share of k is (y, y), of link_side.h. Each
+// row is set right in turn (projected Gauss-Seidel):
 //     normal    p_n >= 0,          speed >= target
 //     friction  |p_t| <= mu p_n,   a disc, not a box: two rows solved together
 //     rolling   |p_r| <= rho p_n,  moments
@@ -24,6 +24,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/link_rows.h"
+
 namespace vp::solve {
 namespace {
 
@@ -40,8 +42,13 @@ constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
 
+// Of what is no link; links as they were before the solve.
 Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactPoint& p) {
   return b.v + cross(b.w, p.arm_b) - a.v - cross(a.w, p.arm_a);
+}
+// What the solve has added to a row's speed through links.
+double through_links(const ContactConstraint& c, int row) {
+  return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
 }
 
 void apply(SolverBody& a, SolverBody& b, const ContactPoint& p, const Vec3& impulse) {
@@ -50,24 +57,31 @@ void apply(SolverBody& a, SolverBody& b, const ContactPoint& p, const Vec3& impu
   b.v += b.linear * impulse;
   b.w += b.angular * cross(p.arm_b, impulse);
 }
+void apply_to_links(const ContactConstraint& c, int row, double impulse) {
+  push(c.side_a, row, impulse, c.side_a.velocity);
+  push(c.side_b, row, impulse, c.side_b.velocity);
+}
 
-void apply_moment(SolverBody& a, SolverBody& b, const Vec3& impulse) {
+void apply_moment(SolverBody& a, SolverBody& b, const ContactConstraint& c, const Vec3& impulse) {
   a.w -= a.angular * impulse;
   b.w += b.angular * impulse;
+  for (int i = 0; i < 3; ++i) apply_to_links(c, row_of(c.count, i), impulse[i]);
 }
 
-// d1 . (response of the relative velocity to an impulse d2)
-double response(const SolverBody& a, const SolverBody& b, const ContactPoint& p, const Vec3& d1,
-                const Vec3& d2) {
+// The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
+double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
+                const ContactPoint& p, const Vec3& d1, const Vec3& d2, int r1, int r2) {
   return dot(d1, a.linear * d2) + dot(cross(p.arm_a, d1), a.angular * cross(p.arm_a, d2)) +
-         dot(d1, b.linear * d2) + dot(cross(p.arm_b, d1), b.angular * cross(p.arm_b, d2));
+         dot(d1, b.linear * d2) + dot(cross(p.arm_b, d1), b.angular * cross(p.arm_b, d2)) +
+         response(c.side_a, r1, r2) + response(c.side_b, r1, r2);
 }
 
-void prepare_tangents(const SolverBody& a, const SolverBody& b, ContactConstraint& c,
-                      ContactPoint& p) {
-  const double k11 = response(a, b, p, c.tangent[0], c.tangent[0]);
-  const double k12 = response(a, b, p, c.tangent[0], c.tangent[1]);
-  const double k22 = response(a, b, p, c.tangent[1], c.tangent[1]);
+void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
+                      ContactPoint& p, int row) {
+  const Vec3 &d1 = c.tangent[0], &d2 = c.tangent[1];
+  const double k11 = response(a, b, c, p, d1, d1, row, row);
+  const double k12 = response(a, b, c, p, d1, d2, row, row + 1);
+  const double k22 = response(a, b, c, p, d2, d2, row + 1, row + 1);
   const double determinant = k11 * k22 - k12 * k12, trace = k11 + k22;
   // Nearly singular when only a joint can give way: then one mass for both directions, which
   // converges for any positive semidefinite block.
@@ -85,7 +99,15 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, ContactConstrain
 }
 
 // The largest row sum bounds the largest eigenvalue; for a ball it is equal to it.
-double rolling_mass(const Sym3& K) {
+double rolling_mass(const SolverBody& a, const SolverBody& b, const ContactConstraint& c) {
+  Sym3 K = a.angular + b.angular;
+  const int r = row_of(c.count, 0);
+  for (const LinkSide* side : {&c.side_a, &c.side_b}) {
+    if (side->depth == 0) continue;
+    K = K + Sym3{response(*side, r, r),         response(*side, r + 1, r + 1),
+                 response(*side, r + 2, r + 2), response(*side, r, r + 1),
+                 response(*side, r + 1, r + 2), response(*side, r + 2, r)};
+  }
   const double x = std::fabs(K.xx) + std::fabs(K.xy) + std::fabs(K.zx);
   const double y = std::fabs(K.xy) + std::fabs(K.yy) + std::fabs(K.yz);
   const double z = std::fabs(K.zx) + std::fabs(K.yz) + std::fabs(K.zz);
@@ -112,14 +134,15 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
 
 void prepare(const StepContext& s, ContactConstraint& c) {
   const SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
-  c.rolling_mass = c.rolling > 0.0 ? rolling_mass(a.angular + b.angular) : 0.0;
+  c.rolling_mass = c.rolling > 0.0 ? rolling_mass(a, b, c) : 0.0;
   for (int i = 0; i < c.count; ++i) {
     ContactPoint& p = c.points[i];
     p.arm_a = p.position - a.x;
     p.arm_b = p.position - b.x;
-    const double k = response(a, b, p, c.normal, c.normal);
+    const int row = row_of(i, kNormal);
+    const double k = response(a, b, c, p, c.normal, c.normal, row, row);
     p.normal_mass = k > 1e-12 ? 1.0 / k : 0.0;
-    prepare_tangents(a, b, c, p);
+    prepare_tangents(a, b, c, p, row_of(i, kTangent));
     prepare_approach(s, a, b, c, p);
     p.target = -std::max(0.0, p.separation - s.slop) / s.duration;
     p.push = 0.0;
@@ -134,21 +157,23 @@ void warm_start(const StepContext& s) {
       apply(a, b, p,
             p.normal_impulse * c.normal + p.tangent_impulse[0] * c.tangent[0] +
                 p.tangent_impulse[1] * c.tangent[1]);
+      apply_to_links(c, row_of(i, kNormal), p.normal_impulse);
+      apply_to_links(c, row_of(i, kTangent), p.tangent_impulse[0]);
+      apply_to_links(c, row_of(i, kTangent + 1), p.tangent_impulse[1]);
     }
-    if (c.rolling_mass > 0.0) apply_moment(a, b, c.rolling_impulse);
+    if (c.rolling_mass > 0.0) apply_moment(a, b, c, c.rolling_impulse);
   }
-  for (JointRow& row : s.joints) {
-    SolverBody& body = s.bodies[row.body];
-    (row.angular ? body.w : body.v) += (row.inverse_mass * row.impulse) * row.axis;
-  }
+  for (JointRow& row : s.joints) push(row.side, 0, row.impulse, row.side.velocity);
 }
 
 // Sticking: the impulse that stops the point, by the whole block. Sliding: a gradient step,
 // projected on the disc, with one mass for both directions: only so does friction settle opposite
 // to the velocity, since the block turns what it multiplies.
-void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p) {
+void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
+                    int row) {
   const Vec3 u = relative_velocity(a, b, p);
-  const double u0 = dot(c.tangent[0], u), u1 = dot(c.tangent[1], u);
+  const double u0 = dot(c.tangent[0], u) + through_links(c, row);
+  const double u1 = dot(c.tangent[1], u) + through_links(c, row + 1);
   double p0 = p.tangent_impulse[0] - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
   double p1 = p.tangent_impulse[1] - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
   const double most = c.friction * p.normal_impulse;
@@ -161,60 +186,83 @@ void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, Co
       p1 *= most / size;
     }
   }
-  apply(a, b, p,
-        (p0 - p.tangent_impulse[0]) * c.tangent[0] + (p1 - p.tangent_impulse[1]) * c.tangent[1]);
+  const double change0 = p0 - p.tangent_impulse[0], change1 = p1 - p.tangent_impulse[1];
+  apply(a, b, p, change0 * c.tangent[0] + change1 * c.tangent[1]);
+  apply_to_links(c, row, change0);
+  apply_to_links(c, row + 1, change1);
   p.tangent_impulse[0] = p0;
   p.tangent_impulse[1] = p1;
 }
 
 void solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
-  Vec3 next = c.rolling_impulse - c.rolling_mass * (b.w - a.w);
+  const int r = row_of(c.count, 0);
+  const Vec3 turning =
+      b.w - a.w + Vec3{through_links(c, r), through_links(c, r + 1), through_links(c, r + 2)};
+  Vec3 next = c.rolling_impulse - c.rolling_mass * turning;
   const double most = c.rolling * c.points[0].normal_impulse;
   const double size = norm(next);
   if (size > most) next *= most / size;
-  apply_moment(a, b, next - c.rolling_impulse);
+  apply_moment(a, b, c, next - c.rolling_impulse);
   c.rolling_impulse = next;
 }
 
 // Returns the change of speed.
-double solve_normal(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p) {
-  const double speed = dot(c.normal, relative_velocity(a, b, p));
+double solve_normal(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
+                    int row) {
+  const double speed = dot(c.normal, relative_velocity(a, b, p)) + through_links(c, row);
   const double next = std::max(0.0, p.normal_impulse + p.normal_mass * (p.target - speed));
   const double change = next - p.normal_impulse;
   p.normal_impulse = next;
   apply(a, b, p, change * c.normal);
+  apply_to_links(c, row, change);
   return p.normal_mass > 0.0 ? std::fabs(change) / p.normal_mass : 0.0;
-}
-
-double solve_joint(SolverBody& body, JointRow& row) {
-  Vec3& rate = row.angular ? body.w : body.v;
-  const double error = row.target - dot(row.axis, rate) - row.softness * row.impulse;
-  const double next =
-      std::clamp(row.impulse + error / (row.inverse_mass + row.softness), row.lower, row.upper);
-  const double change = row.inverse_mass * (next - row.impulse);
-  row.impulse = next;
-  rate += change * row.axis;
-  return std::fabs(change);
 }
 
 double solve_contact(const StepContext& s, ContactConstraint& c) {
   SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
   double change = 0.0;
   if (c.rolling_mass > 0.0) solve_rolling(a, b, c);
-  for (int i = 0; i < c.count; ++i) solve_friction(a, b, c, c.points[i]);
-  for (int i = 0; i < c.count; ++i) change = std::max(change, solve_normal(a, b, c, c.points[i]));
+  for (int i = 0; i < c.count; ++i) solve_friction(a, b, c, c.points[i], row_of(i, kTangent));
+  for (int i = 0; i < c.count; ++i) {
+    change = std::max(change, solve_normal(a, b, c, c.points[i], row_of(i, kNormal)));
+  }
   return change;
 }
 
 // Every other round goes the other way, so that a load runs up a stack as fast as down it.
 double one_round(const StepContext& s, bool forward) {
   double change = 0.0;
-  for (JointRow& row : s.joints) change = std::max(change, solve_joint(s.bodies[row.body], row));
+  for (JointRow& row : s.joints) {
+    if (s.articulations[row.articulation].touched) change = std::max(change, solve_joint(row));
+  }
   const std::size_t n = s.contacts.size();
   for (std::size_t i = 0; i < n; ++i) {
     change = std::max(change, solve_contact(s, s.contacts[forward ? i : n - 1 - i]));
   }
   return change;
+}
+
+// An articulation that touches nothing has its rows to itself: they are settled before all else,
+// and the rounds that the contacts need pass them by. Rows of which none feels another, as of a
+// table's rod, need one round.
+void settle_untouched(const StepContext& s) {
+  for (std::size_t begin = 0, end = 0; begin < s.joints.size(); begin = end) {
+    const std::uint32_t own = s.joints[begin].articulation;
+    bool coupled = false;
+    for (; end < s.joints.size() && s.joints[end].articulation == own; ++end) {
+      coupled = coupled || feels_others(s.joints[end].side) ||
+                (end > begin && s.joints[end].dof == s.joints[end - 1].dof);
+    }
+    if (s.articulations[own].touched) continue;
+    const int most = coupled ? s.iterations * static_cast<int>(kMostRounds) : 1;
+    for (int i = 0; i < most; ++i) {
+      double change = 0.0;
+      for (std::size_t k = begin; k < end; ++k) {
+        change = std::max(change, solve_joint(s.joints[k]));
+      }
+      if (change < kConverged) break;
+    }
+  }
 }
 
 void iterate(const StepContext& s) {
@@ -255,15 +303,20 @@ void correct_positions(const StepContext& s) {
         const double wanted = std::min(kCorrectedShare * (-s.slop - p.separation), kMostCorrected);
         if (wanted <= 0.0) continue;
         any = true;
+        const int row = row_of(i, kNormal);
         const double moved =
-            dot(c.normal, b.shift + cross(b.turn, p.arm_b) - a.shift - cross(a.turn, p.arm_a));
+            dot(c.normal, b.shift + cross(b.turn, p.arm_b) - a.shift - cross(a.turn, p.arm_a)) +
+            along(c.side_a, row, c.side_a.shift) + along(c.side_b, row, c.side_b.shift);
         const double next = std::max(0.0, p.push + p.normal_mass * (wanted - moved));
-        const Vec3 push = (next - p.push) * c.normal;
+        const double change = next - p.push;
+        const Vec3 impulse = change * c.normal;
         p.push = next;
-        a.shift -= a.linear * push;
-        a.turn -= a.angular * cross(p.arm_a, push);
-        b.shift += b.linear * push;
-        b.turn += b.angular * cross(p.arm_b, push);
+        a.shift -= a.linear * impulse;
+        a.turn -= a.angular * cross(p.arm_a, impulse);
+        b.shift += b.linear * impulse;
+        b.turn += b.angular * cross(p.arm_b, impulse);
+        push(c.side_a, row, change, c.side_a.shift);
+        push(c.side_b, row, change, c.side_b.shift);
       }
     }
     if (!any) return;
@@ -280,8 +333,10 @@ void set_normal(ContactConstraint& c, const Vec3& n) {
 }
 
 void solve(const StepContext& s) {
+  prepare_link_rows(s);
   for (ContactConstraint& c : s.contacts) prepare(s, c);
   warm_start(s);
+  settle_untouched(s);
   iterate(s);
   if (set_bounce_targets(s)) iterate(s);
   correct_positions(s);

@@ -1,16 +1,18 @@
 // Contacts, friction and joint rows of one instant, by sequential impulses.
 //
-// Every body, free or link, is given by the velocity (w, v) of one point of it and by two symmetric
-// blocks: how w answers a moment about that point, and v a force through it. For a free body the
-// point is the centre of mass and the blocks are R I^-1 R^T and 1/m. For a link with its joint on
-// the world the point lies on the axis a, and the reduced inertia leaves a a^T / M_angle and a a^T
-// / M_slide: an impulse changes the joint's rates and nothing else, so a joint cannot come apart.
+// Every body is given by the velocity (w, v) of one point of it. A free one has two symmetric
+// blocks: how w answers a moment about that point, its centre of mass, and v a force through it: R
+// I^-1 R^T and 1/m. A link has none; it answers through its articulation's joints (link_side.h), so
+// no joint can come apart, and its w and v stay those from before the solve.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "collide/manifold.h"
+#include "solve/joint_row.h"
+#include "solve/link_side.h"
 #include "vphysics/lie.h"
 
 namespace vp::solve {
@@ -18,11 +20,12 @@ namespace vp::solve {
 struct SolverBody {
   Vec3 w, v;                // world frame; written by the solver
   Vec3 turn, shift;         // position correction; written by the solver, applied by the world
-  Sym3 angular, linear;     // inverse inertia, world frame; zero for what nothing moves
+  Sym3 angular, linear;     // inverse inertia, world frame; zero for links and what nothing moves
   Vec3 x;                   // the point, world frame
   Vec3 forced_w, forced_v;  // what this step's forces added to w and v
+  int articulation, link;   // of a link; articulation is negative for all else
 };
-static_assert(sizeof(SolverBody) == 33 * sizeof(double));
+static_assert(sizeof(SolverBody) == 34 * sizeof(double));
 
 struct ContactPoint {
   // Given.
@@ -56,27 +59,17 @@ struct ContactConstraint {
   int count;
   bool swept;  // belongs to a continuous body
   ContactPoint points[collide::kMaxPoints];
-};
-
-// One joint coordinate: impulse in [lower, upper] so that rate + softness * impulse = target.
-struct JointRow {
-  std::uint32_t body;
-  Vec3 axis;
-  bool angular;
-  double inverse_mass;
-  double target;
-  double softness;  // 0: hard
-  double lower, upper;
-  double impulse;    // before the solve: the warm start
-  double* remember;  // where the world keeps the impulse for the next step; may be null
+  LinkSide side_a, side_b;  // prepared
 };
 
 struct StepContext {
   std::span<SolverBody> bodies;
   std::span<ContactConstraint> contacts;
   std::span<JointRow> joints;
-  double duration;  // to the end of the step [s]
-  double step;      // all of it [s]
+  std::span<SolverArticulation> articulations;
+  std::vector<double>& rows;  // memory for those of links; keeps its capacity
+  double duration;            // to the end of the step [s]
+  double step;                // all of it [s]
   double slop;
   double restitution_threshold;
   int iterations;

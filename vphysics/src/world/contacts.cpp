@@ -30,8 +30,7 @@ const PairPoint* point_of(const PairRecord& record, const collide::ManifoldPoint
   return nearest;
 }
 
-// Takes out of what the forces added what the solve took from it: a load that is carried is no
-// approach in the impacts that follow.
+// A load that is carried is no approach in the impacts that follow.
 void remove_carried(Vec3& forced, const Vec3& change) {
   const double against = -dot(forced, change), size = dot(change, change);
   if (against > 0.0) forced += std::min(1.0, against / size) * change;
@@ -114,41 +113,10 @@ void World::Impl::find_swept_contacts(bool warm) {
   }
 }
 
-// The motor, as f = k (p - q - h v) + d (v_t - v), is a soft row: v + s f h = target with
-// s = 1 / (h^2 k + h d); it is felt once a step, impacts are over too soon for it. The stops are
-// hard rows that let the joint just reach them by the end of the step.
-void World::Impl::add_joint_rows(double h, bool first) {
-  joint_rows.clear();
-  for (Articulation& art : articulations) {
-    for (int i = 0; i < 2; ++i) {
-      JointAxis& axis = art.axes[i];
-      if (!axis.free) continue;
-      const JointDrive& d = axis.drive;
-      const double gain = h * (h * d.stiffness + d.damping);
-      if (first && gain > 0.0 && d.max_force > 0.0) {
-        const double most = d.max_force * h;
-        const double target =
-            h * (d.stiffness * (d.position - axis.q) + d.damping * d.velocity) / gain;
-        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, target,
-                              1.0 / gain, -most, most, std::clamp(axis.drive_impulse, -most, most),
-                              &axis.drive_impulse});
-      } else if (first) {
-        axis.drive_impulse = 0.0;
-      }
-      const double rate = dot(art.axis, i == kAngle ? bodies[art.body].w : bodies[art.body].v);
-      const double below = (axis.limit.lower - axis.q) / h, above = (axis.limit.upper - axis.q) / h;
-      // Rows only for stops within reach; twice the present rate, since an impulse may add to it.
-      const double near = 2.0 * std::fabs(rate) + 1.0;
-      if (below > -near) {
-        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, below, 0.0, 0.0,
-                              1e30, 0.0, nullptr});
-      }
-      if (above < near) {
-        joint_rows.push_back({art.body, art.axis, i == kAngle, 1.0 / axis.inertia, above, 0.0,
-                              -1e30, 0.0, 0.0, nullptr});
-      }
-    }
-  }
+// Takes out of what the forces added what the solve took from it.
+void World::Impl::carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v) {
+  remove_carried(forced[body].w, change_w);
+  remove_carried(forced[body].v, change_v);
 }
 
 void World::Impl::solve_contacts(double h, double dt, bool first) {
@@ -164,24 +132,21 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
   contacts.assign(discrete_contacts.begin(), discrete_contacts.end());
   find_swept_contacts(first);
-  add_joint_rows(h, first);
+  add_joint_rows(h, dt, first);
   if (contacts.empty() && joint_rows.empty()) return;
   refresh_solver_bodies();
-  solve::solve({solver_bodies, contacts, joint_rows, h, dt, desc.contact_slop,
-                desc.restitution_threshold, desc.velocity_iterations});
+  begin_solve_articulations();
+  solve::solve({solver_bodies, contacts, joint_rows, solver_articulations, link_rows, h, dt,
+                desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].alive || bodies[i].motion != Motion::dynamic) continue;
-    if (first) {
-      remove_carried(forced[i].w, solver_bodies[i].w - bodies[i].w);
-      remove_carried(forced[i].v, solver_bodies[i].v - bodies[i].v);
-    }
-    bodies[i].w = solver_bodies[i].w;
-    bodies[i].v = solver_bodies[i].v;
+    Body& body = bodies[i];
+    if (!body.alive || body.is_link || body.motion != Motion::dynamic) continue;
+    if (first) carry(i, solver_bodies[i].w - body.w, solver_bodies[i].v - body.v);
+    body.w = solver_bodies[i].w;
+    body.v = solver_bodies[i].v;
     (void)stop_if_out_of_range(i);
   }
-  for (solve::JointRow& row : joint_rows) {
-    if (row.remember) *row.remember = row.impulse;
-  }
+  end_solve_articulations(first);
   apply_corrections();
   for (const solve::ContactConstraint& c : contacts) {
     counters.contacts += static_cast<std::uint32_t>(c.count);

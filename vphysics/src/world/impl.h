@@ -10,6 +10,7 @@
 #include "collide/sweep.h"
 #include "solve/contact_solver.h"
 #include "vphysics/world.h"
+#include "world/articulation.h"
 
 namespace vp {
 
@@ -23,6 +24,7 @@ struct Body {
   bool isotropic = false;  // rotational inertia the same about every axis: no gyroscopic term
   Motion motion = Motion::fixed;
   std::uint32_t articulation = kNone;
+  int link = 0;  // of it
   std::uint32_t first_collider = kNone, last_collider = kNone;
   std::uint32_t categories = 0, masks = 0;  // union over its colliders
   bool has_sensor = false;
@@ -34,10 +36,18 @@ struct Body {
   Sym3 central, inverse_central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
   collide::Bounds local;  // of its bounded colliders, body frame
+  double reach = 0.0;     // to the farthest point of these from the reference point
   // State.
   SE3 T;           // T_world_body
   Vec3 w, v;       // world frame; v of the reference point (centre of mass; a link's origin)
   se3 prescribed;  // kinematic: body frame
+  // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
+  // colliders; else ask its articulation.
+  bool posed = false;    // the colliders' poses and bounds are those of T
+  bool bounded = false;  // so are these
+  collide::Bounds bounds;
+
+  void moved() { posed = bounded = false; }
 };
 
 struct Collider {
@@ -52,37 +62,9 @@ struct Collider {
   Material material;
   CollisionFilter filter;
   std::uint64_t user_data = 0;
-  // Follows from the body's pose; refreshed by the step.
+  // Follows from the body's pose; refreshed by the step (Body::posed).
   SE3 T;
   collide::Bounds bounds;
-};
-
-// A joint coordinate, inside always (slide, angle), whichever of them the kind has.
-struct JointAxis {
-  bool free = false;
-  double inertia = 0.0;  // with armature
-  double damping = 0.0;
-  JointLimit limit;
-  JointDrive drive;
-  double q = 0.0;
-  double drive_impulse = 0.0;  // warm start
-};
-inline constexpr int kSlide = 0, kAngle = 1;
-
-struct Articulation {
-  JointKind kind = JointKind::fixed;
-  std::uint32_t body = kNone;
-  SE3 T_world_joint;
-  Vec3 axis;  // world frame
-  double mass = 0.0;
-  Vec3 first_moment;  // link frame
-  JointAxis axes[2];
-
-  // The inside index of a user's dof, or -1.
-  int axis_index(int dof) const {
-    if (dof < 0 || dof >= degrees_of_freedom(kind)) return -1;
-    return kind == JointKind::revolute ? kAngle : dof;
-  }
 };
 
 struct PairPoint {
@@ -124,6 +106,7 @@ struct SweptPair {
 
 struct Velocity {
   Vec3 w, v;  // world frame
+  bool operator==(const Velocity&) const = default;
 };
 
 struct World::Impl {
@@ -144,8 +127,8 @@ struct World::Impl {
   // --- scratch of a step; kept for its capacity
   StepStatus status;
   collide::BroadPhase broad_phase;
-  std::vector<collide::Bounds> bounds;
-  std::vector<std::uint8_t> movable, posed, held;
+  std::vector<collide::Bounds> bounds, discrete_bounds;
+  std::vector<std::uint8_t> movable, held;
   std::vector<collide::Motion> motions;
   std::vector<Velocity> forced;  // what the step's forces added
   std::vector<solve::SolverBody> solver_bodies;
@@ -154,9 +137,10 @@ struct World::Impl {
   std::vector<SweptPair> swept_pairs;
   std::vector<solve::ContactConstraint> discrete_contacts, contacts;
   std::vector<solve::JointRow> joint_rows;
+  std::vector<solve::SolverArticulation> solver_articulations;
+  std::vector<double> link_rows;
   std::vector<PairRecord> next_records;
   std::vector<SE3> start_poses;
-  std::vector<double> start_q;
 
   // world.cpp
   Body* find(BodyId id);
@@ -165,8 +149,19 @@ struct World::Impl {
   const Articulation* find(ArticulationId id) const;
   Vec3 reference_point(const Body& body) const;
   void place(Body& body, const Vec3& reference, const Mat3& R);
-  void place_link(const Articulation& articulation);
   void release_collider(std::uint32_t index);
+
+  // articulations.cpp
+  void reserve_link_rows();
+  void follow(const Articulation& articulation);
+  void follow_velocities(const Articulation& articulation, bool carrying);
+  void integrate_articulations(double dt);
+  void add_joint_rows(double h, double dt, bool first);
+  void begin_solve_articulations();
+  void end_solve_articulations(bool first);
+  void advance_articulations(double h);
+  bool stop_if_out_of_range(Articulation& articulation);
+  void hold(std::uint32_t body);
 
   // step.cpp
   void begin_step(double dt);
@@ -174,6 +169,7 @@ struct World::Impl {
   void refresh_solver_bodies();
   void refresh_motions(double h);
   void pose_colliders(std::uint32_t body);
+  const collide::Bounds& bounds_at_pose(std::uint32_t body);
   bool stop_if_out_of_range(std::uint32_t body);
   void advance(double h);
   void advance_body(std::uint32_t index, double h);
@@ -185,6 +181,7 @@ struct World::Impl {
 
   // pairs.cpp
   void refresh_bounds(double h);
+  bool keep_discrete_bounds();
   void find_discrete_pairs(double h);
   void find_swept_pairs(double h);
   bool swept(const Collider& a, const Collider& b) const;
@@ -198,8 +195,8 @@ struct World::Impl {
                    bool warm, std::vector<solve::ContactConstraint>& out);
   void find_discrete_contacts(double h);
   void find_swept_contacts(bool warm);
-  void add_joint_rows(double h, bool first);
   void solve_contacts(double h, double dt, bool first);
+  void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
   void report_contacts(double time);
   void remember_impulses();
   void report_ends();

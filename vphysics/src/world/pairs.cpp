@@ -21,9 +21,10 @@ bool can_move(const Body& body) {
   return body.motion != Motion::fixed;
 }
 
-// Whether any collider of the one may meet any of the other.
+// Whether any collider of the one may meet any of the other; links of one articulation never do.
 bool may_meet(const Body& a, const Body& b) {
   if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
+  if (a.is_link && a.articulation == b.articulation) return false;
   const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
   return pushable || a.has_sensor || b.has_sensor;
 }
@@ -32,19 +33,10 @@ bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const 
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
 }
 
-// Distance from the body's reference point to the farthest point of its local bounds.
-double reach_of(const Body& body) {
-  const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
-  const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
-  return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
-                   std::max(std::fabs(lower.y), std::fabs(upper.y)),
-                   std::max(std::fabs(lower.z), std::fabs(upper.z))});
-}
-
 // No point of the body moves farther than this within h.
 double travel(const Body& body, const collide::Motion& m, double h) {
-  if (!can_move(body) || collide::empty(body.local)) return 0.0;
-  return (norm(m.v) + norm(m.w) * reach_of(body)) * h;
+  if (!can_move(body)) return 0.0;
+  return (norm(m.v) + norm(m.w) * body.reach) * h;
 }
 
 }  // namespace
@@ -52,28 +44,40 @@ double travel(const Body& body, const collide::Motion& m, double h) {
 void World::Impl::refresh_bounds(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    bounds[i] = {};
-    if (body.alive && body.unbounded) {
-      // The bounds of a plane's body enclose those of its colliders, planes included.
-      bounds[i] = collide::transformed(body.T, body.local);
-      pose_colliders(i);
-      for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-        bounds[i] = merged(bounds[i], colliders[c].bounds);
-      }
-    } else if (body.alive && !collide::empty(body.local)) {
-      bounds[i] = grown(collide::transformed(body.T, body.local),
-                        desc.contact_slop + travel(body, motions[i], h));
-    }
     movable[i] = body.alive && can_move(body);
+    if (!body.alive || body.first_collider == kNone) {
+      bounds[i] = {};
+    } else if (body.unbounded) {
+      bounds[i] = bounds_at_pose(i);
+    } else {
+      bounds[i] = grown(bounds_at_pose(i), desc.contact_slop + travel(body, motions[i], h));
+    }
   }
 }
 
+const collide::Bounds& World::Impl::bounds_at_pose(std::uint32_t index) {
+  Body& body = bodies[index];
+  if (body.bounded) return body.bounds;
+  body.bounded = true;
+  body.bounds =
+      collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
+  if (body.unbounded) {
+    // The bounds of a plane's body enclose those of its colliders, planes included.
+    pose_colliders(index);
+    for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+      body.bounds = merged(body.bounds, colliders[c].bounds);
+    }
+  }
+  return body.bounds;
+}
+
 void World::Impl::pose_colliders(std::uint32_t index) {
-  if (posed[index]) return;
-  posed[index] = 1;
-  for (std::uint32_t c = bodies[index].first_collider; c != kNone; c = colliders[c].next) {
+  Body& body = bodies[index];
+  if (body.posed) return;
+  body.posed = true;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     Collider& collider = colliders[c];
-    collider.T = bodies[index].T * collider.T_body_shape;
+    collider.T = body.T * collider.T_body_shape;
     collider.bounds = bounds_of(collider.geometry, collider.T);
   }
 }
@@ -92,11 +96,34 @@ bool World::Impl::swept(const Collider& a, const Collider& b) const {
   return sweeps(a) || sweeps(b);
 }
 
+// Bounds of what may meet another body without a sweep, the others' empty; false if there are no
+// two.
+bool World::Impl::keep_discrete_bounds() {
+  std::uint32_t categories = 0, masks = 0;
+  const auto takes_part = [](const Body& body) {
+    return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
+  };
+  for (const Body& body : bodies) {
+    if (!takes_part(body)) continue;
+    categories |= body.categories;
+    masks |= body.masks;
+  }
+  int meeting = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const bool meets = takes_part(body) && (body.categories & masks) && (body.masks & categories);
+    discrete_bounds[i] = meets ? bounds[i] : collide::Bounds{};
+    meeting += meets ? 1 : 0;
+  }
+  return meeting > 1;
+}
+
 // Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
   body_pairs.clear();
   discrete_pairs.clear();
-  broad_phase.find_pairs(bounds, movable, body_pairs);
+  if (!keep_discrete_bounds()) return;
+  broad_phase.find_pairs(discrete_bounds, movable, body_pairs);
   for (const collide::IndexPair& pair : body_pairs) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
@@ -171,9 +198,9 @@ void World::Impl::find_swept_pairs(double h) {
     for (std::uint32_t j = 0; j < bodies.size(); ++j) {
       // Two continuous bodies meet once, in the order of their slots, but for sensors: those of no
       // sphere are found by the other's spheres.
-      if (j == i || !bodies[j].alive) continue;
+      if (j == i || !overlap(bounds[i], bounds[j])) continue;
       if (bodies[j].continuous && j < i && !bodies[j].has_sensor) continue;
-      if (overlap(bounds[i], bounds[j]) && may_meet(bodies[i], bodies[j])) add_swept_pairs(i, j, h);
+      if (may_meet(bodies[i], bodies[j])) add_swept_pairs(i, j, h);
     }
   }
   std::sort(swept_pairs.begin(), swept_pairs.end(),

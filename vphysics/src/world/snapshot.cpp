@@ -2,8 +2,8 @@
 //
 //   magic, format, structure digest, numbers of bodies, articulations, pair
 //   records, destroyed pairs
-//   bodies:         pose (12), w, v, prescribed twist (6)
-//   articulations:  for slide and angle: q, drive (5), drive impulse
+//   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
+//   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
 //   records:        key, a | b, count | touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
 //   digest of all words before
@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 2;
+constexpr std::uint64_t kFormat = 3;
 
 struct Digest {
   std::uint64_t digest = kMagic;
@@ -113,6 +113,7 @@ class Reader {
 void read(Reader& in, Body& body) {
   const Vec3 cx = in.vector(), cy = in.vector(), cz = in.vector(), p = in.vector();
   body.T = SE3({cx, cy, cz}, p);
+  body.moved();
   in.check(is_pose(body.T));
   body.w = in.vector();
   body.v = in.vector();
@@ -120,16 +121,32 @@ void read(Reader& in, Body& body) {
   body.prescribed.v = in.vector();
 }
 
-void read(Reader& in, JointAxis& axis) {
-  axis.q = in.bounded();
-  JointDrive& d = axis.drive;
+// What of an articulation changes.
+struct ArticulationState {
+  std::vector<double> q, v;
+  std::vector<JointDof> dofs;
+};
+
+void read(Reader& in, JointDof& dof) {
+  JointDrive& d = dof.drive;
   d.position = in.bounded();
   d.velocity = in.bounded();
   d.stiffness = in.number();
   d.damping = in.number();
   d.max_force = in.number();
-  in.check(!problem_with(d).has_value());
-  axis.drive_impulse = in.number();
+  in.check(!problem_with(d).has_value() && (dof.coordinate >= 0 || d.stiffness == 0.0));
+  dof.drive_impulse = in.number();
+}
+
+ArticulationState read(Reader& in, const Articulation& art) {
+  ArticulationState state{art.q, art.v, art.dofs};
+  for (double& x : state.q) x = in.bounded();
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    state.v[i] = in.bounded();
+    read(in, state.dofs[i]);
+  }
+  in.check(has_unit_quaternions(art.model(), state.q));
+  return state;
 }
 
 void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
@@ -188,6 +205,7 @@ void World::Impl::write(Sink& sink) const {
   sink.word(records.size());
   sink.word(destroyed_pairs.size());
   for (const Body& body : bodies) {
+    if (body.is_link) continue;
     const Mat3& R = body.T.rotation();
     for (const Vec3* v : {&R.cx, &R.cy, &R.cz, &body.T.position(), &body.w, &body.v,
                           &body.prescribed.w, &body.prescribed.v}) {
@@ -195,12 +213,13 @@ void World::Impl::write(Sink& sink) const {
     }
   }
   for (const Articulation& art : articulations) {
-    for (const JointAxis& axis : art.axes) {
-      put(sink, axis.q);
-      const JointDrive& d = axis.drive;
-      for (const double x : {d.position, d.velocity, d.stiffness, d.damping, d.max_force})
+    for (const double x : art.q) put(sink, x);
+    for (std::size_t i = 0; i < art.v.size(); ++i) {
+      const JointDrive& d = art.dofs[i].drive;
+      for (const double x : {art.v[i], d.position, d.velocity, d.stiffness, d.damping, d.max_force,
+                             art.dofs[i].drive_impulse}) {
         put(sink, x);
-      put(sink, axis.drive_impulse);
+      }
     }
   }
   for (const PairRecord& record : records) put(sink, record);
@@ -246,13 +265,13 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     return bad("restore: more contacts announced than bytes follow");
 
   std::vector<Body> bodies = impl_->bodies;
-  std::vector<Articulation> articulations = impl_->articulations;
+  std::vector<ArticulationState> articulations;
   std::vector<PairRecord> records(count);
   std::vector<DestroyedPair> destroyed_pairs(destroyed_count);
-  for (Body& body : bodies) read(in, body);
-  for (Articulation& art : articulations) {
-    for (JointAxis& axis : art.axes) read(in, axis);
+  for (Body& body : bodies) {
+    if (!body.is_link) read(in, body);
   }
+  for (const Articulation& art : impl_->articulations) articulations.push_back(read(in, art));
   for (std::size_t i = 0; i < records.size() && in.ok(); ++i) {
     read(in, impl_->colliders, records[i]);
     in.check(i == 0 || records[i - 1].key < records[i].key);
@@ -263,7 +282,14 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   if (!in.ok() || !in.at_end())
     return bad("restore: a value is out of range; the bytes are damaged");
   impl_->bodies.swap(bodies);
-  impl_->articulations.swap(articulations);
+  for (std::size_t i = 0; i < articulations.size(); ++i) {
+    Articulation& art = impl_->articulations[i];
+    art.q = std::move(articulations[i].q);
+    art.v = std::move(articulations[i].v);
+    art.dofs = std::move(articulations[i].dofs);
+    art.refresh();
+    impl_->follow(art);
+  }
   impl_->records.swap(records);
   impl_->destroyed_pairs.swap(destroyed_pairs);
   impl_->events.clear();

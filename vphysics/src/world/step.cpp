@@ -10,16 +10,10 @@
 #include <cmath>
 
 #include "world/impl.h"
+#include "world/refuse.h"
 #include "world/validate.h"
 
 namespace vp {
-namespace {
-
-tl::unexpected<Error> refuse(const char* message) {
-  return tl::make_unexpected(Error{Errc::invalid_argument, message});
-}
-
-}  // namespace
 
 Expected<StepStatus> World::step(double dt) {
   if (!(dt > 0.0 && dt <= 0.1)) return refuse("step: dt must be in (0, 0.1] seconds");
@@ -45,20 +39,17 @@ void World::Impl::begin_step(double dt) {
   swept_pairs.reserve(room);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
-  joint_rows.reserve(6 * articulations.size());
+  reserve_link_rows();
   bounds.resize(n);
+  discrete_bounds.resize(n);
   movable.resize(n);
   motions.resize(n);
   forced.assign(n, {});
   solver_bodies.resize(n);
   start_poses.resize(n);
-  start_q.resize(2 * articulations.size());
-  posed.assign(n, 0);
   held.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) start_poses[i] = bodies[i].T;
-  for (std::size_t i = 0; i < articulations.size(); ++i) {
-    start_q[2 * i] = articulations[i].axes[0].q;
-    start_q[2 * i + 1] = articulations[i].axes[1].q;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
   report_ends_of_destroyed();
   integrate_forces(dt);
@@ -80,49 +71,25 @@ void World::Impl::integrate_forces(double dt) {
       body.w *= 1.0 / (1.0 + dt * body.angular_damping);
     }
   }
-  for (Articulation& art : articulations) {
-    Body& body = bodies[art.body];
-    const Vec3 lever = cross(body.T.rotate(art.first_moment), desc.gravity);
-    const double force[2] = {art.mass * dot(art.axis, desc.gravity), dot(art.axis, lever)};
-    for (int i = 0; i < 2; ++i) {
-      const JointAxis& axis = art.axes[i];
-      if (!axis.free) continue;
-      Vec3& rate = i == kSlide ? body.v : body.w;
-      const double now = dot(art.axis, rate) + dt * force[i] / axis.inertia;
-      rate = (now / (1.0 + dt * axis.damping / axis.inertia)) * art.axis;
-    }
-  }
+  integrate_articulations(dt);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive) continue;
-    const bool stopped = stop_if_out_of_range(i);
+    const bool stopped = !body.is_link && stop_if_out_of_range(i);
     if (body.motion != Motion::dynamic) continue;
     forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
   }
 }
 
+// Not of a link.
 bool World::Impl::stop_if_out_of_range(std::uint32_t index) {
   Body& body = bodies[index];
-  bool fine = in_range(body.w) && in_range(body.v) && in_range(body.T.position());
-  if (body.is_link) {
-    for (const JointAxis& axis : articulations[body.articulation].axes) {
-      fine = fine && in_range(axis.q) && std::isfinite(axis.drive_impulse);
-    }
-  }
-  if (fine) return false;
+  if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
   status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
   body.T = start_poses[index];
-  if (body.is_link) {
-    Articulation& art = articulations[body.articulation];
-    for (std::size_t i = 0; i < 2; ++i) {
-      art.axes[i].q = start_q[2 * body.articulation + i];
-      art.axes[i].drive_impulse = 0.0;
-    }
-    place_link(art);
-  }
-  posed[index] = 0;
+  body.moved();
   return true;
 }
 
@@ -130,8 +97,9 @@ void World::Impl::refresh_solver_bodies() {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     solve::SolverBody& s = solver_bodies[i];
+    if (!body.alive || (body.is_link && body.first_collider == kNone)) continue;
     s = {};
-    if (!body.alive) continue;
+    s.articulation = -1;
     s.w = body.w;
     s.v = body.v;
     s.x = reference_point(body);
@@ -139,9 +107,8 @@ void World::Impl::refresh_solver_bodies() {
     s.forced_v = forced[i].v;
     if (body.motion != Motion::dynamic) continue;
     if (body.is_link) {
-      const Articulation& art = articulations[body.articulation];
-      if (art.axes[kSlide].free) s.linear = outer(1.0 / art.axes[kSlide].inertia, art.axis);
-      if (art.axes[kAngle].free) s.angular = outer(1.0 / art.axes[kAngle].inertia, art.axis);
+      s.articulation = static_cast<int>(body.articulation);
+      s.link = body.link;
     } else {
       const double m = 1.0 / body.mass;
       s.linear = {m, m, m, 0, 0, 0};
@@ -156,6 +123,7 @@ void World::Impl::refresh_solver_bodies() {
 void World::Impl::refresh_motions(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
+    if (body.is_link && body.first_collider == kNone) continue;
     motions[i] = {reference_point(body), body.v, body.w};
     if (held[i] || !body.alive || body.motion == Motion::fixed) {
       motions[i].v = motions[i].w = {};
@@ -173,14 +141,6 @@ void World::Impl::refresh_motions(double h) {
 void World::Impl::advance_body(std::uint32_t index, double h) {
   Body& body = bodies[index];
   const collide::Motion& m = motions[index];
-  posed[index] = 0;
-  if (body.is_link) {
-    Articulation& art = articulations[body.articulation];
-    art.axes[kSlide].q += h * dot(art.axis, m.v);
-    art.axes[kAngle].q += h * dot(art.axis, m.w);
-    place_link(art);
-    return;
-  }
   const Mat3 R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? orthonormalized(Exp(h * m.w).matrix() * R) : R;
@@ -194,10 +154,12 @@ void World::Impl::advance_body(std::uint32_t index, double h) {
 
 void World::Impl::advance(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].alive || bodies[i].motion == Motion::fixed || held[i]) continue;
+    const Body& body = bodies[i];
+    if (!body.alive || body.is_link || body.motion == Motion::fixed || held[i]) continue;
     advance_body(i, h);
     if (stop_if_out_of_range(i)) held[i] = 1;
   }
+  advance_articulations(h);
   for (solve::ContactConstraint& c : discrete_contacts) {
     const collide::Motion &a = motions[c.a], &b = motions[c.b];
     for (int i = 0; i < c.count; ++i) {
@@ -210,22 +172,11 @@ void World::Impl::advance(double h) {
 
 void World::Impl::apply_corrections() {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
+    if (!body.alive || body.is_link || body.motion != Motion::dynamic) continue;
     const solve::SolverBody& s = solver_bodies[i];
     if (s.shift == Vec3{} && s.turn == Vec3{}) continue;
-    Body& body = bodies[i];
-    posed[i] = 0;
-    if (body.is_link) {
-      Articulation& art = articulations[body.articulation];
-      const double moved[2] = {dot(art.axis, s.shift), dot(art.axis, s.turn)};
-      for (int k = 0; k < 2; ++k) {
-        JointAxis& axis = art.axes[k];
-        axis.q = std::clamp(axis.q + moved[k], std::min(axis.limit.lower, axis.q),
-                            std::max(axis.limit.upper, axis.q));
-      }
-      place_link(art);
-    } else {
-      place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
-    }
+    place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
   }
 }
 
@@ -260,8 +211,8 @@ void World::Impl::hold_what_meets(double h) {
           swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
       if (time_of_impact(sweep_query(swept, h), target) < 0.0) continue;
       again = true;
-      held[a] = held[b] = 1;
-      motions[a].v = motions[a].w = motions[b].v = motions[b].w = {};
+      hold(a);
+      hold(b);
     }
   }
 }

@@ -3,9 +3,12 @@
 // user's, may be an address, and moves nothing, so it is in neither.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <memory>
+#include <span>
 
 #include "world/impl.h"
 
@@ -66,19 +69,61 @@ class Structure {
     add(desc.filter.mask);
     add(static_cast<std::uint64_t>(desc.sensor));
   }
-  void add(const LinkDesc& desc) {
-    add(static_cast<std::uint64_t>(desc.joint));
-    add(desc.T_parent_joint);
-    add(desc.inertia);
-    for (int i = 0; i < 2; ++i) {
-      for (const double x :
-           {desc.armature[i], desc.joint_damping[i], desc.limit[i].lower, desc.limit[i].upper}) {
-        add(x);
+  void add(const ArticulationDesc& desc) {
+    const Model& model = desc.model;
+    add(static_cast<std::uint64_t>(model.links()));
+    for (int l = 0; l < model.links(); ++l) {
+      const LinkSpec& link = model.link(l);
+      add(static_cast<std::uint64_t>(link.parent + 1));
+      add(static_cast<std::uint64_t>(link.joint.index()));
+      std::visit([this](const auto& joint) { add_joint(joint); }, link.joint);
+      add(link.T_parent_joint);
+      add(link.inertia);
+      add(link.armature);
+      add(link.damping);
+      for (const JointForces& f : link.forces) {
+        for (const double x : {f.lower, f.upper, f.limit_stiffness, f.limit_damping, f.stiffness,
+                               f.rest, f.friction, f.motor_limit}) {
+          add(x);
+        }
       }
     }
   }
 
  private:
+  void add_joint(const RevoluteJoint& j) { add(j.axis); }
+  void add_joint(const PrismaticJoint& j) { add(j.axis); }
+  void add_joint(const HelicalJoint& j) {
+    add(j.axis);
+    add(j.pitch);
+  }
+  void add_joint(const CylindricalJoint& j) { add(j.axis); }
+  void add_joint(const UniversalJoint& j) {
+    add(j.first);
+    add(j.second);
+  }
+  // What a user's joint is made of only its owner knows; two of its poses and subspaces tell most.
+  void add_joint(const std::shared_ptr<const UserJoint>& j) {
+    const auto n = static_cast<std::size_t>(j->degrees_of_freedom());
+    for (const double at : {0.0, 0.25}) {
+      std::array<double, 6> q{}, v{};
+      std::array<se3, 6> S{};
+      q.fill(at);
+      v.fill(1.0);
+      SE3 T;
+      se3 rate;
+      j->evaluate(std::span(q).first(n), std::span(v).first(n), T, std::span(S).first(n), rate);
+      add(T);
+      for (std::size_t k = 0; k < n; ++k) add(S[k]);
+      add(rate);
+    }
+  }
+  void add_joint(const auto&) {}  // the others have no constants
+  void add(const se3& V) {
+    add(V.w);
+    add(V.v);
+  }
+
   std::uint64_t& digest_;
 };
 

@@ -1,6 +1,9 @@
 #include "world/validate.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "world/articulation.h"
 
 namespace vp {
 namespace {
@@ -21,11 +24,6 @@ bool positive_definite(const Sym3& A) {
                              A.xy * (A.xy * A.zz - A.yz * A.zx) +
                              A.zx * (A.xy * A.yz - A.yy * A.zx);
   return A.xx > 0.0 && minor > 0.0 && determinant > 0.0;
-}
-
-// Point masses, lines and thin plates have moments of zero; slack is what rounding may take.
-bool positive_semidefinite(const Sym3& A, double slack) {
-  return A == Sym3{} || positive_definite(A + Sym3{slack, slack, slack, 0, 0, 0});
 }
 
 bool in_range(const Sym3& A) {
@@ -69,6 +67,19 @@ bool is_pose(const SE3& T) {
          norm(d) < kTolerance;
 }
 
+bool has_unit_quaternions(const Model& model, std::span<const double> q) {
+  for (int l = 0; l < model.links(); ++l) {
+    const Joint& joint = model.link(l).joint;
+    const int n = coordinates_of(joint);
+    if (n == velocities_of(joint)) continue;
+    const auto end = static_cast<std::size_t>(model.first_coordinate(l) + n);
+    double square = 0.0;
+    for (std::size_t k = end - 4; k < end; ++k) square += q[k] * q[k];
+    if (!(std::fabs(square - 1.0) < 1e-6)) return false;
+  }
+  return true;
+}
+
 std::optional<std::string> problem_with(const BodyDesc& desc) {
   if (!is_pose(desc.T_world_body)) return "T_world_body must be a finite rotation and position";
   if (!in_range(desc.velocity)) return std::string("velocity") + kRange;
@@ -96,27 +107,45 @@ std::optional<std::string> problem_with(const ColliderDesc& desc) {
   return std::nullopt;
 }
 
-std::optional<std::string> problem_with(const LinkDesc& desc) {
-  if (desc.joint > JointKind::cylindrical) return "joint must be one of JointKind";
-  if (!is_pose(desc.T_parent_joint)) return "T_parent_joint must be a finite rotation and position";
-  if (auto problem = problem_with(desc.inertia)) return problem;
-  const Sym3& I = desc.inertia.rotational();
-  const double slack = 1e-9 * std::max({I.xx, I.yy, I.zz});
-  if (!positive_semidefinite(I, slack) || !positive_semidefinite(desc.inertia.central(), slack)) {
-    return "inertia: a moment about the centre of mass is negative; is it given about the link's "
-           "origin?";
-  }
-  for (int i = 0; i < 2; ++i) {
-    if (!not_negative(desc.armature[i])) return "armature must be zero or more";
-    if (!not_negative(desc.joint_damping[i])) return "joint_damping must be zero or more";
-    if (!(desc.limit[i].lower <= 0.0 && desc.limit[i].upper >= 0.0)) {
-      return "limit: lower <= 0 <= upper must hold, a joint is created at 0";
+std::optional<std::string> problem_with(const ArticulationDesc& desc) {
+  const Model& model = desc.model;
+  for (int l = 0; l < model.links(); ++l) {
+    const LinkSpec& link = model.link(l);
+    const Inertia& J = link.inertia;
+    if (!in_range(J.mass()) || !in_range(J.first_moment()) || !in_range(J.rotational()) ||
+        !in_range(link.T_parent_joint.position()) || !in_range(link.armature) ||
+        !in_range(link.damping)) {
+      return "link " + std::to_string(l) + ": every number of the model" + kRange;
+    }
+    for (const JointForces& f : link.forces) {
+      const bool apart = f.lower < kLargest && f.upper > -kLargest && f.lower <= f.upper;
+      if (!apart || !in_range(f.rest) || !(f.stiffness <= 1e30) || !(f.limit_damping <= 1e30)) {
+        return "link " + std::to_string(l) +
+               ": limits and the spring's rest must lie within 1e9, stiffness within 1e30";
+      }
     }
   }
-  const bool turns = desc.joint == JointKind::revolute || desc.joint == JointKind::cylindrical;
-  const double armature = desc.armature[desc.joint == JointKind::revolute ? 0 : 1];
-  if (turns && !(desc.inertia.rotational().zz + armature > 0.0)) {
-    return "inertia: the moment about the joint's axis (zz) plus armature must be positive";
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with(const Articulation& art, std::span<const double> q,
+                                        std::span<const double> v) {
+  if (q.size() != art.q.size() || v.size() != art.v.size()) {
+    return "as many coordinates and velocities are needed as the model has";
+  }
+  const auto good = [](double x) { return in_range(x); };
+  if (!std::all_of(q.begin(), q.end(), good) || !std::all_of(v.begin(), v.end(), good)) {
+    return std::string("every coordinate and velocity") + kRange;
+  }
+  for (const JointDof& dof : art.dofs) {
+    if (dof.coordinate < 0) continue;
+    const double x = q[static_cast<std::size_t>(dof.coordinate)];
+    if (x < dof.lower || x > dof.upper) {
+      return "every coordinate must lie between its joint's stops";
+    }
+  }
+  if (!has_unit_quaternions(art.model(), q)) {
+    return "the quaternion of a ball or a free joint must be of unit length";
   }
   return std::nullopt;
 }

@@ -2,18 +2,21 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "vphysics/world.h"
 
 namespace vp {
 
+class Articulation;
+
 // Largest magnitude accepted for a length, speed, angle or rate. Squares and products of such
 // numbers stay far from overflow.
 inline constexpr double kLargest = 1e9;
 
 inline bool in_range(double x) {
-  return std::isfinite(x) && std::fabs(x) <= kLargest;
+  return std::fabs(x) <= kLargest;  // false for what is no number, too
 }
 inline bool in_range(const Vec3& a) {
   return in_range(a.x) && in_range(a.y) && in_range(a.z);
@@ -23,11 +26,16 @@ inline bool in_range(const se3& V) {
 }
 
 bool is_pose(const SE3& T);
+// Of all ball and free joints.
+bool has_unit_quaternions(const Model& model, std::span<const double> q);
 
 // The sentence to return, or nothing when all is well.
 std::optional<std::string> problem_with(const BodyDesc& desc);
 std::optional<std::string> problem_with(const ColliderDesc& desc);
-std::optional<std::string> problem_with(const LinkDesc& desc);
+std::optional<std::string> problem_with(const ArticulationDesc& desc);
+// With other coordinates and velocities.
+std::optional<std::string> problem_with(const Articulation& articulation, std::span<const double> q,
+                                        std::span<const double> v);
 std::optional<std::string> problem_with(const JointDrive& drive);
 
 }  // namespace vp

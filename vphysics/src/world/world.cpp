@@ -1,48 +1,32 @@
-// Building a world, and reading and setting its state.
+// Building a world of bodies, and reading and setting their state.
 #include "vphysics/world.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/refuse.h"
+#include "world/slots.h"
 #include "world/structure.h"
 #include "world/validate.h"
 
 namespace vp {
 namespace {
 
-tl::unexpected<Error> refuse(Errc code, std::string message) {
-  return tl::make_unexpected(Error{code, std::move(message)});
-}
-tl::unexpected<Error> refuse(std::string message) {
-  return refuse(Errc::invalid_argument, std::move(message));
-}
-tl::unexpected<Error> stale(const char* what) {
-  return refuse(std::string("the ") + what +
-                " does not exist (any more); keep the id that its creation returned");
-}
-
-// The first free slot, or a new one.
-template <class Slot>
-std::uint32_t take_slot(std::vector<Slot>& slots, std::vector<std::uint32_t>& free) {
-  std::uint32_t index = static_cast<std::uint32_t>(slots.size());
-  if (free.empty()) {
-    slots.emplace_back();
-  } else {
-    index = free.back();
-    free.pop_back();
-  }
-  const std::uint32_t generation = slots[index].generation + 1;
-  slots[index] = Slot{};
-  slots[index].generation = generation;
-  slots[index].alive = true;
-  return index;
-}
-
 bool isotropic(const Sym3& I) {
   const double tolerance = 1e-12 * I.xx;
   const auto zero = [&](double x) { return std::fabs(x) <= tolerance; };
   return zero(I.xx - I.yy) && zero(I.xx - I.zz) && zero(I.xy) && zero(I.yz) && zero(I.zx);
+}
+
+// Distance from the body's reference point to the farthest point of its local bounds.
+double reach_of(const Body& body) {
+  const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
+  const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
+  return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
+                   std::max(std::fabs(lower.y), std::fabs(upper.y)),
+                   std::max(std::fabs(lower.z), std::fabs(upper.z))});
 }
 
 }  // namespace
@@ -79,15 +63,6 @@ Body* World::Impl::find(BodyId id) {
   return const_cast<Body*>(std::as_const(*this).find(id));
 }
 
-const Articulation* World::Impl::find(ArticulationId id) const {
-  return id.index != 0 && id.index <= articulations.size() && id.generation == 1
-             ? &articulations[id.index - 1]
-             : nullptr;
-}
-Articulation* World::Impl::find(ArticulationId id) {
-  return const_cast<Articulation*>(std::as_const(*this).find(id));
-}
-
 Vec3 World::Impl::reference_point(const Body& body) const {
   return body.motion == Motion::dynamic && !body.is_link ? body.T * body.centre : body.T.position();
 }
@@ -95,12 +70,7 @@ Vec3 World::Impl::reference_point(const Body& body) const {
 void World::Impl::place(Body& body, const Vec3& reference, const Mat3& R) {
   const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
   body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
-}
-
-void World::Impl::place_link(const Articulation& art) {
-  const auto [s, c] = sin_cos(art.axes[kAngle].q);
-  const SE3 T_joint_link(Mat3{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}, {0, 0, art.axes[kSlide].q});
-  bodies[art.body].T = art.T_world_joint * T_joint_link;
+  body.moved();
 }
 
 Expected<BodyId> World::create_body(const BodyDesc& desc) {
@@ -181,6 +151,8 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   (body->last_collider == kNone ? body->first_collider
                                 : impl_->colliders[body->last_collider].next) = index;
   body->last_collider = index;
+  body->moved();
+  if (body->is_link) impl_->follow(impl_->articulations[body->articulation]);
   body->categories |= c.filter.category;
   body->masks |= c.filter.mask;
   body->has_sensor |= c.sensor;
@@ -188,60 +160,13 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->unbounded = true;
   } else {
     body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
+    body->reach = reach_of(*body);
   }
   Structure structure(impl_->structure);
   structure.add(0x300u + index);
   structure.add(body_handle.index);
   structure.add(desc);
   return collider_id(impl_->colliders, index);
-}
-
-Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc) {
-  if (desc.links.empty()) return refuse("create_articulation: at least one link is needed");
-  if (desc.links.size() > 1) {
-    return refuse(Errc::unsupported,
-                  "create_articulation: this version simulates one link on the world; create one "
-                  "articulation for each link");
-  }
-  const LinkDesc& link = desc.links[0];
-  if (link.parent != -1)
-    return refuse("create_articulation: the first link's parent must be -1, the world");
-  if (auto problem = problem_with(link)) return refuse("create_articulation: " + *problem);
-
-  const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
-  Body& body = impl_->bodies[index];
-  body.motion = link.joint == JointKind::fixed ? Motion::fixed : Motion::dynamic;
-  body.is_link = true;
-  body.articulation = static_cast<std::uint32_t>(impl_->articulations.size());
-  body.user_data = link.user_data;
-
-  Articulation art;
-  art.kind = link.joint;
-  art.body = index;
-  art.T_world_joint =
-      SE3(orthonormalized(link.T_parent_joint.rotation()), link.T_parent_joint.position());
-  art.axis = art.T_world_joint.rotation().cz;
-  art.mass = link.inertia.mass();
-  art.first_moment = link.inertia.first_moment();
-  for (int dof = 0; dof < degrees_of_freedom(link.joint); ++dof) {
-    const int i = link.joint == JointKind::revolute ? kAngle : dof;
-    JointAxis& axis = art.axes[i];
-    axis.free = true;
-    axis.inertia = (i == kSlide ? art.mass : link.inertia.rotational().zz) + link.armature[dof];
-    axis.damping = link.joint_damping[dof];
-    axis.limit = link.limit[dof];
-  }
-  impl_->articulations.push_back(art);
-  impl_->place_link(art);
-  Structure structure(impl_->structure);
-  structure.add(0x400u + index);
-  structure.add(link);
-  return ArticulationId{static_cast<std::uint32_t>(impl_->articulations.size()), 1};
-}
-
-BodyId World::link_body(ArticulationId id, int link) const {
-  const Articulation* art = impl_->find(id);
-  return art && link == 0 ? body_id(impl_->bodies, art->body) : BodyId{};
 }
 
 bool World::contains(BodyId id) const {
@@ -251,7 +176,9 @@ bool World::contains(BodyId id) const {
 SE3 World::pose(BodyId id) const {
   const Body* body = impl_->find(id);
   VP_ASSERT(body && "pose: the body does not exist (any more)");
-  return body ? body->T : SE3{};
+  if (!body) return {};
+  return body->is_link ? impl_->articulations[body->articulation].T_world_link(body->link)
+                       : body->T;
 }
 
 se3 World::velocity(BodyId id) const {
@@ -259,6 +186,12 @@ se3 World::velocity(BodyId id) const {
   VP_ASSERT(body && "velocity: the body does not exist (any more)");
   if (!body) return {};
   if (body->motion == Motion::kinematic) return body->prescribed;
+  if (body->is_link) {
+    const Articulation& art = impl_->articulations[body->articulation];
+    const SE3 T = art.T_world_link(body->link);
+    const se3 V = art.link_velocity(body->link, T.position());
+    return {T.unrotate(V.w), T.unrotate(V.v)};
+  }
   const Vec3 v = body->v + cross(body->w, body->T.position() - impl_->reference_point(*body));
   return {body->T.unrotate(body->w), body->T.unrotate(v)};
 }
@@ -269,6 +202,7 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
   if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
   body->T = SE3(orthonormalized(T.rotation()), T.position());
+  body->moved();
   return {};
 }
 
@@ -295,61 +229,15 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   if (!in_range(impulse) || !in_range(point)) {
     return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
   }
-  const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
   if (body->is_link) {
-    const Articulation& art = impl_->articulations[body->articulation];
-    const Vec3& a = art.axis;
-    if (art.axes[kSlide].free) body->v += (dot(a, impulse) / art.axes[kSlide].inertia) * a;
-    if (art.axes[kAngle].free) body->w += (dot(a, moment) / art.axes[kAngle].inertia) * a;
+    Articulation& art = impl_->articulations[body->articulation];
+    art.apply_impulse(body->link, impulse, point);
+    impl_->follow(art);
     return {};
   }
+  const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
   body->v += (1.0 / body->mass) * impulse;
   body->w += rotated(body->T.rotation(), body->inverse_central) * moment;
-  return {};
-}
-
-double World::joint_position(ArticulationId id, int link, int dof) const {
-  const Articulation* art = impl_->find(id);
-  const int i = art && link == 0 ? art->axis_index(dof) : -1;
-  VP_ASSERT(i >= 0 && "joint_position: no such joint coordinate");
-  return i >= 0 ? art->axes[i].q : 0.0;
-}
-
-double World::joint_velocity(ArticulationId id, int link, int dof) const {
-  const Articulation* art = impl_->find(id);
-  const int i = art && link == 0 ? art->axis_index(dof) : -1;
-  VP_ASSERT(i >= 0 && "joint_velocity: no such joint coordinate");
-  if (i < 0) return 0.0;
-  const Body& body = impl_->bodies[art->body];
-  return dot(art->axis, i == kSlide ? body.v : body.w);
-}
-
-Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, double position,
-                                      double velocity) {
-  Articulation* art = impl_->find(id);
-  const int i = art && link == 0 ? art->axis_index(dof) : -1;
-  if (i < 0)
-    return refuse("set_joint_state: no such joint coordinate; check articulation, link and dof");
-  if (!in_range(position) || !in_range(velocity)) {
-    return refuse("set_joint_state: position and velocity must be finite and at most 1e9");
-  }
-  const JointLimit& limit = art->axes[i].limit;
-  if (position < limit.lower || position > limit.upper) {
-    return refuse("set_joint_state: the position must lie within the joint's limits");
-  }
-  art->axes[i].q = position;
-  Body& body = impl_->bodies[art->body];
-  (i == kSlide ? body.v : body.w) = velocity * art->axis;
-  impl_->place_link(*art);
-  return {};
-}
-
-Expected<void> World::set_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
-  Articulation* art = impl_->find(id);
-  const int i = art && link == 0 ? art->axis_index(dof) : -1;
-  if (i < 0) return refuse("set_drive: no such joint coordinate; check articulation, link and dof");
-  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
-  art->axes[i].drive = drive;
   return {};
 }
 

@@ -1,0 +1,19 @@
+// The rows of contacts and joints on articulations, made once a solve.
+#pragma once
+
+#include <vector>
+
+#include "solve/contact_solver.h"
+
+namespace vp::solve {
+
+// Rows of a link's side of a contact: of point i, along its normal and its two tangents; then, if
+// the contact resists rolling, about the three axes of the world.
+inline constexpr int kNormal = 0, kTangent = 1, kRowsOfPoint = 3;
+constexpr int row_of(int point, int direction) {
+  return kRowsOfPoint * point + direction;
+}
+
+void prepare_link_rows(const StepContext& context);
+
+}  // namespace vp::solve

@@ -1,0 +1,311 @@
+// One step of an articulation, in its joints' coordinates:
+//
+//   v += (M + dt D)^-1 dt (-h(q, v) - D v)      h: gravity, Coriolis and centrifugal; D: damping
+//   v += H^T z                                  what the solver has done (impulse_factor.h)
+//   q  = q [+] dt v                             on the group; configuration.h
+//
+// The velocities' own forces are taken halfway, at v + dv / 2, else a spinning tree would gain
+// energy. A floating tree keeps its momentum besides (floating_tree.h).
+#include "world/articulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/kinematics.h"
+#include "vphysics/multibody/configuration.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+using detail::NodeKind;
+
+// On its parent's axis, about or along it, and balanced on it.
+bool continues_axis(const detail::Node<double>& node) {
+  constexpr double kTolerance = 1e-12;  // of rounding in how the joints' frames were put together
+  const auto along_z = [&](const Vec3& a, double scale) {
+    return std::fabs(a.x) <= kTolerance * scale && std::fabs(a.y) <= kTolerance * scale;
+  };
+  return node.kind <= NodeKind::helical && along_z(node.J.first_moment(), node.J.mass()) &&
+         (node.parent == kWorld ||
+          (along_z(node.T_parent.rotation().cz, 1.0) && along_z(node.T_parent.position(), 1.0)));
+}
+
+bool has_coordinate(const Joint& joint) {
+  return !std::holds_alternative<BallJoint>(joint) && !std::holds_alternative<FreeJoint>(joint);
+}
+
+}  // namespace
+
+Articulation::Articulation(const Model& model, const Vec3& gravity)
+    : q(model.zero_coordinates()),
+      model_(model),
+      gravity_(gravity),
+      data_(model, Arithmetic::reproducible),
+      factor_(model),
+      floating_(FloatingTree::of(model)) {
+  const auto n = static_cast<std::size_t>(model.velocities());
+  v.resize(n);
+  dofs.resize(n);
+  for (std::vector<double>* scratch :
+       {&damping_, &rate_, &change_, &force_, &zero_, &velocity_, &shift_}) {
+    scratch->resize(n);
+  }
+  whole_.resize(floating_.size());
+  for (int l = 0; l < model.links(); ++l) {
+    const LinkSpec& link = model.link(l);
+    const auto first = static_cast<std::size_t>(model.first_velocity(l));
+    for (int k = 0; k < velocities_of(link.joint); ++k) {
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      damping_[i] = link.damping;
+      damped_ = damped_ || link.damping > 0.0;
+      JointDof& dof = dofs[i];
+      if (!link.forces.empty()) dof.forces = link.forces[static_cast<std::size_t>(k)];
+      const bool gives_way = std::isfinite(dof.forces.limit_stiffness);
+      dof.locked = std::isinf(dof.forces.friction);
+      dof.passive = dof.forces.friction > 0.0 || dof.forces.stiffness > 0.0 || gives_way;
+      if (!has_coordinate(link.joint)) continue;
+      dof.coordinate = model.first_coordinate(l) + k;
+      if (gives_way) continue;
+      dof.lower = std::max(dof.lower, dof.forces.lower);
+      dof.upper = std::min(dof.upper, dof.forces.upper);
+      double& start = q[static_cast<std::size_t>(dof.coordinate)];
+      start = std::clamp(start, dof.lower, dof.upper);
+    }
+  }
+  start_q_ = moved_q_ = q;
+  const auto& nodes = model.tree().nodes;
+  constant_ = !damped_ && std::all_of(nodes.begin(), nodes.end(), continues_axis);
+  forward_kinematics<double>(model_, data_, q, v);
+  regular_ = factor_.factor(model_, data_);
+  factored_ = true;
+  find_change(1.0, zero_);
+  fall_ = change_;
+  if (constant_) find_lines();
+  refresh();
+}
+
+int Articulation::dof_index(int link, int dof) const {
+  if (link < 0 || link >= model_.links() || dof < 0) return -1;
+  if (dof >= velocities_of(model_.link(link).joint)) return -1;
+  return model_.first_velocity(link) + dof;
+}
+
+void Articulation::refresh() {
+  if (constant_) {
+    place_on_lines();
+    update_twists();
+    return;
+  }
+  forward_kinematics<double>(model_, data_, q, v);
+  factored_ = twists_ = false;
+}
+
+// A joint that looks the other way along its line slides and turns backwards.
+void Articulation::find_lines() {
+  const auto& nodes = model_.tree().nodes;
+  const std::vector<double> zero(q.size(), 0.0);
+  forward_kinematics<double>(model_, data_, zero, {});
+  std::vector<SE3> line(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto& node = nodes[i];
+    line[i] = node.parent == kWorld ? node.T_parent : line[static_cast<std::size_t>(node.parent)];
+    const Vec3 z = detail::pose_of(data_.work(), static_cast<int>(i)).rotation().cz;
+    const double way = dot(z, line[i].rotation().cz) > 0.0 ? 1.0 : -1.0;
+    const bool turns = node.kind != NodeKind::prismatic;
+    on_line_.push_back({turns ? way * node.pitch : way, turns ? way : 0.0, 0.0, 0.0});
+  }
+  for (int l = 0; l < model_.links(); ++l) {
+    const int node = model_.tree().places[static_cast<std::size_t>(l)].node;
+    const SE3 T = vp::T_world_link(model_, data_, l);
+    T_world_line_.push_back(node == kWorld ? T : line[static_cast<std::size_t>(node)]);
+    T_line_link_.push_back(Inv(T_world_line_.back()) * T);
+  }
+}
+
+void Articulation::place_on_lines() {
+  const auto& nodes = model_.tree().nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto& node = nodes[i];
+    const double x = q[static_cast<std::size_t>(node.q)];
+    OnLine& on = on_line_[i];
+    on.slide = on.slides * x;
+    on.turn = on.turns * x;
+    if (node.parent == kWorld) continue;
+    on.slide += on_line_[static_cast<std::size_t>(node.parent)].slide;
+    on.turn += on_line_[static_cast<std::size_t>(node.parent)].turn;
+  }
+}
+
+SE3 Articulation::T_world_link(int link) const {
+  if (!constant_) return vp::T_world_link(model_, data_, link);
+  const auto l = static_cast<std::size_t>(link);
+  const int node = model_.tree().places[l].node;
+  const SE3& X = T_world_line_[l];
+  if (node == kWorld) return X;
+  const OnLine& on = on_line_[static_cast<std::size_t>(node)];
+  const auto [s, c] = sin_cos(on.turn);
+  const Mat3& R = X.rotation();
+  const SE3 moved(Mat3{c * R.cx + s * R.cy, c * R.cy - s * R.cx, R.cz},
+                  X.position() + on.slide * R.cz);
+  return moved * T_line_link_[l];
+}
+
+void Articulation::update_factor() {
+  if (factored_) return;
+  (void)factor_.factor(model_, data_);
+  factored_ = true;
+}
+
+void Articulation::update_twists() {
+  factor_.twists(v);
+  twists_ = true;
+}
+
+se3 Articulation::twist_in_data(int link, const Vec3& p) const {
+  const int node = model_.tree().places[static_cast<std::size_t>(link)].node;
+  if (node == kWorld) return {};
+  const se3 V = detail::velocity_of(data_.work(), node);
+  return {V.w, V.v + cross(V.w, p - detail::origin_of(data_.work(), node))};
+}
+
+// change_ = (M + dt D)^-1 dt (-h(q, at) - D v)
+void Articulation::find_change(double dt, std::span<const double> at) {
+  const Loads loads{.gravity = gravity_, .external = {}};
+  inverse_dynamics<double>(model_, data_, q, at, zero_, loads, force_);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    // inverse_dynamics() has the damping of the velocities that it is given.
+    change_[i] = dt * (damping_[i] * (at[i] - v[i]) - force_[i]);
+  }
+  factor_.solve(change_);
+}
+
+bool Articulation::add_constant_forces(double dt) {
+  bool falls = false;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    v[i] += dt * fall_[i];
+    falls = falls || fall_[i] != 0.0;
+  }
+  if (falls) update_twists();
+  return falls;
+}
+
+bool Articulation::integrate_forces(double dt, bool& changed) {
+  changed = true;
+  if (constant_) {
+    changed = add_constant_forces(dt);
+    return true;
+  }
+  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(model_, data_);
+  const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
+  factored_ = !damped_;
+  find_change(dt, v);
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
+  find_change(dt, rate_);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
+  if (!floating_.empty()) forward_kinematics<double>(model_, data_, q, v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    whole_[i].linear += (dt * whole_[i].mass) * gravity_;
+    floating_[i].set_momentum(model_, data_, whole_[i], v);
+  }
+  update_twists();
+  return fine;
+}
+
+void Articulation::advance(double h) {
+  if (constant_) {  // a coordinate for each velocity; and it keeps its twists
+    for (std::size_t i = 0; i < v.size(); ++i) q[i] += h * v[i];
+    place_on_lines();
+    return;
+  }
+  if (!floating_.empty()) {
+    advance_floating(h);
+  } else {
+    for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
+    integrate<double>(model_, q, rate_, q);
+  }
+  refresh();
+}
+
+// The root turns at the rate that it will have halfway, where its momentum is what it is now.
+void Articulation::advance_floating(double h) {
+  forward_kinematics<double>(model_, data_, q, v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(model_, data_);
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = 0.5 * h * v[i];
+  integrate<double>(model_, q, rate_, moved_q_);
+  forward_kinematics<double>(model_, data_, moved_q_, v);
+  rate_ = v;
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    floating_[i].set_momentum(model_, data_, whole_[i], rate_);
+  }
+  for (double& r : rate_) r *= h;
+  integrate<double>(model_, q, rate_, q);
+  forward_kinematics<double>(model_, data_, q, v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    const WholeTree& from = whole_[i];
+    const Vec3 centre = from.centre + (h / from.mass) * from.linear;
+    floating_[i].shift(model_, centre - floating_[i].whole(model_, data_).centre, q);
+    floating_[i].set_momentum(model_, data_, from, v);
+  }
+}
+
+solve::SolverArticulation Articulation::begin_solve() {
+  update_factor();
+  std::fill(velocity_.begin(), velocity_.end(), 0.0);
+  std::fill(shift_.begin(), shift_.end(), 0.0);
+  return {&factor_, velocity_.data(), shift_.data(), false};
+}
+
+Articulation::Change Articulation::end_solve() {
+  const auto pushed = [](const std::vector<double>& z) {
+    return std::any_of(z.begin(), z.end(), [](double x) { return x != 0.0; });
+  };
+  const bool moved = pushed(shift_);
+  if (!moved && !pushed(velocity_)) return Change::none;
+  factor_.to_velocities(velocity_);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += velocity_[i];
+  if (!moved) {
+    update_twists();
+    return Change::of_velocities;
+  }
+  factor_.to_velocities(shift_);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const JointDof& dof = dofs[i];
+    if (dof.coordinate < 0) continue;
+    const double now = q[static_cast<std::size_t>(dof.coordinate)];
+    shift_[i] =
+        std::clamp(shift_[i], std::min(0.0, dof.lower - now), std::max(0.0, dof.upper - now));
+  }
+  integrate<double>(model_, q, shift_, q);
+  refresh();
+  return Change::of_coordinates_too;
+}
+
+void Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& point) {
+  update_factor();
+  factor_.force_row(link, point, impulse, rate_.data());
+  std::fill(change_.begin(), change_.end(), 0.0);
+  std::uint32_t d = factor_.first(link);
+  for (std::uint32_t k = 0; k < factor_.depth(link); ++k, d = factor_.next()[d]) {
+    change_[d] = rate_[k];
+  }
+  factor_.to_velocities(change_);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
+  refresh();
+}
+
+bool Articulation::in_range() const {
+  bool good = true;
+  for (const double x : q) good &= vp::in_range(x);
+  for (const double x : v) good &= vp::in_range(x);
+  return good;
+}
+
+void Articulation::return_to_start() {
+  q = start_q_;
+  std::fill(v.begin(), v.end(), 0.0);
+  for (JointDof& dof : dofs) dof.drive_impulse = 0.0;
+  refresh();
+}
+
+}  // namespace vp

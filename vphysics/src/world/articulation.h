@@ -1,0 +1,109 @@
+// An articulation of a world: a model, its state, and what a step does to it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solve/link_side.h"
+#include "vphysics/multibody/dynamics.h"
+#include "vphysics/world.h"
+#include "world/floating_tree.h"
+
+namespace vp {
+
+// One degree of freedom.
+struct JointDof {
+  int coordinate = -1;  // its place in q; -1: of a ball or a free joint, where there is none
+  JointForces forces;
+  double lower = -1e30, upper = 1e30;  // stops
+  bool locked = false;                 // by infinite friction
+  bool passive = false;                // has a spring, friction, or limits that give way
+  JointDrive drive;
+  double drive_impulse = 0.0;  // warm start
+};
+
+class Articulation {
+ public:
+  Articulation(const Model& model, const Vec3& gravity);
+
+  // --- state; refresh() follows a change of q or v from outside
+  std::vector<double> q, v;
+  std::vector<JointDof> dofs;         // of each velocity
+  std::vector<std::uint32_t> bodies;  // of each link
+
+  const Model& model() const { return model_; }
+  // The index of a joint's degree of freedom among the velocities, or -1.
+  int dof_index(int link, int dof) const;
+  std::size_t deepest() const { return factor_.deepest(); }
+  bool is_fixed(int link) const { return factor_.depth(link) == 0; }
+  // As it was made, every joint moves inertia.
+  bool is_regular() const { return regular_; }
+
+  // Poses and velocities of the links from q and v: a link's pose, its angular velocity and that of
+  // a point of it, in the world frame.
+  void refresh();
+  SE3 T_world_link(int link) const;
+  se3 link_velocity(int link, const Vec3& point) const {
+    return twists_ ? factor_.twist_at(link, point) : twist_in_data(link, point);
+  }
+
+  // v after the forces of dt: gravity, those of the velocities, the joints' viscous damping; the
+  // last is integrated implicitly. False if a joint moves no inertia. changed: v is another.
+  bool integrate_forces(double dt, bool& changed);
+  // q after h seconds at the velocities v.
+  void advance(double h);
+
+  // For the solver: the response of the present configuration, and nothing pushed yet. end_solve()
+  // takes over what it did, corrections of the coordinates within the limits.
+  solve::SolverArticulation begin_solve();
+  enum class Change { none, of_velocities, of_coordinates_too };
+  Change end_solve();
+  void apply_impulse(int link, const Vec3& impulse, const Vec3& point);  // world frame
+
+  bool in_range() const;
+  // Where it was when the step began, at rest.
+  void mark_start() { start_q_ = q; }
+  void return_to_start();
+
+ private:
+  void update_factor();
+  void update_twists();
+  void find_lines();
+  void place_on_lines();
+  se3 twist_in_data(int link, const Vec3& point) const;
+  void find_change(double dt, std::span<const double> at);
+  bool add_constant_forces(double dt);
+  void advance_floating(double h);
+
+  Model model_;
+  Vec3 gravity_;
+  Data data_;
+  detail::ImpulseFactor factor_;
+  std::vector<FloatingTree> floating_;
+  std::vector<double> damping_;  // of each degree of freedom
+  bool damped_ = false;
+  // All joints move along and about one line on which all masses are balanced, and none is damped,
+  // as of a table's rods: the mass matrix and the forces of gravity never change, and the
+  // velocities make none. One factor serves for ever; data_ is not used, for so few joints its
+  // passes' SIMD lanes would be almost empty.
+  bool constant_ = false;
+  // Then: how far each node has slid along its line and turned about it.
+  struct OnLine {
+    double slides, turns;  // for one of its own coordinate
+    double slide, turn;
+  };
+  std::vector<OnLine> on_line_;    // of each node
+  std::vector<SE3> T_world_line_;  // of each link: its line,
+  std::vector<SE3> T_line_link_;   // and where it is on that at zero coordinates
+  bool factored_ = false;          // for this configuration, without damping
+  bool twists_ = false;            // the factor has the links' velocities, else the data
+  bool regular_ = false;
+
+  // Scratch.
+  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, velocity_, shift_;
+  std::vector<WholeTree> whole_;
+  std::vector<double> fall_;  // the acceleration of a constant one
+};
+
+}  // namespace vp

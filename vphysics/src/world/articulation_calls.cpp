@@ -1,0 +1,146 @@
+// Building articulations in a world, and reading and setting their state.
+#include <algorithm>
+
+#include "vphysics/assert.h"
+#include "world/impl.h"
+#include "world/refuse.h"
+#include "world/slots.h"
+#include "world/structure.h"
+#include "world/validate.h"
+
+namespace vp {
+
+const Articulation* World::Impl::find(ArticulationId id) const {
+  return id.index != 0 && id.index <= articulations.size() && id.generation == 1
+             ? &articulations[id.index - 1]
+             : nullptr;
+}
+Articulation* World::Impl::find(ArticulationId id) {
+  return const_cast<Articulation*>(std::as_const(*this).find(id));
+}
+
+Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc) {
+  if (auto problem = problem_with(desc)) return refuse("create_articulation: " + *problem);
+  Articulation art(desc.model, impl_->desc.gravity);
+  if (!art.is_regular()) {
+    return refuse(Errc::singular,
+                  "create_articulation: a joint moves no inertia; give its links an inertia about "
+                  "its axis, or the joint an armature");
+  }
+  const auto number = static_cast<std::uint32_t>(impl_->articulations.size());
+  for (int link = 0; link < desc.model.links(); ++link) {
+    const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
+    Body& body = impl_->bodies[index];
+    body.motion = art.is_fixed(link) ? Motion::fixed : Motion::dynamic;
+    body.is_link = true;
+    body.articulation = number;
+    body.link = link;
+    art.bodies.push_back(index);
+  }
+  Structure structure(impl_->structure);
+  structure.add(0x400u + art.bodies.front());
+  structure.add(desc);
+  impl_->follow(art);
+  impl_->articulations.push_back(std::move(art));
+  return ArticulationId{number + 1, 1};
+}
+
+BodyId World::link_body(ArticulationId id, int link) const {
+  const Articulation* art = impl_->find(id);
+  if (!art || link < 0 || link >= art->model().links()) return {};
+  return body_id(impl_->bodies, art->bodies[static_cast<std::size_t>(link)]);
+}
+
+const Model* World::model(ArticulationId id) const {
+  const Articulation* art = impl_->find(id);
+  return art ? &art->model() : nullptr;
+}
+
+std::span<const double> World::coordinates(ArticulationId id) const {
+  const Articulation* art = impl_->find(id);
+  VP_ASSERT(art && "coordinates: no such articulation");
+  return art ? std::span<const double>(art->q) : std::span<const double>{};
+}
+std::span<const double> World::velocities(ArticulationId id) const {
+  const Articulation* art = impl_->find(id);
+  VP_ASSERT(art && "velocities: no such articulation");
+  return art ? std::span<const double>(art->v) : std::span<const double>{};
+}
+
+Expected<void> World::set_joint_states(ArticulationId id, std::span<const double> q,
+                                       std::span<const double> v) {
+  Articulation* art = impl_->find(id);
+  if (!art) return refuse("set_joint_states: no such articulation");
+  if (auto problem = problem_with(*art, q, v)) return refuse("set_joint_states: " + *problem);
+  std::copy(q.begin(), q.end(), art->q.begin());
+  std::copy(v.begin(), v.end(), art->v.begin());
+  art->refresh();
+  impl_->follow(*art);
+  return {};
+}
+
+namespace {
+
+// The index of a degree of freedom that has a coordinate, or -1.
+int coordinate_dof(const Articulation* art, int link, int dof) {
+  const int i = art ? art->dof_index(link, dof) : -1;
+  return i >= 0 && art->dofs[static_cast<std::size_t>(i)].coordinate >= 0 ? i : -1;
+}
+
+}  // namespace
+
+double World::joint_position(ArticulationId id, int link, int dof) const {
+  const Articulation* art = impl_->find(id);
+  const int i = coordinate_dof(art, link, dof);
+  VP_ASSERT(i >= 0 && "joint_position: no such joint coordinate");
+  if (i < 0) return 0.0;
+  return art->q[static_cast<std::size_t>(art->dofs[static_cast<std::size_t>(i)].coordinate)];
+}
+
+double World::joint_velocity(ArticulationId id, int link, int dof) const {
+  const Articulation* art = impl_->find(id);
+  const int i = coordinate_dof(art, link, dof);
+  VP_ASSERT(i >= 0 && "joint_velocity: no such joint coordinate");
+  return i >= 0 ? art->v[static_cast<std::size_t>(i)] : 0.0;
+}
+
+Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, double position,
+                                      double velocity) {
+  Articulation* art = impl_->find(id);
+  const int i = coordinate_dof(art, link, dof);
+  if (i < 0) {
+    return refuse(
+        "set_joint_state: no such joint coordinate; check articulation, link and dof, and set ball "
+        "and free joints by set_joint_states");
+  }
+  if (!in_range(position) || !in_range(velocity)) {
+    return refuse("set_joint_state: position and velocity must be finite and at most 1e9");
+  }
+  const JointDof& joint = art->dofs[static_cast<std::size_t>(i)];
+  if (position < joint.lower || position > joint.upper) {
+    return refuse("set_joint_state: the position must lie between the joint's stops");
+  }
+  art->q[static_cast<std::size_t>(joint.coordinate)] = position;
+  art->v[static_cast<std::size_t>(i)] = velocity;
+  art->refresh();
+  impl_->follow(*art);
+  return {};
+}
+
+Expected<void> World::set_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
+  Articulation* art = impl_->find(id);
+  const int i = art ? art->dof_index(link, dof) : -1;
+  if (i < 0)
+    return refuse("set_drive: no such degree of freedom; check articulation, link and dof");
+  JointDof& joint = art->dofs[static_cast<std::size_t>(i)];
+  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
+  if (joint.coordinate < 0 && drive.stiffness > 0.0) {
+    return refuse(
+        "set_drive: a ball or a free joint has no position to be driven to; set the "
+        "stiffness to 0, the damping drives its velocity");
+  }
+  joint.drive = drive;
+  return {};
+}
+
+}  // namespace vp

@@ -1,0 +1,205 @@
+// Articulations within a world: their links' bodies follow their coordinates, and their motors and
+// stops become rows of the solver.
+#include <algorithm>
+#include <cmath>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+
+// Contacts at once for whose rows there is memory before they are needed.
+constexpr std::size_t kContactsReady = 32;
+// Rows of one degree of freedom at most: motor, friction or lock, spring, two limits.
+constexpr std::size_t kRowsOfDof = 5;
+
+// Links are bodies for all that collides; their pose and velocity are copies.
+void World::Impl::follow(const Articulation& art) {
+  for (const std::uint32_t b : art.bodies) {
+    Body& body = bodies[b];
+    if (body.first_collider == kNone) continue;
+    body.T = art.T_world_link(body.link);
+    body.moved();
+  }
+  follow_velocities(art, false);
+}
+// Carrying: what changes was carried by contacts and joints (contacts.cpp).
+void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
+  for (const std::uint32_t b : art.bodies) {
+    Body& body = bodies[b];
+    if (body.first_collider == kNone) continue;
+    const se3 now = art.link_velocity(body.link, body.T.position());
+    if (carrying && !(forced[b] == Velocity{})) carry(b, now.w - body.w, now.v - body.v);
+    body.w = now.w;
+    body.v = now.v;
+  }
+}
+
+void World::Impl::reserve_link_rows() {
+  std::size_t deepest = 0, dofs = 0;
+  for (const Articulation& art : articulations) {
+    deepest = std::max(deepest, art.deepest());
+    dofs += art.dofs.size();
+  }
+  joint_rows.reserve(kRowsOfDof * dofs);
+  constexpr std::size_t kRows = 3 * collide::kMaxPoints + 3;
+  const std::size_t size = kContactsReady * 2 * kRows * deepest;
+  if (link_rows.size() < size) link_rows.resize(size);
+  solver_articulations.resize(articulations.size());
+}
+
+void World::Impl::integrate_articulations(double dt) {
+  for (Articulation& art : articulations) {
+    art.mark_start();
+    bool changed = false;
+    if (!art.integrate_forces(dt, changed)) {
+      status.non_finite = true;
+      art.return_to_start();
+    }
+    if (changed) follow_velocities(art, false);
+  }
+}
+
+namespace {
+
+// The rows of one degree of freedom. f = k (p - q - h v) + d (v_t - v), of a motor or a spring, is
+// a soft row: v + s f h = target with s = 1 / (h^2 k + h d), target = (h k (p - q) + h d v_t) s.
+class JointRows {
+ public:
+  JointRows(std::vector<solve::JointRow>& rows, std::uint32_t articulation, std::uint32_t i,
+            const Articulation& art)
+      : rows_(rows), dof_(art.dofs[i]), speed_(art.v[i]), articulation_(articulation), i_(i) {
+    if (dof_.coordinate >= 0) q_ = art.q[static_cast<std::size_t>(dof_.coordinate)];
+  }
+
+  bool add_motor(double h, JointDof& dof) {
+    const JointDrive& d = dof.drive;
+    const double most = h * std::min(d.max_force, dof.forces.motor_limit);
+    const double gain = h * (h * d.stiffness + d.damping);
+    if (!(gain > 0.0 && most > 0.0)) return false;
+    solve::JointRow& motor =
+        add(h * (d.stiffness * (d.position - q_) + d.damping * d.velocity) / gain, -most, most);
+    motor.softness = 1.0 / gain;
+    motor.impulse = std::clamp(dof.drive_impulse, -most, most);
+    motor.remember = &dof.drive_impulse;
+    return true;
+  }
+  // Spring, dry friction, and limits that give way.
+  void add_passive(double h) {
+    const JointForces& f = dof_.forces;
+    if (f.friction > 0.0 && !dof_.locked) add(0.0, -h * f.friction, h * f.friction);
+    if (dof_.coordinate < 0) return;
+    if (f.stiffness > 0.0) add_spring(h, f.stiffness, 0.0, f.rest, -kAny, kAny);
+    if (std::isfinite(f.limit_stiffness)) {
+      if (std::isfinite(f.lower)) {
+        add_spring(h, f.limit_stiffness, f.limit_damping, f.lower, 0.0, kAny);
+      }
+      if (std::isfinite(f.upper)) {
+        add_spring(h, f.limit_stiffness, f.limit_damping, f.upper, -kAny, 0.0);
+      }
+    }
+  }
+  // Stops let the joint just reach them by the end of the step, and bring back within a whole step
+  // what is beyond them. A locked joint stands.
+  void add_stops(double h, double dt) {
+    if (dof_.locked) add(0.0, -kAny, kAny);
+    if (dof_.coordinate < 0) return;
+    const double below = dof_.lower - q_, above = dof_.upper - q_;
+    // Rows only for stops within reach; twice the present rate, since an impulse may add to it.
+    const double near = h * (2.0 * std::fabs(speed_) + 1.0);
+    if (below > -near) add(below / (below > 0.0 ? dt : h), 0.0, kAny);
+    if (above < near) add(above / (above < 0.0 ? dt : h), -kAny, 0.0);
+  }
+
+ private:
+  static constexpr double kAny = 1e30;
+
+  solve::JointRow& add(double target, double lower, double upper) {
+    solve::JointRow& row = rows_.emplace_back();
+    row.articulation = articulation_;
+    row.dof = i_;
+    row.speed = speed_;
+    row.target = target;
+    row.lower = lower;
+    row.upper = upper;
+    return row;
+  }
+  void add_spring(double h, double stiffness, double damping, double rest, double lower,
+                  double upper) {
+    const double gain = h * (h * stiffness + damping);
+    if (gain > 0.0) add(h * stiffness * (rest - q_) / gain, lower, upper).softness = 1.0 / gain;
+  }
+
+  std::vector<solve::JointRow>& rows_;
+  const JointDof& dof_;
+  double speed_, q_ = 0.0;
+  std::uint32_t articulation_, i_;
+};
+
+}  // namespace
+
+// Motors, springs and friction are felt once a step, impacts are over too soon for them.
+void World::Impl::add_joint_rows(double h, double dt, bool first) {
+  joint_rows.clear();
+  for (std::uint32_t a = 0; a < articulations.size(); ++a) {
+    Articulation& art = articulations[a];
+    for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
+      JointRows rows(joint_rows, a, i, art);
+      if (first) {
+        if (!rows.add_motor(h, art.dofs[i])) art.dofs[i].drive_impulse = 0.0;
+        if (art.dofs[i].passive) rows.add_passive(h);
+      }
+      rows.add_stops(h, dt);
+    }
+  }
+}
+
+void World::Impl::begin_solve_articulations() {
+  for (std::size_t a = 0; a < articulations.size(); ++a) {
+    solver_articulations[a] = articulations[a].begin_solve();
+  }
+}
+
+void World::Impl::end_solve_articulations(bool first) {
+  for (solve::JointRow& row : joint_rows) {
+    if (row.remember) *row.remember = row.impulse;
+  }
+  for (Articulation& art : articulations) {
+    const Articulation::Change change = art.end_solve();
+    if (change == Articulation::Change::none || stop_if_out_of_range(art)) continue;
+    follow_velocities(art, first);
+    if (change == Articulation::Change::of_coordinates_too) follow(art);
+  }
+}
+
+void World::Impl::advance_articulations(double h) {
+  for (Articulation& art : articulations) {
+    if (held[art.bodies.front()]) continue;
+    art.advance(h);
+    if (stop_if_out_of_range(art)) {
+      hold(art.bodies.front());
+    } else {
+      follow(art);
+    }
+  }
+}
+
+bool World::Impl::stop_if_out_of_range(Articulation& art) {
+  if (art.in_range()) return false;
+  status.non_finite = true;
+  art.return_to_start();
+  follow(art);
+  return true;
+}
+
+// A link is held with all of its articulation.
+void World::Impl::hold(std::uint32_t index) {
+  const auto stand = [&](std::uint32_t b) {
+    held[b] = 1;
+    motions[b].v = motions[b].w = {};
+  };
+  if (!bodies[index].is_link) return stand(index);
+  for (const std::uint32_t b : articulations[bodies[index].articulation].bodies) stand(b);
+}
+
+}  // namespace vp

@@ -1,0 +1,65 @@
+#include "world/floating_tree.h"
+
+#include "multibody/kinematics.h"
+
+namespace vp {
+
+using detail::Node;
+using detail::NodeKind;
+
+std::vector<FloatingTree> FloatingTree::of(const Model& model) {
+  const auto& nodes = model.tree().nodes;
+  std::vector<FloatingTree> found;
+  std::vector<int> tree_of(nodes.size(), -1);  // the number in found
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Node<double>& node = nodes[i];
+    if (node.parent != kWorld) {
+      tree_of[i] = tree_of[static_cast<std::size_t>(node.parent)];
+    } else if (node.kind == NodeKind::free && node.armature == 0.0 && node.damping == 0.0) {
+      tree_of[i] = static_cast<int>(found.size());
+      found.emplace_back().root_ = static_cast<int>(i);
+    }
+    if (tree_of[i] >= 0) {
+      found[static_cast<std::size_t>(tree_of[i])].nodes_.push_back(static_cast<int>(i));
+    }
+  }
+  return found;
+}
+
+WholeTree FloatingTree::whole(const Model& model, const Data& data) const {
+  Inertia J;
+  dse3 P{};
+  for (const int node : nodes_) {
+    const Inertia own = detail::inertia_of(model.tree(), data.work(), node);
+    J = J + own;
+    P = P + own * detail::velocity_of(data.work(), node);
+  }
+  const Vec3 c = J.centre_of_mass();
+  return {J.mass(), c + detail::origin_of(data.work(), root_), J.central(), P.f,
+          P.m - cross(c, P.f)};
+}
+
+void FloatingTree::set_momentum(const Model& model, const Data& data, const WholeTree& wanted,
+                                std::span<double> v) const {
+  const WholeTree now = whole(model, data);
+  const Vec3 w = inverse(now.central) * (wanted.angular - now.angular);
+  const Vec3 at_centre = (1.0 / now.mass) * (wanted.linear - now.linear);
+  const SE3 T_tree_root = detail::pose_of(data.work(), root_);
+  const Vec3 root = T_tree_root.position() + detail::origin_of(data.work(), root_);
+  const Vec3 turn = T_tree_root.unrotate(w);
+  const Vec3 slide = T_tree_root.unrotate(at_centre + cross(w, root - now.centre));
+  const auto first =
+      static_cast<std::size_t>(model.tree().nodes[static_cast<std::size_t>(root_)].v);
+  for (int k = 0; k < 3; ++k) {
+    v[first + static_cast<std::size_t>(k)] += turn[k];
+    v[first + static_cast<std::size_t>(k) + 3] += slide[k];
+  }
+}
+
+void FloatingTree::shift(const Model& model, const Vec3& by, std::span<double> q) const {
+  const Node<double>& node = model.tree().nodes[static_cast<std::size_t>(root_)];
+  const Vec3 moved = node.T_parent.unrotate(by);
+  for (int k = 0; k < 3; ++k) q[static_cast<std::size_t>(node.q + k)] += moved[k];
+}
+
+}  // namespace vp

@@ -1,0 +1,43 @@
+// What a tree whose root is free does as a whole.
+//
+// Nothing but gravity and contacts change its momentum, and its centre of mass moves evenly between
+// them. A step of its coordinates keeps both only to the order of the integrator; these put the
+// root right, so that they are kept to rounding: with P the momentum wanted, L that about the
+// centre of mass c, and P', L' those of the velocities at hand,
+//   root's twist += (I_c^-1 (L - L'), (P - P') / m at c),   I_c, m: of the tree with its joints
+//   held
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vphysics/multibody/dynamics.h"
+
+namespace vp {
+
+struct WholeTree {
+  double mass = 0.0;
+  Vec3 centre;           // of mass, world frame
+  Sym3 central;          // rotational inertia about it, world axes
+  Vec3 linear, angular;  // momentum, the angular one about the centre
+};
+
+class FloatingTree {
+ public:
+  // Those of a model whose root's freedom has neither damping nor armature.
+  static std::vector<FloatingTree> of(const Model& model);
+
+  // Of the configuration and velocities that forward_kinematics() was given last.
+  WholeTree whole(const Model& model, const Data& data) const;
+  // Changes the root's velocities in v, which forward_kinematics() was given last, to those with
+  // the momentum wanted.
+  void set_momentum(const Model& model, const Data& data, const WholeTree& wanted,
+                    std::span<double> v) const;
+  void shift(const Model& model, const Vec3& by, std::span<double> q) const;
+
+ private:
+  int root_ = 0;
+  std::vector<int> nodes_;
+};
+
+}  // namespace vp

@@ -1,0 +1,22 @@
+// What refused calls return.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "vphysics/error.h"
+
+namespace vp {
+
+inline tl::unexpected<Error> refuse(Errc code, std::string message) {
+  return tl::make_unexpected(Error{code, std::move(message)});
+}
+inline tl::unexpected<Error> refuse(std::string message) {
+  return refuse(Errc::invalid_argument, std::move(message));
+}
+inline tl::unexpected<Error> stale(const char* what) {
+  return refuse(std::string("the ") + what +
+                " does not exist (any more); keep the id that its creation returned");
+}
+
+}  // namespace vp
