@@ -13,8 +13,8 @@ constexpr double kExact = 1e-13;  // relative to the terms in a velocity, whose 
 constexpr int kMostRounds = 100;
 constexpr int kHalvings = 40;
 // How cautious to be after a step of Newton that did not do: in turns, as one that is too bold
-// picks the same wrong pieces again, and one that is too cautious corrects few. Chains of 30 joints
-// under the hardest laws take 16 rounds at most so, and 58 with 1 alone.
+// picks the same wrong pieces again, and one that is too cautious corrects few
+// (docs/decisions/0015).
 constexpr double kCaution[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
 
 }  // namespace
