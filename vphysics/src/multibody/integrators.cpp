@@ -111,8 +111,8 @@ Expected<void> step_rk4(const ModelT<base_t<T>>& model, IntegratorDataT<T>& data
 }
 
 template <class T>
-IntegratorDataT<T>::IntegratorDataT(const ModelT<base_t<T>>& model)
-    : work_(std::make_unique<detail::IntegratorWork<T>>(model)) {}
+IntegratorDataT<T>::IntegratorDataT(const ModelT<base_t<T>>& model, Arithmetic arithmetic)
+    : work_(std::make_unique<detail::IntegratorWork<T>>(model, arithmetic)) {}
 template <class T>
 IntegratorDataT<T>::~IntegratorDataT() = default;
 template <class T>

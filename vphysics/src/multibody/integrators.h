@@ -34,8 +34,8 @@ inline constexpr std::size_t kMostStages = 7;
 
 template <class T>
 struct IntegratorWork {
-  explicit IntegratorWork(const ModelT<base_t<T>>& model)
-      : data(model),
+  IntegratorWork(const ModelT<base_t<T>>& model, Arithmetic arithmetic)
+      : data(model, arithmetic),
         q(static_cast<std::size_t>(model.coordinates())),
         v(static_cast<std::size_t>(model.velocities())),
         u(v.size()),

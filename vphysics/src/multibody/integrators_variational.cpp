@@ -333,10 +333,22 @@ class VariationalStep {
     add_impulse(work_.q, step_.t + step_.h, work_.v);
     const auto done = factor_mass<T>(model_, work_.data, work_.q);
     if (!done) return done;
-    solve_mass<T>(model_, work_.data, work_.v);
+    to_velocities();
     std::copy(work_.q.begin(), work_.q.end(), q_.begin());
     std::copy(work_.v.begin(), work_.v.end(), v_.begin());
     return {};
+  }
+
+  // work_.v from momenta, which are kept to rounding only if M v is them as nearly as it can be:
+  // M^-1 of what is missing is added once.
+  void to_velocities() {
+    correction() = work_.v;
+    solve_mass<T>(model_, work_.data, correction());
+    inverse_dynamics<T>(model_, work_.data, work_.q, work_.rest, correction(),
+                        {.gravity = {T(0), T(0), T(0)}}, work_.tau);
+    for (std::size_t i = 0; i < v_.size(); ++i) residual()[i] = work_.v[i] - work_.tau[i];
+    solve_mass<T>(model_, work_.data, residual());
+    for (std::size_t i = 0; i < v_.size(); ++i) work_.v[i] = correction()[i] + residual()[i];
   }
 
   const ModelT<T>& model_;

@@ -38,7 +38,8 @@ struct IntegratorWork;
 template <class T>
 class IntegratorDataT {
  public:
-  explicit IntegratorDataT(const ModelT<base_t<T>>& model);
+  explicit IntegratorDataT(const ModelT<base_t<T>>& model,
+                           Arithmetic arithmetic = Arithmetic::fastest);
   ~IntegratorDataT();
   IntegratorDataT(IntegratorDataT&&) noexcept;
   IntegratorDataT& operator=(IntegratorDataT&&) noexcept;
