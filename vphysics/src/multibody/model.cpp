@@ -356,8 +356,8 @@ template <class B>
 std::vector<B> ModelT<B>::zero_coordinates() const {
   std::vector<B> q(static_cast<std::size_t>(coordinates()));
   for (const Node<B>& node : tree_->nodes) {
-    if (node.kind == NodeKind::ball) q[static_cast<std::size_t>(node.q + 3)] = B(1);
-    if (node.kind == NodeKind::free) q[static_cast<std::size_t>(node.q + 6)] = B(1);
+    if (node.kind == NodeKind::ball) q[static_cast<std::size_t>(node.q) + 3] = B(1);
+    if (node.kind == NodeKind::free) q[static_cast<std::size_t>(node.q) + 6] = B(1);
   }
   return q;
 }

@@ -35,7 +35,8 @@ void for_each_mover(const Tree<base_t<T>>& tree, const Work<T>& work, int node, 
   for (int i = node; i != kWorld; i = tree.nodes[static_cast<std::size_t>(i)].parent) {
     const auto& mover = tree.nodes[static_cast<std::size_t>(i)];
     for (int k = 0; k < mover.dofs; ++k) {
-      f(static_cast<std::size_t>(mover.v + k), column_of(tree, work, i, k));
+      const int velocity = mover.v + k;
+      f(static_cast<std::size_t>(velocity), column_of(tree, work, i, k));
     }
   }
 }
@@ -137,6 +138,7 @@ void centre_of_mass_jacobian(const ModelT<base_t<T>>& model, const DataT<T>& dat
 template double total_mass(const ModelT<double>&);
 template float total_mass(const ModelT<float>&);
 
+// NOLINTBEGIN(bugprone-macro-parentheses): types
 #define VP_QUANTITIES(T)                                                                    \
   template void bias_forces(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>,        \
                             std::span<const T>, const LoadsT<T>&, std::span<T>);            \
@@ -151,6 +153,7 @@ template float total_mass(const ModelT<float>&);
                                 std::span<dse3T<T>>);                                       \
   template void centre_of_mass_jacobian(const ModelT<base_t<T>>&, const DataT<T>&,          \
                                         std::span<Vec3T<T>>);
+// NOLINTEND(bugprone-macro-parentheses)
 VP_FOR_EACH_SCALAR(VP_QUANTITIES)
 
 }  // namespace vp

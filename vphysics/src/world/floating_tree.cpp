@@ -59,7 +59,8 @@ void FloatingTree::set_momentum(const Model& model, const Data& data, const Whol
 void FloatingTree::shift(const Model& model, const Vec3& by, std::span<double> q) const {
   const Node<double>& node = model.tree().nodes[static_cast<std::size_t>(root_)];
   const Vec3 moved = node.T_parent.unrotate(by);
-  for (int k = 0; k < 3; ++k) q[static_cast<std::size_t>(node.q + k)] += moved[k];
+  const auto first = static_cast<std::size_t>(node.q);
+  for (int k = 0; k < 3; ++k) q[first + static_cast<std::size_t>(k)] += moved[k];
 }
 
 }  // namespace vp

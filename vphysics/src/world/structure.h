@@ -74,7 +74,8 @@ class Structure {
     add(static_cast<std::uint64_t>(model.links()));
     for (int l = 0; l < model.links(); ++l) {
       const LinkSpec& link = model.link(l);
-      add(static_cast<std::uint64_t>(link.parent + 1));
+      const int parent = link.parent + 1;  // the world: 0
+      add(static_cast<std::uint64_t>(parent));
       add(static_cast<std::uint64_t>(link.joint.index()));
       std::visit([this](const auto& joint) { add_joint(joint); }, link.joint);
       add(link.T_parent_joint);

@@ -72,7 +72,8 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q) {
     const Joint& joint = model.link(l).joint;
     const int n = coordinates_of(joint);
     if (n == velocities_of(joint)) continue;
-    const auto end = static_cast<std::size_t>(model.first_coordinate(l) + n);
+    const int behind = model.first_coordinate(l) + n;
+    const auto end = static_cast<std::size_t>(behind);
     double square = 0.0;
     for (std::size_t k = end - 4; k < end; ++k) square += q[k] * q[k];
     if (!(std::fabs(square - 1.0) < 1e-6)) return false;

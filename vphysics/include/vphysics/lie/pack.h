@@ -23,6 +23,8 @@ using LaneMask = std::conditional_t<BYTES == 8, long long, int>;
 // The outcome of a comparison: all bits of a lane, or none.
 template <class T, int N>
 struct PackMaskT {
+  // g++ drops the attribute of a dependent `using`.
+  // NOLINTNEXTLINE(modernize-use-using)
   typedef detail::LaneMask<sizeof(T)> Lanes __attribute__((vector_size(sizeof(T) * N)));
   Lanes lanes;
 
@@ -51,6 +53,7 @@ bool none(const PackMaskT<T, N>& m) {
 template <class T, int N>
 struct alignas(sizeof(T) * N) PackT {
   static_assert(std::is_floating_point_v<T> && (N & (N - 1)) == 0);
+  // NOLINTNEXTLINE(modernize-use-using)
   typedef T Lanes __attribute__((vector_size(sizeof(T) * N)));
   using Mask = PackMaskT<T, N>;
   static constexpr int kLanes = N;
