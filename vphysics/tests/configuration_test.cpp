@@ -149,6 +149,7 @@ void lanes_step_alike(double bound) {
   using P = PackT<T, N>;
   Random random(76);
   const Model model = random_tree(random, 14);
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): of double alone it is a copy
   const ModelT<T> narrow(model);
   std::vector<State> states;
   std::vector<P> q(static_cast<std::size_t>(model.coordinates())), out(q.size());

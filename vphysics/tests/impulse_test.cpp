@@ -57,6 +57,7 @@ TEST(InverseInertia, IsThatOfTheDenseMatrices) {
     inertias.update(model, data);
     const Eigen::LLT<Matrix> M(dense_mass(model, s.q));
     std::vector<Matrix> J;
+    J.reserve(static_cast<std::size_t>(model.links()));
     for (int link = 0; link < model.links(); ++link) J.push_back(link_jacobian(model, s.q, link));
     for (std::size_t a = 0; a < J.size(); ++a) {
       for (std::size_t b = 0; b < J.size(); ++b) {
@@ -125,6 +126,7 @@ void holds_in(double bound, const Number& number) {
   ASSERT_TRUE(factor_mass<double>(model, data, s.q));
   InverseInertias inertias(model);
   inertias.update(model, data);
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): of double alone it is a copy
   const ModelT<base_t<T>> same(model);
   DataT<T> other(same);
   std::vector<T> q;

@@ -468,6 +468,7 @@ TEST(Urdf, ManyThreadsMayReadAtOnce) {
   const std::string text = one_joint("planar", "");
   std::array<bool, 4> good{};
   std::vector<std::thread> threads;
+  threads.reserve(good.size());
   for (bool& each : good) {
     threads.emplace_back([&] {
       each = true;

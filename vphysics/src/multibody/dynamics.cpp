@@ -189,7 +189,6 @@ void mass_matrix(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const
   detail::kernels_of(data).mass_matrix(args);
 }
 
-// NOLINTBEGIN(bugprone-macro-parentheses): types
 #define VP_DYNAMICS(T)                                                                          \
   template struct detail::Work<T>;                                                              \
   template class DataT<T>;                                                                      \
@@ -206,7 +205,6 @@ void mass_matrix(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const
                                  std::span<const T>, std::span<const T>, const LoadsT<T>&,      \
                                  std::span<T>);                                                 \
   template void mass_matrix(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>, std::span<T>);
-// NOLINTEND(bugprone-macro-parentheses)
 VP_FOR_EACH_SCALAR(VP_DYNAMICS)
 
 }  // namespace vp

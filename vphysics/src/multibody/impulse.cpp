@@ -136,12 +136,10 @@ ResponseT<T> InverseInertiasT<T>::between(const ModelT<base_t<T>>& model, const 
   return out;
 }
 
-// NOLINTBEGIN(bugprone-macro-parentheses): types
 #define VP_IMPULSE(T)                                                                       \
   template void impulse_response(const ModelT<base_t<T>>&, DataT<T>&, int, const dse3T<T>&, \
                                  std::span<T>);                                             \
   template class InverseInertiasT<T>;
-// NOLINTEND(bugprone-macro-parentheses)
 VP_FOR_EACH_SCALAR(VP_IMPULSE)
 
 }  // namespace vp

@@ -138,7 +138,6 @@ void centre_of_mass_jacobian(const ModelT<base_t<T>>& model, const DataT<T>& dat
 template double total_mass(const ModelT<double>&);
 template float total_mass(const ModelT<float>&);
 
-// NOLINTBEGIN(bugprone-macro-parentheses): types
 #define VP_QUANTITIES(T)                                                                    \
   template void bias_forces(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>,        \
                             std::span<const T>, const LoadsT<T>&, std::span<T>);            \
@@ -153,7 +152,6 @@ template float total_mass(const ModelT<float>&);
                                 std::span<dse3T<T>>);                                       \
   template void centre_of_mass_jacobian(const ModelT<base_t<T>>&, const DataT<T>&,          \
                                         std::span<Vec3T<T>>);
-// NOLINTEND(bugprone-macro-parentheses)
 VP_FOR_EACH_SCALAR(VP_QUANTITIES)
 
 }  // namespace vp
