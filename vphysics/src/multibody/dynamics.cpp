@@ -81,15 +81,13 @@ Work<T>::Work(const Tree<base_t<T>>& tree, Arithmetic arithmetic)
                ? static_cast<std::size_t>(kRowSize * kSlots<T>) * layout_of<T>(tree).groups.size()
                : 0),
       fields(static_cast<std::size_t>(kFields * kSlots<T>) * layout_of<T>(tree).groups.size()),
-      world(static_cast<std::size_t>(kFields * kSlots<T>)),
-      factors(tree.slots.size()),
+      factors(static_cast<std::size_t>(tree.velocities)),
       articulated_flow(static_cast<std::size_t>(tree.inflow_places)),
       row_flow(static_cast<std::size_t>(tree.inflow_places)),
       force_flow(static_cast<std::size_t>(tree.inflow_places)),
       moment_flow(static_cast<std::size_t>(tree.inflow_places)),
       added(tree.slots.size()),
-      zeros(tree.slots.size(), T(0)) {
-  Fields<T, T>(world.data()).set(kX, SE3T<T>());
+      zeros(static_cast<std::size_t>(tree.velocities), T(0)) {
   int general = 0;
   for (const auto& node : tree.nodes) {
     columns_of.push_back(node.simple() ? -1 : general++);

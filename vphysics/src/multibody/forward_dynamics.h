@@ -55,36 +55,29 @@ dse3T<T> force_out(const dse3T<T>& p, const se3T<T>& S, const T& x, Factor<T>& f
   return p + u * factor.W;
 }
 
-// The same by rows: of bodies and forces as put_rows has left them.
-template <class T, bool kForces>
-void put_rows(const Work<T>& work, int g, const Body<Row<T>>& body, const dse3T<Row<T>>& F) {
+// The same by rows.
+template <class T>
+void put_rows(const Work<T>& work, int g, int field, Row<T> (&numbers)[8]) {
+  transpose_rows(numbers);
+  for (int k = 0; k < kSlots<T>; ++k) store(work.row(g * kSlots<T> + k) + field, numbers[k]);
+}
+template <class T>
+void put_inertia_rows(const Work<T>& work, int g, const Body<Row<T>>& body) {
   const Vec3T<Row<T>> h = body.mass * body.centre;
   const Sym3T<Row<T>> I = rotational(body, h);
   const Row<T> zero(0);
   Row<T> inertia[8] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx, body.mass, zero};
+  put_rows<T>(work, g, kRowInertia, inertia);
   Row<T> moment[8] = {h.x, h.y, h.z, -h.x, -h.y, -h.z, zero, zero};
-  Row<T> force[8] = {F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z, zero, zero};
-  transpose_rows(inertia);
-  transpose_rows(moment);
-  if constexpr (kForces) transpose_rows(force);
-  for (int k = 0; k < kSlots<T>; ++k) {
-    T* const row = work.row(g * kSlots<T> + k);
-    store(row + kRowInertia, inertia[k]);
-    store(row + kRowMoment, moment[k]);
-    if constexpr (kForces) store(row + kRowForce, force[k]);
-  }
-}
-template <class T>
-dse3T<T> wrench_from(const T* at) {
-  return {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}};
+  put_rows<T>(work, g, kRowMoment, moment);
 }
 template <class T, bool kForces>
 bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
   Inflow<ArticulatedRows<T>> inflow(work.row_flow);
   AllPositive<T> positive;
-  for (int i = tree.velocities; i-- > 0;) {
-    const auto n = static_cast<std::size_t>(i);
-    const Slot& slot = tree.slots[n];
+  for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
+    const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(slot.v);
     const T* const row = work.row(i);
     const auto k = constants_of<T>(tree, i);
     Factor<T>& factor = work.factors[n];
@@ -101,7 +94,6 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
         store(p, load.p);
         root.take_forces(tau, v, wrench_from(p));
       }
-      i -= 5;
       continue;
     }
     const Row<T> U = times(load.J, S);
@@ -131,11 +123,12 @@ template <class T, bool kForces>
 bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
   Inflow<Articulated<T>> inflow(work.articulated_flow);
   AllPositive<T> positive;
-  for (int i = tree.velocities; i-- > 0;) {
+  for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(slot.v);
     const auto fields = work.slot(i);
     const auto k = constants_of<T>(tree, i);
-    Factor<T>& factor = work.factors[static_cast<std::size_t>(i)];
+    Factor<T>& factor = work.factors[n];
     const InertiaT<T> body(k.get(kMass), fields.vec(kH), fields.sym(kI));
     const Articulated<T>& in = inflow.take(slot);
     Articulated<T> load{body + in.J, fields.wrench(kF) + in.p};
@@ -143,13 +136,11 @@ bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span
       const FreeRoot<T> root(tree, work, i);
       root.factor(triangle_of(load.J), positive);
       if constexpr (kForces) root.take_forces(tau, v, load.p);
-      i -= 5;
       continue;
     }
     const se3T<T> S = fields.twist(kS);
     load.J = factor_out(load.J, S, k.get(kArmature), factor, positive);
     if constexpr (kForces) {
-      const auto n = static_cast<std::size_t>(i);
       const T x = tau[n] - k.get(kDamping) * v[n];
       load.p = force_out(load.p, S, x, factor);
     }
@@ -168,22 +159,20 @@ bool factor(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
 template <class T>
 void expand(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
   se3T<T> a{};
-  for (int i = 0; i < tree.velocities; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    const Slot& slot = tree.slots[n];
+  for (int i = 0; i < static_cast<int>(tree.slots.size()); ++i) {
+    const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(slot.v);
     if (slot.kind == SlotKind::root) {
-      a = FreeRoot<T>(tree, work, i + 5).expand(x);
-      i += 5;
-      work.added[n + 5] = a;
-      continue;
+      a = FreeRoot<T>(tree, work, i).expand(x);
+    } else {
+      if (!slot.to_previous) {
+        a = slot.parent == kWorld ? se3T<T>{} : work.added[static_cast<std::size_t>(slot.parent)];
+      }
+      const Factor<T>& factor = work.factors[n];
+      x[n] = factor.x - factor.W * a;
+      a = a + x[n] * work.slot(i).twist(kS);
     }
-    if (!slot.to_previous) {
-      a = slot.parent == kWorld ? se3T<T>{} : work.added[static_cast<std::size_t>(slot.parent)];
-    }
-    const Factor<T>& factor = work.factors[n];
-    x[n] = factor.x - factor.W * a;
-    a = a + x[n] * work.slot(i).twist(kS);
-    if (slot.forks) work.added[n] = a;
+    if (slot.forks) work.added[static_cast<std::size_t>(i)] = a;
   }
 }
 
@@ -194,23 +183,35 @@ void set_inertia(const Work<T>& work, int g, const Body<Wide<T>>& body) {
   fields.set(kH, h);
   fields.set(kI, rotational(body, h));
 }
+// A group's inertias and forces, as `factor` takes them.
+template <class T>
+void put_body(const Work<T>& work, int g, const Body<Wide<T>>& body) {
+  if constexpr (kByRows<T>) {
+    put_inertia_rows<T>(work, g, body);
+  } else {
+    set_inertia(work, g, body);
+  }
+}
+template <class T>
+void put_force(const Work<T>& work, int g, const dse3T<Wide<T>>& F) {
+  if constexpr (kByRows<T>) {
+    Row<T> force[8] = {F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z, Row<T>(0), Row<T>(0)};
+    put_rows<T>(work, g, kRowForce, force);
+  } else {
+    work.group(g).set(kF, F);
+  }
+}
 
 template <class T>
 VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q,
                                         Span<T> v, Span<T> tau, const Vec3T<T>& gravity,
                                         Span<dse3T<T>> external, std::span<T> a) {
-  work.set_world(-gravity);
-  outwards<T, Reach::accelerations>(tree, work, q, v, {}, [&](int g, const auto& k) {
-    const auto fields = work.group(g);
-    const auto body = body_in_tree(k, fields.pose(kX));
-    const auto F = body_force(body, fields.twist(kV), fields.twist(kA));
-    if constexpr (kByRows<T>) {
-      put_rows<T, true>(work, g, body, F);
-    } else {
-      set_inertia(work, g, body);
-      fields.set(kF, F);
-    }
-  });
+  work.A_world.v = -gravity;
+  outwards<T, Reach::accelerations>(tree, work, q, v, {}, BodyInTree<T>(),
+                                    [&](int g, const auto& body, const auto& V, const auto& A) {
+                                      put_body(work, g, body);
+                                      put_force(work, g, body_force(body, V, A));
+                                    });
   subtract_external<T, kByRows<T>>(tree, work, external);
   if (!factor<T, true>(tree, work, v, tau)) return false;
   expand<T>(tree, work, a);
@@ -219,30 +220,26 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
 
 template <class T>
 VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q) {
-  outwards<T, Reach::poses>(tree, work, q, {}, {}, [&](int g, const auto& k) {
-    const auto body = body_in_tree(k, work.group(g).pose(kX));
-    if constexpr (kByRows<T>) {
-      put_rows<T, false>(work, g, body, {});
-    } else {
-      set_inertia(work, g, body);
-    }
-  });
+  outwards<T, Reach::poses>(
+      tree, work, q, {}, {}, BodyInTree<T>(),
+      [&](int g, const auto& body, const auto&, const auto&) { put_body(work, g, body); });
   return factor<T, false>(tree, work, {}, {});
 }
 
 template <class T>
 VP_FLATTEN void solve_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
-  LightInflow<dse3T<T>> inflow(work.force_flow);
-  for (int i = tree.velocities; i-- > 0;) {
-    const auto n = static_cast<std::size_t>(i);
-    const Slot& slot = tree.slots[n];
-    const dse3T<T> p = inflow.add(slot, {});
+  LightInflow<Six<T>, Eight<T>> inflow(work.force_flow);
+  for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
+    const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(slot.v);
+    const Six<T> in = inflow.add(slot, {});
+    const dse3T<T> p{in.head(), in.tail()};
     if (slot.kind == SlotKind::root) {
       FreeRoot<T>(tree, work, i).take_forces(x, {}, p);
-      i -= 5;
       continue;
     }
-    inflow.give(slot, force_out(p, work.slot(i).twist(kS), x[n], work.factors[n]));
+    const dse3T<T> out = force_out(p, work.slot(i).twist(kS), x[n], work.factors[n]);
+    inflow.give(slot, Six<T>::of(out.m, out.f));
   }
   expand<T>(tree, work, x);
 }

@@ -1,4 +1,4 @@
-// A free root: six slots at once.
+// A free root: six velocities in one slot.
 //
 // Its velocities are those of the link in its own axes. For the factors they are turned into the
 // axes of the tree, where the subspace is the identity: the articulated inertia itself is what is
@@ -10,15 +10,6 @@
 #include "multibody/joints.h"
 
 namespace vp::detail {
-
-template <class T>
-struct Six {
-  T x[6];
-
-  static Six of(const dse3T<T>& F) { return {{F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z}}; }
-  Vec3T<T> head() const { return {x[0], x[1], x[2]}; }
-  Vec3T<T> tail() const { return {x[3], x[4], x[5]}; }
-};
 
 // The lower triangle of J by rows: (i, j) with j <= i.
 template <class T>
@@ -50,12 +41,11 @@ Triangle<T> triangle_of(const ColumnInertia<T>& J) {
 template <class T>
 class FreeRoot {
  public:
-  // By its last slot.
-  FreeRoot(const Tree<base_t<T>>& tree, Work<T>& work, int last)
+  FreeRoot(const Tree<base_t<T>>& tree, Work<T>& work, int slot)
       : work_(work),
-        first_(last - 5),
-        k_(constants_of<T>(tree, last)),
-        R_(work.slot(last).mat(kX)) {}
+        first_(tree.slots[static_cast<std::size_t>(slot)].v),
+        k_(constants_of<T>(tree, slot)),
+        R_(work.slot(slot).mat(kX)) {}
 
   // Factors of J; false where one is not positive.
   template <class Positive>
@@ -84,13 +74,13 @@ class FreeRoot {
       const T damping = k_.get(kDamping);
       for (int k = 0; k < 6; ++k) u.x[k] = u.x[k] - damping * rate.x[k];
     }
-    Six<T> p = Six<T>::of(bias);
-    const Six<T> turned = Six<T>::of({out_of_link(u.head()), out_of_link(u.tail())});
+    Six<T> p = Six<T>::of(bias.m, bias.f);
+    const Six<T> turned = Six<T>::of(out_of_link(u.head()), out_of_link(u.tail()));
     for (int k = 6; k-- > 0;) {
       Factor<T>& f = at(k);
       const T left = turned.x[k] - p.x[k];
       f.x = left * f.inverse;
-      const Six<T> w = Six<T>::of(f.W);
+      const Six<T> w = Six<T>::of(f.W.m, f.W.f);
       for (int i = 0; i < k; ++i) p.x[i] = p.x[i] + left * w.x[i];
     }
   }
@@ -99,11 +89,11 @@ class FreeRoot {
     Six<T> a;
     for (int k = 0; k < 6; ++k) {
       const Factor<T>& f = at(k);
-      const Six<T> w = Six<T>::of(f.W);
+      const Six<T> w = Six<T>::of(f.W.m, f.W.f);
       a.x[k] = f.x;
       for (int i = 0; i < k; ++i) a.x[k] = a.x[k] - w.x[i] * a.x[i];
     }
-    const Six<T> own = Six<T>::of({transposed_times(R_, a.head()), transposed_times(R_, a.tail())});
+    const Six<T> own = Six<T>::of(transposed_times(R_, a.head()), transposed_times(R_, a.tail()));
     for (int k = 0; k < 6; ++k) x[static_cast<std::size_t>(first_ + k)] = own.x[k];
     return {a.head(), a.tail()};
   }
@@ -114,14 +104,10 @@ class FreeRoot {
     for (int k = 0; k < 6; ++k) out.x[k] = from[static_cast<std::size_t>(first_ + k)];
     return out;
   }
-  // R^-T and R^-1.
+  // R^-T.
   Vec3T<T> out_of_link(const Vec3T<T>& a) const {
     const Vec3T<T> b = R_ * a;
     return b + R_ * (a - transposed_times(R_, b));
-  }
-  Vec3T<T> into_link(const Vec3T<T>& a) const {
-    const Vec3T<T> b = transposed_times(R_, a);
-    return b + transposed_times(R_, a - R_ * b);
   }
   Factor<T>& at(int k) const { return work_.factors[static_cast<std::size_t>(first_ + k)]; }
 

@@ -32,27 +32,28 @@ class Inflow {
   Load* places_;
 };
 
-// The same for loads so small that the next slot's stays in registers.
-template <class Load>
+// The same for loads so small that the next slot's stays in registers: Load::from and Load::to are
+// how it is read from a place and written there.
+template <class Load, class Place>
 class LightInflow {
  public:
-  explicit LightInflow(std::vector<Load>& places) : places_(places.data()) {}
+  explicit LightInflow(std::vector<Place>& places) : places_(places.data()) {}
 
   // What its children gave comes on top of the slot's own.
   Load add(const Slot& slot, Load load) const {
     if (slot.from == Slot::kNext || slot.from_next_too) load = load + next_;
-    if (slot.from >= Slot::kOthers) load = load + places_[slot.from];
+    if (slot.from >= Slot::kOthers) load = load + Load::from(places_[slot.from].x);
     return load;
   }
   void give(const Slot& slot, const Load& load) {
     next_ = load;
     if (slot.to < Slot::kOthers) return;
-    Load& place = places_[slot.to];
-    place = slot.adds ? place + load : load;
+    Place& place = places_[slot.to];
+    (slot.adds ? Load::from(place.x) + load : load).to(place.x);
   }
 
  private:
-  Load* places_;
+  Place* places_;
   Load next_{};
 };
 

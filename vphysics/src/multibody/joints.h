@@ -90,39 +90,43 @@ QuaternionT<T> quaternion_at(Span<T> q, int i) {
   return {q[k], q[k + 1], q[k + 2], q[k + 3]};
 }
 
-// The node's pose under its parent's and, in the tree's frame, its columns; not of a free root.
+// Of a node that is not simple, nor a free root: its pose in its parent's frame; and then from its
+// pose in the tree's frame its columns there.
 template <class T>
-VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, const SE3T<T>& parent, Span<T> q,
-                               Span<T> v, Columns<T>& columns) {
+VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v,
+                               Columns<T>& columns) {
   const Vec3T<T> nowhere{T(0), T(0), T(0)};
   SE3T<T> zero = wide<T>(node.T_parent);
   if (node.parent == kWorld) zero = {zero.rotation(), nowhere};
-  zero = parent * zero;
   columns.rate = {nowhere, nowhere};
-  if (node.kind == NodeKind::user) {
-    const SE3T<T> X = zero * evaluate_user<T>(node, q, v, columns);
-    for (int k = 0; k < node.dofs; ++k) {
-      se3T<T>& S = columns.S[static_cast<std::size_t>(k)];
-      S = Ad(X, S);
-    }
-    columns.rate = Ad(X, columns.rate);
-    return X;
-  }
+  if (node.kind == NodeKind::user) return zero * evaluate_user<T>(node, q, v, columns);
   const bool free = node.kind == NodeKind::free;
-  const Mat3T<T> R =
-      zero.rotation() * from_quaternion(quaternion_at<T>(q, free ? node.q + 3 : node.q));
   Vec3T<T> p = zero.position();
   if (free) {
     const auto i = static_cast<std::size_t>(node.q);
     p += zero.rotation() * Vec3T<T>{q[i], q[i + 1], q[i + 2]};
   }
+  return {zero.rotation() * from_quaternion(quaternion_at<T>(q, free ? node.q + 3 : node.q)), p};
+}
+template <class T>
+VP_APART void open_columns(const Node<base_t<T>>& node, const SE3T<T>& X, Columns<T>& columns) {
+  if (node.kind == NodeKind::user) {
+    for (int k = 0; k < node.dofs; ++k) {
+      se3T<T>& S = columns.S[static_cast<std::size_t>(k)];
+      S = Ad(X, S);
+    }
+    columns.rate = Ad(X, columns.rate);
+    return;
+  }
   // The axes of the link.
+  const Mat3T<T>& R = X.rotation();
+  const Vec3T<T> nowhere{T(0), T(0), T(0)};
   for (int k = 0; k < 3; ++k) {
     const Vec3T<T>& axis = k == 0 ? R.cx : k == 1 ? R.cy : R.cz;
-    columns.S[static_cast<std::size_t>(k)] = {axis, cross(p, axis)};
-    if (free) columns.S[static_cast<std::size_t>(k + 3)] = {nowhere, axis};
+    const auto n = static_cast<std::size_t>(k);
+    columns.S[n] = {axis, cross(X.position(), axis)};
+    if (node.kind == NodeKind::free) columns.S[n + 3] = {nowhere, axis};
   }
-  return {R, p};
 }
 
 }  // namespace vp::detail

@@ -48,10 +48,12 @@ struct Call {
 template <class T>
 bool run_kinematics(const Arguments& args) {
   const Call<T> c(args);
+  const auto no_body = [](const auto&, const auto&) { return 0; };
+  const auto nothing = [](int, int, const auto&, const auto&) {};
   if (c.v().empty()) {
-    outwards<T, Reach::poses>(c.tree, c.work, c.q(), {}, {}, [](int, const auto&) {});
+    outwards<T, Reach::poses>(c.tree, c.work, c.q(), {}, {}, no_body, nothing);
   } else {
-    outwards<T, Reach::velocities>(c.tree, c.work, c.q(), c.v(), {}, [](int, const auto&) {});
+    outwards<T, Reach::velocities>(c.tree, c.work, c.q(), c.v(), {}, no_body, nothing);
   }
   return true;
 }

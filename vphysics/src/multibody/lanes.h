@@ -11,6 +11,10 @@
 #include <new>
 #include <type_traits>
 
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+#include <immintrin.h>
+#endif
+
 #include "vphysics/lie/ainertia.h"
 #include "vphysics/lie/pack.h"
 
@@ -60,11 +64,48 @@ inline void store(T* to, const N& x) {
     *reinterpret_cast<typename N::Lanes*>(to) = x.lanes;
   }
 }
+// `count` numbers of an array that goes on for `size`; other lanes of no meaning.
 template <class N, class T>
-inline N load_unaligned(const T* from) {
-  N x;
-  std::memcpy(static_cast<void*>(&x), from, sizeof x);
+inline N load_until(const T* from, int size, int count) {
+  N x(T(0));
+  if (size >= N::kLanes) {
+    std::memcpy(static_cast<void*>(&x), from, sizeof x);
+    return x;
+  }
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  const auto mask = static_cast<__mmask8>((1 << count) - 1);
+  if constexpr (std::is_same_v<N, PackT<double, 8>>) {
+    x.lanes = static_cast<typename N::Lanes>(_mm512_maskz_loadu_pd(mask, from));
+    return x;
+  } else if constexpr (std::is_same_v<N, PackT<float, 8>>) {
+    x.lanes = static_cast<typename N::Lanes>(_mm256_maskz_loadu_ps(mask, from));
+    return x;
+  }
+#endif
+  for (int k = 0; k < count; ++k) x.set(k, from[k]);
   return x;
+}
+
+// One lane anew. In the register: what is written to a part of it in memory makes the next to read
+// the whole wait.
+template <class B, int N>
+inline void set_lane_of(PackT<B, N>& to, int k, B x) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  using Lanes = typename PackT<B, N>::Lanes;
+  const auto lane = static_cast<__mmask8>(1 << k);
+  if constexpr (std::is_same_v<PackT<B, N>, PackT<double, 8>>) {
+    to.lanes = static_cast<Lanes>(_mm512_mask_broadcastsd_pd(to.lanes, lane, _mm_set_sd(x)));
+    return;
+  } else if constexpr (std::is_same_v<PackT<B, N>, PackT<float, 8>>) {
+    to.lanes = static_cast<Lanes>(_mm256_mask_broadcastss_ps(to.lanes, lane, _mm_set_ss(x)));
+    return;
+  }
+#endif
+  to.set(k, x);
+}
+template <class B, int N>
+inline void set_lane_of(Vec3T<PackT<B, N>>& to, int k, const Vec3T<B>& a) {
+  for (int c = 0; c < 3; ++c) set_lane_of(to[c], k, a[c]);
 }
 
 // Zeros, at the boundary of a cache line.

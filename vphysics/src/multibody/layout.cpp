@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "multibody/tree.h"
 
@@ -88,6 +89,24 @@ class LayOut {
     return static_cast<int>(slot) == node_of(slot).body_slot();
   }
 
+  Slot& parent_of(const Slot& slot) { return tree_.slots[static_cast<std::size_t>(slot.parent)]; }
+  int above(int slot) const { return tree_.slots[static_cast<std::size_t>(slot)].parent; }
+
+  // Whether numbers that belong to neighbours follow each other: all have seen the same first.
+  class Following {
+   public:
+    void see(int first) {
+      follow_ &= first_ == kNone || first_ == first;
+      first_ = first;
+    }
+    int first() const { return follow_ && first_ >= 0 ? first_ : -1; }
+
+   private:
+    static constexpr int kNone = std::numeric_limits<int>::min();
+    int first_ = kNone;
+    bool follow_ = true;
+  };
+
   void make_slots() {
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
       Node<B>& node = tree_.nodes[n];
@@ -97,18 +116,22 @@ class LayOut {
       } else {
         node.root = tree_.nodes[static_cast<std::size_t>(node.parent)].root;
       }
-      for (int k = 0; k < node.dofs; ++k) {
+      node.slot = static_cast<int>(tree_.slots.size());
+      for (int k = 0; k < node.slots(); ++k) {
         Slot slot{};
-        slot.parent = k > 0 ? node.v + k - 1
+        slot.parent = k > 0 ? node.slot + k - 1
                       : node.parent == kWorld
                           ? kWorld
                           : tree_.nodes[static_cast<std::size_t>(node.parent)].body_slot();
-        slot.kind = node.simple()                                          ? SlotKind::simple
-                    : node.kind == NodeKind::free && node.parent == kWorld ? SlotKind::root
-                                                                           : SlotKind::column;
-        slot.last = k == node.dofs - 1;
+        slot.kind = node.simple()      ? SlotKind::simple
+                    : node.free_root() ? SlotKind::root
+                                       : SlotKind::column;
+        slot.v = node.v + k;
         slot.q = node.simple() ? node.q : -1;
         slot.node = static_cast<int>(n);
+        slot.root = node.free_root()        ? node.slot
+                    : slot.parent == kWorld ? kWorld
+                                            : parent_of(slot).root;
         slot.from = Slot::kNone;
         slot.to = Slot::kNext;
         tree_.slots.push_back(slot);
@@ -120,7 +143,7 @@ class LayOut {
     for (int i = static_cast<int>(tree_.slots.size()); i-- > 0;) {
       Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
       if (slot.parent == kWorld) continue;
-      Slot& parent = tree_.slots[static_cast<std::size_t>(slot.parent)];
+      Slot& parent = parent_of(slot);
       if (slot.parent == i - 1) {
         slot.to_previous = true;
         if (parent.from == Slot::kNone) {
@@ -141,15 +164,13 @@ class LayOut {
     tree_.all_related = true;
     for (int i = 0; i < static_cast<int>(tree_.slots.size()); ++i) {
       tree_.first_run.push_back(static_cast<int>(tree_.runs.size()));
-      tree_.all_related &= tree_.slots[static_cast<std::size_t>(i)].parent == i - 1;
-      for (int j = i; j != kWorld;) {
-        SlotRun run{j, j + 1};
-        while (tree_.slots[static_cast<std::size_t>(run.begin)].parent == run.begin - 1 &&
-               run.begin > 0) {
-          --run.begin;
-        }
-        tree_.runs.push_back(run);
-        j = tree_.slots[static_cast<std::size_t>(run.begin)].parent;
+      const Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
+      tree_.all_related &= slot.parent == i - 1;
+      for (int j = i; j != slot.root;) {
+        int begin = j;
+        while (above(begin) == begin - 1 && begin - 1 != slot.root) --begin;
+        tree_.runs.push_back({begin, j + 1});
+        j = above(begin);
       }
     }
     tree_.first_run.push_back(static_cast<int>(tree_.runs.size()));
@@ -161,21 +182,69 @@ class LayOut {
     layout.constants = AlignedArray<B>(static_cast<std::size_t>(groups * kConstants * width));
     for (int g = 0; g < groups; ++g) {
       const int first = g * width, count = std::min(width, slots - first);
-      typename Layout<B>::Group group{count, true, true, true, -1};
-      bool follow = count == width;
+      typename Layout<B>::Group group{count, true, true, -1, -1, 0, 0, 0, 0};
+      Following q, v;
       for (int i = first; i < first + count; ++i) {
         const Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
         const NodeKind kind = node_of(static_cast<std::size_t>(i)).kind;
         group.revolute &= kind == NodeKind::revolute;
-        group.idle &= slot.kind == SlotKind::root && !slot.last;
         group.simple &= kind <= NodeKind::helical;
-        follow &= slot.q == tree_.slots[static_cast<std::size_t>(first)].q + i - first;
+        if (slot.kind == SlotKind::simple) q.see(slot.q - (i - first));
+        if (slot.kind != SlotKind::root) v.see(slot.v - (i - first));
         write(static_cast<std::size_t>(i),
               layout.constants.data() + g * kConstants * width + i - first, width);
       }
-      if (group.simple && follow) group.first_q = tree_.slots[static_cast<std::size_t>(first)].q;
+      group.first_q = q.first();
+      group.first_v = v.first();
+      if (width == 8) scan(layout, group, first);
       layout.groups.push_back(group);
     }
+  }
+
+  void scan(Layout<B>& layout, typename Layout<B>::Group& group, int first) const {
+    group.first_step = static_cast<int>(layout.steps.size());
+    group.first_external = static_cast<int>(layout.externals.size());
+    // Of each lane the lane of an ancestor, or -1; at first the parent's.
+    std::array<int, 8> ancestor{}, top{};
+    bool any = false;
+    for (int k = 0; k < 8; ++k) {
+      const auto n = static_cast<std::size_t>(k);
+      const int parent = k < group.count ? above(first + k) : kWorld;
+      ancestor[n] = parent >= first ? parent - first : -1;
+      top[n] = ancestor[n] < 0 ? k : top[static_cast<std::size_t>(ancestor[n])];
+      any |= ancestor[n] >= 0;
+      if (k < group.count) hang(layout, group, first + top[n], k);
+    }
+    while (any) {
+      ScanStep<B> step{};
+      auto next = ancestor;
+      any = false;
+      for (std::size_t k = 0; k < 8; ++k) {
+        if (ancestor[k] < 0) continue;
+        step.from[k] = ancestor[k];
+        step.lanes = static_cast<std::uint8_t>(step.lanes | 1U << k);
+        next[k] = ancestor[static_cast<std::size_t>(ancestor[k])];
+        any |= next[k] >= 0;
+      }
+      layout.steps.push_back(step);
+      ancestor = next;
+    }
+    group.end_step = static_cast<int>(layout.steps.size());
+    group.end_external = static_cast<int>(layout.externals.size());
+  }
+  // Lane k hangs on what the slot `top`, of the same group, hangs on.
+  void hang(Layout<B>& layout, const typename Layout<B>::Group& group, int top, int k) const {
+    const Slot& slot = tree_.slots[static_cast<std::size_t>(top)];
+    if (slot.kind == SlotKind::root) return;
+    const auto lane = static_cast<std::uint8_t>(1U << k);
+    for (auto i = static_cast<std::size_t>(group.first_external); i < layout.externals.size();
+         ++i) {
+      External& external = layout.externals[i];
+      if (external.slot != slot.parent) continue;
+      external.lanes = static_cast<std::uint8_t>(external.lanes | lane);
+      return;
+    }
+    layout.externals.push_back({slot.parent, lane});
   }
 
   void write(std::size_t i, B* to, int width) const {

@@ -12,37 +12,43 @@
 
 namespace vp::detail {
 
-// Row and column i of M, n x n: where they cross slots [begin, end) of one group.
+// Row and column v of M, n x n, in which S are the columns of slots [begin, end) of one group and F
+// is the composite body times slot i's.
 template <class T>
-void fill_row(const Work<T>& work, int i, int begin, int end, std::size_t n, std::span<T> M) {
-  constexpr int kWidth = kSlots<T>;
-  const auto wide = work.group(begin / kWidth);
-  const auto fields = work.slot(i);
-  const Wide<T> m =
-      wide.twist(kS) *
-      dse3T<Wide<T>>{
-          {Wide<T>(fields.get(kF)), Wide<T>(fields.get(kF + 1)), Wide<T>(fields.get(kF + 2))},
-          {Wide<T>(fields.get(kF + 3)), Wide<T>(fields.get(kF + 4)), Wide<T>(fields.get(kF + 5))}};
-  const auto row = static_cast<std::size_t>(i);
-  if constexpr (kWidth == 1) {
-    const auto j = static_cast<std::size_t>(begin);
-    M[row * n + j] = M[j * n + row] = m;
-  } else {
-    for (int j = begin; j < end; ++j) {
-      const auto column = static_cast<std::size_t>(j);
-      M[row * n + column] = M[column * n + row] = m[j % kWidth];
+void fill_row(const Tree<base_t<T>>& tree, const Work<T>& work, const dse3T<Wide<T>>& F,
+              std::size_t row, int begin, int end, std::size_t n, std::span<T> M) {
+  const Wide<T> m = work.group(begin / kSlots<T>).twist(kS) * F;
+  const auto column = static_cast<std::size_t>(tree.slots[static_cast<std::size_t>(begin)].v);
+  for (int j = begin; j < end; ++j) {
+    const std::size_t c = column + static_cast<std::size_t>(j - begin);
+    T x;
+    if constexpr (kSlots<T> == 1) {
+      x = m;
+    } else {
+      x = m[j % kSlots<T>];
     }
+    M[row * n + c] = M[c * n + row] = x;
+  }
+}
+
+// The columns of a free root with a force: of its own axes.
+template <class T>
+void fill_root(const Mat3T<T>& R, const dse3T<T>& F, std::size_t row, std::size_t first,
+               std::size_t n, std::span<T> M) {
+  const Six<T> m = Six<T>::of(transposed_times(R, F.m), transposed_times(R, F.f));
+  for (std::size_t k = 0; k < 6; ++k) {
+    M[row * n + first + k] = M[(first + k) * n + row] = m.x[k];
   }
 }
 
 template <class T>
 VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q,
                                    std::span<T> M) {
-  outwards<T, Reach::poses>(tree, work, q, {}, {}, [&](int g, const auto& k) {
-    set_inertia(work, g, body_in_tree(k, work.group(g).pose(kX)));
-  });
-  LightInflow<Moments<T>> inflow(work.moment_flow);
-  for (int i = tree.velocities; i-- > 0;) {
+  outwards<T, Reach::poses>(
+      tree, work, q, {}, {}, BodyInTree<T>(),
+      [&](int g, const auto& body, const auto&, const auto&) { set_inertia(work, g, body); });
+  LightInflow<Moments<T>, Nine<T>> inflow(work.moment_flow);
+  for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto fields = work.slot(i);
     const Moments<T> C = inflow.add(slot, {fields.vec(kH), fields.sym(kI)});
@@ -58,16 +64,37 @@ VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
   }
   if (!tree.all_related) std::fill(M.begin(), M.end(), T(0));
   const auto n = static_cast<std::size_t>(tree.velocities);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < tree.slots.size(); ++i) {
+    const Slot& slot = tree.slots[i];
+    const auto row = static_cast<std::size_t>(slot.v);
+    const auto k = constants_of<T>(tree, static_cast<int>(i));
+    const auto fields = work.slot(static_cast<int>(i));
+    if (slot.kind == SlotKind::root) {
+      const Mat3T<T> R = fields.mat(kX);
+      const InertiaT<T> C(k.get(kComposite), fields.vec(kH), fields.sym(kI));
+      for (std::size_t c = 0; c < 6; ++c) {
+        fill_root(R, C * column_of<T>(tree, work, slot.node, static_cast<int>(c)), row + c, row, n,
+                  M);
+        M[(row + c) * n + row + c] = M[(row + c) * n + row + c] + k.get(kArmature);
+      }
+      continue;
+    }
+    const dse3T<T> F = fields.wrench(kF);
+    const dse3T<Wide<T>> wide{{Wide<T>(F.m.x), Wide<T>(F.m.y), Wide<T>(F.m.z)},
+                              {Wide<T>(F.f.x), Wide<T>(F.f.y), Wide<T>(F.f.z)}};
     for (int r = tree.first_run[i]; r < tree.first_run[i + 1]; ++r) {
       const SlotRun run = tree.runs[static_cast<std::size_t>(r)];
       for (int j = run.begin; j < run.end;) {
         const int end = std::min(run.end, (j / kSlots<T> + 1) * kSlots<T>);
-        fill_row(work, static_cast<int>(i), j, end, n, M);
+        fill_row<T>(tree, work, wide, row, j, end, n, M);
         j = end;
       }
     }
-    M[i * n + i] = M[i * n + i] + constants_of<T>(tree, static_cast<int>(i)).get(kArmature);
+    if (slot.root != kWorld) {
+      const auto first = tree.slots[static_cast<std::size_t>(slot.root)].v;
+      fill_root(work.slot(slot.root).mat(kX), F, row, static_cast<std::size_t>(first), n, M);
+    }
+    M[row * n + row] = M[row * n + row] + k.get(kArmature);
   }
 }
 

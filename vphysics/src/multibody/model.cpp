@@ -307,8 +307,8 @@ ModelT<B>::ModelT(const ModelT<C>& other) {
   auto tree = std::make_shared<Tree<B>>();
   const Tree<C>& from = other.tree();
   for (const Node<C>& n : from.nodes) {
-    tree->nodes.push_back({n.parent, n.kind, n.q, n.v, n.dofs, 0, cast<B>(n.T_parent), cast<B>(n.J),
-                           static_cast<B>(n.pitch), static_cast<B>(n.armature),
+    tree->nodes.push_back({n.parent, n.kind, n.q, n.v, n.dofs, 0, 0, cast<B>(n.T_parent),
+                           cast<B>(n.J), static_cast<B>(n.pitch), static_cast<B>(n.armature),
                            static_cast<B>(n.damping), n.user});
   }
   for (const LinkPlace<C>& p : from.places) {

@@ -16,160 +16,105 @@
 #pragma once
 
 #include "multibody/joints.h"
+#include "multibody/scan.h"
 
 namespace vp::detail {
 
 // How far the pass goes.
 enum class Reach { poses, velocities, accelerations };
 
-// A body's central inertia, turned into the axes of the tree, as kSpin 1 + a a^T + b b^T: less to
-// turn than a matrix, and less to multiply with.
+// A body in the axes of the tree. Its central inertia comes as kSpin 1 + a a^T + b b^T: two axes
+// are less to turn than a matrix.
 template <class N>
 struct Body {
-  N mass, spin;
-  Vec3T<N> centre, a, b;
+  N mass;
+  Vec3T<N> centre;
+  Sym3T<N> central;
 };
-template <class T, class N>
-Body<N> body_in_tree(const Constants<T, N>& k, const SE3T<N>& X) {
-  return {k.get(kMass), k.get(kSpin), X * k.vec(kCentre), X.rotate(k.vec(kAxisA)),
-          X.rotate(k.vec(kAxisB))};
-}
-template <class N>
-Vec3T<N> central_times(const Body<N>& body, const Vec3T<N>& w) {
-  return body.spin * w + dot(body.a, w) * body.a + dot(body.b, w) * body.b;
-}
+template <class T>
+struct BodyInTree {
+  using W = Wide<T>;
+  Body<W> operator()(const Constants<T, W>& k, const SE3T<W>& X) const {
+    const Vec3T<W> a = X.rotate(k.vec(kAxisA)), b = X.rotate(k.vec(kAxisB));
+    const W spin = k.get(kSpin);
+    return {k.get(kMass),
+            X * k.vec(kCentre),
+            {(spin + a.x * a.x) + b.x * b.x, (spin + a.y * a.y) + b.y * b.y,
+             (spin + a.z * a.z) + b.z * b.z, a.x * a.y + b.x * b.y, a.y * a.z + b.y * b.z,
+             a.z * a.x + b.z * b.x}};
+  }
+};
+// Its inertia about the origin of the tree, of its first moment h.
 template <class N>
 Sym3T<N> rotational(const Body<N>& body, const Vec3T<N>& h) {
-  const Vec3T<N>&a = body.a, &b = body.b, &c = body.centre;
+  const Vec3T<N>& c = body.centre;
+  const Sym3T<N>& I = body.central;
   const N x = h.x * c.x, y = h.y * c.y, z = h.z * c.z;
-  return {(body.spin + a.x * a.x) + (b.x * b.x + (y + z)),
-          (body.spin + a.y * a.y) + (b.y * b.y + (z + x)),
-          (body.spin + a.z * a.z) + (b.z * b.z + (x + y)),
-          a.x * a.y + b.x * b.y - h.x * c.y,
-          a.y * a.z + b.y * b.z - h.y * c.z,
-          a.z * a.x + b.z * b.x - h.z * c.x};
+  return {I.xx + (y + z),   I.yy + (z + x),   I.zz + (x + y),
+          I.xy - h.x * c.y, I.yz - h.y * c.z, I.zx - h.z * c.x};
 }
 template <class N>
 dse3T<N> body_force(const Body<N>& body, const se3T<N>& V, const se3T<N>& A) {
   const Vec3T<N>& c = body.centre;
   const Vec3T<N> f = body.mass * (A.v + cross(A.w, c) + cross(V.w, V.v + cross(V.w, c)));
-  const Vec3T<N> n = central_times(body, A.w) + cross(V.w, central_times(body, V.w));
+  const Vec3T<N> n = body.central * A.w + cross(V.w, body.central * V.w);
   return {n + cross(c, f), f};
 }
 
-template <class T, Reach kReach>
+// body_of(k, X) makes of a group's constants and poses what is due of its bodies, and then
+// take(g, body, V, A) has that, with what the reach reaches: in this order little has to be kept at
+// a time.
+template <class T, Reach kReach, class BodyOf, class Take>
 class Outwards {
  public:
   // a: of the joints, or empty: none.
-  Outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a)
-      : tree_(tree), layout_(layout_of<T>(tree)), work_(work), q_(q), v_(v), a_(a) {}
+  Outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
+           const BodyOf& body_of, const Take& take)
+      : tree_(tree),
+        layout_(layout_of<T>(tree)),
+        work_(work),
+        q_(q),
+        v_(v),
+        a_(a),
+        body_of_(body_of),
+        take_(take) {}
 
-  // First of all groups the joints' sines and cosines: long chains of operations, but none waits
-  // for another group's.
-  void open_angles(int g) {
-    const auto& group = layout_.groups[static_cast<std::size_t>(g)];
-    const auto k = group_constants<T>(tree_, g);
-    const auto fields = work_.group(g);
-    const W q = coordinates(g, group);
-    W angle = group.revolute ? q : k.get(kTurn) * q;
-    if (reduce_) angle = reduced(angle);
-    const W limit(Angle<B>::kExactBelow);
-    near_ = both(near_, both(angle < limit, -angle < limit));
-    const auto [sine, cosine] = sin_cos_near(angle);
-    fields.set(kTurned, sine);
-    fields.set(kTurned + 1, cosine);
-    if (!group.revolute) fields.set(kTurned + 2, k.get(kSlide) * q);
-  }
-  // Poses, subspaces, velocities and accelerations of group g.
+  // Of all groups, the first first. The sine and cosine of a joint are a long chain of operations:
+  // those of the next group are begun before this one's poses.
+  void begin() { angles_ = open_angles(0); }
   void move(int g) {
     const auto& group = layout_.groups[static_cast<std::size_t>(g)];
+    const Angles angles = angles_;
+    if (g + 1 < static_cast<int>(layout_.groups.size())) angles_ = open_angles(g + 1);
     if (group.simple) {
-      move_simple(g, group);
+      move_as<true>(g, group, angles);
     } else {
-      move_any(g, group);
+      move_any(g, group, angles);
     }
   }
 
   // An angle is so large that it has to be taken modulo 2 pi first.
-  bool far() const { return !all(near_); }
+  bool far() const { return !reduce_ && !all(near_); }
   void reduce_angles() { reduce_ = true; }
 
  private:
   using W = Wide<T>;
   using Group = typename Layout<base_t<T>>::Group;
   using B = base_t<T>;
+  struct Angles {
+    W sine, cosine, slide;
+  };
 
-  // Apart, so that simple joints' numbers need not be in memory for what others call.
-  void move_simple(int g, const Group& group) { move<true>(g, group); }
-  VP_FLATTEN VP_APART void move_any(int g, const Group& group) { move<false>(g, group); }
-
-  template <bool kSimple>
-  void move(int g, const Group& group) {
-    turn(g, group);
-    const int first = g * kSlots<T>, end = first + group.count;
-    if constexpr (kByRows<T>) {
-      place_by_rows<kSimple>(g, group);
-    } else {
-      for (int i = first; i < end; ++i) place<kSimple>(i);
-    }
-    open_subspaces<kSimple>(g, group);
-    if constexpr (kReach != Reach::poses) {
-      for (int i = first; i < end; ++i) add_to_parent<kSimple>(i, kV);
-    }
-    if constexpr (kReach == Reach::accelerations) {
-      const auto fields = work_.group(g);
-      fields.set(kA, ad(fields.twist(kV), fields.twist(kOwn)));
-      if constexpr (!kSimple) {
-        for (int i = first; i < end; ++i) bias_of_columns(i);
-      }
-      if (!a_.empty()) {
-        fields.set(kA, fields.twist(kA) + along(a_, first, group.count) * fields.twist(kS));
-      }
-      if constexpr (!kSimple) {
-        for (int i = first; i < end; ++i) accelerate_root(i);
-      }
-      for (int i = first; i < end; ++i) add_to_parent<kSimple>(i, kA);
-    }
-  }
-
-  const Slot& slot(int i) const { return tree_.slots[static_cast<std::size_t>(i)]; }
-
-  // Numbers of the slots of a group from an array in the order of the slots.
-  W along(Span<T> x, int first, int count) const {
-    if (count == kSlots<T>) return load_unaligned<W>(&x[static_cast<std::size_t>(first)]);
-    W out(B(0));
-    if constexpr (kSlots < T >> 1) {
-      for (int k = 0; k < count; ++k) out.set(k, x[static_cast<std::size_t>(first + k)]);
-    }
-    return out;
-  }
-  W coordinates(int g, const Group& group) const {
-    if (group.first_q >= 0) return along(q_, group.first_q, group.count);
-    W out(B(0));
-    for (int k = 0; k < group.count; ++k) {
-      const int q = slot(g * kSlots<T> + k).q;
-      if (q < 0) continue;
-      if constexpr (kSlots < T >> 1) {
-        out.set(k, q_[static_cast<std::size_t>(q)]);
-      } else {
-        out = q_[static_cast<std::size_t>(q)];
-      }
-    }
-    return out;
-  }
-
-  // e^(S q) behind the pose at zero: two columns mix, and z leads along.
-  void turn(int g, const Group& group) {
+  Angles open_angles(int g) {
+    const auto& group = layout_.groups[static_cast<std::size_t>(g)];
     const auto k = group_constants<T>(tree_, g);
-    const auto fields = work_.group(g);
-    const W sine = fields.get(kTurned), cosine = fields.get(kTurned + 1);
-    const Vec3T<W> x = k.vec(kTurn0), y = k.vec(kTurn0 + 3), z = k.vec(kTurn0 + 6);
-    fields.set(kX, cosine * x + sine * y);
-    fields.set(kX + 3, cosine * y - sine * x);
-    fields.set(kX + 6, z);
-    Vec3T<W> p = k.vec(kShift0);
-    if (!group.revolute) p += fields.get(kTurned + 2) * z;
-    fields.set(kX + 9, p);
+    const W q = coordinates(g, group);
+    W angle = group.revolute ? q : k.get(kTurn) * q;
+    if (reduce_) angle = reduced(angle);
+    const W limit(Angle<B>::kExactBelow);
+    near_ = both(near_, both(angle < limit, -angle < limit));
+    const auto [sine, cosine] = sin_cos_near(angle);
+    return {sine, cosine, group.revolute ? W(B(0)) : k.get(kSlide) * q};
   }
   VP_APART static W reduced(const W& angle) {
     W out = angle;
@@ -179,60 +124,133 @@ class Outwards {
     return out;
   }
 
-  Fields<T, T> parent_of(int i) const {
-    const int parent = slot(i).parent;
-    return parent == kWorld ? Fields<T, T>(work_.world.data()) : work_.slot(parent);
+  // Apart, so that simple joints' numbers need not be in memory for what others call.
+  VP_FLATTEN VP_APART void move_any(int g, const Group& group, const Angles& angles) {
+    move_as<false>(g, group, angles);
   }
 
   template <bool kSimple>
-  void place(int i) {
-    const Slot& s = slot(i);
-    const auto fields = work_.slot(i);
-    if (kSimple || s.kind == SlotKind::simple) {
-      fields.set(kX, parent_of(i).pose(kX) * fields.pose(kX));
-    } else if (s.kind == SlotKind::column) {
-      fields.set(kX, place_general(i, parent_of(i).pose(kX)));
-    } else if (s.last) {
-      fields.set(kX, place_root(i));
-    }
-  }
-  template <bool kSimple>
-  void place_by_rows(int g, const Group& group) {
-    const int first = g * kSlots<T>, end = first + group.count;
-    const auto world = ColumnPose<T>::from(kOrigin<T>);
-    ColumnPose<T> pose = world;
-    for (int i = first; i < end; ++i) {
-      const Slot& s = slot(i);
-      T* const row = work_.row(i);
-      if (kSimple || s.kind == SlotKind::simple) {
-        if (i == first || !s.to_previous) {
-          pose = s.parent == kWorld ? world : ColumnPose<T>::from(work_.row(s.parent));
-        }
-        pose = pose.times(work_.slot(i).pose(kX));
-        pose.to(row);
-      } else if (s.kind == SlotKind::column) {
-        const SE3T<T> parent = s.parent == kWorld ? SE3T<T>() : pose_from(work_.row(s.parent));
-        pose_to(row, place_general(i, parent));
-        pose = ColumnPose<T>::from(row);
-      } else if (s.last) {
-        pose_to(row, place_root(i));
-        pose = ColumnPose<T>::from(row);
-      }
-    }
+  void move_as(int g, const Group& group, const Angles& angles) {
     const auto fields = work_.group(g);
-    for (int k = 0; k < 4; ++k) {
-      fields.set(kX + 3 * k, gathered(work_.row(first), kRowSize, k));
+    SE3T<W> X = turned(g, group, angles);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) take_general(g * kSlots<T> + k, k, X);
+    }
+    X = placed(g, group, X);
+    fields.set(kX, X);
+    const auto body = body_of_(group_constants<T>(tree_, g), X);
+    se3T<W> S = subspaces(g, group, X);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) take_column(g * kSlots<T> + k, k, S);
+    }
+    fields.set(kS, S);
+    if constexpr (kReach == Reach::poses) {
+      take_(g, body, se3T<W>{}, se3T<W>{});
+      return;
+    }
+
+    se3T<W> own = velocities(v_, g, group) * S;
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) take_root_velocity(g * kSlots<T> + k, k, own);
+    }
+    const se3T<W> V = summed(g, group, own, kV);
+    if constexpr (kReach != Reach::accelerations) {
+      take_(g, body, V, se3T<W>{});
+      return;
+    }
+
+    own = ad(V, own);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) take_bias(g * kSlots<T> + k, k, own);
+    }
+    if (!a_.empty()) own = own + velocities(a_, g, group) * S;
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) take_root_acceleration(g * kSlots<T> + k, k, own);
+    }
+    take_(g, body, V, summed(g, group, own, kA));
+  }
+
+  const Slot& slot(int i) const { return tree_.slots[static_cast<std::size_t>(i)]; }
+  // Of each slot of a group its number in an array; others where it has none.
+  W coordinates(int g, const Group& group) const {
+    return along(q_, g, group, group.first_q, [](const Slot& s) { return s.q; });
+  }
+  W velocities(Span<T> x, int g, const Group& group) const {
+    return along(x, g, group, group.first_v,
+                 [](const Slot& s) { return s.kind == SlotKind::root ? -1 : s.v; });
+  }
+  template <class IndexOf>
+  W along(Span<T> x, int g, const Group& group, int first, const IndexOf& index_of) const {
+    if constexpr (kSlots<T> == 1) {
+      return first < 0 ? W(B(0)) : x[static_cast<std::size_t>(first)];
+    } else {
+      if (first >= 0) {
+        return load_until<W>(x.data() + first, static_cast<int>(x.size()) - first, group.count);
+      }
+      W out(B(0));
+      for (int k = 0; k < group.count; ++k) {
+        const int i = index_of(slot(g * kSlots<T> + k));
+        if (i >= 0) out.set(k, x[static_cast<std::size_t>(i)]);
+      }
+      return out;
     }
   }
+
+  // e^(S q) behind the pose at zero: two columns mix, and z leads along.
+  SE3T<W> turned(int g, const Group& group, const Angles& angles) const {
+    const auto k = group_constants<T>(tree_, g);
+    const Vec3T<W> x = k.vec(kTurn0), y = k.vec(kTurn0 + 3), z = k.vec(kTurn0 + 6);
+    Vec3T<W> p = k.vec(kShift0);
+    if (!group.revolute) p += angles.slide * z;
+    return {Mat3T<W>{angles.cosine * x + angles.sine * y, angles.cosine * y - angles.sine * x, z},
+            p};
+  }
+
+  // Behind the parents' poses, from the poses in the parents' frames.
+  SE3T<W> placed(int g, const Group& group, const SE3T<W>& local) {
+    if constexpr (kByRows<T>) {
+      SE3T<W> X = multiplied_in_group(layout_, group, local);
+      for (int i = group.first_external; i < group.end_external; ++i) {
+        const External& external = layout_.externals[static_cast<std::size_t>(i)];
+        if (external.slot == kWorld) continue;
+        X = behind(external, work_.slot(external.slot), X);
+      }
+      return X;
+    } else if constexpr (kSlots<T> == 1) {
+      return has_parent(g) ? work_.slot(slot(g).parent).pose(kX) * local : local;
+    } else {
+      work_.group(g).set(kX, local);
+      for (int i = g * kSlots<T>; i < g * kSlots<T> + group.count; ++i) {
+        if (!has_parent(i)) continue;
+        const auto fields = work_.slot(i);
+        fields.set(kX, work_.slot(slot(i).parent).pose(kX) * fields.pose(kX));
+      }
+      return work_.group(g).pose(kX);
+    }
+  }
+  bool has_parent(int i) const { return slot(i).parent != kWorld; }
+
   // A slot of a node that is not simple: the first places the node, the others are with it.
-  VP_APART SE3T<T> place_general(int i, const SE3T<T>& parent) {
+  VP_APART void take_general(int i, int k, SE3T<W>& local) {
+    if (slot(i).kind == SlotKind::simple) return;
     const auto n = static_cast<std::size_t>(slot(i).node);
     const auto& node = tree_.nodes[n];
-    if (i != node.v) return parent;
-    return place_columns<T>(node, parent, q_, v_, columns(n));
+    const SE3T<T> X = slot(i).kind == SlotKind::root ? place_root(node)
+                      : i == node.slot               ? place_columns<T>(node, q_, v_, columns(n))
+                                                     : SE3T<T>();
+    if constexpr (kSlots<T> == 1) {
+      local = X;
+    } else {
+      Mat3T<W> R = local.rotation();
+      Vec3T<W> p = local.position();
+      set_lane_of(R.cx, k, X.rotation().cx);
+      set_lane_of(R.cy, k, X.rotation().cy);
+      set_lane_of(R.cz, k, X.rotation().cz);
+      set_lane_of(p, k, X.position());
+      local = {R, p};
+    }
   }
-  SE3T<T> place_root(int i) {
-    const auto& node = tree_.nodes[static_cast<std::size_t>(slot(i).node)];
+  SE3T<T> place_root(const Node<B>& node) {
     const auto root = static_cast<std::size_t>(node.root);
     const auto k = static_cast<std::size_t>(node.q);
     const Mat3T<T> R0 = wide<T>(node.T_parent).rotation();
@@ -240,116 +258,124 @@ class Outwards {
     const Vec3T<T> nowhere{T(0), T(0), T(0)};
     return {R0 * from_quaternion(quaternion_at<T>(q_, node.q + 3)), nowhere};
   }
-  // Six numbers of a free root, from its axes to the tree's.
-  se3T<T> of_root(int last, const Mat3T<T>& R, Span<T> x) const {
-    const auto i = static_cast<std::size_t>(last);
-    return {R * Vec3T<T>{x[i - 5], x[i - 4], x[i - 3]}, R * Vec3T<T>{x[i - 2], x[i - 1], x[i]}};
-  }
-  void open_root(int i) {
-    const auto fields = work_.slot(i);
-    const Mat3T<T> R = fields.mat(kX);
-    const Vec3T<T> nowhere{T(0), T(0), T(0)};
-    const auto open = [&](int k, const Vec3T<T>& axis) {
-      work_.slot(i - 5 + k).set(kS, se3T<T>{axis, nowhere});
-      work_.slot(i - 2 + k).set(kS, se3T<T>{nowhere, axis});
-    };
-    open(0, R.cx);
-    open(1, R.cy);
-    open(2, R.cz);
-    if constexpr (kReach != Reach::poses) fields.set(kV, of_root(i, R, v_));
-  }
-  void accelerate_root(int i) {
-    if (slot(i).kind != SlotKind::root || !slot(i).last) return;
-    const auto fields = work_.slot(i);
-    se3T<T> A = Fields<T, T>(work_.world.data()).twist(kA);
-    if (!a_.empty()) A = A + of_root(i, fields.mat(kX), a_);
-    fields.set(kA, A);
-  }
   Columns<T>& columns(std::size_t node) {
     return work_.columns[static_cast<std::size_t>(work_.columns_of[node])];
   }
 
-  template <bool kSimple>
-  void open_subspaces(int g, const Group& group) {
+  se3T<W> subspaces(int g, const Group& group, const SE3T<W>& X) const {
+    const Vec3T<W> z = X.rotation().cz, s = cross(X.position(), z);
+    if (group.revolute) return {z, s};
     const auto k = group_constants<T>(tree_, g);
-    const auto fields = work_.group(g);
-    const Vec3T<W> z = fields.vec(kX + 6), s = cross(fields.vec(kX + 9), z);
-    if (group.revolute) {
-      fields.set(kS, z);
-      fields.set(kS + 3, s);
+    const W turn = k.get(kTurn), slide = k.get(kSlide);
+    return {turn * z, turn * s + slide * z};
+  }
+
+  // In lane k of a group what slot i, which is not simple, has there instead.
+  static void set(se3T<W>& to, [[maybe_unused]] int k, const se3T<T>& V) {
+    if constexpr (kSlots<T> == 1) {
+      to = V;
     } else {
-      const W turn = k.get(kTurn), slide = k.get(kSlide);
-      fields.set(kS, turn * z);
-      fields.set(kS + 3, turn * s + slide * z);
-    }
-    const int first = g * kSlots<T>, end = first + group.count;
-    if constexpr (!kSimple) {
-      for (int i = first; i < end; ++i) {
-        if (slot(i).kind != SlotKind::column) continue;
-        const auto n = static_cast<std::size_t>(slot(i).node);
-        const int column = i - tree_.nodes[n].v;
-        work_.slot(i).set(kS, columns(n).S[static_cast<std::size_t>(column)]);
-      }
-    }
-    if constexpr (kReach != Reach::poses) {
-      const se3T<W> own = along(v_, first, group.count) * fields.twist(kS);
-      fields.set(kOwn, own);
-      fields.set(kV, own);
-    }
-    if constexpr (!kSimple) {
-      for (int i = first; i < end; ++i) {
-        if (slot(i).kind == SlotKind::root && slot(i).last) open_root(i);
-      }
+      set_lane_of(to.w, k, V.w);
+      set_lane_of(to.v, k, V.v);
     }
   }
-
-  template <bool kSimple>
-  void add_to_parent(int i, int field) {
-    if (!kSimple && slot(i).kind == SlotKind::root) return;
-    const auto fields = work_.slot(i);
-    fields.set(field, parent_of(i).twist(field) + fields.twist(field));
+  void take_column(int i, int k, se3T<W>& S) {
+    if (slot(i).kind != SlotKind::column) return;
+    const auto n = static_cast<std::size_t>(slot(i).node);
+    const auto& node = tree_.nodes[n];
+    if (i == node.slot) open_columns<T>(node, work_.slot(i).pose(kX), columns(n));
+    set(S, k, columns(n).S[static_cast<std::size_t>(i - node.slot)]);
   }
-
-  // The columns of a node turn with its link, all of them: the sum is due at its last slot.
-  VP_APART void bias_of_columns(int i) {
+  // Six numbers of a free root, from its axes to the tree's.
+  se3T<T> of_root(int i, Span<T> x) const {
+    const Mat3T<T> R = work_.slot(i).mat(kX);
+    const auto k = static_cast<std::size_t>(slot(i).v);
+    return {R * Vec3T<T>{x[k], x[k + 1], x[k + 2]}, R * Vec3T<T>{x[k + 3], x[k + 4], x[k + 5]}};
+  }
+  void take_root_velocity(int i, int k, se3T<W>& own) const {
+    if (slot(i).kind == SlotKind::root) set(own, k, of_root(i, v_));
+  }
+  void take_root_acceleration(int i, int k, se3T<W>& own) const {
+    if (slot(i).kind != SlotKind::root) return;
+    se3T<T> A = work_.A_world;
+    if (!a_.empty()) A = A + of_root(i, a_);
+    set(own, k, A);
+  }
+  // The columns of a node turn with its link, all of them: ad_V of what they make together is due
+  // at the last. That is V less the parent's, and ad_V V = 0.
+  VP_APART void take_bias(int i, int k, se3T<W>& own) {
     const Slot& s = slot(i);
     if (s.kind != SlotKind::column) return;
     const auto n = static_cast<std::size_t>(s.node);
     const auto& node = tree_.nodes[n];
-    const auto fields = work_.slot(i);
-    se3T<T> bias{Vec3T<T>{T(0), T(0), T(0)}, Vec3T<T>{T(0), T(0), T(0)}};
+    const Vec3T<T> nowhere{T(0), T(0), T(0)};
+    se3T<T> bias{nowhere, nowhere};
     if (i == node.body_slot()) {
-      se3T<T> own = work_.slot(node.v).twist(kOwn);
-      for (int k = node.v + 1; k <= i; ++k) own = own + work_.slot(k).twist(kOwn);
-      bias = ad(fields.twist(kV), own) + columns(n).rate;
+      bias = columns(n).rate;
+      const int parent = slot(node.slot).parent;
+      if (parent != kWorld) {
+        bias = bias + ad(work_.slot(parent).twist(kV), work_.slot(i).twist(kV));
+      }
     }
-    fields.set(kA, bias);
+    set(own, k, bias);
+  }
+
+  // Of each slot its own and its parent's, of a root its own, at one of the fields kV and kA.
+  se3T<W> summed(int g, const Group& group, const se3T<W>& own, int field) {
+    const auto fields = work_.group(g);
+    if constexpr (kByRows<T>) {
+      se3T<W> sum = summed_in_group(layout_, group, own);
+      for (int i = group.first_external; i < group.end_external; ++i) {
+        const External& external = layout_.externals[static_cast<std::size_t>(i)];
+        if (external.slot != kWorld) {
+          sum = sum + in_lanes<T>(external, work_.slot(external.slot).twist(field));
+        } else if (field == kA) {
+          sum = sum + in_lanes<T>(external, work_.A_world);
+        }
+      }
+      fields.set(field, sum);
+      return sum;
+    } else if constexpr (kSlots<T> == 1) {
+      const se3T<W> sum = sum_of(g, own, field);
+      fields.set(field, sum);
+      return sum;
+    } else {
+      fields.set(field, own);
+      for (int i = g * kSlots<T>; i < g * kSlots<T> + group.count; ++i) {
+        const auto its = work_.slot(i);
+        its.set(field, sum_of(i, its.twist(field), field));
+      }
+      return fields.twist(field);
+    }
+  }
+  se3T<T> sum_of(int i, const se3T<T>& own, int field) const {
+    if (has_parent(i)) return work_.slot(slot(i).parent).twist(field) + own;
+    return field == kA && slot(i).kind != SlotKind::root ? work_.A_world + own : own;
   }
 
   const Tree<B>& tree_;
   const Layout<B>& layout_;
   Work<T>& work_;
   Span<T> q_, v_, a_;
+  Angles angles_;
+  const BodyOf& body_of_;
+  const Take& take_;
   bool reduce_ = false;
   typename W::Mask near_ = W(0) == W(0);
 };
 
-// Runs a pass over all groups: with each, what is to be done once it has moved.
-template <class T, Reach kReach, class Then>
+// Runs a pass over all groups.
+template <class T, Reach kReach, class BodyOf, class Take>
 void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
-              const Then& then) {
-  Outwards<T, kReach> pass(tree, work, q, v, a);
-  const auto& groups = layout_of<T>(tree).groups;
-  const int count = static_cast<int>(groups.size());
-  for (int g = 0; g < count; ++g) pass.open_angles(g);
-  if (pass.far()) {
+              const BodyOf& body_of, const Take& take) {
+  Outwards<T, kReach, BodyOf, Take> pass(tree, work, q, v, a, body_of, take);
+  const int count = static_cast<int>(layout_of<T>(tree).groups.size());
+  if (count == 0) return;
+  for (;;) {
+    pass.begin();
+    for (int g = 0; g < count; ++g) pass.move(g);
+    if (!pass.far()) return;
     pass.reduce_angles();
-    for (int g = 0; g < count; ++g) pass.open_angles(g);
-  }
-  for (int g = 0; g < count; ++g) {
-    if (groups[static_cast<std::size_t>(g)].idle) continue;
-    pass.move(g);
-    then(g, group_constants<T>(tree, g));
   }
 }
 

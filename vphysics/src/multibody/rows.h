@@ -1,9 +1,8 @@
 // One state in registers of eight numbers: the recursions by rows.
 //
-// Between slots nothing is alike, so the recursions of one state cannot use a lane for each slot as
-// the rest of a pass does (lanes.h). With registers of 512 bits they use lanes for the numbers of
-// one slot instead: a pose is four columns of four, a force one register, an articulated inertia
-// six.
+// Inwards nothing is alike between slots, so the recursions of one state cannot use a lane for each
+// slot as the rest of a pass does (lanes.h). With registers of 512 bits they use lanes for the
+// numbers of one slot instead: a force is one register, an articulated inertia six.
 #pragma once
 
 #include "multibody/lanes.h"
@@ -50,60 +49,75 @@ void transpose_rows(Row<T> (&r)[8]) {
   for (int i = 0; i < 4; ++i) halves(t[i], t[i + 4], r[i], r[i + 4]);
 }
 
-// A pose in four columns of four lanes, the last of no meaning.
+// Vectors of six of one slot, as the sums inwards take them: in rows where there are rows.
 template <class T>
-struct ColumnPose {
-  PackT<T, 4> x, y, z, p;
+struct SixRow {
+  Row<T> row;
 
-  static ColumnPose from(const T* at) {
-    return {load<PackT<T, 4>>(at), load<PackT<T, 4>>(at + 4), load<PackT<T, 4>>(at + 8),
-            load<PackT<T, 4>>(at + 12)};
-  }
+  static SixRow from(const T* at) { return {load<Row<T>>(at)}; }
+  void to(T* at) const { store(at, row); }
+  friend SixRow operator+(const SixRow& a, const SixRow& b) { return {a.row + b.row}; }
+};
+template <class T>
+struct Six {
+  T x[6];
+
+  static Six of(const Vec3T<T>& a, const Vec3T<T>& b) { return {{a.x, a.y, a.z, b.x, b.y, b.z}}; }
+  static Six from(const T* at) { return {{at[0], at[1], at[2], at[3], at[4], at[5]}}; }
   void to(T* at) const {
-    store(at, x);
-    store(at + 4, y);
-    store(at + 8, z);
-    store(at + 12, p);
+    for (int c = 0; c < 6; ++c) at[c] = x[c];
   }
-  PackT<T, 4> turned(const Vec3T<T>& b) const {
-    return (x * PackT<T, 4>(b.x) + y * PackT<T, 4>(b.y)) + z * PackT<T, 4>(b.z);
-  }
-  ColumnPose times(const SE3T<T>& B) const {
-    const auto& R = B.rotation();
-    return {turned(R.cx), turned(R.cy), turned(R.cz), p + turned(B.position())};
+  Vec3T<T> head() const { return {x[0], x[1], x[2]}; }
+  Vec3T<T> tail() const { return {x[3], x[4], x[5]}; }
+  friend Six operator+(const Six& a, const Six& b) {
+    return of(a.head() + b.head(), a.tail() + b.tail());
   }
 };
 template <class T>
-alignas(64) inline constexpr T kOrigin[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
-template <class T>
-SE3T<T> pose_from(const T* at) {
-  const auto column = [at](int i) { return Vec3T<T>{at[4 * i], at[4 * i + 1], at[4 * i + 2]}; };
-  return {Mat3T<T>{column(0), column(1), column(2)}, column(3)};
-}
-template <class T>
-void pose_to(T* at, const SE3T<T>& X) {
-  const auto put = [](T* to, const Vec3T<T>& a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; };
-  put(at, X.rotation().cx);
-  put(at + 4, X.rotation().cy);
-  put(at + 8, X.rotation().cz);
-  put(at + 12, X.position());
-}
+using ChainSix = std::conditional_t<kByRows<T>, SixRow<T>, Six<T>>;
 
-// Column i of the poses of eight slots, as three numbers of a group.
+// From two vectors of each slot of a group to the slots, and back.
 template <class T>
-Vec3T<Row<T>> gathered(const T* rows, int stride, int column) {
-  Row<T> r[4];
-  for (int k = 0; k < 4; ++k) {
-    const T* at = rows + k * stride + 4 * column;
-    r[k] =
-        shuffled<0, 1, 2, 3, 4, 5, 6, 7>(load<PackT<T, 4>>(at), load<PackT<T, 4>>(at + 4 * stride));
+void split(const Vec3T<Wide<T>>& a, const Vec3T<Wide<T>>& b, ChainSix<T> (&out)[kSlots<T>]) {
+  if constexpr (kSlots<T> == 1) {
+    out[0] = ChainSix<T>::of(a, b);
+  } else if constexpr (kByRows<T>) {
+    Row<T> r[8] = {a.x, a.y, a.z, b.x, b.y, b.z, Row<T>(0), Row<T>(0)};
+    transpose_rows(r);
+    for (int k = 0; k < 8; ++k) out[k].row = r[k];
+  } else {
+    alignas(64) T numbers[6 * kSlots<T>];
+    const Fields<T, Wide<T>> fields(numbers);
+    fields.set(0, a);
+    fields.set(3, b);
+    for (int k = 0; k < kSlots<T>; ++k) {
+      const Fields<T, T> slot(numbers + k);
+      out[k] = Six<T>::of(slot.vec(0), slot.vec(3));
+    }
   }
-  const auto s0 = shuffled<0, 8, 2, 10, 4, 12, 6, 14>(r[0], r[1]);
-  const auto s1 = shuffled<1, 9, 3, 11, 5, 13, 7, 15>(r[0], r[1]);
-  const auto s2 = shuffled<0, 8, 2, 10, 4, 12, 6, 14>(r[2], r[3]);
-  const auto s3 = shuffled<1, 9, 3, 11, 5, 13, 7, 15>(r[2], r[3]);
-  return {shuffled<0, 1, 8, 9, 4, 5, 12, 13>(s0, s2), shuffled<0, 1, 8, 9, 4, 5, 12, 13>(s1, s3),
-          shuffled<2, 3, 10, 11, 6, 7, 14, 15>(s0, s2)};
+}
+template <class T>
+void join(const ChainSix<T> (&x)[kSlots<T>], Vec3T<Wide<T>>& a, Vec3T<Wide<T>>& b) {
+  if constexpr (kSlots<T> == 1) {
+    a = x[0].head();
+    b = x[0].tail();
+  } else if constexpr (kByRows<T>) {
+    Row<T> r[8];
+    for (int k = 0; k < 8; ++k) r[k] = x[k].row;
+    transpose_rows(r);
+    a = {r[0], r[1], r[2]};
+    b = {r[3], r[4], r[5]};
+  } else {
+    alignas(64) T numbers[6 * kSlots<T>];
+    for (int k = 0; k < kSlots<T>; ++k) {
+      const Fields<T, T> slot(numbers + k);
+      slot.set(0, x[k].head());
+      slot.set(3, x[k].tail());
+    }
+    const Fields<T, Wide<T>> fields(numbers);
+    a = fields.vec(0);
+    b = fields.vec(3);
+  }
 }
 
 // An articulated inertia by columns of (angular 3, linear 3, nothing 2).

@@ -5,9 +5,10 @@
 // mass; a fixed joint is none: its link's inertia is its parent's. So the passes know few kinds,
 // and most joints cost what a revolute one does.
 //
-// A slot is one degree of freedom, numbered as the velocities are. A node of several has that many,
+// A slot is one degree of freedom, in the order of the velocities. A node of several has that many,
 // all in its frame, with nothing between them; its body is at the last. So the recursions take one
-// column of the motion subspace at a time and never see a matrix to invert.
+// column of the motion subspace at a time and never see a matrix to invert. Only a free root is one
+// slot for its six (free_root.h).
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,7 @@ struct Node {
   NodeKind kind;
   int q, v;  // first coordinate and velocity
   int dofs;
+  int slot;          // its first
   int root;          // the root of its tree: a number, counted from 0
   SE3T<B> T_parent;  // at zero coordinates, from the parent node's frame
   InertiaT<B> J;     // in the node's frame: of its link and all that is fixed to it
@@ -34,7 +36,9 @@ struct Node {
   const UserJoint* user;
 
   bool simple() const { return kind <= NodeKind::helical; }
-  int body_slot() const { return v + dofs - 1; }
+  bool free_root() const { return kind == NodeKind::free && parent == kWorld; }
+  int slots() const { return free_root() ? 1 : dofs; }
+  int body_slot() const { return slot + slots() - 1; }
 };
 
 template <class B>
@@ -44,15 +48,17 @@ struct LinkPlace {
   int q, v;
 };
 
-// column: of a node that is not simple; root: of one that is free and hangs on the world.
+// column: of a node that is not simple; root: the one of a node that is free and hangs on the
+// world.
 enum class SlotKind : std::uint8_t { simple, column, root };
 
 struct Slot {
   int parent;  // a slot, or kWorld
   SlotKind kind;
-  bool last;  // of its node: the body's
-  int q;      // of a simple node its coordinate, else -1
+  int v;  // its velocity, a root's first
+  int q;  // of a simple node its coordinate, else -1
   int node;
+  int root;  // the slot of the free root that its tree hangs on, or kWorld
   // Inwards (inflow.h): the places where its children's loads are, and where its own goes.
   static constexpr int kNone = 0, kNext = 1, kOthers = 2;
   int from, to;
@@ -84,18 +90,36 @@ enum Constant : int {
   kConstants = 28
 };
 
+// How numbers are summed along the tree within a group, or poses multiplied: by doubling. In step s
+// each lane takes up the one of its ancestor 2^s above it, where that is in the group.
+template <class B>
+struct alignas(64) ScanStep {
+  std::conditional_t<sizeof(B) == 8, std::int64_t, std::int32_t> from[8];
+  std::uint8_t lanes;  // that have such an ancestor: a bit each
+};
+// What lanes of a group hang on outside of it, after that.
+struct External {
+  int slot;  // or kWorld
+  std::uint8_t lanes;
+};
+
 // The constants by groups of slots, and what the slots of a group have in common.
 template <class B>
 struct Layout {
   struct Group {
     int count;      // of slots; the others are zero
     bool revolute;  // all of them
-    bool idle;      // slots of a free root, without its last
     bool simple;    // all of them
-    int first_q;    // where the coordinates follow each other and fill the group, else -1
+    // Where slot k has number first + k in the arrays of coordinates and velocities, each slot that
+    // has one; else -1.
+    int first_q, first_v;
+    // Of groups of eight.
+    int first_step, end_step, first_external, end_external;
   };
   std::vector<Group> groups;
   AlignedArray<B> constants;
+  std::vector<ScanStep<B>> steps;
+  std::vector<External> externals;
 };
 
 template <class B>
@@ -109,7 +133,8 @@ struct Tree {
   std::vector<Slot> slots;
   std::vector<Vec3T<B>> roots;  // where they are at zero coordinates
   int inflow_places = Slot::kOthers;
-  std::vector<SlotRun> runs;   // the slots between a root and each slot, both included
+  // The slots on the way from the world to each slot, itself included; without free roots.
+  std::vector<SlotRun> runs;
   std::vector<int> first_run;  // of each slot; one more for the end
   bool all_related = false;    // of any two slots one is above the other
   Layout<B> one;               // for one state: groups of eight slots

@@ -18,27 +18,33 @@ namespace vp::detail {
 
 // A slot's numbers (lanes.h).
 enum Field : int {
-  kX = 0,        // pose
-  kS = 12,       // motion subspace
-  kV = 18,       // velocity
-  kA = 24,       // acceleration that the velocities make, on top of that of the gravity field
-  kH = 30,       // of the body: first moment,
-  kI = 33,       // rotational inertia,
-  kF = 39,       // and bias force
-  kOwn = 45,     // velocity relative to the parent; before that:
-  kTurned = 45,  // sine and cosine of the joint's angle, and its slide
-  kFields = 51
+  kX = 0,   // pose
+  kS = 12,  // motion subspace; none of a root
+  kV = 18,  // velocity
+  kH = 24,  // of the body: first moment,
+  kI = 27,  // rotational inertia,
+  kF = 33,  // and bias force
+  kA = 39,  // acceleration that the velocities make, on top of that of the gravity field
+  kFields = 45
 };
 
-// Numbers of a slot for the recursions by rows (rows.h): the pose; the body's rotational inertia,
-// mass and a zero; its first moment, the same with the other sign and two zeros; its bias force.
-enum RowField : int {
-  kRowPose = 0,
-  kRowInertia = 16,
-  kRowMoment = 24,
-  kRowForce = 32,
-  kRowSize = 40
+// Numbers of a slot for the recursions by rows (rows.h): the body's rotational inertia, mass and a
+// zero; its first moment, the same with the other sign and two zeros; its bias force.
+enum RowField : int { kRowInertia = 0, kRowMoment = 8, kRowForce = 16, kRowSize = 24 };
+
+// A vector of six, with room for a row.
+template <class T>
+struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Eight {
+  T x[8]{};
 };
+template <class T>
+se3T<T> twist_from(const T* at) {
+  return {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}};
+}
+template <class T>
+dse3T<T> wrench_from(const T* at) {
+  return {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}};
+}
 
 // What the inward pass leaves for the outward one.
 template <class T>
@@ -60,9 +66,21 @@ Articulated<T> operator+(const Articulated<T>& a, const Articulated<T>& b) {
   return {a.J + b.J, a.p + b.p};
 }
 template <class T>
+struct Nine {
+  T x[9]{};
+};
+template <class T>
 struct Moments {
   Vec3T<T> h;
   Sym3T<T> I;
+
+  static Moments from(const T* x) {
+    return {{x[0], x[1], x[2]}, {x[3], x[4], x[5], x[6], x[7], x[8]}};
+  }
+  void to(T* x) const {
+    const T all[9] = {h.x, h.y, h.z, I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
+    for (int k = 0; k < 9; ++k) x[k] = all[k];
+  }
 };
 template <class T>
 Moments<T> operator+(const Moments<T>& a, const Moments<T>& b) {
@@ -83,24 +101,19 @@ struct Work {
   Fields<T, T> slot(int i) const { return Fields<T, T>(fields_at(i)); }
   Fields<T, Wide<T>> group(int g) const { return Fields<T, Wide<T>>(fields_at(g * kSlots<T>)); }
 
-  // What the roots hang on rests, under an acceleration.
-  void set_world(const Vec3T<T>& acceleration) {
-    Fields<T, T>(world.data()).set(kA + 3, acceleration);
-  }
-
   T* row(int i) const { return rows.data() + i * kRowSize; }
 
   InstructionSet instruction_set;
   mutable AlignedArray<T> rows;  // of one state: kRowSize for each slot
   mutable AlignedArray<T> fields;
-  AlignedArray<T> world;  // the fields of what the roots hang on
-  std::vector<Factor<T>> factors;
+  se3T<T> A_world;                 // of what the roots hang on
+  std::vector<Factor<T>> factors;  // of each velocity
   std::vector<Articulated<T>> articulated_flow;
   struct None {};
   std::vector<std::conditional_t<(kSlots<T> > 1), ArticulatedRows<T>, None>> row_flow;
-  std::vector<dse3T<T>> force_flow;
-  std::vector<Moments<T>> moment_flow;
-  std::vector<se3T<T>> added;       // what the joints add to A
+  std::vector<Eight<T>> force_flow;
+  std::vector<Nine<T>> moment_flow;
+  std::vector<se3T<T>> added;       // what the joints add to A; of slots that fork
   std::vector<Columns<T>> columns;  // of each node that is not simple
   std::vector<int> columns_of;      // a node's, or -1
   std::vector<int> body_slot;       // of each node
@@ -126,13 +139,18 @@ se3T<T> velocity_of(const Work<T>& work, int node) {
 // The k-th column of a node's motion subspace.
 template <class T>
 se3T<T> column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  return work.slot(tree.nodes[static_cast<std::size_t>(node)].v + k).twist(kS);
+  const auto& mover = tree.nodes[static_cast<std::size_t>(node)];
+  if (!mover.free_root()) return work.slot(mover.slot + k).twist(kS);
+  const Mat3T<T> R = work.slot(mover.slot).mat(kX);
+  const Vec3T<T> axis = k % 3 == 0 ? R.cx : k % 3 == 1 ? R.cy : R.cz;
+  se3T<T> S{};
+  (k < 3 ? S.w : S.v) = axis;
+  return S;
 }
 // The columns in which the inertia is factored: a free root's are the axes of the tree.
 template <class T>
 se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
-  if (tree.slots[static_cast<std::size_t>(slot)].kind != SlotKind::root) {
+  if (!tree.nodes[static_cast<std::size_t>(node)].free_root()) {
     return column_of(tree, work, node, k);
   }
   se3T<T> S{};
@@ -143,13 +161,13 @@ se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int
 // columns after it have taken out, by Omega; and 1 / Omega.
 template <class T>
 dse3T<T> gain_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
-  return work.factors[static_cast<std::size_t>(slot)].W;
+  const int velocity = tree.nodes[static_cast<std::size_t>(node)].v + k;
+  return work.factors[static_cast<std::size_t>(velocity)].W;
 }
 template <class T>
 T omega_inverse_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
-  const int slot = tree.nodes[static_cast<std::size_t>(node)].v + k;
-  return work.factors[static_cast<std::size_t>(slot)].inverse;
+  const int velocity = tree.nodes[static_cast<std::size_t>(node)].v + k;
+  return work.factors[static_cast<std::size_t>(velocity)].inverse;
 }
 // Where the origin of the node's tree is in the world.
 template <class T>
