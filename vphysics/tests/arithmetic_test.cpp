@@ -38,6 +38,42 @@ TEST(Arithmetic, FastestAndReproducibleAgreeToRounding) {
   }
 }
 
+// No lane knows of another, and one state's groups of slots compute what a slot of a batch does.
+TEST(Arithmetic, ReproducibleHasTheSameBitsInEveryLane) {
+  using P = PackT<double, 4>;
+  Random random(174);
+  for (int round = 0; round < 20; ++round) {
+    const Model model = random_tree(random, 15);
+    const auto n = static_cast<std::size_t>(model.velocities());
+    std::vector<P> q(static_cast<std::size_t>(model.coordinates())), v(n), tau(n), a(n), out(n),
+        M(n * n);
+    std::vector<Results> alone;
+    for (int lane = 0; lane < P::kLanes; ++lane) {
+      const State s = random_state(random, model);
+      for (std::size_t i = 0; i < q.size(); ++i) q[i].set(lane, s.q[i]);
+      for (std::size_t i = 0; i < n; ++i) {
+        v[i].set(lane, s.v[i]);
+        tau[i].set(lane, s.tau[i]);
+        a[i].set(lane, s.a[i]);
+      }
+      alone.push_back(all_of(model, s, Arithmetic::reproducible));
+    }
+    DataT<P> data(model, Arithmetic::reproducible);
+    const auto lanes_are = [&](const std::vector<P>& lanes, Numbers Results::*expected) {
+      for (int lane = 0; lane < P::kLanes; ++lane) {
+        const Numbers& numbers = alone[static_cast<std::size_t>(lane)].*expected;
+        for (std::size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(lanes[i][lane], numbers[i]);
+      }
+    };
+    ASSERT_TRUE(forward_dynamics<P>(model, data, q, v, tau, {}, out));
+    lanes_are(out, &Results::a);
+    inverse_dynamics<P>(model, data, q, v, a, {}, out);
+    lanes_are(out, &Results::tau);
+    mass_matrix<P>(model, data, q, M);
+    lanes_are(M, &Results::M);
+  }
+}
+
 // FNV-1a over the bits. The constant is the same for every compiler, level and machine: a change of
 // it is a change of results.
 TEST(Arithmetic, ReproducibleHasGoldenBits) {

@@ -209,13 +209,16 @@ class Outwards {
   // Behind the parents' poses, from the poses in the parents' frames.
   SE3T<W> placed(int g, const Group& group, const SE3T<W>& local) {
     if constexpr (kByRows<T>) {
-      SE3T<W> X = multiplied_in_group(layout_, group, local);
+      const SE3T<W> X = multiplied_in_group(layout_, group, local);
+      SE3T<W> above;
+      bool at_home = true;
       for (int i = group.first_external; i < group.end_external; ++i) {
         const External& external = layout_.externals[static_cast<std::size_t>(i)];
         if (external.slot == kWorld) continue;
-        X = behind(external, work_.slot(external.slot), X);
+        above = pose_in_lanes(external, work_.slot(external.slot).pose(kX), above);
+        at_home = false;
       }
-      return X;
+      return at_home ? X : above * X;
     } else if constexpr (kSlots<T> == 1) {
       return has_parent(g) ? work_.slot(slot(g).parent).pose(kX) * local : local;
     } else {

@@ -73,12 +73,17 @@ se3T<N> summed_in_group(const Layout<B>& layout, const typename Layout<B>::Group
   }
   return V;
 }
-// Lanes of a group behind the pose of what they hang on.
+// A pose in the lanes of an external; P in the others.
 template <class T, class N>
-SE3T<N> behind(const External& external, const Fields<T, T>& above, const SE3T<N>& X) {
-  return each_number<N>(above.pose(kX),
-                        [&](const T& x, const N& unit) { return spread_to(external, x, unit); }) *
-         X;
+SE3T<N> pose_in_lanes(const External& external, const SE3T<T>& X, const SE3T<N>& P) {
+  const auto column = [&](const Vec3T<T>& a, const Vec3T<N>& others) {
+    return Vec3T<N>{spread_to(external, a.x, others.x), spread_to(external, a.y, others.y),
+                    spread_to(external, a.z, others.z)};
+  };
+  const Mat3T<T>& R = X.rotation();
+  const Mat3T<N>& Q = P.rotation();
+  return {Mat3T<N>{column(R.cx, Q.cx), column(R.cy, Q.cy), column(R.cz, Q.cz)},
+          column(X.position(), P.position())};
 }
 template <class T>
 se3T<Wide<T>> in_lanes(const External& external, const se3T<T>& V) {
