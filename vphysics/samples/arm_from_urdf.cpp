@@ -31,12 +31,14 @@ int main(int argc, char** argv) {
   std::vector<double> q = model.zero_coordinates();
   q[static_cast<std::size_t>(model.first_coordinate(shoulder->link))] = vp::kPi / 2;
 
-  const std::vector<double> rest(q.size());
-  std::vector<double> hold(q.size()), a(q.size());
+  const auto n = static_cast<std::size_t>(model.velocities());
+  const std::vector<double> rest(n);
+  std::vector<double> hold(n), a(n);
   vp::Data data(model);
   vp::inverse_dynamics<double>(model, data, q, rest, rest, {}, hold);
   std::printf("\n%-10s %10s %10s\n", "joint", "holds", "can hold");
   for (const vp::UrdfJoint& joint : arm->joints) {
+    if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // a fixed one
     const auto i = static_cast<std::size_t>(model.first_velocity(joint.link));
     std::printf("%-10s %10.4f %10.4g\n", joint.name.c_str(), hold[i], joint.effort);
   }

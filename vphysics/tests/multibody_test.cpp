@@ -397,5 +397,61 @@ TEST(ForwardDynamics, SaysWhereAJointMovesNoInertiaHere) {
   EXPECT_EQ(done.error().code, Errc::singular);
 }
 
+// Where rounding leaves something of nothing: half of these have an Omega above zero.
+TEST(ForwardDynamics, TakesNoRoundingForAnInertia) {
+  Random random(175);
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 axis = random.direction(), place = random.in_cube(1.0);
+    const Inertia point = Inertia(1.0, Vec3{}).Xform(SE3(random.uniform(0.1, 1.0) * axis));
+    const auto add = [](ModelBuilder& builder, int parent, const Joint& joint, const SE3& T,
+                        const Inertia& J) {
+      must_build(
+          builder.add({.parent = parent, .joint = joint, .T_parent_joint = T, .inertia = J}));
+    };
+    ModelBuilder on_its_axis, coaxial, floating;
+    add(on_its_axis, kWorld, RevoluteJoint{random.direction()}, SE3(place), random_body(random));
+    add(on_its_axis, 0, RevoluteJoint{axis}, SE3(place), point);
+    add(coaxial, kWorld, RevoluteJoint{random.direction()}, SE3(place), random_body(random));
+    add(coaxial, 0, RevoluteJoint{axis}, random.pose(0.5), {});
+    add(coaxial, 1, RevoluteJoint{axis}, SE3(0.3 * axis), random_body(random));
+    add(floating, kWorld, FreeJoint{}, SE3(place), point);
+    for (ModelBuilder* builder : {&on_its_axis, &coaxial, &floating}) {
+      const Model model = must_build(builder->build());
+      const State s = random_state(random, model);
+      for (const Arithmetic arithmetic : {Arithmetic::fastest, Arithmetic::reproducible}) {
+        Data data(model, arithmetic);
+        Numbers a(s.v.size());
+        const auto done = forward_dynamics<double>(model, data, s.q, s.v, s.tau, {}, a);
+        ASSERT_FALSE(done) << "round " << round << ", a up to " << largest_of(a);
+        EXPECT_EQ(done.error().code, Errc::singular);
+      }
+    }
+  }
+}
+
+TEST(Joints, ThinkNothingOfAnAxisLength) {
+  Random random(176);
+  const Vec3 axis = random.direction();
+  const auto moved = [&](const Joint& joint) {
+    ModelBuilder builder;
+    must_build(builder.add({.joint = joint, .inertia = Inertia(1.0, Vec3{1, 2, 2})}));
+    const Model model = must_build(builder.build());
+    Data data(model);
+    const Numbers q(static_cast<std::size_t>(model.coordinates()), 0.7);
+    forward_kinematics<double>(model, data, q, {});
+    return T_world_link(model, data, 0);
+  };
+  const auto expect_same = [&](const Joint& a, const Joint& b) {
+    EXPECT_LT(norm(Log(Inv(moved(a)) * moved(b)).w), 1e-14);
+    EXPECT_LT(norm(moved(a).position() - moved(b).position()), 1e-14);
+  };
+  expect_same(RevoluteJoint{axis}, RevoluteJoint{3.0 * axis});
+  expect_same(PrismaticJoint{axis}, PrismaticJoint{3.0 * axis});
+  expect_same(HelicalJoint{axis, 0.1}, HelicalJoint{3.0 * axis, 0.1});
+  expect_same(CylindricalJoint{axis}, CylindricalJoint{3.0 * axis});
+  const Vec3 second = random.direction();
+  expect_same(UniversalJoint{axis, second}, UniversalJoint{3.0 * axis, 0.2 * second});
+}
+
 }  // namespace
 }  // namespace vp::test

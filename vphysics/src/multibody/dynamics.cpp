@@ -42,9 +42,17 @@ const Kernels& kernels_of(const DataT<T>& data) {
   }
 }
 
+// Whether the data has room for the model: then it was made for that or for one of its shape.
+template <class T>
+[[maybe_unused]] bool is_of(const ModelT<base_t<T>>& model, const DataT<T>& data) {
+  const Work<T>& work = data.work();
+  return work.factors.size() == static_cast<std::size_t>(model.velocities()) &&
+         work.body_slot.size() == model.tree().nodes.size();
+}
 template <class T>
 Arguments start(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const T> q) {
   VP_ASSERT(q.size() == static_cast<std::size_t>(model.coordinates()));
+  VP_ASSERT(is_of(model, data));
   Arguments args{&model.tree(), &data.work()};
   args.q = q.data();
   return args;
@@ -120,6 +128,7 @@ void forward_kinematics(const ModelT<base_t<T>>& model, DataT<T>& data, std::spa
 
 template <class T>
 SE3T<T> T_world_link(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
+  VP_ASSERT(link >= 0 && link < model.links());
   const auto& place = model.tree().places[static_cast<std::size_t>(link)];
   const SE3T<T> T_node_link = detail::wide<T>(place.T_node_link);
   if (place.node == kWorld) return T_node_link;
@@ -130,6 +139,7 @@ SE3T<T> T_world_link(const ModelT<base_t<T>>& model, const DataT<T>& data, int l
 
 template <class T>
 se3T<T> link_velocity(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
+  VP_ASSERT(link >= 0 && link < model.links());
   const auto& place = model.tree().places[static_cast<std::size_t>(link)];
   if (place.node == kWorld) return {};
   const SE3T<T> X = detail::pose_of<T>(data.work(), place.node);
@@ -160,6 +170,7 @@ Expected<void> factor_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::
 template <class T>
 void solve_mass(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<T> x) {
   detail::Arguments args{&model.tree(), &data.work()};
+  VP_ASSERT(detail::is_of(model, data));
   detail::checked<T>(model, x);
   args.out = x.data();
   detail::kernels_of(data).solve_mass(args);

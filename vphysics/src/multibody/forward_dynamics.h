@@ -17,11 +17,11 @@
 
 namespace vp::detail {
 
-// Whether all of many numbers are positive, looked at once at the end.
+// Whether each of many numbers is above what may be rounding of it, looked at once at the end.
 template <class T>
 class AllPositive {
  public:
-  void see(const T& x) { fine_ = both(fine_, x > T(0)); }
+  void see(const T& x, const T& least) { fine_ = both(fine_, x > least); }
   bool fine() const { return all(fine_); }
 
  private:
@@ -30,11 +30,11 @@ class AllPositive {
 
 // One slot's factor, and the articulated inertia that it leaves to its parent.
 template <class T>
-AInertiaT<T> factor_out(const AInertiaT<T>& J, const se3T<T>& S, const T& armature,
+AInertiaT<T> factor_out(const AInertiaT<T>& J, const se3T<T>& S, const Constants<T, T>& k,
                         Factor<T>& factor, AllPositive<T>& positive) {
   const dse3T<T> U = J * S;
-  const T omega = S * U + armature;
-  positive.see(omega);
+  const T omega = S * U + k.get(kArmature);
+  positive.see(omega, k.get(kLeast));
   factor.inverse = T(1) / omega;
   factor.W = factor.inverse * U;
   const dse3T<T>& W = factor.W;
@@ -99,7 +99,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
     const Row<T> U = times(load.J, S);
     spread(u, U);
     const T omega = S * wrench_from(u) + k.get(kArmature);
-    positive.see(omega);
+    positive.see(omega, k.get(kLeast));
     const T inverse = T(1) / omega;
     load.J = without(load.J, U, u, inverse);
     const Row<T> W = Row<T>(inverse) * U;
@@ -139,7 +139,7 @@ bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span
       continue;
     }
     const se3T<T> S = fields.twist(kS);
-    load.J = factor_out(load.J, S, k.get(kArmature), factor, positive);
+    load.J = factor_out(load.J, S, k, factor, positive);
     if constexpr (kForces) {
       const T x = tau[n] - k.get(kDamping) * v[n];
       load.p = force_out(load.p, S, x, factor);

@@ -7,6 +7,8 @@
 // the root.
 #pragma once
 
+#include <limits>
+
 #include "multibody/joints.h"
 
 namespace vp::detail {
@@ -50,10 +52,11 @@ class FreeRoot {
   // Factors of J; false where one is not positive.
   template <class Positive>
   void factor(Triangle<T> J, Positive& positive) const {
-    const T armature = k_.get(kArmature);
+    const T armature = k_.get(kArmature), turns = k_.get(kLeast);
+    const T slides = T(16) * T(std::numeric_limits<base_t<T>>::epsilon()) * k_.get(kComposite);
     for (int k = 6; k-- > 0;) {
       const T omega = J.m[k][k] + armature;
-      positive.see(omega);
+      positive.see(omega, k < 3 ? turns : slides);
       const T inverse = T(1) / omega;
       T w[6] = {};
       for (int i = 0; i < k; ++i) w[i] = inverse * J.m[k][i];

@@ -22,7 +22,7 @@ struct Principal {
   std::array<double, 3> moments;  // the least first
   std::array<Vec3, 3> axes;
 };
-// By Jacobi's rotations, in a fixed order; five sweeps leave nothing beside the diagonal.
+// By Jacobi's rotations, in a fixed order; eight sweeps leave nothing beside the diagonal.
 Principal principal_of(const Sym3& A) {
   double m[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
   double Q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -70,13 +70,7 @@ class LayOut {
     make_slots();
     link_slots();
     list_runs();
-    composites_.assign(tree_.slots.size(), 0.0);
-    for (std::size_t i = tree_.slots.size(); i-- > 0;) {
-      if (ends_node(i)) composites_[i] += wider(node_of(i).J.mass());
-      if (tree_.slots[i].parent != kWorld) {
-        composites_[static_cast<std::size_t>(tree_.slots[i].parent)] += composites_[i];
-      }
-    }
+    measure();
     group(tree_.one, 8);
     group(tree_.states, 1);
   }
@@ -87,6 +81,47 @@ class LayOut {
   }
   bool ends_node(std::size_t slot) const {
     return static_cast<int>(slot) == node_of(slot).body_slot();
+  }
+
+  // Masses and lengths of all that hangs on each slot.
+  void measure() {
+    composites_.assign(tree_.slots.size(), 0.0);
+    farthest_.assign(tree_.slots.size(), 0.0);
+    for (std::size_t i = 0; i < tree_.slots.size(); ++i) {
+      const int parent = tree_.slots[i].parent;
+      if (parent == kWorld) continue;
+      const bool shifts = static_cast<int>(i) == node_of(i).slot;
+      farthest_[i] = farthest_[static_cast<std::size_t>(parent)] +
+                     (shifts ? norm(wider(node_of(i).T_parent.position())) : 0.0);
+    }
+    for (std::size_t i = tree_.slots.size(); i-- > 0;) {
+      const auto& J = node_of(i).J;
+      const double mass = wider(J.mass());
+      if (ends_node(i) && mass > 0.0) {
+        composites_[i] += mass;
+        const auto& I = J.rotational();
+        farthest_[i] += std::sqrt((wider(I.xx) + wider(I.yy) + wider(I.zz)) / mass);
+      }
+      if (tree_.slots[i].parent == kWorld) continue;
+      const auto parent = static_cast<std::size_t>(tree_.slots[i].parent);
+      composites_[parent] += composites_[i];
+      farthest_[parent] = std::max(farthest_[parent], farthest_[i]);
+    }
+  }
+  // Omega is a difference of numbers about the origin of the tree, which are as large as a mass
+  // times the square of a distance: so much of it may be rounding. Of a user's joint, whose units
+  // are its own, nothing is said.
+  double least(std::size_t i) const {
+    const double rounding = 16.0 * static_cast<double>(std::numeric_limits<B>::epsilon());
+    const double mass = rounding * composites_[i];
+    switch (node_of(i).kind) {
+      case NodeKind::user:
+        return 0.0;
+      case NodeKind::prismatic:
+        return mass;
+      default:
+        return mass * farthest_[i] * farthest_[i];
+    }
   }
 
   Slot& parent_of(const Slot& slot) { return tree_.slots[static_cast<std::size_t>(slot.parent)]; }
@@ -264,6 +299,7 @@ class LayOut {
     set(kArmature, wider(node.armature));
     set(kDamping, wider(node.damping));
     set(kComposite, composites_[i]);
+    set(kLeast, least(i));
     if (!ends_node(i) || !(node.J.mass() > B(0))) return;
     const auto& I = node.J.rotational();
     const Inertia J(wider(node.J.mass()), wider(node.J.first_moment()),
@@ -277,7 +313,8 @@ class LayOut {
   }
 
   Tree<B>& tree_;
-  std::vector<double> composites_;
+  std::vector<double> composites_;  // [kg]
+  std::vector<double> farthest_;    // [m] from the root, along the links
 };
 
 }  // namespace

@@ -159,7 +159,7 @@ class NodeMaker {
 
  private:
   void simple(NodeKind kind, const Vec3& axis, double pitch = 0.0) {
-    add(kind, frame_along(axis), 1, 1, pitch / norm(axis));
+    add(kind, frame_along(axis), 1, 1, pitch);
   }
   // The node's frame is turned by Q against the joint's, and turns back into the link's after it.
   void add(NodeKind kind, const Mat3& Q, int coordinates, int dofs, double pitch = 0.0,
@@ -278,8 +278,9 @@ Expected<Model> ModelBuilder::build() const {
     tree->places.push_back(maker.finish());
   }
   if (tree->nodes.empty()) {
-    return tl::make_unexpected(
-        Error{Errc::invalid_argument, "build: the model has no joint that moves; add links first"});
+    return tl::make_unexpected(Error{Errc::invalid_argument,
+                                     "build: the model has no joint that moves, so that it has no "
+                                     "dynamics; add a link with a joint that does"});
   }
   // What each joint moves; armature alone is enough.
   std::vector<double> moved(tree->nodes.size());

@@ -61,49 +61,31 @@ dse3T<N> body_force(const Body<N>& body, const se3T<N>& V, const se3T<N>& A) {
   return {n + cross(c, f), f};
 }
 
-// body_of(k, X) makes of a group's constants and poses what is due of its bodies, and then
-// take(g, body, V, A) has that, with what the reach reaches: in this order little has to be kept at
-// a time.
-template <class T, Reach kReach, class BodyOf, class Take>
-class Outwards {
+// Groups of slots, one after the other from the first: what each step of the pass makes of one.
+template <class T>
+class SlotMotion {
  public:
-  // a: of the joints, or empty: none.
-  Outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
-           const BodyOf& body_of, const Take& take)
-      : tree_(tree),
-        layout_(layout_of<T>(tree)),
-        work_(work),
-        q_(q),
-        v_(v),
-        a_(a),
-        body_of_(body_of),
-        take_(take) {}
+  using W = Wide<T>;
+  using B = base_t<T>;
+  using Group = typename Layout<B>::Group;
+  struct Angles {
+    W sine, cosine, slide;
+  };
 
-  // Of all groups, the first first. The sine and cosine of a joint are a long chain of operations:
-  // those of the next group are begun before this one's poses.
-  void begin() { angles_ = open_angles(0); }
-  void move(int g) {
-    const auto& group = layout_.groups[static_cast<std::size_t>(g)];
-    const Angles angles = angles_;
-    if (g + 1 < static_cast<int>(layout_.groups.size())) angles_ = open_angles(g + 1);
-    if (group.simple) {
-      move_as<true>(g, group, angles);
-    } else {
-      move_any(g, group, angles);
-    }
-  }
+  // a: of the joints, or empty: none.
+  SlotMotion(const Tree<B>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a)
+      : tree_(tree), layout_(layout_of<T>(tree)), work_(work), q_(q), v_(v), a_(a) {}
+
+  const Layout<B>& layout() const { return layout_; }
+  Constants<T, W> constants(int g) const { return group_constants<T>(tree_, g); }
+  Fields<T, W> fields(int g) const { return work_.group(g); }
+  W rates(int g, const Group& group) const { return velocities(v_, g, group); }
+  bool has_accelerations() const { return !a_.empty(); }
+  W accelerations(int g, const Group& group) const { return velocities(a_, g, group); }
 
   // An angle is so large that it has to be taken modulo 2 pi first.
   bool far() const { return !reduce_ && !all(near_); }
   void reduce_angles() { reduce_ = true; }
-
- private:
-  using W = Wide<T>;
-  using Group = typename Layout<base_t<T>>::Group;
-  using B = base_t<T>;
-  struct Angles {
-    W sine, cosine, slide;
-  };
 
   Angles open_angles(int g) {
     const auto& group = layout_.groups[static_cast<std::size_t>(g)];
@@ -119,58 +101,14 @@ class Outwards {
   VP_APART static W reduced(const W& angle) {
     W out = angle;
     for (int k = 0; k < W::kLanes; ++k) {
+      if (std::fabs(angle[k]) < Angle<B>::kExactBelow) continue;
       out.set(k, static_cast<B>(std::fmod(static_cast<double>(angle[k]), 2 * kPi)));
     }
     return out;
   }
 
-  // Apart, so that simple joints' numbers need not be in memory for what others call.
-  VP_FLATTEN VP_APART void move_any(int g, const Group& group, const Angles& angles) {
-    move_as<false>(g, group, angles);
-  }
-
-  template <bool kSimple>
-  void move_as(int g, const Group& group, const Angles& angles) {
-    const auto fields = work_.group(g);
-    SE3T<W> X = turned(g, group, angles);
-    if constexpr (!kSimple) {
-      for (int k = 0; k < group.count; ++k) take_general(g * kSlots<T> + k, k, X);
-    }
-    X = placed(g, group, X);
-    fields.set(kX, X);
-    const auto body = body_of_(group_constants<T>(tree_, g), X);
-    se3T<W> S = subspaces(g, group, X);
-    if constexpr (!kSimple) {
-      for (int k = 0; k < group.count; ++k) take_column(g * kSlots<T> + k, k, S);
-    }
-    fields.set(kS, S);
-    if constexpr (kReach == Reach::poses) {
-      take_(g, body, se3T<W>{}, se3T<W>{});
-      return;
-    }
-
-    se3T<W> own = velocities(v_, g, group) * S;
-    if constexpr (!kSimple) {
-      for (int k = 0; k < group.count; ++k) take_root_velocity(g * kSlots<T> + k, k, own);
-    }
-    const se3T<W> V = summed(g, group, own, kV);
-    if constexpr (kReach != Reach::accelerations) {
-      take_(g, body, V, se3T<W>{});
-      return;
-    }
-
-    own = ad(V, own);
-    if constexpr (!kSimple) {
-      for (int k = 0; k < group.count; ++k) take_bias(g * kSlots<T> + k, k, own);
-    }
-    if (!a_.empty()) own = own + velocities(a_, g, group) * S;
-    if constexpr (!kSimple) {
-      for (int k = 0; k < group.count; ++k) take_root_acceleration(g * kSlots<T> + k, k, own);
-    }
-    take_(g, body, V, summed(g, group, own, kA));
-  }
-
   const Slot& slot(int i) const { return tree_.slots[static_cast<std::size_t>(i)]; }
+
   // Of each slot of a group its number in an array; others where it has none.
   W coordinates(int g, const Group& group) const {
     return along(q_, g, group, group.first_q, [](const Slot& s) { return s.q; });
@@ -356,29 +294,110 @@ class Outwards {
     return field == kA && slot(i).kind != SlotKind::root ? work_.A_world + own : own;
   }
 
+ private:
   const Tree<B>& tree_;
   const Layout<B>& layout_;
   Work<T>& work_;
   Span<T> q_, v_, a_;
-  Angles angles_;
-  const BodyOf& body_of_;
-  const Take& take_;
   bool reduce_ = false;
   typename W::Mask near_ = W(0) == W(0);
+};
+
+// body_of(k, X) makes of a group's constants and poses what is due of its bodies, and then
+// take(g, body, V, A) has that, with what the reach reaches: in this order little has to be kept at
+// a time.
+template <class T, Reach kReach, class BodyOf, class Take>
+class Outwards {
+ public:
+  Outwards(SlotMotion<T>& motion, const BodyOf& body_of, const Take& take)
+      : motion_(motion), body_of_(body_of), take_(take) {}
+
+  // Of all groups, the first first. The sine and cosine of a joint are a long chain of operations:
+  // those of the next group are begun before this one's poses.
+  void begin() { angles_ = motion_.open_angles(0); }
+  void move(int g) {
+    const auto& groups = motion_.layout().groups;
+    const auto& group = groups[static_cast<std::size_t>(g)];
+    const Angles angles = angles_;
+    if (g + 1 < static_cast<int>(groups.size())) angles_ = motion_.open_angles(g + 1);
+    if (group.simple) {
+      move_as<true>(g, group, angles);
+    } else {
+      move_any(g, group, angles);
+    }
+  }
+
+ private:
+  using W = Wide<T>;
+  using Angles = typename SlotMotion<T>::Angles;
+  using Group = typename SlotMotion<T>::Group;
+
+  // Apart, so that simple joints' numbers need not be in memory for what others call.
+  VP_FLATTEN VP_APART void move_any(int g, const Group& group, const Angles& angles) {
+    move_as<false>(g, group, angles);
+  }
+
+  template <bool kSimple>
+  void move_as(int g, const Group& group, const Angles& angles) {
+    const auto fields = motion_.fields(g);
+    SE3T<W> X = motion_.turned(g, group, angles);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) motion_.take_general(g * kSlots<T> + k, k, X);
+    }
+    X = motion_.placed(g, group, X);
+    fields.set(kX, X);
+    const auto body = body_of_(motion_.constants(g), X);
+    se3T<W> S = motion_.subspaces(g, group, X);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) motion_.take_column(g * kSlots<T> + k, k, S);
+    }
+    fields.set(kS, S);
+    if constexpr (kReach == Reach::poses) {
+      take_(g, body, se3T<W>{}, se3T<W>{});
+      return;
+    }
+
+    se3T<W> own = motion_.rates(g, group) * S;
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) motion_.take_root_velocity(g * kSlots<T> + k, k, own);
+    }
+    const se3T<W> V = motion_.summed(g, group, own, kV);
+    if constexpr (kReach != Reach::accelerations) {
+      take_(g, body, V, se3T<W>{});
+      return;
+    }
+
+    own = ad(V, own);
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k) motion_.take_bias(g * kSlots<T> + k, k, own);
+    }
+    if (motion_.has_accelerations()) own = own + motion_.accelerations(g, group) * S;
+    if constexpr (!kSimple) {
+      for (int k = 0; k < group.count; ++k)
+        motion_.take_root_acceleration(g * kSlots<T> + k, k, own);
+    }
+    take_(g, body, V, motion_.summed(g, group, own, kA));
+  }
+
+  SlotMotion<T>& motion_;
+  const BodyOf& body_of_;
+  const Take& take_;
+  Angles angles_;
 };
 
 // Runs a pass over all groups.
 template <class T, Reach kReach, class BodyOf, class Take>
 void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
               const BodyOf& body_of, const Take& take) {
-  Outwards<T, kReach, BodyOf, Take> pass(tree, work, q, v, a, body_of, take);
+  SlotMotion<T> motion(tree, work, q, v, a);
+  Outwards<T, kReach, BodyOf, Take> pass(motion, body_of, take);
   const int count = static_cast<int>(layout_of<T>(tree).groups.size());
   if (count == 0) return;
   for (;;) {
     pass.begin();
     for (int g = 0; g < count; ++g) pass.move(g);
-    if (!pass.far()) return;
-    pass.reduce_angles();
+    if (!motion.far()) return;
+    motion.reduce_angles();
   }
 }
 

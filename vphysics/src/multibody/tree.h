@@ -87,7 +87,8 @@ enum Constant : int {
   kArmature = 25,
   kDamping = 26,
   kComposite = 27,  // mass of all that hangs on it, itself included
-  kConstants = 28
+  kLeast = 28,      // what of Omega may be rounding (layout.cpp)
+  kConstants = 29
 };
 
 // How numbers are summed along the tree within a group, or poses multiplied: by doubling. In step s

@@ -2,8 +2,8 @@
 //
 // Everything is in one frame, the tree's: the axes of the world, the origin where the root is now
 // (at its coordinates, if it is free). Then no inertia, twist or wrench changes frame between a
-// link and its parent: the recursion adds. The root's own place keeps the numbers small wherever in
-// the world the tree is.
+// link and its parent: the recursion adds. A free root's own place keeps the numbers small wherever
+// in the world it is; those on another root grow with the way that it has gone.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ enum Field : int {
   kH = 24,  // of the body: first moment,
   kI = 27,  // rotational inertia,
   kF = 33,  // and bias force
-  kA = 39,  // acceleration that the velocities make, on top of that of the gravity field
+  kA = 39,  // acceleration less gravity's; in forward dynamics without what the joints add
   kFields = 45
 };
 

@@ -75,7 +75,7 @@ class ModelBuilder {
   // that are not the joint's or contradict themselves, a user joint that says less than 1 or more
   // than 6 degrees of freedom.
   Expected<int> add(LinkSpec link);
-  // Refused: no link at all; a joint that moves no mass, neither by itself nor through its
+  // Refused: no joint that moves; a joint that moves no mass, neither by itself nor through its
   // children.
   Expected<Model> build() const;
 
