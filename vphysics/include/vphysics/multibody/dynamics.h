@@ -6,11 +6,11 @@
 // Each call is templated on the scalar: double, float, PackT<double, 4 or 8> and PackT<float, 8 or
 // 16>. Preconditions: the lengths of q, v, a and tau are those of the model, links are its own, the
 // data was made for it (asserted); quaternions are of unit length, numbers are finite (not looked
-// at: what is not finite gives results that are not). Nothing is allocated but the text of an error.
-// Results are those of the paper's appendix A; the passes run in one common frame instead
+// at: what is not finite gives results that are not). Nothing is allocated but the text of an
+// error. Results are those of the paper's appendix A; the passes run in one common frame instead
 // (docs/decisions/0012), with its origin at the root: on a root that is not free, such as a rail or
-// a planar base, the numbers grow with the way it has gone, and what is lost of them with its square
-// (measured: 1e-13 of the accelerations at 10 m, 6e-10 at 1 km). A FreeJoint loses nothing.
+// a planar base, the numbers grow with the way it has gone, and what is lost of them with its
+// square (measured: 1e-13 of the accelerations at 10 m, 6e-10 at 1 km). A FreeJoint loses nothing.
 //
 // Errors: Errc::singular where the articulated inertia of a joint is nothing but rounding, in any
 // lane; the results are then unspecified.
