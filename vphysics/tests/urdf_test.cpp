@@ -327,6 +327,10 @@ TEST(UrdfRefusal, OfElementsAndAttributesNamesTheLine) {
            {with("continuous", "<mimic joint=\"k\"/>"), 5, "mimics the joint \"k\""},
            {with("continuous", "<mimic joint=\"j\"/>"), 5, "may mimic another"},
            {with("floating", "<mimic joint=\"j\"/>"), 5, "may mimic another"},
+           {robot(body("base") + "\n" + body("b") + "\n" + body("c") + "\n" +
+                  joint("j", "continuous", "base", "b", "<mimic joint=\"k\"/>") + "\n" +
+                  joint("k", "continuous", "b", "c", "<mimic joint=\"j\"/>")),
+            8, "in a circle"},
            {with("continuous", "<parent link=\"b\"/>"), 5, "second <parent>"},
            {with("continuous", "<origin xyz=\"a b c\"/>"), 5, "\"a b c\""},
            {robot(good + "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/></joint>"), 4,

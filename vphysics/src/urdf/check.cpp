@@ -345,6 +345,18 @@ Expected<void> check_tree(const UrdfLines& lines) {
                                std::to_string(first) + "; a loop is closed by a constraint");
     }
   }
+  for (const auto& [name, joint] : lines.joints) {
+    const UrdfLines::Joint* at = &joint;
+    for (std::size_t steps = 0; at->mimic_line; ++steps) {
+      const UrdfLines::Joint* next = &lines.joints.at(at->mimics);
+      if (next == at) break;  // told where joints are built
+      if (steps > lines.joints.size()) {
+        return fault(joint.mimic_line, "joint " + quoted(name) + " mimics joints that mimic each " +
+                                           "other in a circle; one of them must move by itself");
+      }
+      at = next;
+    }
+  }
   const std::string* root = nullptr;
   for (const auto& [name, line] : lines.links) {
     if (above.contains(name)) continue;
