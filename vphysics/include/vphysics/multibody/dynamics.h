@@ -13,7 +13,8 @@
 // square (measured: 1e-13 of the accelerations at 10 m, 6e-10 at 1 km). A FreeJoint loses nothing.
 //
 // Errors: Errc::singular where the articulated inertia of a joint is nothing but rounding, in any
-// lane; the results are then unspecified.
+// lane; the results are then unspecified. In float, and of a user's joint, only where it is not
+// positive: rounding may leave a positive one of nothing, and then enormous accelerations.
 #pragma once
 
 #include <span>
