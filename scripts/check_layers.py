@@ -38,6 +38,9 @@ LAYERS = {
     'vphysics/src/': 'world',
     'vphysics/include/': 'world',
     'vphysics/samples/': 'vphysics-samples',
+    'scenes/': 'scenes-tests',
+    'scenes/src/': 'scenes',
+    'scenes/include/': 'scenes',
     'foosball/': 'foosball-tests',
     'foosball/src/': 'foosball',
     'foosball/include/': 'foosball',
@@ -66,9 +69,11 @@ MAY_USE = {
     'solve': {'lie', 'multibody', 'collide'},
     'world': {'lie', 'multibody', 'collide', 'solve'},
     'urdf': {'lie', 'multibody'},  # reads files; the engine proper is pure
-    'vphysics-tests': ENGINE | {'urdf'},
+    'vphysics-tests': ENGINE | {'urdf', 'scenes'},
     'vphysics-samples': {ENGINE_FACE},
     'table': {ENGINE_FACE},
+    'scenes': {ENGINE_FACE, 'table'},
+    'scenes-tests': {ENGINE_FACE, 'table', 'scenes'},
     'foosball': {ENGINE_FACE, 'table'},
     'foosball-tests': {ENGINE_FACE, 'table', 'foosball'},
     'device-frame': set(),
@@ -79,9 +84,9 @@ MAY_USE = {
     'firmware': {'device-frame'},
     'server': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # The client draws from snapshots only: the table's geometry, never the match.
-    'client': {ENGINE_FACE, 'os', 'table', 'wire', 'device-frame', 'hand'},
-    'tools': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
-    'tests': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',
+    'client': {ENGINE_FACE, 'os', 'table', 'scenes', 'wire', 'device-frame', 'hand'},
+    'tools': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
+    'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',
               'firmware', 'server', 'client'},
 }
 
@@ -90,7 +95,7 @@ IMPURE = re.compile(
     r'^(chrono|ctime|time\.h|random|fstream|iostream|cstdio|stdio\.h|filesystem|thread|mutex|future|'
     r'condition_variable|unistd\.h|fcntl\.h|sys/.*|arpa/.*|netinet/.*|poll\.h|pthread\.h|asio.*|'
     r'spdlog/.*|GLFW/.*|GLES.*|AL/.*|unordered_map|unordered_set)$')
-PURE = ENGINE | {'table', 'foosball'}
+PURE = ENGINE | {'table', 'foosball', 'scenes'}
 
 SOURCES = ('.h', '.hpp', '.c', '.cpp', '.inl')
 SKIPPED = {'build', 'out', '.git'}

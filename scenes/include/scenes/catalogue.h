@@ -1,0 +1,61 @@
+// Scenes by name, and the builders behind them for other sizes. Positions come from formulas and
+// from a generator of our own with a fixed seed: the same bits on every machine.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "scenes/scene.h"
+#include "vphysics/error.h"
+
+namespace scenes {
+
+struct Entry {
+  std::string_view name;
+  std::string_view what;  // one line
+};
+// In the order in which they are shown.
+std::span<const Entry> catalogue();
+// A scene of the catalogue, or "heapN": N boxes poured into a pit, 1 <= N <= 1,000,000.
+vp::Expected<Scene> make_scene(std::string_view name);
+
+// --- stacks of 1 m boxes of density 1000 on a floor ----------------------------------------------
+Scene towers(int along_x, int along_y, int height);
+// A wall pyramid in the x-z plane, one box thick.
+Scene pyramid(int base);
+// The pyramid, hit after a second by a 10 t sphere of radius 1 m at 50 m/s along +y.
+Scene wall(int base);
+
+// --- poured into a pit with walls ----------------------------------------------------------------
+enum class Pour : std::uint8_t {
+  boxes,
+  mixed,  // boxes, spheres and capsules in turn
+};
+// The pit's floor is a square that grows with the count; 17 or 18 layers are let fall into it.
+Scene pile(int count, Pour what);
+// The side of that square [m].
+double pit_side(int count);
+inline constexpr int kRagdollBodies = 12;
+Scene ragdolls(int along_x, int along_y, int layers);
+
+// --- joined --------------------------------------------------------------------------------------
+// Capsules of 0.2 m hang by ball joints from a fixed block, turned from the plumb line by tilt
+// [rad]; at the end a sphere of about 1000 times a link's mass.
+Scene chain(int links, double tilt);
+// Planks joined by hinges between two fixed blocks, in the shape in which they are in equilibrium;
+// crates are let fall on them.
+Scene bridge(int planks, int crates);
+Scene cradle(int balls);
+
+// --- small ones ----------------------------------------------------------------------------------
+Scene card_house(int storeys);
+Scene dominoes(int count);
+Scene heavy_on_light(double ratio);
+Scene t_handle();
+// Boxes with friction 0.40, 0.42 .. 0.60 on slopes of the same friction whose tangent is 0.5.
+Scene ramp();
+// Spheres with restitution 0, 0.1 .. 1 are let fall by 1 m.
+Scene bounce();
+Scene conveyor();
+
+}  // namespace scenes

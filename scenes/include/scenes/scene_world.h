@@ -1,0 +1,43 @@
+// A scene in a world of Virtual Physics, with what happens in it at its time.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "vphysics/world.h"
+
+namespace scenes {
+
+class SceneWorld {
+ public:
+  // settings.gravity is the scene's. Refused: what the engine cannot have, with its reason.
+  static vp::Expected<SceneWorld> create(Scene scene, vp::WorldDesc settings = {});
+
+  // One step of the world; what is due before its middle happens first.
+  vp::Expected<vp::StepStatus> step(double dt);
+
+  const Scene& scene() const { return scene_; }
+  double time() const { return time_; }  // [s] since the start
+  vp::World& world() { return world_; }
+  const vp::World& world() const { return world_; }
+  // Of all bodies of the scene, in their order; user data of a body and of its colliders is that
+  // index too.
+  const std::vector<vp::BodyId>& bodies() const { return bodies_; }
+  std::vector<SE3> poses() const;
+
+ private:
+  SceneWorld(Scene scene, const vp::WorldDesc& settings)
+      : scene_(std::move(scene)), world_(settings) {}
+  vp::Expected<void> add_body(std::size_t index);
+  vp::Expected<void> add_joint(const Joint& joint);
+  vp::Expected<void> launch(const Launch& launch);
+
+  Scene scene_;
+  vp::World world_;
+  std::vector<vp::BodyId> bodies_;
+  double time_ = 0.0;
+  std::size_t launched_ = 0;
+};
+
+}  // namespace scenes

@@ -1,0 +1,227 @@
+// How deep bodies are in each other, and how far they are from where they were.
+//
+// A sphere, a capsule and a box are a core (a point, a segment, a box) and a radius around it.
+// While the cores are apart, the depth is the sum of the radii less the cores' distance; once they
+// meet, it is the least overlap along the axes that can part two boxes (faces and pairs of edges:
+// Gottschalk, Lin, Manocha, OBBTree, 1996), which for boxes is exact, and the radii.
+#include "scenes/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace scenes {
+namespace {
+
+struct Core {
+  SE3 pose;
+  Vec3 half;  // 0: a point; along z only: a segment
+  double radius = 0.0;
+
+  bool round() const { return radius > 0.0; }
+};
+
+Core core_of(const Shape& shape, const SE3& pose) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) return {pose, {}, s->radius};
+  if (const auto* b = std::get_if<Box>(&shape)) return {pose, b->half_extents, 0.0};
+  const auto& c = std::get<Capsule>(shape);
+  return {pose, {0.0, 0.0, c.half_length}, c.radius};
+}
+
+double extent(const Core& core, const Vec3& n) {
+  const vp::Mat3& R = core.pose.rotation();
+  return std::fabs(dot(R.cx, n)) * core.half.x + std::fabs(dot(R.cy, n)) * core.half.y +
+         std::fabs(dot(R.cz, n)) * core.half.z;
+}
+
+const Vec3& column(const Core& core, int i) {
+  const vp::Mat3& R = core.pose.rotation();
+  return i == 0 ? R.cx : i == 1 ? R.cy : R.cz;
+}
+
+// The least overlap of the two cores along the axes that can part them; negative: they are apart.
+double core_overlap(const Core& a, const Core& b) {
+  const Vec3 d = b.pose.position() - a.pose.position();
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_axis = [&](const Vec3& n) {
+    least = std::min(least, extent(a, n) + extent(b, n) - std::fabs(dot(d, n)));
+  };
+  for (int i = 0; i < 3; ++i) {
+    try_axis(column(a, i));
+    try_axis(column(b, i));
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 n = cross(column(a, i), column(b, j));
+      const double length = norm(n);
+      if (length > 1e-6) try_axis((1.0 / length) * n);  // else parallel: faces part them as well
+    }
+  }
+  return least;
+}
+
+double distance_to(const Core& core, const Vec3& point) {
+  const Vec3 p = inverse_times(core.pose, point);
+  const auto beyond = [](double x, double half) { return std::max(0.0, std::fabs(x) - half); };
+  return norm(Vec3{beyond(p.x, core.half.x), beyond(p.y, core.half.y), beyond(p.z, core.half.z)});
+}
+
+// Of a point or a segment from another core. Along a segment the distance from a convex set is
+// convex, so that a search by thirds finds the least: 100 of them take its length below rounding.
+double core_distance(const Core& thin, const Core& other) {
+  const auto at = [&](double z) { return distance_to(other, thin.pose * Vec3{0.0, 0.0, z}); };
+  double lower = -thin.half.z, upper = thin.half.z;
+  for (int i = 0; i < 100 && upper > lower; ++i) {
+    const double third = (upper - lower) / 3.0;
+    if (at(lower + third) <= at(upper - third)) {
+      upper -= third;
+    } else {
+      lower += third;
+    }
+  }
+  return at(0.5 * (lower + upper));
+}
+
+double ground_penetration(const SE3& ground, const Core& core) {
+  const Vec3& up = ground.rotation().cz;
+  return core.radius + extent(core, up) - dot(up, core.pose.position() - ground.position());
+}
+
+// A part of a body in the world, with its bounds.
+struct Placed {
+  const Shape* shape;
+  SE3 pose;
+  int body;
+  bool moves;
+  Vec3 lower, upper;
+};
+
+Placed place(const Scene& scene, std::span<const SE3> poses, int body, const Part& part) {
+  Placed out{&part.shape, poses[body] * part.T_body_shape,
+             body,        scene.bodies[body].motion == Motion::dynamic,
+             {},          {}};
+  if (std::holds_alternative<Ground>(part.shape)) return out;
+  const Core core = core_of(part.shape, out.pose);
+  const Vec3 reach = {core.radius + extent(core, {1, 0, 0}), core.radius + extent(core, {0, 1, 0}),
+                      core.radius + extent(core, {0, 0, 1})};
+  out.lower = out.pose.position() - reach;
+  out.upper = out.pose.position() + reach;
+  return out;
+}
+
+bool bounds_meet(const Placed& a, const Placed& b) {
+  if (std::holds_alternative<Ground>(*a.shape) || std::holds_alternative<Ground>(*b.shape)) {
+    return true;
+  }
+  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
+         b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
+class Depth {
+ public:
+  explicit Depth(const Scene& scene) {
+    for (const Joint& j : scene.joints) joined_.push_back(key(j.a, j.b));
+    std::sort(joined_.begin(), joined_.end());
+  }
+  void look_at(const Placed& a, const Placed& b) {
+    if (a.body == b.body || !bounds_meet(a, b)) return;
+    if (std::binary_search(joined_.begin(), joined_.end(), key(a.body, b.body))) return;
+    deepest = std::max(deepest, scenes::penetration(*a.shape, a.pose, *b.shape, b.pose));
+  }
+  double deepest = 0.0;
+
+ private:
+  static std::uint64_t key(int a, int b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+           static_cast<std::uint64_t>(std::max(a, b));
+  }
+  std::vector<std::uint64_t> joined_;
+};
+
+bool is_finite_pose(const SE3& T) {
+  const vp::Mat3& R = T.rotation();
+  return is_finite(T.position()) && is_finite(R.cx) && is_finite(R.cy) && is_finite(R.cz);
+}
+
+// What moves is swept along x against what moves; against what stands, which is little but wide,
+// each is looked at.
+double deepest_penetration(const Scene& scene, std::span<const SE3> poses) {
+  std::vector<Placed> moving, standing;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    if (!is_finite_pose(poses[i])) continue;
+    for (const Part& part : scene.bodies[i].parts) {
+      Placed placed = place(scene, poses, i, part);
+      (placed.moves ? moving : standing).push_back(placed);
+    }
+  }
+  std::stable_sort(moving.begin(), moving.end(),
+                   [](const Placed& a, const Placed& b) { return a.lower.x < b.lower.x; });
+  Depth depth(scene);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    for (const Placed& s : standing) depth.look_at(moving[i], s);
+    for (std::size_t j = i + 1; j < moving.size() && moving[j].lower.x <= moving[i].upper.x; ++j) {
+      depth.look_at(moving[i], moving[j]);
+    }
+  }
+  return depth.deepest;
+}
+
+bool is_in_place(const InPlace& rule, const Vec3& start, const Vec3& now) {
+  if (rule.rule == InPlace::Rule::near_start) return norm(now - start) <= rule.distance;
+  return now.x >= rule.lower.x && now.y >= rule.lower.y && now.z >= rule.lower.z &&
+         now.x <= rule.upper.x && now.y <= rule.upper.y && now.z <= rule.upper.z;
+}
+
+double widest_gap(const Scene& scene, std::span<const SE3> poses) {
+  double widest = 0.0;
+  for (const Joint& j : scene.joints) {
+    if (!is_finite_pose(poses[j.a]) || !is_finite_pose(poses[j.b])) continue;
+    const Vec3 a = poses[j.a] * j.T_a_joint.position(), b = poses[j.b] * j.T_b_joint.position();
+    widest = std::max(widest, norm(b - a));
+  }
+  return widest;
+}
+
+}  // namespace
+
+double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b) {
+  if (std::holds_alternative<Ground>(a))
+    return ground_penetration(T_world_a, core_of(b, T_world_b));
+  if (std::holds_alternative<Ground>(b))
+    return ground_penetration(T_world_b, core_of(a, T_world_a));
+  const Core ca = core_of(a, T_world_a), cb = core_of(b, T_world_b);
+  const double radii = ca.radius + cb.radius;
+  if (ca.round() || cb.round()) {
+    const double distance = ca.round() ? core_distance(ca, cb) : core_distance(cb, ca);
+    if (distance > 0.0) return radii - distance;
+  }
+  return radii + core_overlap(ca, cb);
+}
+
+std::vector<SE3> start_poses(const Scene& scene) {
+  std::vector<SE3> poses;
+  for (const Body& body : scene.bodies) poses.push_back(body.T_world_body);
+  return poses;
+}
+
+Standing measure(const Scene& scene, std::span<const SE3> poses) {
+  Standing out;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].motion != Motion::dynamic) continue;
+    ++out.of;
+    if (!is_finite_pose(poses[i])) {
+      ++out.lost;
+      continue;
+    }
+    const Vec3 start = scene.bodies[i].T_world_body.position(), now = poses[i].position();
+    const Vec3 moved = now - start;
+    out.in_place += is_in_place(scene.in_place, start, now);
+    out.drift = std::max(out.drift, norm(Vec3{moved.x, moved.y, 0.0}));
+    out.sink = std::max(out.sink, std::fabs(moved.z));
+  }
+  out.penetration = deepest_penetration(scene, poses);
+  out.gap = widest_gap(scene, poses);
+  return out;
+}
+
+}  // namespace scenes

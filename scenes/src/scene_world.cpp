@@ -1,0 +1,103 @@
+#include "scenes/scene_world.h"
+
+namespace scenes {
+namespace {
+
+vp::Shape engine_shape(const Shape& shape) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) return vp::Sphere{s->radius};
+  if (const auto* b = std::get_if<Box>(&shape)) return vp::Box{b->half_extents};
+  if (const auto* c = std::get_if<Capsule>(&shape)) return vp::Capsule{c->radius, c->half_length};
+  return vp::HalfSpace{};
+}
+
+vp::Material engine_material(const Material& material) {
+  vp::Material out;
+  out.friction = material.friction;
+  out.restitution = material.restitution;
+  out.rolling_friction = material.rolling_friction;
+  return out;
+}
+
+vp::Motion engine_motion(Motion motion) {
+  if (motion == Motion::fixed) return vp::Motion::fixed;
+  return motion == Motion::kinematic ? vp::Motion::kinematic : vp::Motion::dynamic;
+}
+
+vp::se3 engine_velocity(const SE3& T_world_body, const Vec3& velocity, const Vec3& spin) {
+  return {T_world_body.unrotate(spin), T_world_body.unrotate(velocity)};
+}
+
+}  // namespace
+
+vp::Expected<SceneWorld> SceneWorld::create(Scene scene, vp::WorldDesc settings) {
+  settings.gravity = scene.gravity;
+  SceneWorld out(std::move(scene), settings);
+  for (std::size_t i = 0; i < out.scene_.bodies.size(); ++i) {
+    if (const auto added = out.add_body(i); !added) return tl::make_unexpected(added.error());
+  }
+  for (const Joint& joint : out.scene_.joints) {
+    if (const auto added = out.add_joint(joint); !added) return tl::make_unexpected(added.error());
+  }
+  return out;
+}
+
+vp::Expected<void> SceneWorld::add_body(std::size_t index) {
+  const Body& body = scene_.bodies[index];
+  vp::BodyDesc desc;
+  desc.motion = engine_motion(body.motion);
+  desc.T_world_body = body.T_world_body;
+  desc.velocity = engine_velocity(body.T_world_body, body.velocity, body.spin);
+  desc.user_data = index;
+  if (body.motion == Motion::dynamic) {
+    const Mass mass = mass_of(body);
+    desc.inertia = vp::Inertia(mass.mass, mass.moments);
+  }
+  const auto id = world_.create_body(desc);
+  if (!id) return tl::make_unexpected(id.error());
+  bodies_.push_back(*id);
+  for (const Part& part : body.parts) {
+    vp::ColliderDesc collider;
+    collider.shape = engine_shape(part.shape);
+    collider.T_body_shape = part.T_body_shape;
+    collider.material = engine_material(part.material);
+    collider.user_data = index;
+    if (const auto added = world_.add_collider(*id, collider); !added) {
+      return tl::make_unexpected(added.error());
+    }
+  }
+  return {};
+}
+
+vp::Expected<void> SceneWorld::add_joint(const Joint&) {
+  return tl::make_unexpected(
+      vp::Error{vp::Errc::unsupported,
+                "the scene has joints between free bodies, which a world cannot have yet: choose "
+                "one without joints"});
+}
+
+vp::Expected<void> SceneWorld::launch(const Launch& launch) {
+  const vp::BodyId body = bodies_[static_cast<std::size_t>(launch.body)];
+  return world_.set_velocity(body,
+                             engine_velocity(world_.pose(body), launch.velocity, launch.spin));
+}
+
+vp::Expected<vp::StepStatus> SceneWorld::step(double dt) {
+  while (launched_ < scene_.launches.size() &&
+         scene_.launches[launched_].time <= time_ + 0.5 * dt) {
+    if (const auto done = launch(scene_.launches[launched_++]); !done) {
+      return tl::make_unexpected(done.error());
+    }
+  }
+  const auto status = world_.step(dt);
+  if (status) time_ += dt;
+  return status;
+}
+
+std::vector<SE3> SceneWorld::poses() const {
+  std::vector<SE3> out;
+  out.reserve(bodies_.size());
+  for (const vp::BodyId body : bodies_) out.push_back(world_.pose(body));
+  return out;
+}
+
+}  // namespace scenes

@@ -1,0 +1,119 @@
+// Boxes of 1 m and density 1000 that stand on each other exactly, and what is poured into a pit.
+#include <cmath>
+
+#include "parts.h"
+#include "random.h"
+#include "scenes/catalogue.h"
+
+namespace scenes {
+namespace {
+
+constexpr Box kCrate{{0.5, 0.5, 0.5}};
+constexpr double kTowerPitch = 2.0;    // between neighbouring towers' axes [m]
+constexpr double kPyramidPitch = 1.1;  // boxes of a row do not touch [m]
+
+InPlace near_start() {
+  InPlace rule;
+  rule.rule = InPlace::Rule::near_start;
+  return rule;
+}
+
+// A pit's floor is cut into cells, one body of a layer above each. A layer is shifted against the
+// last, so that what falls does not build columns.
+constexpr double kPitCell = 1.25;                // [m]
+constexpr double kPourPitch = 1.2;               // of the bodies, in all directions [m]
+constexpr double kLayers = 10000.0 / (24 * 24);  // so that 10,000 need a pit of 30 m
+constexpr double kPourHeight = 1.0;              // the lowest layer's centre [m]
+constexpr double kTilt = 0.09;     // of a box, about each axis: it stays within the pitch [rad]
+constexpr double kMaxShift = 0.3;  // [m]
+
+int cells_of(int count) {
+  return std::max(1, static_cast<int>(std::floor(std::sqrt(count / kLayers) + 0.5)));
+}
+
+Body poured(int kind, Random& random, const Vec3& position) {
+  const Vec3 turn = random.in_cube(1.0);
+  if (kind == 1) return body_of(Sphere{0.5}, turned(vp::kPi * turn, position));
+  if (kind == 2) return body_of(Capsule{0.3, 0.3}, turned(vp::kPi * turn, position));
+  return body_of(kCrate, turned(kTilt * turn, position));
+}
+
+}  // namespace
+
+void add_pit(Scene& scene, double side, double height) {
+  add_floor(scene);
+  const double half = 0.5 * side, thick = 0.5;
+  for (const double s : {-1.0, 1.0}) {
+    const double at = s * (half + thick);
+    add(scene, fixed_body(Box{{thick, half + 2.0 * thick, 0.5 * height}},
+                          SE3(Vec3{at, 0.0, 0.5 * height})));
+    add(scene, fixed_body(Box{{half, thick, 0.5 * height}}, SE3(Vec3{0.0, at, 0.5 * height})));
+  }
+  scene.in_place.lower = {-half, -half, 0.0};
+  scene.in_place.upper = {half, half, 1e9};
+}
+
+Scene towers(int along_x, int along_y, int height) {
+  Scene scene;
+  scene.in_place = near_start();
+  add_floor(scene);
+  for (int i = 0; i < along_x; ++i) {
+    for (int j = 0; j < along_y; ++j) {
+      for (int k = 0; k < height; ++k) {
+        add(scene, body_of(kCrate, SE3(Vec3{kTowerPitch * (i - 0.5 * (along_x - 1)),
+                                            kTowerPitch * (j - 0.5 * (along_y - 1)), k + 0.5})));
+      }
+    }
+  }
+  return scene;
+}
+
+Scene pyramid(int base) {
+  Scene scene;
+  scene.in_place = near_start();
+  add_floor(scene);
+  for (int row = 0; row < base; ++row) {
+    const int boxes = base - row;
+    for (int i = 0; i < boxes; ++i) {
+      add(scene,
+          body_of(kCrate, SE3(Vec3{kPyramidPitch * (i - 0.5 * (boxes - 1)), 0.0, row + 0.5})));
+    }
+  }
+  return scene;
+}
+
+Scene wall(int base) {
+  constexpr double kRadius = 1.0, kMass = 10000.0, kSpeed = 50.0;
+  Scene scene = pyramid(base);
+  scene.in_place = {};
+  const double density = kMass / mass_of(Sphere{kRadius}, 1.0).mass;
+  const int ball =
+      add(scene, body_of(Sphere{kRadius}, SE3(Vec3{0.0, -20.0, kRadius}), {}, density));
+  scene.launches.push_back({1.0, ball, {0.0, kSpeed, 0.0}, {}});
+  return scene;
+}
+
+double pit_side(int count) {
+  return kPitCell * cells_of(count);
+}
+
+Scene pile(int count, Pour what) {
+  Scene scene;
+  const int cells = cells_of(count);
+  const int layers = (count + cells * cells - 1) / (cells * cells);
+  const double side = pit_side(count);
+  add_pit(scene, side, kPourHeight + kPourPitch * (layers + 1));
+  const double shift = std::min(kMaxShift, 0.5 * (side - kPourPitch * cells));
+  Random random(1120);
+  for (int n = 0; n < count; ++n) {
+    const int layer = n / (cells * cells), i = n % cells, j = n / cells % cells;
+    const double sx = (layer & 1) != 0 ? shift : -shift, sy = (layer & 2) != 0 ? shift : -shift;
+    const Vec3 position{kPourPitch * (i - 0.5 * (cells - 1)) + sx,
+                        kPourPitch * (j - 0.5 * (cells - 1)) + sy,
+                        kPourHeight + kPourPitch * layer};
+    add(scene, poured(what == Pour::mixed ? n % 3 : 0, random, position));
+  }
+  return scene;
+}
+
+}  // namespace scenes
