@@ -10,65 +10,21 @@
 #include "collide/manifold.h"
 #include "collide/sweep.h"
 #include "random.h"
+#include "shape_truth.h"
 
 namespace vp::test {
 namespace {
 
-using collide::Geometry;
-using collide::Kind;
-
-Geometry random_geometry(Random& random, Kind kind) {
-  Geometry g;
-  g.kind = kind;
-  if (kind == Kind::box) {
-    g.half = {random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)};
-  } else {
-    g.radius = random.uniform(0.1, 0.6);
-    if (kind == Kind::capsule) g.half = {0, 0, random.uniform(0.1, 1)};
-  }
-  return g;
-}
-
-// Support point of a shape in the direction n, all in the world.
-Vec3 support(const Geometry& g, const SE3& T, const Vec3& n) {
-  const Vec3 d = T.unrotate(n);
-  const auto side = [](double x, double h) { return x > 0 ? h : -h; };
-  return T * Vec3{side(d.x, g.half.x), side(d.y, g.half.y), side(d.z, g.half.z)} + g.radius * n;
-}
-
-// Gap between the shapes' projections on n, n from a to b.
-double gap_along(const Geometry& a, const SE3& Ta, const Geometry& b, const SE3& Tb,
-                 const Vec3& n) {
-  return dot(n, support(b, Tb, -n)) - dot(n, support(a, Ta, n));
-}
-
-// The separation of two convex shapes is the largest gap over all directions: hill climbing from
-// many starts, an independent route to distance and to penetration depth.
-double sampled_separation(Random& random, const Geometry& a, const SE3& Ta, const Geometry& b,
-                          const SE3& Tb) {
-  double best = -1e30;
-  for (int start = 0; start < 24; ++start) {
-    Vec3 n = random.direction();
-    double gap = gap_along(a, Ta, b, Tb, n);
-    // A step that gains doubles the reach, so that a long way along a ridge is not cut short.
-    for (double size = 0.5; size > 1e-7;) {
-      Vec3 m = n + size * random.in_cube(1.0);
-      m = (1.0 / norm(m)) * m;
-      const double g = gap_along(a, Ta, b, Tb, m);
-      size *= g > gap ? 2.0 : 0.93;
-      if (g > gap) gap = g, n = m;
-    }
-    best = std::max(best, gap);
-  }
-  return best;
-}
+constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
+                             Kind::cylinder, Kind::cone,    Kind::hull};
 
 TEST(SignedDistance, AgreesWithTheSampledSeparation) {
   Random random(31);
-  const Geometry point{Kind::sphere, 0.0, {}};
-  for (const Kind kind : {Kind::sphere, Kind::capsule, Kind::box}) {
+  const Geometry point{Kind::sphere, 0.0, {}, nullptr};
+  for (const Kind kind : kBounded) {
     for (int i = 0; i < 60; ++i) {
-      const Geometry g = random_geometry(random, kind);
+      const Solid solid = random_solid(random, kind);
+      const Geometry& g = solid.geometry;
       const SE3 p(random.in_cube(1.5));
       const auto d = signed_distance(g, p.position());
       // The sampling is off by 1.6e-4 at most in 900 trials, at edges; the distance is exact.
@@ -89,7 +45,8 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
   const auto [ka, kb] = GetParam();
   int touching = 0;
   for (int i = 0; i < 60; ++i) {
-    const Geometry a = random_geometry(random, ka), b = random_geometry(random, kb);
+    const Solid solid_a = random_solid(random, ka), solid_b = random_solid(random, kb);
+    const Geometry &a = solid_a.geometry, &b = solid_b.geometry;
     const SE3 Ta = random.pose(0.5), Tb = random.pose(1.0);
     collide::Manifold m, turned;
     const double margin = 0.05;
@@ -145,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::pair{Kind::capsule, Kind::box}, std::pair{Kind::box, Kind::box}));
 
 TEST(Manifold, OfABoxOnABoxHasFourCornersAtTheRightPlace) {
-  const Geometry a{Kind::box, 0, {1, 1, 1}}, b{Kind::box, 0, {0.5, 0.5, 0.5}};
+  const Geometry a{Kind::box, 0, {1, 1, 1}, nullptr}, b{Kind::box, 0, {0.5, 0.5, 0.5}, nullptr};
   collide::Manifold m;
   find_manifold(a, SE3{}, b, SE3(Exp(Vec3{0, 0, 0.3}), {0.1, 0, 1.49}), 0.0, m);
   ASSERT_EQ(m.count, 4);
@@ -160,7 +117,8 @@ TEST(Manifold, OfABoxOnABoxHasFourCornersAtTheRightPlace) {
 TEST(Manifold, OfABoxOnAHalfSpaceHasTheLowestCorners) {
   Random random(33);
   for (int i = 0; i < 500; ++i) {
-    const Geometry box = random_geometry(random, Kind::box), ground{Kind::half_space, 0, {}};
+    const Solid solid = random_solid(random, Kind::box);
+    const Geometry box = solid.geometry, ground{Kind::half_space, 0, {}, nullptr};
     const SE3 T = random.pose(0.6);
     collide::Manifold m;
     find_manifold(box, T, ground, SE3{}, 0.0, m);
@@ -180,9 +138,10 @@ TEST(Manifold, OfABoxOnAHalfSpaceHasTheLowestCorners) {
 TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
   Random random(34);
   int hits = 0;
-  for (const Kind kind : {Kind::sphere, Kind::capsule, Kind::box}) {
+  for (const Kind kind : kBounded) {
     for (int i = 0; i < 60; ++i) {
-      const Geometry g = random_geometry(random, kind);
+      const Solid solid = random_solid(random, kind);
+      const Geometry& g = solid.geometry;
       const SE3 T = random.pose(0.3);
       collide::SweepQuery q{
           3.0 * random.direction(),
@@ -226,7 +185,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
 }
 
 TEST(Sweep, GrazingTakesNoMoreThanItsAdvances) {
-  const Geometry box{Kind::box, 0, {1, 1, 1}};
+  const Geometry box{Kind::box, 0, {1, 1, 1}, nullptr};
   // Past the face at 1 micrometre, and into it by 1 micrometre.
   for (const double offset : {1e-6, -1e-6}) {
     const collide::SweepQuery q{
@@ -266,9 +225,10 @@ TEST(BroadPhase, FindsThePairsOfBruteForce) {
 
 TEST(Bounds, EncloseTheShapeTightly) {
   Random random(36);
-  for (const Kind kind : {Kind::sphere, Kind::capsule, Kind::box}) {
+  for (const Kind kind : kBounded) {
     for (int i = 0; i < 200; ++i) {
-      const Geometry g = random_geometry(random, kind);
+      const Solid solid = random_solid(random, kind);
+      const Geometry& g = solid.geometry;
       const SE3 T = random.pose(2);
       const collide::Bounds b = bounds_of(g, T);
       for (int axis = 0; axis < 3; ++axis) {

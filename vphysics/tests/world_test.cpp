@@ -67,6 +67,11 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
     refused([&](ColliderDesc& d) { d.shape = Sphere{bad}; });
     refused([&](ColliderDesc& d) { d.shape = Box{{1, bad, 1}}; });
     refused([&](ColliderDesc& d) { d.shape = Capsule{bad, 1}; });
+    refused([&](ColliderDesc& d) { d.shape = Cylinder{bad, 1}; });
+    refused([&](ColliderDesc& d) { d.shape = Cylinder{1, bad}; });
+    refused([&](ColliderDesc& d) { d.shape = Cone{bad, 1}; });
+    refused([&](ColliderDesc& d) { d.shape = Cone{1, bad}; });
+    refused([&](ColliderDesc& d) { d.density = bad; });
   }
   refused([&](ColliderDesc& d) { d.shape = Capsule{1, -1}; });
   refused([&](ColliderDesc& d) { d.shape = HalfSpace{}; });
@@ -74,6 +79,8 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
   refused([&](ColliderDesc& d) { d.material.restitution = 1.5; });
   refused([&](ColliderDesc& d) { d.material.restitution = kNaN; });
   refused([&](ColliderDesc& d) { d.material.rolling_friction = kNaN; });
+  refused([&](ColliderDesc& d) { d.material.spinning_friction = -1; });
+  refused([&](ColliderDesc& d) { d.surface_velocity.y = kInf; });
   refused([&](ColliderDesc& d) { d.T_body_shape = SE3(Vec3{kNaN, 0, 0}); });
 
   Part fast;

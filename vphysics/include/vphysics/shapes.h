@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <variant>
 
+#include "vphysics/convex_hull.h"
+#include "vphysics/error.h"
 #include "vphysics/lie.h"
 
 namespace vp {
@@ -25,12 +27,27 @@ struct Capsule {
 // The half-space z <= 0: solid below, surface normal +z. Only for colliders of fixed bodies.
 struct HalfSpace {};
 
-using Shape = std::variant<Sphere, Box, Capsule, HalfSpace>;
+// Of length 2 * half_length along z.
+struct Cylinder {
+  double radius;       // > 0
+  double half_length;  // > 0
+};
+
+// Along z: the base, a disc, at z = -half_height, the apex at z = +half_height. The centre of mass
+// is half a half_height below the origin.
+struct Cone {
+  double radius;       // of the base, > 0
+  double half_height;  // > 0
+};
+
+// ConvexHull: vphysics/convex_hull.h
+using Shape = std::variant<Sphere, Box, Capsule, HalfSpace, Cylinder, Cone, ConvexHull>;
 
 struct Material {
   double friction = 0.5;          // Coulomb; a pair uses sqrt(a * b)
   double restitution = 0.0;       // [0, 1]; a pair uses the larger
   double rolling_friction = 0.0;  // lever arm of the rolling resistance [m]; a pair uses the larger
+  double spinning_friction = 0.0;  // of that against spin about the normal [m]; the same
 };
 
 // Two colliders meet if each one's category is in the other's mask.
@@ -49,10 +66,19 @@ struct ColliderDesc {
   // else where it is at the start of a step.
   bool sensor = false;
   std::uint64_t user_data = 0;  // returned in events and queries
+  // How the surface runs past its own shape, as a conveyor belt's does; friction drags along what
+  // touches it. Shape's frame [m/s].
+  Vec3 surface_velocity;
+  double density = 1000.0;  // [kg/m^3], > 0
 };
 
 // Inertia of a solid of uniform density [kg/m^3], about the shape's own origin, in the shape's
 // frame. HalfSpace has none: returns zero.
 Inertia solid_inertia(const Shape& shape, double density);
+
+// The shape stretched along the axes of its own frame, each factor in [1e-6, 1e6]. Refused: factors
+// that turn the shape into another kind, as unequal ones do with a sphere or a capsule and unequal
+// x and y with a cylinder or a cone; make a convex hull of it for these.
+Expected<Shape> scaled(const Shape& shape, const Vec3& scale);
 
 }  // namespace vp

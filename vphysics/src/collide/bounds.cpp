@@ -14,10 +14,49 @@ Bounds half_space_bounds(const SE3& T) {
   return b;
 }
 
+// How far a disc of radius 1 across the axis reaches along each outer axis.
+Vec3 disc_extents(const Vec3& axis) {
+  const double xx = axis.x * axis.x, yy = axis.y * axis.y, zz = axis.z * axis.z;
+  return {std::sqrt(yy + zz), std::sqrt(zz + xx), std::sqrt(xx + yy)};
+}
+
+Bounds cylinder_bounds(const Geometry& g, const SE3& T) {
+  const Vec3 e = turned_extents(T.rotation(), g.half) + g.radius * disc_extents(T.rotation().cz);
+  return {T.position() - e, T.position() + e};
+}
+
+Bounds cone_bounds(const Geometry& g, const SE3& T) {
+  const Vec3 rise = g.half.z * T.rotation().cz, e = g.radius * disc_extents(T.rotation().cz);
+  const Vec3 base = T.position() - rise, apex = T.position() + rise;
+  return merged({base - e, base + e}, {apex, apex});
+}
+
+Bounds hull_bounds(const HullData& hull, const SE3& T) {
+  Bounds b;
+  for (const Vec3& v : hull.vertices) {
+    const Vec3 p = T.rotate(v);
+    b = merged(b, {p, p});
+  }
+  return {b.lower + T.position(), b.upper + T.position()};
+}
+
 }  // namespace
 
 Bounds bounds_of(const Geometry& g, const SE3& T) {
-  if (g.kind == Kind::half_space) return half_space_bounds(T);
+  switch (g.kind) {
+    case Kind::half_space:
+      return half_space_bounds(T);
+    case Kind::cylinder:
+      return cylinder_bounds(g, T);
+    case Kind::cone:
+      return cone_bounds(g, T);
+    case Kind::hull:
+      return hull_bounds(*g.hull, T);
+    case Kind::sphere:
+    case Kind::capsule:
+    case Kind::box:
+      break;
+  }
   const Vec3 e = turned_extents(T.rotation(), g.half) + Vec3{g.radius, g.radius, g.radius};
   return {T.position() - e, T.position() + e};
 }

@@ -35,6 +35,96 @@ SignedDistance distance_to_box(const Vec3& half, const Vec3& p) {
   return {depth, n};
 }
 
+// At a distance rho from the axis, at the height z.
+struct Meridian {
+  double rho, z;
+  Vec3 outward;  // unit, from the axis towards the point
+};
+Meridian meridian(const Vec3& p) {
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  if (rho < kDirectionNoise) return {rho, p.z, {1, 0, 0}};
+  return {rho, p.z, {p.x / rho, p.y / rho, 0.0}};
+}
+
+SignedDistance distance_to_cylinder(double radius, double half, const Vec3& p) {
+  const Meridian m = meridian(p);
+  const Vec3 up{0, 0, p.z < 0.0 ? -1.0 : 1.0};
+  const double side = m.rho - radius, cap = std::fabs(p.z) - half;
+  if (side > 0.0 && cap > 0.0) {
+    const double d = std::sqrt(side * side + cap * cap);
+    if (d > kDirectionNoise) return {d, (side / d) * m.outward + (cap / d) * up};
+  }
+  return side > cap ? SignedDistance{side, m.outward} : SignedDistance{cap, up};
+}
+
+SignedDistance distance_to_cone(double radius, double half, const Vec3& p) {
+  const Meridian m = meridian(p);
+  // The side's line in the meridian plane runs from the rim (radius, -half) to the apex (0, half).
+  const double length = std::sqrt(radius * radius + 4.0 * half * half);
+  const double n_rho = 2.0 * half / length, n_z = radius / length;
+  const double side = n_rho * (m.rho - radius) + n_z * (m.z + half);
+  const double base = -half - m.z;
+  const Vec3 side_normal = n_rho * m.outward + Vec3{0, 0, n_z};
+  double rho = 0.0, z = 0.0;  // the nearest point, where it is on the rim or the apex
+  if (side > 0.0) {
+    const double along = n_rho * (m.z + half) - n_z * (m.rho - radius);  // from the rim
+    if (along >= 0.0 && along <= length) return {side, side_normal};
+    rho = along < 0.0 ? radius : 0.0;
+    z = along < 0.0 ? -half : half;
+  } else if (base > 0.0 && m.rho > radius) {
+    rho = radius;
+    z = -half;
+  } else {
+    return side > base ? SignedDistance{side, side_normal} : SignedDistance{base, {0, 0, -1}};
+  }
+  const double d_rho = m.rho - rho, d_z = m.z - z;
+  const double d = std::sqrt(d_rho * d_rho + d_z * d_z);
+  if (d < kDirectionNoise) return {d, side_normal};
+  return {d, (d_rho / d) * m.outward + Vec3{0, 0, d_z / d}};
+}
+
+// The nearest point of the segment from a to b.
+Vec3 nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 ab = b - a;
+  return a + std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab;
+}
+
+// Inside, the shallowest face; outside, the face over which the point is, or else the nearest edge
+// of those that look at it.
+SignedDistance distance_to_hull(const HullData& hull, const Vec3& p) {
+  const ConvexHull::Face* highest = nullptr;
+  double height = 0.0, nearest = 0.0;
+  Vec3 on_edge;
+  bool found = false;
+  for (const ConvexHull::Face& face : hull.faces) {
+    const double h = dot(face.normal, p) - face.offset;
+    if (!highest || h > height) {
+      height = h;
+      highest = &face;
+    }
+    if (h <= 0.0) continue;
+    bool over = true;
+    const std::size_t n = face.vertices.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 &a = hull.vertices[face.vertices[i]],
+                 &b = hull.vertices[face.vertices[(i + 1) % n]];
+      if (dot(cross(face.normal, b - a), p - a) >= 0.0) continue;
+      over = false;
+      const Vec3 q = nearest_on_segment(a, b, p);
+      const double d2 = dot(p - q, p - q);
+      if (found && d2 >= nearest) continue;
+      found = true;
+      nearest = d2;
+      on_edge = q;
+    }
+    if (over) return {h, face.normal};
+  }
+  if (height <= 0.0 || !found) return {height, highest->normal};
+  const double d = std::sqrt(nearest);
+  if (d < kDirectionNoise) return {d, highest->normal};
+  return {d, (1.0 / d) * (p - on_edge)};
+}
+
 }  // namespace
 
 Geometry make_geometry(const Shape& shape) {
@@ -49,6 +139,17 @@ Geometry make_geometry(const Shape& shape) {
     g.kind = Kind::capsule;
     g.radius = capsule->radius;
     g.half = {0, 0, capsule->half_length};
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    g.kind = Kind::cylinder;
+    g.radius = cylinder->radius;
+    g.half = {0, 0, cylinder->half_length};
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    g.kind = Kind::cone;
+    g.radius = cone->radius;
+    g.half = {0, 0, cone->half_height};
+  } else if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
+    g.kind = Kind::hull;
+    g.hull = hull->data().get();
   } else {
     g.kind = Kind::half_space;
   }
@@ -63,6 +164,12 @@ SignedDistance signed_distance(const Geometry& g, const Vec3& p) {
       return distance_to_point({p.x, p.y, p.z - std::clamp(p.z, -g.half.z, g.half.z)}, g.radius);
     case Kind::box:
       return distance_to_box(g.half, p);
+    case Kind::cylinder:
+      return distance_to_cylinder(g.radius, g.half.z, p);
+    case Kind::cone:
+      return distance_to_cone(g.radius, g.half.z, p);
+    case Kind::hull:
+      return distance_to_hull(*g.hull, p);
     case Kind::half_space:
       break;
   }
@@ -70,34 +177,3 @@ SignedDistance signed_distance(const Geometry& g, const Vec3& p) {
 }
 
 }  // namespace vp::collide
-
-namespace vp {
-
-Inertia solid_inertia(const Shape& shape, double density) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    const double r = sphere->radius;
-    const double m = density * (4.0 / 3.0) * kPi * r * r * r;
-    const double I = 0.4 * m * r * r;
-    return {m, Vec3{I, I, I}};
-  }
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    const Vec3 h = box->half_extents;
-    const double m = density * 8.0 * h.x * h.y * h.z;
-    const double x = h.x * h.x, y = h.y * h.y, z = h.z * h.z;
-    return {m, (m / 3.0) * Vec3{y + z, z + x, x + y}};
-  }
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    // A cylinder of length 2 l and two half spheres, whose centres of mass lie 3/8 r beyond its
-    // ends.
-    const double r = capsule->radius, l = capsule->half_length;
-    const double cylinder = density * kPi * r * r * 2.0 * l;
-    const double ball = density * (4.0 / 3.0) * kPi * r * r * r;
-    const double axial = 0.5 * cylinder * r * r + 0.4 * ball * r * r;
-    const double across =
-        cylinder * (r * r / 4.0 + l * l / 3.0) + ball * (0.4 * r * r + l * l + 0.75 * l * r);
-    return {cylinder + ball, Vec3{across, across, axial}};
-  }
-  return {};
-}
-
-}  // namespace vp

@@ -3,18 +3,21 @@
 
 #include <cstdint>
 
+#include "collide/hull.h"
 #include "vphysics/shapes.h"
 
 namespace vp::collide {
 
-enum class Kind : std::uint8_t { sphere, capsule, box, half_space };
+enum class Kind : std::uint8_t { sphere, capsule, box, cylinder, cone, hull, half_space };
 
 struct Geometry {
   Kind kind = Kind::sphere;
-  double radius = 0.0;  // sphere, capsule
-  Vec3 half;            // box: half extents; capsule: (0, 0, half length)
+  double radius = 0.0;  // sphere, capsule, cylinder; of a cone's base
+  Vec3 half;            // box: half extents; capsule, cylinder, cone: (0, 0, half length)
+  const HullData* hull = nullptr;  // owned by whoever holds the shape
 };
 
+// Precondition: the shape is kept as long as the geometry is used.
 Geometry make_geometry(const Shape& shape);
 
 // Signed distance of a point in the shape's frame from its surface, negative inside, and the

@@ -57,6 +57,7 @@ struct Collider {
   std::uint32_t body = kNone;
   std::uint32_t next = kNone;  // of the same body
   std::uint32_t serial = 0;    // order of creation
+  Shape shape = HalfSpace{};   // owns what geometry points to
   collide::Geometry geometry;
   SE3 T_body_shape;
   Material material;

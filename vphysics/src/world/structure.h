@@ -59,6 +59,14 @@ class Structure {
     } else if (const auto* c = std::get_if<Capsule>(&desc.shape)) {
       add(c->radius);
       add(c->half_length);
+    } else if (const auto* y = std::get_if<Cylinder>(&desc.shape)) {
+      add(y->radius);
+      add(y->half_length);
+    } else if (const auto* k = std::get_if<Cone>(&desc.shape)) {
+      add(k->radius);
+      add(k->half_height);
+    } else if (const auto* hull = std::get_if<ConvexHull>(&desc.shape)) {
+      add(*hull);
     }
     add(desc.T_body_shape);
     for (const double x :
@@ -68,6 +76,20 @@ class Structure {
     add(desc.filter.category);
     add(desc.filter.mask);
     add(static_cast<std::uint64_t>(desc.sensor));
+    // What came later counts only where it is used, so that worlds without it keep their digest.
+    const ColliderDesc usual;
+    add_unless(usual.material.spinning_friction, 'n', desc.material.spinning_friction);
+    add_unless(usual.surface_velocity, 's', desc.surface_velocity);
+    add_unless(usual.density, 'd', desc.density);
+  }
+  // The faces too: they depend on the options that the hull was built with.
+  void add(const ConvexHull& hull) {
+    add(static_cast<std::uint64_t>(hull.vertices().size()));
+    for (const Vec3& v : hull.vertices()) add(v);
+    for (const ConvexHull::Face& face : hull.faces()) {
+      add(static_cast<std::uint64_t>(face.vertices.size()));
+      for (const std::uint16_t i : face.vertices) add(i);
+    }
   }
   void add(const ArticulationDesc& desc) {
     const Model& model = desc.model;
@@ -92,6 +114,12 @@ class Structure {
   }
 
  private:
+  template <class T>
+  void add_unless(const T& usual, char name, const T& value) {
+    if (value == usual) return;
+    add(static_cast<std::uint64_t>(name));
+    add(value);
+  }
   void add_joint(const RevoluteJoint& j) { add(j.axis); }
   void add_joint(const PrismaticJoint& j) { add(j.axis); }
   void add_joint(const HelicalJoint& j) {

@@ -50,6 +50,14 @@ std::optional<std::string> problem_with_shape(const Shape& shape) {
   } else if (const auto* c = std::get_if<Capsule>(&shape)) {
     if (!positive(c->radius)) return "capsule: the radius must be positive and finite";
     if (!not_negative(c->half_length)) return "capsule: the half length must be zero or more";
+  } else if (const auto* y = std::get_if<Cylinder>(&shape)) {
+    if (!positive(y->radius)) return "cylinder: the radius must be positive and finite";
+    if (!positive(y->half_length)) return "cylinder: the half length must be positive and finite";
+  } else if (const auto* k = std::get_if<Cone>(&shape)) {
+    if (!positive(k->radius)) return "cone: the radius must be positive and finite";
+    if (!positive(k->half_height)) return "cone: the half height must be positive and finite";
+  } else if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
+    if (!hull->data()) return "convex hull: it was moved from; hand in a copy";
   }
   return std::nullopt;
 }
@@ -105,6 +113,9 @@ std::optional<std::string> problem_with(const ColliderDesc& desc) {
   if (!(m.restitution >= 0.0 && m.restitution <= 1.0))
     return "material: restitution must be in [0, 1]";
   if (!not_negative(m.rolling_friction)) return "material: rolling friction must be zero or more";
+  if (!not_negative(m.spinning_friction)) return "material: spinning friction must be zero or more";
+  if (!in_range(desc.surface_velocity)) return std::string("surface_velocity") + kRange;
+  if (!positive(desc.density)) return "density must be positive and finite";
   return std::nullopt;
 }
 

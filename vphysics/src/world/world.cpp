@@ -108,6 +108,7 @@ void World::Impl::release_collider(std::uint32_t index) {
     return true;
   });
   colliders[index].alive = false;
+  colliders[index].shape = HalfSpace{};
   free_colliders.push_back(index);
 }
 
@@ -138,12 +139,18 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
         Errc::unsupported,
         "add_collider: only spheres are swept in this version; give a continuous body spheres");
   }
+  if (desc.shape.index() >= Shape(Cylinder{}).index()) {
+    return refuse(
+        Errc::unsupported,
+        "add_collider: cylinders, cones and hulls do not meet others in this version yet");
+  }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
   Collider& c = impl_->colliders[index];
   c.body = body_handle.index - 1;
   c.sensor = desc.sensor;
   c.serial = impl_->next_serial++;
-  c.geometry = collide::make_geometry(desc.shape);
+  c.shape = desc.shape;
+  c.geometry = collide::make_geometry(c.shape);
   c.T_body_shape = SE3(orthonormalized(desc.T_body_shape.rotation()), desc.T_body_shape.position());
   c.material = desc.material;
   c.filter = desc.filter;

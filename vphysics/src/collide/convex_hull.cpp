@@ -1,0 +1,283 @@
+// A hull from points: snapped to a grid, on which the triangles are found exactly; joined to faces;
+// numbered in an order that depends on the corners alone.
+#include "vphysics/convex_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "collide/hull.h"
+#include "collide/hull_faces.h"
+#include "collide/quickhull.h"
+
+namespace vp {
+namespace {
+
+using collide::HullData;
+using collide::Loop;
+
+constexpr double kFarthest = 1e9;   // of a coordinate [m], as everywhere in the engine
+constexpr double kSmallest = 1e-9;  // extent [m]
+constexpr double kThinnest = 1e-6;  // thickness, share of the extent
+constexpr int kMostVertices = 256;  // names of features and costs of pairs are made for so many
+constexpr double kCoarsest = 0.01;  // tolerance
+
+tl::unexpected<Error> refused(std::string message) {
+  return tl::make_unexpected(Error{Errc::invalid_argument, "convex hull: " + std::move(message)});
+}
+
+// In lexicographic order, each once.
+std::vector<Vec3> sorted(std::span<const Vec3> points) {
+  std::vector<Vec3> found(points.begin(), points.end());
+  for (Vec3& p : found) p += Vec3{};  // -0 becomes 0
+  std::sort(found.begin(), found.end(), [](const Vec3& a, const Vec3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+  });
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+struct Extent {
+  Vec3 lower, upper;
+  double largest;
+};
+Extent extent_of(std::span<const Vec3> points) {
+  Extent e{points[0], points[0], 0.0};
+  for (const Vec3& p : points) {
+    for (int i = 0; i < 3; ++i) {
+      e.lower[i] = std::min(e.lower[i], p[i]);
+      e.upper[i] = std::max(e.upper[i], p[i]);
+    }
+  }
+  const Vec3 size = e.upper - e.lower;
+  e.largest = std::max({size.x, size.y, size.z});
+  return e;
+}
+
+// Cells for each metre: a power of two, so that snapping only rounds.
+double grid_scale(double extent) {
+  int exponent = 0;
+  (void)std::frexp(extent, &exponent);  // extent < 2^exponent
+  return std::ldexp(1.0, collide::kGridBits - exponent);
+}
+
+std::vector<collide::GridPoint> snapped(std::span<const Vec3> points, const Vec3& lower,
+                                        double scale) {
+  std::vector<collide::GridPoint> grid;
+  grid.reserve(points.size());
+  const auto cell = [&](double x) {
+    return static_cast<std::int64_t>(std::floor(x * scale + 0.5));
+  };
+  for (const Vec3& p : points) {
+    const Vec3 d = p - lower;
+    grid.push_back({cell(d.x), cell(d.y), cell(d.z)});
+  }
+  return grid;
+}
+
+// The hull's triangles, without corners in the midst of what is flat. Indices are of all points.
+collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& extent, double scale,
+                                  const HullOptions& options) {
+  const double cells = extent.largest * scale;
+  const std::vector<collide::GridPoint> grid = snapped(points, extent.lower, scale);
+  collide::Quickhull found =
+      collide::quickhull(grid, options.max_vertices, options.tolerance * cells, kThinnest * cells);
+  while (found.result == collide::Quickhull::Result::hull) {
+    const std::vector<std::uint32_t> flat =
+        collide::flat_corners(points, found.triangles, found.tolerance / scale);
+    if (flat.empty()) break;
+    std::vector<std::uint32_t> kept;  // the corners that are not
+    for (const collide::Triangle& t : found.triangles) kept.insert(kept.end(), t.begin(), t.end());
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    std::erase_if(kept,
+                  [&](auto i) { return std::find(flat.begin(), flat.end(), i) != flat.end(); });
+    std::vector<collide::GridPoint> fewer;
+    for (const std::uint32_t i : kept) fewer.push_back(grid[i]);
+    collide::Quickhull next =
+        collide::quickhull(fewer, options.max_vertices, found.tolerance, kThinnest * cells);
+    if (next.result != collide::Quickhull::Result::hull) break;
+    for (collide::Triangle& t : next.triangles) t = {kept[t[0]], kept[t[1]], kept[t[2]]};
+    found = std::move(next);
+  }
+  return found;
+}
+
+// Numbers the corners in the points' order, turns each loop to begin with its lowest, sorts loops.
+std::vector<Vec3> renumber(std::span<const Vec3> points, std::vector<Loop>& loops) {
+  std::vector<std::uint32_t> number(points.size(), 0);
+  for (const Loop& loop : loops) {
+    for (const std::uint32_t i : loop) number[i] = 1;
+  }
+  std::vector<Vec3> vertices;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (number[i] == 0) continue;
+    number[i] = static_cast<std::uint32_t>(vertices.size());
+    vertices.push_back(points[i]);
+  }
+  for (Loop& loop : loops) {
+    for (std::uint32_t& i : loop) i = number[i];
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+  }
+  std::sort(loops.begin(), loops.end());
+  return vertices;
+}
+
+void set_faces(HullData& hull, std::span<const Loop> loops) {
+  for (const Loop& loop : loops) {
+    for (const std::uint32_t i : loop) hull.corners.push_back(static_cast<std::uint16_t>(i));
+  }
+  std::size_t first = 0;
+  for (const Loop& loop : loops) {
+    ConvexHull::Face face;
+    face.normal = collide::unit(collide::area_vector(hull.vertices, loop));
+    face.offset = dot(face.normal, hull.vertices[0]);
+    for (const Vec3& v : hull.vertices) face.offset = std::max(face.offset, dot(face.normal, v));
+    face.vertices = std::span(hull.corners).subspan(first, loop.size());
+    first += loop.size();
+    hull.faces.push_back(face);
+  }
+}
+
+void set_edges(HullData& hull) {
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const auto& loop = hull.faces[f].vertices;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint16_t from = loop[i], to = loop[(i + 1) % loop.size()];
+      if (from < to) hull.edges.push_back({from, to, static_cast<std::uint16_t>(f), 0});
+    }
+  }
+  const auto before = [](const collide::HullEdge& a, const collide::HullEdge& b) {
+    return a.v0 != b.v0 ? a.v0 < b.v0 : a.v1 < b.v1;
+  };
+  std::sort(hull.edges.begin(), hull.edges.end(), before);
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    const auto& loop = hull.faces[f].vertices;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint16_t from = loop[i], to = loop[(i + 1) % loop.size()];
+      if (from < to) continue;
+      const collide::HullEdge key{to, from, 0, 0};
+      std::lower_bound(hull.edges.begin(), hull.edges.end(), key, before)->right =
+          static_cast<std::uint16_t>(f);
+    }
+  }
+}
+
+void set_faces_around(HullData& hull) {
+  std::vector<std::vector<std::uint16_t>> around(hull.vertices.size());
+  for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    for (const std::uint16_t v : hull.faces[f].vertices) {
+      around[v].push_back(static_cast<std::uint16_t>(f));
+    }
+  }
+  hull.first_around.push_back(0);
+  for (const auto& faces : around) {
+    hull.around.insert(hull.around.end(), faces.begin(), faces.end());
+    hull.first_around.push_back(static_cast<std::uint16_t>(hull.around.size()));
+  }
+}
+
+// A tetrahedron of density 1 from the reference point (the origin here) to a, b, c: volume V,
+// V (a + b + c) / 4, and the integral of x x^T, V (S S^T + sum of each corner's) / 20, S = a + b +
+// c.
+struct Moments {
+  double volume = 0.0;
+  Vec3 first;
+  Sym3 second;
+
+  void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double V = dot(a, cross(b, c)) / 6.0;
+    const Vec3 S = a + b + c;
+    volume += V;
+    first += (0.25 * V) * S;
+    const double k = 0.05 * V;
+    second = second + (outer(k, S) + outer(k, a)) + (outer(k, b) + outer(k, c));
+  }
+};
+
+void set_mass(HullData& hull) {
+  Vec3 middle;  // near the hull, so that one far from its frame's origin loses nothing
+  for (const Vec3& v : hull.vertices) middle += v;
+  middle *= 1.0 / static_cast<double>(hull.vertices.size());
+  Moments m;
+  for (const ConvexHull::Face& face : hull.faces) {
+    for (std::size_t i = 2; i < face.vertices.size(); ++i) {
+      m.add_tetrahedron(hull.vertices[face.vertices[0]] - middle,
+                        hull.vertices[face.vertices[i - 1]] - middle,
+                        hull.vertices[face.vertices[i]] - middle);
+    }
+  }
+  const Sym3& s = m.second;
+  const Sym3 about_middle{s.yy + s.zz, s.zz + s.xx, s.xx + s.yy, -s.xy, -s.yz, -s.zx};
+  hull.volume = m.volume;
+  hull.centre = middle + (1.0 / m.volume) * m.first;
+  hull.unit = Inertia(m.volume, m.first, about_middle).about(-middle);
+  hull.radius = 0.0;
+  for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, norm(v - hull.centre));
+}
+
+}  // namespace
+
+Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOptions& options) {
+  if (options.max_vertices < 4 || options.max_vertices > kMostVertices) {
+    return refused("max_vertices must be from 4 to 256");
+  }
+  if (!(options.tolerance >= 0.0 && options.tolerance <= kCoarsest)) {
+    return refused("the tolerance must be in [0, 0.01]");
+  }
+  for (const Vec3& p : points) {
+    for (const double x : {p.x, p.y, p.z}) {
+      if (!(std::fabs(x) <= kFarthest)) {
+        return refused("every coordinate must be finite and at most 1e9 in magnitude");
+      }
+    }
+  }
+  const std::vector<Vec3> distinct = sorted(points);
+  if (distinct.size() < 4) return refused("at least four different points are needed");
+  const Extent extent = extent_of(distinct);
+  if (!(extent.largest >= kSmallest)) {
+    return refused("the points lie within a nanometre; give them in metres");
+  }
+  const double scale = grid_scale(extent.largest);
+  const collide::Quickhull found = find_triangles(distinct, extent, scale, options);
+  switch (found.result) {
+    case collide::Quickhull::Result::hull:
+      break;
+    case collide::Quickhull::Result::point:
+    case collide::Quickhull::Result::line:
+      return refused("the points lie on one line; a capsule has a thickness of its own");
+    case collide::Quickhull::Result::plane:
+      return refused("the points lie in one plane; give the body a thickness, or use a thin box");
+  }
+  auto hull = std::make_shared<HullData>();
+  std::vector<Loop> loops = collide::faces_of(distinct, found.triangles, found.tolerance / scale);
+  hull->vertices = renumber(distinct, loops);
+  const Extent kept = extent_of(hull->vertices);
+  hull->lower = kept.lower;
+  hull->upper = kept.upper;
+  set_faces(*hull, loops);
+  set_edges(*hull);
+  set_faces_around(*hull);
+  set_mass(*hull);
+  return ConvexHull(std::move(hull));
+}
+
+std::span<const Vec3> ConvexHull::vertices() const {
+  return data_->vertices;
+}
+std::span<const ConvexHull::Face> ConvexHull::faces() const {
+  return data_->faces;
+}
+double ConvexHull::volume() const {
+  return data_->volume;
+}
+Vec3 ConvexHull::centre_of_mass() const {
+  return data_->centre;
+}
+Inertia ConvexHull::inertia(double density) const {
+  const Inertia& unit = data_->unit;
+  return {density * unit.mass(), density * unit.first_moment(), density * unit.rotational()};
+}
+
+}  // namespace vp

@@ -1,0 +1,107 @@
+// The mass of shapes, and shapes made larger and smaller.
+#include <cmath>
+#include <vector>
+
+#include "vphysics/shapes.h"
+
+namespace vp {
+
+Inertia solid_inertia(const Shape& shape, double density) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    const double r = sphere->radius;
+    const double m = density * (4.0 / 3.0) * kPi * r * r * r;
+    const double I = 0.4 * m * r * r;
+    return {m, Vec3{I, I, I}};
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    const Vec3 h = box->half_extents;
+    const double m = density * 8.0 * h.x * h.y * h.z;
+    const double x = h.x * h.x, y = h.y * h.y, z = h.z * h.z;
+    return {m, (m / 3.0) * Vec3{y + z, z + x, x + y}};
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    // A cylinder of length 2 l and two half spheres, whose centres of mass lie 3/8 r beyond its
+    // ends.
+    const double r = capsule->radius, l = capsule->half_length;
+    const double cylinder = density * kPi * r * r * 2.0 * l;
+    const double ball = density * (4.0 / 3.0) * kPi * r * r * r;
+    const double axial = 0.5 * cylinder * r * r + 0.4 * ball * r * r;
+    const double across =
+        cylinder * (r * r / 4.0 + l * l / 3.0) + ball * (0.4 * r * r + l * l + 0.75 * l * r);
+    return {cylinder + ball, Vec3{across, across, axial}};
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    const double r = cylinder->radius, l = cylinder->half_length;
+    const double m = density * kPi * r * r * 2.0 * l;
+    const double across = m * (r * r / 4.0 + l * l / 3.0);
+    return {m, Vec3{across, across, 0.5 * m * r * r}};
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    // Of height 2 h, its centre of mass h / 2 above the base; about that, across the axis,
+    // 3/20 m r^2 + 3/80 m (2 h)^2.
+    const double r = cone->radius, h = cone->half_height;
+    const double m = density * kPi * r * r * 2.0 * h / 3.0;
+    const double across = m * (0.15 * r * r + 0.15 * h * h);
+    return Inertia(m, Vec3{across, across, 0.3 * m * r * r}).about({0, 0, 0.5 * h});
+  }
+  if (const auto* hull = std::get_if<ConvexHull>(&shape)) return hull->inertia(density);
+  return {};
+}
+
+namespace {
+
+constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+
+tl::unexpected<Error> refused(const char* message) {
+  return tl::make_unexpected(Error{Errc::invalid_argument, message});
+}
+
+}  // namespace
+
+Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
+  for (const double s : {scale.x, scale.y, scale.z}) {
+    if (!(s >= kLeastScale && s <= kMostScale)) {
+      return refused("scaled: every factor must be from 1e-6 to 1e6");
+    }
+  }
+  const bool round = scale.x == scale.y, uniform = round && scale.y == scale.z;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    if (!uniform) {
+      return refused("scaled: a sphere keeps its shape by equal factors only; use a convex hull");
+    }
+    return Sphere{scale.x * sphere->radius};
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    const Vec3& h = box->half_extents;
+    return Box{{scale.x * h.x, scale.y * h.y, scale.z * h.z}};
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    if (!uniform) {
+      return refused("scaled: a capsule keeps its shape by equal factors only; use a convex hull");
+    }
+    return Capsule{scale.x * capsule->radius, scale.x * capsule->half_length};
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    if (!round) {
+      return refused("scaled: a cylinder needs equal factors of x and y; use a convex hull");
+    }
+    return Cylinder{scale.x * cylinder->radius, scale.z * cylinder->half_length};
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    if (!round) return refused("scaled: a cone needs equal factors of x and y; use a convex hull");
+    return Cone{scale.x * cone->radius, scale.z * cone->half_height};
+  }
+  if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
+    if (!hull->data()) return refused("scaled: the convex hull was moved from");
+    std::vector<Vec3> points(hull->vertices().begin(), hull->vertices().end());
+    for (Vec3& p : points) p = {scale.x * p.x, scale.y * p.y, scale.z * p.z};
+    HullOptions all;
+    all.max_vertices = 256;
+    Expected<ConvexHull> made = ConvexHull::of(points, all);
+    if (!made) return tl::make_unexpected(made.error());
+    return *std::move(made);
+  }
+  return shape;  // a half-space is the same at any scale
+}
+
+}  // namespace vp
