@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "collide/pair_finder.h"
 #include "random.h"
 #include "tree_scenes.h"
 #include "trees.h"
@@ -23,6 +24,18 @@ void* operator new(std::size_t size) {
   ++g_allocations;
   if (void* p = std::malloc(size ? size : 1)) return p;
   std::abort();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++g_allocations;
+  const auto a = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  std::abort();
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
 }
 void operator delete(void* p) noexcept {
   std::free(p);
@@ -159,6 +172,62 @@ TEST(ConstrainedDynamics, AllocatesNothing) {
   }
   EXPECT_EQ(g_allocations - before, 0);
   EXPECT_NEAR(q[0], 0.2, 1e-9);  // it went to its stop
+}
+
+// Rests, moves a little, all move; queries, snapshots and rollbacks.
+TEST(PairFinder, AllocatesNothingOnceWarm) {
+  collide::PairFinder finder;
+  Random random(7);
+  std::vector<Vec3> centres;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    centres.push_back(random.in_cube(5.0));
+    finder.add({.bounds = {centres[i] - Vec3{.5, .5, .5}, centres[i] + Vec3{.5, .5, .5}},
+                .mobility = i < 100 ? collide::Mobility::fixed : collide::Mobility::moving,
+                .margin = 0.05});
+  }
+  struct Words {
+    std::vector<std::uint64_t> words;
+    std::size_t at = 0;
+    void word(std::uint64_t w) { words.push_back(w); }
+    std::uint64_t word() { return words[at++]; }
+    void check(bool condition) { EXPECT_TRUE(condition); }
+    bool ok() const { return true; }
+  } words;
+  std::vector<collide::ProxyPair> found;
+  std::vector<std::uint32_t> inside;
+  collide::CastScratch scratch;
+  found.reserve(100000);
+  words.words.reserve(100000);
+  inside.reserve(400);
+  scratch.queue.reserve(500);
+  long during = 0;
+  for (int k = 0; k < 400; ++k) {
+    const long before = g_allocations;
+    const double step = k % 40 == 0 ? 3.0 : 0.02;
+    for (std::uint32_t i = 100; i < 400; ++i) {
+      const Vec3 c = centres[i] + random.in_cube(step);
+      finder.set_bounds(i, {c - Vec3{.5, .5, .5}, c + Vec3{.5, .5, .5}}, 0.05);
+    }
+    finder.update(found);
+    for (std::uint32_t i = 0; i < 400; ++i) {
+      for (std::uint32_t j = i + 1; k % 10 == 0 && j < 400; ++j) {
+        if (!finder.should_pair(i, j)) finder.remove_pair(i, j);
+      }
+    }
+    finder.overlapping({{-1, -1, -1}, {1, 1, 1}}, inside);
+    finder.cast({{{-9, 0, 0}, {-9, 0, 0}}, {18, 1, 1}}, 1.0, scratch,
+                [](std::uint32_t, float) { return 1.0; });
+    words.words.clear();
+    words.at = 0;
+    finder.write(words);
+    finder.read(words);
+    finder.adopt();
+    found.clear();
+    inside.clear();
+    if (k >= 200) during += g_allocations - before;
+  }
+  EXPECT_GT(finder.pairs(), 500u);
+  EXPECT_EQ(during, 0);
 }
 
 }  // namespace

@@ -1,0 +1,268 @@
+// A tree of axis-aligned bounds with eight children a node, tested at once.
+//
+// Its shape follows from the order of calls, but what it finds does not: it is a means, not a
+// state. A world restored from a snapshot may have another tree and finds the same.
+//
+// Building: top down, each range cut in two, by space-filling codes or, with more effort, where a
+// binned surface area heuristic is least. Moving: the
+// boxes above are fitted again; what goes far is taken out and put in elsewhere. Both make the tree
+// worse with time, so who moves much builds it anew now and then (changes()).
+//
+// Sources: Lauterbach et al. 2009 (Fast BVH construction on GPUs), section 3; Wald 2007 (On fast
+// construction of SAH-based BVHs); Wald, Benthin, Boulos 2008 (wide
+// nodes); Ize 2013 (Robust BVH ray traversal) for the rounding of the ray's test.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/float_bounds.h"
+
+namespace vp::collide {
+
+struct TreeItem {
+  FloatBounds bounds;
+  std::uint32_t item = 0;  // < 2^31; the tree keeps a word for each up to the highest
+  std::uint32_t spare = 0;
+  std::uint64_t code = 0;  // the builder's
+};
+static_assert(sizeof(TreeItem) == 48);
+
+// A box (a point, for a ray) that moves by `displacement` while the fraction goes from 0 to 1.
+struct Sweep {
+  Bounds start;
+  Vec3 displacement;
+};
+
+// Memory of casts, kept by whoever casts.
+struct CastScratch {
+  struct Entry {
+    float fraction;
+    std::uint32_t child;
+  };
+  std::vector<Entry> queue;
+};
+
+class BoundingTree {
+ public:
+  // All at once. The items are put into another order. Precondition: each item occurs once.
+  // quick: for trees that are built again soon; careful: several times as long, for those that
+  // stay.
+  enum class Effort : std::uint8_t { quick, careful };
+  void build(std::span<TreeItem> items, Effort effort = Effort::quick);
+  void clear();
+
+  // False: the tree has become too deep and has to be built anew; the item is not in it.
+  // Precondition: it was not in it before.
+  [[nodiscard]] bool insert(std::uint32_t item, const FloatBounds& bounds);
+  void remove(std::uint32_t item);  // precondition: contains(item)
+  // As remove and insert.
+  [[nodiscard]] bool move(std::uint32_t item, const FloatBounds& bounds);
+  bool contains(std::uint32_t item) const {
+    return item < slot_of_.size() && slot_of_[item] != kNone;
+  }
+
+  std::size_t size() const { return size_; }
+  std::size_t changes() const { return changes_; }  // insert, remove and move since build()
+  FloatBounds bounds() const;                       // of all; empty if there is nothing
+  FloatBounds bounds_of(std::uint32_t item) const;  // precondition: contains(item)
+
+  // found(item) for all whose bounds overlap the box, in no order that the outcome may depend on.
+  template <class F>
+  void overlapping(const FloatBounds& box, const F& found) const;
+
+  // found(item, item) for all pairs of different items whose bounds overlap, each once.
+  template <class F>
+  void overlapping_pairs(const F& found) const;
+  // found(item of this, item of the other).
+  template <class F>
+  void overlapping_pairs(const BoundingTree& other, const F& found) const;
+
+  // hit(item, entry) in order of entry, then of items, for all whose bounds the moving box meets at
+  // a fraction of at most `limit`; entry is that fraction, to float's rounding. What hit returns is
+  // the new limit: the same to go on, less to look no farther, negative to stop.
+  template <class F>
+  void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::uint32_t kLeaf = 0x80000000u;  // child: an item, not a node
+  // A deeper node is never made: stacks have a fixed size. Eight to the tenth is a billion.
+  static constexpr unsigned kMaxDepth = 40;
+  static constexpr std::size_t kStack = 7 * kMaxDepth + 16;
+  static constexpr std::size_t kPairStack = 63 * kMaxDepth + 128;
+
+  struct alignas(64) Node {
+    EightBounds bounds;
+    std::uint32_t child[8];         // node, kLeaf | item, or kNone
+    std::uint32_t parent_slot = 0;  // 8 * node + lane; kNone: the root
+    std::uint32_t used = 0;         // bit i: child i exists
+    std::uint32_t leaves = 0;       // bit i: it is an item
+    std::uint32_t unused_words[5]{};
+  };
+  static_assert(sizeof(Node) == 256);  // four cache lines, three of them for a box's test
+
+  std::uint32_t new_node(std::uint32_t parent_slot);
+  void set_child(std::uint32_t slot, std::uint32_t child, const FloatBounds& bounds);
+  void clear_child(std::uint32_t slot);
+  FloatBounds bounds_of_node(std::uint32_t node) const;
+  void fit_above(std::uint32_t node);
+  std::span<TreeItem> sort_by_code(std::span<TreeItem> items);
+  FloatBounds build_node(std::span<TreeItem> items, std::uint32_t node, unsigned depth,
+                         Effort effort);
+
+  static std::size_t pairs_within(const Node& node, std::uint64_t* out);
+  static std::size_t pairs_between(const Node& a, const BoundingTree& other, std::uint32_t node_b,
+                                   std::uint64_t* out);
+  template <class F>
+  void overlapping_pairs_below(const BoundingTree& other, std::uint64_t first,
+                               const F& found) const;
+  template <class F>
+  void overlapping_below(std::uint32_t node, const SpreadBounds& box, const F& found) const;
+
+  std::vector<Node> nodes_;  // the first is the root
+  std::vector<std::uint32_t> free_nodes_;
+  std::vector<std::uint32_t> slot_of_;  // by item
+  std::size_t size_ = 0, changes_ = 0;
+  // Scratch of quick building.
+  std::vector<TreeItem> sorted_;
+  std::vector<std::uint64_t> keys_, key_scratch_;
+};
+
+// A sweep as the lanes' test wants it: where the fraction at which the box meets [lower, upper]
+// along an axis is (near - from) * inverse, all rounded so that nothing is missed.
+class LaneSweep {
+ public:
+  explicit LaneSweep(const Sweep& sweep);
+  // Bit i: lane i is met at a fraction from 0 to limit. entry: the fractions.
+  unsigned meets(const EightBounds& eight, float limit, float entry[8]) const;
+  bool meets(const FloatBounds& bounds, double limit, float& entry) const;
+  // Entries are rounded by some units of 2^-24: what lies beyond a fraction for sure.
+  static float beyond(double limit) { return rounded_up(limit * (1.0 + 1e-6)); }
+
+ private:
+  float add_to_lower_[3], add_to_upper_[3];  // Minkowski sum with the box, reflected
+  float inverse_[3];                         // 0: the sweep does not go along this axis
+};
+
+template <class F>
+void BoundingTree::overlapping_below(std::uint32_t node, const SpreadBounds& box,
+                                     const F& found) const {
+  std::uint32_t stack[kStack];
+  std::size_t depth = 0;
+  stack[depth++] = node;
+  while (depth > 0) {
+    const Node& n = nodes_[stack[--depth]];
+    const unsigned hit = overlapping_lanes(n.bounds, box);
+    for_each_bit(hit & n.leaves, [&](unsigned i) { found(n.child[i] & ~kLeaf); });
+    for_each_bit(hit & ~n.leaves, [&](unsigned i) { stack[depth++] = n.child[i]; });
+  }
+}
+
+template <class F>
+void BoundingTree::overlapping(const FloatBounds& box, const F& found) const {
+  if (size_ > 0) overlapping_below(0, SpreadBounds(box), found);
+}
+
+// A stack of pairs of children that overlap, of which the first is of this tree; a node with itself
+// stands for the pairs within it.
+template <class F>
+void BoundingTree::overlapping_pairs_below(const BoundingTree& other, std::uint64_t first,
+                                           const F& found) const {
+  std::uint64_t stack[kPairStack];
+  std::size_t depth = 0;
+  stack[depth++] = first;
+  while (depth > 0) {
+    const std::uint64_t pair = stack[--depth];
+    const auto i = static_cast<std::uint32_t>(pair >> 32), j = static_cast<std::uint32_t>(pair);
+    if (i & j & kLeaf) {
+      found(i & ~kLeaf, j & ~kLeaf);
+    } else if (i & kLeaf) {
+      other.overlapping_below(j, SpreadBounds(bounds_of(i & ~kLeaf)),
+                              [&](std::uint32_t item) { found(i & ~kLeaf, item); });
+    } else if (j & kLeaf) {
+      overlapping_below(i, SpreadBounds(other.bounds_of(j & ~kLeaf)),
+                        [&](std::uint32_t item) { found(item, j & ~kLeaf); });
+    } else if (i == j && this == &other) {
+      depth += pairs_within(nodes_[i], stack + depth);
+    } else {
+      depth += pairs_between(nodes_[i], other, j, stack + depth);
+    }
+  }
+}
+
+inline std::size_t BoundingTree::pairs_between(const Node& a, const BoundingTree& other,
+                                               std::uint32_t node_b, std::uint64_t* out) {
+  const Node& b = other.nodes_[node_b];
+  const std::uint32_t slot = b.parent_slot;
+  const SpreadBounds around_b = slot == kNone
+                                    ? SpreadBounds(other.bounds())
+                                    : SpreadBounds(other.nodes_[slot / 8].bounds, slot % 8);
+  std::size_t n = 0;
+  for_each_bit(overlapping_lanes(a.bounds, around_b), [&](unsigned i) {
+    const unsigned hit = overlapping_lanes(b.bounds, SpreadBounds(a.bounds, i));
+    n += append_chosen(hit, b.child, std::uint64_t{a.child[i]} << 32, out + n);
+  });
+  return n;
+}
+
+inline std::size_t BoundingTree::pairs_within(const Node& node, std::uint64_t* out) {
+  std::size_t n = 0;
+  for_each_bit(node.used & ~node.leaves, [&](unsigned i) {
+    out[n++] = (std::uint64_t{node.child[i]} << 32) | node.child[i];
+  });
+  for_each_bit(node.used, [&](unsigned i) {
+    const unsigned hit = overlapping_lanes(node.bounds, SpreadBounds(node.bounds, i));
+    n += append_chosen(hit & ~((2u << i) - 1u), node.child, std::uint64_t{node.child[i]} << 32,
+                       out + n);
+  });
+  return n;
+}
+
+template <class F>
+void BoundingTree::overlapping_pairs(const F& found) const {
+  if (size_ > 0) overlapping_pairs_below(*this, 0, found);
+}
+template <class F>
+void BoundingTree::overlapping_pairs(const BoundingTree& other, const F& found) const {
+  if (size_ > 0 && other.size_ > 0) overlapping_pairs_below(other, 0, found);
+}
+
+// A heap of nodes and items by entry: a node comes before an item of the same fraction, since it
+// may hold one with a lower number.
+template <class F>
+void BoundingTree::cast(const Sweep& sweep, double limit, CastScratch& scratch,
+                        const F& hit) const {
+  using Entry = CastScratch::Entry;
+  const auto later = [](const Entry& a, const Entry& b) {
+    return a.fraction > b.fraction || (a.fraction == b.fraction && a.child > b.child);
+  };
+  std::vector<Entry>& queue = scratch.queue;
+  queue.clear();
+  if (size_ == 0 || !(limit >= 0.0)) return;
+  const LaneSweep lanes(sweep);
+  queue.push_back({0.0f, 0});
+  while (!queue.empty()) {
+    const Entry next = queue.front();
+    std::pop_heap(queue.begin(), queue.end(), later);
+    queue.pop_back();
+    const float farthest = LaneSweep::beyond(limit);
+    if (next.fraction > farthest) return;
+    if (next.child & kLeaf) {
+      limit = hit(next.child & ~kLeaf, next.fraction);
+      if (limit < 0.0) return;
+      continue;
+    }
+    const Node& n = nodes_[next.child];
+    float entry[8];
+    for_each_bit(lanes.meets(n.bounds, farthest, entry) & n.used, [&](unsigned i) {
+      queue.push_back({entry[i], n.child[i]});
+      std::push_heap(queue.begin(), queue.end(), later);
+    });
+  }
+}
+
+}  // namespace vp::collide

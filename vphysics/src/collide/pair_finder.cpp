@@ -1,0 +1,265 @@
+#include "collide/pair_finder.h"
+
+#include <cmath>
+
+#include "vphysics/assert.h"
+
+namespace vp::collide {
+namespace {
+
+// A query for each that has moved costs as much as comparing all with all when one in so many has.
+constexpr std::size_t kJoinAtShare = 6;
+
+[[maybe_unused]] bool is_ordered(const Bounds& b) {  // false of NaN
+  return b.lower.x <= b.upper.x && b.lower.y <= b.upper.y && b.lower.z <= b.upper.z;
+}
+
+FloatBounds enlarged(const Bounds& b, double margin, const Vec3& displacement) {
+  Bounds e = grown(b, margin);
+  for (int axis = 0; axis < 3; ++axis) {
+    e.lower[axis] += std::min(displacement[axis], 0.0);
+    e.upper[axis] += std::max(displacement[axis], 0.0);
+  }
+  return rounded_outwards(e);
+}
+
+}  // namespace
+
+PairFinder::Place PairFinder::place_of(const FloatBounds& enlarged, Mobility mobility) {
+  bool far = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    far = far || enlarged.lower[axis] < -kUnbounded || enlarged.upper[axis] > kUnbounded;
+  }
+  if (mobility == Mobility::fixed) return far ? Place::unbounded_fixed : Place::fixed;
+  return far ? Place::unbounded_moving : Place::moving;
+}
+
+void PairFinder::resize(std::size_t proxies) {
+  proxies_.resize(proxies);
+  places_.resize(proxies, Place::none);
+  pair_counts_.resize(proxies, 0);
+  moved_.resize(proxies);
+  pending_.resize(proxies);
+}
+
+std::uint32_t PairFinder::add(const ProxyDesc& desc) {
+  VP_ASSERT(is_ordered(desc.bounds) && desc.margin >= 0.0);
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::uint32_t>(proxies_.size()));
+    resize(proxies_.size() + 1);
+  }
+  const std::uint32_t index = free_.back();
+  free_.pop_back();
+  proxies_[index] = {{}, desc.category, desc.mask, desc.owner, desc.user};
+  put(index, enlarged(desc.bounds, desc.margin, {}), desc.mobility);
+  return index;
+}
+
+void PairFinder::remove(std::uint32_t proxy) {
+  VP_ASSERT(exists(proxy));
+  if (pair_counts_[proxy] > 0) {
+    written_keys_.clear();
+    pairs_.append_keys(written_keys_);
+    for (const std::uint64_t key : written_keys_) {
+      const ProxyPair pair = ProxyPair::of_key(key);
+      if (pair.a == proxy || pair.b == proxy) remove_pair(pair.a, pair.b);
+    }
+  }
+  take_out(proxy);
+  moved_.reset(proxy);
+  free_.push_back(proxy);
+}
+
+void PairFinder::take_out(std::uint32_t proxy) {
+  const Place place = places_[proxy];
+  if (place == Place::unbounded_fixed || place == Place::unbounded_moving) {
+    unbounded_.erase(std::lower_bound(unbounded_.begin(), unbounded_.end(), proxy));
+  } else if (place != Place::none && tree(place).contains(proxy)) {
+    tree(place).remove(proxy);
+  }
+  pending_.reset(proxy);
+  places_[proxy] = Place::none;
+}
+
+void PairFinder::put(std::uint32_t proxy, const FloatBounds& bounds, Mobility mobility) {
+  const Place place = place_of(bounds, mobility);
+  proxies_[proxy].enlarged = bounds;
+  moved_.set(proxy);
+  if (place != places_[proxy]) {
+    take_out(proxy);
+    places_[proxy] = place;
+    if (place == Place::unbounded_fixed || place == Place::unbounded_moving) {
+      unbounded_.insert(std::lower_bound(unbounded_.begin(), unbounded_.end(), proxy), proxy);
+    }
+  }
+  if (place == Place::fixed || place == Place::moving) pending_.set(proxy);
+}
+
+bool PairFinder::enlarge(std::uint32_t proxy, const Bounds& bounds, double margin,
+                         const Vec3& displacement) {
+  VP_ASSERT(exists(proxy) && is_ordered(bounds) && margin >= 0.0);
+  const FloatBounds larger = enlarged(bounds, margin, displacement);
+  if (larger == proxies_[proxy].enlarged) return false;  // what has no end never fits
+  put(proxy, larger, mobility_of(places_[proxy]));
+  return true;
+}
+
+void PairFinder::set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask) {
+  VP_ASSERT(exists(proxy));
+  proxies_[proxy].category = category;
+  proxies_[proxy].mask = mask;
+  moved_.set(proxy);
+}
+
+void PairFinder::count_pair(std::uint64_t key, std::uint32_t change) {
+  const ProxyPair pair = ProxyPair::of_key(key);
+  pair_counts_[pair.a] += change;
+  pair_counts_[pair.b] += change;
+}
+
+bool PairFinder::remove_pair(std::uint32_t i, std::uint32_t j) {
+  const std::uint64_t key = ProxyPair::ordered(i, j).key();
+  if (!pairs_.erase(key)) return false;
+  count_pair(key, ~0u);  // minus one
+  return true;
+}
+
+void PairFinder::rebuild(Place place) {
+  items_.clear();
+  for (std::uint32_t i = 0; i < places_.size(); ++i) {
+    if (places_[i] == place) items_.push_back({proxies_[i].enlarged, i});
+  }
+  tree(place).build(items_);
+}
+
+void PairFinder::refresh(Place place, std::size_t pending) {
+  BoundingTree& t = tree(place);
+  // Half of them changed since the tree was built: it is about as costly to change on, and worse.
+  bool anew = 2 * (t.changes() + pending) > t.size() + pending;
+  for (std::size_t k = 0; k < pending_list_.size() && !anew; ++k) {
+    const std::uint32_t i = pending_list_[k];
+    if (places_[i] != place) continue;
+    const FloatBounds& b = proxies_[i].enlarged;
+    anew = !(t.contains(i) ? t.move(i, b) : t.insert(i, b));
+  }
+  if (anew) rebuild(place);
+}
+
+void PairFinder::refresh() {
+  pending_list_.clear();
+  pending_.append_to(pending_list_);
+  if (pending_list_.empty()) return;
+  pending_.clear();
+  std::size_t pending[2] = {0, 0};
+  for (const std::uint32_t i : pending_list_) ++pending[static_cast<std::size_t>(places_[i])];
+  for (const Place place : {Place::fixed, Place::moving}) {
+    if (pending[static_cast<std::size_t>(place)] > 0) {
+      refresh(place, pending[static_cast<std::size_t>(place)]);
+    }
+  }
+}
+
+void PairFinder::consider(std::uint32_t i, std::uint32_t j) {
+  if (!agree(i, j)) return;
+  const std::uint64_t key = ProxyPair::ordered(i, j).key();
+  if (!pairs_.insert(key)) return;
+  count_pair(key, 1);
+  new_keys_.push_back(key);
+}
+
+void PairFinder::find_by_queries() {
+  for (const std::uint32_t i : moved_list_) {
+    const auto found = [&](std::uint32_t j) {
+      if (i != j) consider(i, j);
+    };
+    const FloatBounds& b = proxies_[i].enlarged;
+    if (places_[i] == Place::moving) tree(Place::fixed).overlapping(b, found);
+    if (places_[i] == Place::moving || places_[i] == Place::fixed) {
+      tree(Place::moving).overlapping(b, found);
+    }
+  }
+}
+
+void PairFinder::find_by_join() {
+  const auto found = [&](std::uint32_t i, std::uint32_t j) {
+    if (moved_.test(i) || moved_.test(j)) consider(i, j);
+  };
+  tree(Place::moving).overlapping_pairs(found);
+  tree(Place::moving).overlapping_pairs(tree(Place::fixed), found);
+}
+
+void PairFinder::find_unbounded() {
+  for (const std::uint32_t u : unbounded_) {
+    const auto found = [&](std::uint32_t i) {
+      if (i != u && enlarged_overlap(i, u)) consider(i, u);
+    };
+    if (!moved_.test(u)) {
+      for (const std::uint32_t i : moved_list_) found(i);
+      continue;
+    }
+    for (std::uint32_t i = 0; i < places_.size(); ++i) {
+      if (places_[i] != Place::none) found(i);
+    }
+  }
+}
+
+void PairFinder::update(std::vector<ProxyPair>& found) {
+  refresh();
+  moved_list_.clear();
+  moved_.append_to(moved_list_);
+  if (moved_list_.empty()) return;
+  new_keys_.clear();
+  if (kJoinAtShare * moved_list_.size() > tree(Place::moving).size()) {
+    find_by_join();
+  } else {
+    find_by_queries();
+  }
+  find_unbounded();
+  moved_.clear();
+  sort_keys(new_keys_, key_scratch_);
+  for (const std::uint64_t key : new_keys_) found.push_back(ProxyPair::of_key(key));
+}
+
+void PairFinder::overlapping(const Bounds& box, std::vector<std::uint32_t>& found) const {
+  const FloatBounds b = rounded_outwards(box);
+  const auto first = static_cast<std::ptrdiff_t>(found.size());
+  const auto append = [&](std::uint32_t i) { found.push_back(i); };
+  for (const std::uint32_t u : unbounded_) {
+    if (overlap(proxies_[u].enlarged, b)) append(u);
+  }
+  for (const BoundingTree& t : trees_) t.overlapping(b, append);
+  std::sort(found.begin() + first, found.end());
+}
+
+// A rollback by some steps changes few bounds: then the trees are changed, not built.
+void PairFinder::adopt() {
+  State& s = incoming_;
+  const bool same = s.places == places_;
+  if (!same) {
+    for (BoundingTree& t : trees_) t.clear();
+    unbounded_.clear();
+    places_.clear();  // and with them what the bits say
+    resize(s.places.size());
+    pending_.clear();
+  }
+  for (std::uint32_t i = 0; i < s.places.size(); ++i) {
+    const bool bounded = s.places[i] == Place::fixed || s.places[i] == Place::moving;
+    if (bounded && !(same && s.proxies[i].enlarged == proxies_[i].enlarged)) pending_.set(i);
+    if (!same && !bounded && s.places[i] != Place::none) unbounded_.push_back(i);
+  }
+  proxies_.swap(s.proxies);
+  places_.swap(s.places);
+  free_.swap(s.free);
+  moved_.clear();
+  for (const std::uint32_t i : s.moved) moved_.set(i);
+  std::fill(pair_counts_.begin(), pair_counts_.end(), 0);
+  pairs_.clear();
+  for (const std::uint64_t key : s.pairs) {
+    pairs_.insert(key);
+    count_pair(key, 1);
+  }
+  moved_list_.clear();
+  refresh();
+}
+
+}  // namespace vp::collide

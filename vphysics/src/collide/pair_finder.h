@@ -1,0 +1,292 @@
+// The broad phase: which colliders come near enough to one another to be looked at closely.
+//
+// Each collider has a proxy with enlarged bounds. While its true bounds stay inside of them nothing
+// is done at all; when they leave, the proxy gets new ones and has "moved". update() then finds the
+// pairs that have come to overlap. Pairs stay in the set until the caller takes them out, which he
+// may do as soon as should_pair() is false.
+//
+// What is found, and its order, depends on bounds, filters, owners, the pair set and on who has
+// moved: all of that is written to a snapshot, the trees are not.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/bounding_tree.h"
+#include "collide/pair_set.h"
+
+namespace vp::collide {
+
+enum class Mobility : std::uint8_t {
+  fixed,  // two of these never pair
+  moving,
+};
+
+inline constexpr std::uint32_t kNoOwner = ~0u;
+
+struct ProxyDesc {
+  Bounds bounds;  // beyond 1e9 m: kept apart, in a list that is compared with everything
+  Mobility mobility = Mobility::moving;
+  std::uint32_t category = 1, mask = ~0u;  // two pair if each one's category is in the other's mask
+  std::uint32_t owner = kNoOwner;          // two of one owner never pair
+  std::uint32_t user = 0;
+  double margin = 0.0;  // [m] >= 0
+};
+
+class PairFinder {
+ public:
+  // Preconditions of all: bounds are numbers, lower <= upper; indices are of proxies that exist.
+  std::uint32_t add(const ProxyDesc& desc);
+  // Its pairs go with it. Cheap if the caller has taken them out, else the whole set is gone
+  // through.
+  void remove(std::uint32_t proxy);
+
+  // True: the bounds had left the enlarged ones (or those had become much too large), so that it
+  // gets new ones: larger by the margin, and longer by the displacement, the way that it is
+  // expected to go.
+  bool set_bounds(std::uint32_t proxy, const Bounds& bounds, double margin = 0.0,
+                  const Vec3& displacement = {}) {
+    if (fits(proxies_[proxy].enlarged, bounds, margin, displacement)) return false;
+    return enlarge(proxy, bounds, margin, displacement);
+  }
+  // Counts as having moved: new pairs are found by update(), old ones stay.
+  void set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask);
+
+  // Appends the pairs that are new, in ascending order, and puts them into the set.
+  void update(std::vector<ProxyPair>& found);
+  // Whose enlarged bounds or filter changed before the last update(), ascending.
+  std::span<const std::uint32_t> moved() const { return moved_list_; }
+
+  bool enlarged_overlap(std::uint32_t i, std::uint32_t j) const {
+    return overlap(proxies_[i].enlarged, proxies_[j].enlarged);
+  }
+  // Whether update() would find the pair if it were not in the set and one of the two had moved.
+  bool should_pair(std::uint32_t i, std::uint32_t j) const {
+    return agree(i, j) && enlarged_overlap(i, j);
+  }
+  bool remove_pair(std::uint32_t i, std::uint32_t j);  // false: it is not in the set
+  bool has_pair(std::uint32_t i, std::uint32_t j) const {
+    return pairs_.contains(ProxyPair::ordered(i, j).key());
+  }
+  std::size_t pairs() const { return pairs_.size(); }
+
+  bool exists(std::uint32_t proxy) const {
+    return proxy < places_.size() && places_[proxy] != Place::none;
+  }
+  std::uint32_t user(std::uint32_t proxy) const { return proxies_[proxy].user; }
+  std::uint32_t owner(std::uint32_t proxy) const { return proxies_[proxy].owner; }
+  Bounds enlarged_bounds(std::uint32_t proxy) const { return widened(proxies_[proxy].enlarged); }
+
+  // Brings the trees up to date for the queries; update() does so too.
+  void refresh();
+  // Proxies whose enlarged bounds overlap the box, appended in ascending order. Precondition of all
+  // queries: refreshed since the last change.
+  void overlapping(const Bounds& box, std::vector<std::uint32_t>& found) const;
+  // hit(proxy, entry) as BoundingTree::cast has it: in order of entry among the unbounded, then
+  // among the fixed, then among the moving ones.
+  template <class F>
+  void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
+
+  // Snapshot: words to a sink with word(std::uint64_t).
+  template <class Sink>
+  void write(Sink& sink) const;
+  // From a reader with word(), check(bool) and ok(), into memory set apart: adopt() takes it over.
+  // Precondition of adopt(): the reader was ok after the last read().
+  template <class Reader>
+  void read(Reader& in);
+  void adopt();
+
+ private:
+  // Which tree or list it is in.
+  enum class Place : std::uint8_t { fixed, moving, unbounded_fixed, unbounded_moving, none };
+
+  struct Proxy {
+    FloatBounds enlarged;
+    std::uint32_t category = 0, mask = 0, owner = 0, user = 0;
+
+    bool operator==(const Proxy&) const = default;
+  };
+  static_assert(sizeof(Proxy) == 48);
+
+  // What a snapshot carries.
+  struct State {
+    std::vector<Proxy> proxies;
+    std::vector<Place> places;
+    std::vector<std::uint32_t> free, moved;
+    std::vector<std::uint64_t> pairs;
+  };
+
+  static constexpr double kUnbounded = 1e9;  // [m]
+  static Place place_of(const FloatBounds& enlarged, Mobility mobility);
+  static Mobility mobility_of(Place place) {
+    return place == Place::fixed || place == Place::unbounded_fixed ? Mobility::fixed
+                                                                    : Mobility::moving;
+  }
+  static bool fits(const FloatBounds& enlarged, const Bounds& b, double margin, const Vec3& d);
+  bool enlarge(std::uint32_t proxy, const Bounds& bounds, double margin, const Vec3& displacement);
+  void put(std::uint32_t proxy, const FloatBounds& enlarged, Mobility mobility);
+  void take_out(std::uint32_t proxy);
+  void resize(std::size_t proxies);
+  bool agree(std::uint32_t i, std::uint32_t j) const {
+    const Proxy &a = proxies_[i], &b = proxies_[j];
+    return (a.owner != b.owner || a.owner == kNoOwner) && (a.category & b.mask) != 0 &&
+           (b.category & a.mask) != 0 &&
+           (mobility_of(places_[i]) == Mobility::moving ||
+            mobility_of(places_[j]) == Mobility::moving);
+  }
+  BoundingTree& tree(Place place) { return trees_[static_cast<std::size_t>(place)]; }
+  void rebuild(Place place);
+  void refresh(Place place, std::size_t pending);
+  void consider(std::uint32_t i, std::uint32_t j);
+  void find_by_queries();
+  void find_by_join();
+  void find_unbounded();
+  void count_pair(std::uint64_t key, std::uint32_t change);
+  template <class Reader>
+  void read_slot(Reader& in);
+
+  std::vector<Proxy> proxies_;
+  std::vector<Place> places_;
+  std::vector<std::uint32_t> pair_counts_;  // of each proxy
+  std::vector<std::uint32_t> free_;         // the last is used next
+  std::vector<std::uint32_t> unbounded_;    // ascending
+  IndexSet moved_;                          // since the last update()
+  PairSet pairs_;
+  // What the trees do not know yet.
+  IndexSet pending_;
+  std::array<BoundingTree, 2> trees_;  // of fixed and of moving ones
+
+  // Scratch and results of the last update().
+  std::vector<std::uint32_t> moved_list_, pending_list_;
+  std::vector<TreeItem> items_;
+  std::vector<std::uint64_t> new_keys_;
+  mutable std::vector<std::uint64_t> key_scratch_, written_keys_;
+  State incoming_;
+  IndexSet seen_;
+};
+
+// Inside, and nowhere by more than four margins and twice the displacement larger: then it would
+// keep pairs that are of no use. Rounding to float may add two units of 2^-23.
+inline bool PairFinder::fits(const FloatBounds& enlarged, const Bounds& b, double margin,
+                             const Vec3& d) {
+  bool fits = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = enlarged.lower[axis], upper = enlarged.upper[axis];
+    const double slack =
+        4.0 * margin + 2.0 * std::fabs(d[axis]) + (std::fabs(lower) + std::fabs(upper)) * 0x1p-22;
+    const double below = b.lower[axis] - lower, above = upper - b.upper[axis];
+    fits = fits && below >= 0.0 && above >= 0.0 && below <= slack && above <= slack;
+  }
+  return fits;
+}
+
+template <class F>
+void PairFinder::cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const {
+  const LaneSweep lanes(sweep);
+  const auto carried = [&](std::uint32_t proxy, float entry) { return limit = hit(proxy, entry); };
+  for (const std::uint32_t proxy : unbounded_) {
+    float entry = 0.0f;
+    if (!lanes.meets(proxies_[proxy].enlarged, limit, entry)) continue;
+    if (carried(proxy, entry) < 0.0) return;
+  }
+  for (const BoundingTree& tree : trees_) {
+    tree.cast(sweep, limit, scratch, carried);
+    if (limit < 0.0) return;
+  }
+}
+
+// Slots: state (place | moved), category | mask, owner | user, bounds; of a free one the state
+// alone. Then the free list and the pairs, each after its number.
+template <class Sink>
+void PairFinder::write(Sink& sink) const {
+  const auto both = [](std::uint32_t high, std::uint32_t low) {
+    return (std::uint64_t{high} << 32) | low;
+  };
+  sink.word(proxies_.size());
+  for (std::uint32_t i = 0; i < proxies_.size(); ++i) {
+    const Proxy& p = proxies_[i];
+    sink.word(both(static_cast<std::uint32_t>(places_[i]), moved_.test(i) ? 1u : 0u));
+    if (places_[i] == Place::none) continue;
+    sink.word(both(p.category, p.mask));
+    sink.word(both(p.owner, p.user));
+    for (int axis = 0; axis < 3; ++axis) {
+      sink.word(both(std::bit_cast<std::uint32_t>(p.enlarged.lower[axis]),
+                     std::bit_cast<std::uint32_t>(p.enlarged.upper[axis])));
+    }
+  }
+  sink.word(free_.size());
+  for (const std::uint32_t i : free_) sink.word(i);
+  written_keys_.clear();
+  pairs_.append_keys(written_keys_);
+  sort_keys(written_keys_, key_scratch_);
+  sink.word(written_keys_.size());
+  for (const std::uint64_t key : written_keys_) sink.word(key);
+}
+
+template <class Reader>
+void PairFinder::read_slot(Reader& in) {
+  const std::uint64_t state = in.word();
+  in.check((state >> 32) <= static_cast<std::uint64_t>(Place::none) && (state & 0xfffffffeu) == 0);
+  if (!in.ok()) return;
+  const auto place = static_cast<Place>(state >> 32);
+  const auto index = static_cast<std::uint32_t>(incoming_.places.size());
+  const float limit = rounded_up(kFloatFar);
+  Proxy p;
+  if (place != Place::none) {
+    const auto high = [](std::uint64_t w) { return static_cast<std::uint32_t>(w >> 32); };
+    const auto low = [](std::uint64_t w) { return static_cast<std::uint32_t>(w); };
+    const std::uint64_t filter = in.word(), names = in.word();
+    p.category = high(filter), p.mask = low(filter);
+    p.owner = high(names), p.user = low(names);
+    p.enlarged = {Lanes4{}, Lanes4{}};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t w = in.word();
+      const float lower = std::bit_cast<float>(high(w)), upper = std::bit_cast<float>(low(w));
+      p.enlarged.lower[axis] = lower;
+      p.enlarged.upper[axis] = upper;
+      in.check(-lower <= limit && lower <= upper && upper <= limit);  // no NaN passes
+    }
+    in.check(place == place_of(p.enlarged, mobility_of(place)));
+  }
+  if ((state & 1u) != 0) {
+    in.check(place != Place::none);
+    incoming_.moved.push_back(index);
+  }
+  incoming_.proxies.push_back(p);
+  incoming_.places.push_back(place);
+}
+
+template <class Reader>
+void PairFinder::read(Reader& in) {
+  State& s = incoming_;
+  s.proxies.clear(), s.places.clear(), s.free.clear(), s.moved.clear(), s.pairs.clear();
+  // Memory grows with the bytes that there are, not with what they announce.
+  const std::uint64_t proxies = in.word();
+  for (std::uint64_t i = 0; i < proxies && in.ok(); ++i) read_slot(in);
+  const std::uint64_t free = in.word();
+  in.check(free ==
+           static_cast<std::uint64_t>(std::count(s.places.begin(), s.places.end(), Place::none)));
+  seen_.resize(s.places.size());
+  seen_.clear();
+  for (std::uint64_t i = 0; i < free && in.ok(); ++i) {
+    const std::uint64_t w = in.word();
+    in.check(w < s.places.size() && s.places[w] == Place::none);
+    if (!in.ok()) return;
+    const auto index = static_cast<std::uint32_t>(w);
+    in.check(!seen_.test(index));
+    seen_.set(index);
+    s.free.push_back(index);
+  }
+  const std::uint64_t pairs = in.word();
+  for (std::uint64_t i = 0; i < pairs && in.ok(); ++i) {
+    const std::uint64_t key = in.word();
+    const ProxyPair pair = ProxyPair::of_key(key);
+    in.check(pair.a < pair.b && pair.b < s.places.size() && s.places[pair.a] != Place::none &&
+             s.places[pair.b] != Place::none && (s.pairs.empty() || s.pairs.back() < key));
+    s.pairs.push_back(key);
+  }
+}
+
+}  // namespace vp::collide
