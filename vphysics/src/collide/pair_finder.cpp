@@ -35,7 +35,8 @@ PairFinder::Place PairFinder::place_of(const FloatBounds& enlarged, Mobility mob
 }
 
 void PairFinder::resize(std::size_t proxies) {
-  proxies_.resize(proxies);
+  bounds_.resize(proxies);
+  filters_.resize(proxies);
   places_.resize(proxies, Place::none);
   pair_counts_.resize(proxies, 0);
   moved_.resize(proxies);
@@ -45,12 +46,12 @@ void PairFinder::resize(std::size_t proxies) {
 std::uint32_t PairFinder::add(const ProxyDesc& desc) {
   VP_ASSERT(is_ordered(desc.bounds) && desc.margin >= 0.0);
   if (free_.empty()) {
-    free_.push_back(static_cast<std::uint32_t>(proxies_.size()));
-    resize(proxies_.size() + 1);
+    free_.push_back(static_cast<std::uint32_t>(places_.size()));
+    resize(places_.size() + 1);
   }
   const std::uint32_t index = free_.back();
   free_.pop_back();
-  proxies_[index] = {{}, desc.category, desc.mask, desc.owner, desc.user};
+  filters_[index] = {desc.category, desc.mask, desc.owner, desc.user};
   put(index, enlarged(desc.bounds, desc.margin, {}), desc.mobility);
   return index;
 }
@@ -83,7 +84,7 @@ void PairFinder::take_out(std::uint32_t proxy) {
 
 void PairFinder::put(std::uint32_t proxy, const FloatBounds& bounds, Mobility mobility) {
   const Place place = place_of(bounds, mobility);
-  proxies_[proxy].enlarged = bounds;
+  bounds_[proxy] = bounds;
   moved_.set(proxy);
   if (place != places_[proxy]) {
     take_out(proxy);
@@ -99,15 +100,15 @@ bool PairFinder::enlarge(std::uint32_t proxy, const Bounds& bounds, double margi
                          const Vec3& displacement) {
   VP_ASSERT(exists(proxy) && is_ordered(bounds) && margin >= 0.0);
   const FloatBounds larger = enlarged(bounds, margin, displacement);
-  if (larger == proxies_[proxy].enlarged) return false;  // what has no end never fits
-  put(proxy, larger, mobility_of(places_[proxy]));
+  if (larger == bounds_[proxy]) return false;  // what has no end never fits
+  put(proxy, larger, is_moving(places_[proxy]) ? Mobility::moving : Mobility::fixed);
   return true;
 }
 
 void PairFinder::set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask) {
   VP_ASSERT(exists(proxy));
-  proxies_[proxy].category = category;
-  proxies_[proxy].mask = mask;
+  filters_[proxy].category = category;
+  filters_[proxy].mask = mask;
   moved_.set(proxy);
 }
 
@@ -127,7 +128,7 @@ bool PairFinder::remove_pair(std::uint32_t i, std::uint32_t j) {
 void PairFinder::rebuild(Place place) {
   items_.clear();
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
-    if (places_[i] == place) items_.push_back({proxies_[i].enlarged, i});
+    if (places_[i] == place) items_.push_back({bounds_[i], i});
   }
   tree(place).build(items_);
 }
@@ -135,11 +136,11 @@ void PairFinder::rebuild(Place place) {
 void PairFinder::refresh(Place place, std::size_t pending) {
   BoundingTree& t = tree(place);
   // Half of them changed since the tree was built: it is about as costly to change on, and worse.
-  bool anew = 2 * (t.changes() + pending) > t.size() + pending;
+  bool anew = 2 * (t.changes() + pending) > t.size();
   for (std::size_t k = 0; k < pending_list_.size() && !anew; ++k) {
     const std::uint32_t i = pending_list_[k];
     if (places_[i] != place) continue;
-    const FloatBounds& b = proxies_[i].enlarged;
+    const FloatBounds& b = bounds_[i];
     anew = !(t.contains(i) ? t.move(i, b) : t.insert(i, b));
   }
   if (anew) rebuild(place);
@@ -160,11 +161,19 @@ void PairFinder::refresh() {
 }
 
 void PairFinder::consider(std::uint32_t i, std::uint32_t j) {
-  if (!agree(i, j)) return;
-  const std::uint64_t key = ProxyPair::ordered(i, j).key();
-  if (!pairs_.insert(key)) return;
-  count_pair(key, 1);
-  new_keys_.push_back(key);
+  if (agree(filters_[i], filters_[j])) candidates_.push_back(ProxyPair::ordered(i, j).key());
+}
+
+// The set is far larger than the caches near the core: ask for what comes next.
+void PairFinder::take_candidates() {
+  constexpr std::size_t kAhead = 16;
+  const std::size_t n = candidates_.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    pairs_.prefetch(candidates_[std::min(k + kAhead, n - 1)]);
+    if (!pairs_.insert(candidates_[k])) continue;
+    count_pair(candidates_[k], 1);
+    new_keys_.push_back(candidates_[k]);
+  }
 }
 
 void PairFinder::find_by_queries() {
@@ -172,7 +181,7 @@ void PairFinder::find_by_queries() {
     const auto found = [&](std::uint32_t j) {
       if (i != j) consider(i, j);
     };
-    const FloatBounds& b = proxies_[i].enlarged;
+    const FloatBounds& b = bounds_[i];
     if (places_[i] == Place::moving) tree(Place::fixed).overlapping(b, found);
     if (places_[i] == Place::moving || places_[i] == Place::fixed) {
       tree(Place::moving).overlapping(b, found);
@@ -191,7 +200,8 @@ void PairFinder::find_by_join() {
 void PairFinder::find_unbounded() {
   for (const std::uint32_t u : unbounded_) {
     const auto found = [&](std::uint32_t i) {
-      if (i != u && enlarged_overlap(i, u)) consider(i, u);
+      const bool moves = is_moving(places_[i]) || is_moving(places_[u]);
+      if (i != u && moves && enlarged_overlap(i, u)) consider(i, u);
     };
     if (!moved_.test(u)) {
       for (const std::uint32_t i : moved_list_) found(i);
@@ -208,6 +218,7 @@ void PairFinder::update(std::vector<ProxyPair>& found) {
   moved_list_.clear();
   moved_.append_to(moved_list_);
   if (moved_list_.empty()) return;
+  candidates_.clear();
   new_keys_.clear();
   if (kJoinAtShare * moved_list_.size() > tree(Place::moving).size()) {
     find_by_join();
@@ -215,6 +226,7 @@ void PairFinder::update(std::vector<ProxyPair>& found) {
     find_by_queries();
   }
   find_unbounded();
+  take_candidates();
   moved_.clear();
   sort_keys(new_keys_, key_scratch_);
   for (const std::uint64_t key : new_keys_) found.push_back(ProxyPair::of_key(key));
@@ -225,7 +237,7 @@ void PairFinder::overlapping(const Bounds& box, std::vector<std::uint32_t>& foun
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   const auto append = [&](std::uint32_t i) { found.push_back(i); };
   for (const std::uint32_t u : unbounded_) {
-    if (overlap(proxies_[u].enlarged, b)) append(u);
+    if (overlap(bounds_[u], b)) append(u);
   }
   for (const BoundingTree& t : trees_) t.overlapping(b, append);
   std::sort(found.begin() + first, found.end());
@@ -244,10 +256,11 @@ void PairFinder::adopt() {
   }
   for (std::uint32_t i = 0; i < s.places.size(); ++i) {
     const bool bounded = s.places[i] == Place::fixed || s.places[i] == Place::moving;
-    if (bounded && !(same && s.proxies[i].enlarged == proxies_[i].enlarged)) pending_.set(i);
+    if (bounded && !(same && s.bounds[i] == bounds_[i])) pending_.set(i);
     if (!same && !bounded && s.places[i] != Place::none) unbounded_.push_back(i);
   }
-  proxies_.swap(s.proxies);
+  bounds_.swap(s.bounds);
+  filters_.swap(s.filters);
   places_.swap(s.places);
   free_.swap(s.free);
   moved_.clear();

@@ -48,7 +48,7 @@ class PairFinder {
   // expected to go.
   bool set_bounds(std::uint32_t proxy, const Bounds& bounds, double margin = 0.0,
                   const Vec3& displacement = {}) {
-    if (fits(proxies_[proxy].enlarged, bounds, margin, displacement)) return false;
+    if (fits(bounds_[proxy], bounds, margin, displacement)) return false;
     return enlarge(proxy, bounds, margin, displacement);
   }
   // Counts as having moved: new pairs are found by update(), old ones stay.
@@ -60,11 +60,12 @@ class PairFinder {
   std::span<const std::uint32_t> moved() const { return moved_list_; }
 
   bool enlarged_overlap(std::uint32_t i, std::uint32_t j) const {
-    return overlap(proxies_[i].enlarged, proxies_[j].enlarged);
+    return overlap(bounds_[i], bounds_[j]);
   }
   // Whether update() would find the pair if it were not in the set and one of the two had moved.
   bool should_pair(std::uint32_t i, std::uint32_t j) const {
-    return agree(i, j) && enlarged_overlap(i, j);
+    return agree(filters_[i], filters_[j]) && (is_moving(places_[i]) || is_moving(places_[j])) &&
+           enlarged_overlap(i, j);
   }
   bool remove_pair(std::uint32_t i, std::uint32_t j);  // false: it is not in the set
   bool has_pair(std::uint32_t i, std::uint32_t j) const {
@@ -75,9 +76,9 @@ class PairFinder {
   bool exists(std::uint32_t proxy) const {
     return proxy < places_.size() && places_[proxy] != Place::none;
   }
-  std::uint32_t user(std::uint32_t proxy) const { return proxies_[proxy].user; }
-  std::uint32_t owner(std::uint32_t proxy) const { return proxies_[proxy].owner; }
-  Bounds enlarged_bounds(std::uint32_t proxy) const { return widened(proxies_[proxy].enlarged); }
+  std::uint32_t user(std::uint32_t proxy) const { return filters_[proxy].user; }
+  std::uint32_t owner(std::uint32_t proxy) const { return filters_[proxy].owner; }
+  Bounds enlarged_bounds(std::uint32_t proxy) const { return widened(bounds_[proxy]); }
 
   // Brings the trees up to date for the queries; update() does so too.
   void refresh();
@@ -102,17 +103,14 @@ class PairFinder {
   // Which tree or list it is in.
   enum class Place : std::uint8_t { fixed, moving, unbounded_fixed, unbounded_moving, none };
 
-  struct Proxy {
-    FloatBounds enlarged;
+  struct Filter {
     std::uint32_t category = 0, mask = 0, owner = 0, user = 0;
-
-    bool operator==(const Proxy&) const = default;
   };
-  static_assert(sizeof(Proxy) == 48);
 
   // What a snapshot carries.
   struct State {
-    std::vector<Proxy> proxies;
+    std::vector<FloatBounds> bounds;
+    std::vector<Filter> filters;
     std::vector<Place> places;
     std::vector<std::uint32_t> free, moved;
     std::vector<std::uint64_t> pairs;
@@ -120,26 +118,23 @@ class PairFinder {
 
   static constexpr double kUnbounded = 1e9;  // [m]
   static Place place_of(const FloatBounds& enlarged, Mobility mobility);
-  static Mobility mobility_of(Place place) {
-    return place == Place::fixed || place == Place::unbounded_fixed ? Mobility::fixed
-                                                                    : Mobility::moving;
+  static bool is_moving(Place place) {
+    return place == Place::moving || place == Place::unbounded_moving;
   }
   static bool fits(const FloatBounds& enlarged, const Bounds& b, double margin, const Vec3& d);
   bool enlarge(std::uint32_t proxy, const Bounds& bounds, double margin, const Vec3& displacement);
   void put(std::uint32_t proxy, const FloatBounds& enlarged, Mobility mobility);
   void take_out(std::uint32_t proxy);
   void resize(std::size_t proxies);
-  bool agree(std::uint32_t i, std::uint32_t j) const {
-    const Proxy &a = proxies_[i], &b = proxies_[j];
+  static bool agree(const Filter& a, const Filter& b) {
     return (a.owner != b.owner || a.owner == kNoOwner) && (a.category & b.mask) != 0 &&
-           (b.category & a.mask) != 0 &&
-           (mobility_of(places_[i]) == Mobility::moving ||
-            mobility_of(places_[j]) == Mobility::moving);
+           (b.category & a.mask) != 0;
   }
   BoundingTree& tree(Place place) { return trees_[static_cast<std::size_t>(place)]; }
   void rebuild(Place place);
   void refresh(Place place, std::size_t pending);
   void consider(std::uint32_t i, std::uint32_t j);
+  void take_candidates();
   void find_by_queries();
   void find_by_join();
   void find_unbounded();
@@ -147,12 +142,14 @@ class PairFinder {
   template <class Reader>
   void read_slot(Reader& in);
 
-  std::vector<Proxy> proxies_;
+  // Of each proxy.
+  std::vector<FloatBounds> bounds_;  // enlarged
+  std::vector<Filter> filters_;
   std::vector<Place> places_;
-  std::vector<std::uint32_t> pair_counts_;  // of each proxy
-  std::vector<std::uint32_t> free_;         // the last is used next
-  std::vector<std::uint32_t> unbounded_;    // ascending
-  IndexSet moved_;                          // since the last update()
+  std::vector<std::uint32_t> pair_counts_;
+  std::vector<std::uint32_t> free_;       // the last is used next
+  std::vector<std::uint32_t> unbounded_;  // ascending
+  IndexSet moved_;                        // since the last update()
   PairSet pairs_;
   // What the trees do not know yet.
   IndexSet pending_;
@@ -161,7 +158,7 @@ class PairFinder {
   // Scratch and results of the last update().
   std::vector<std::uint32_t> moved_list_, pending_list_;
   std::vector<TreeItem> items_;
-  std::vector<std::uint64_t> new_keys_;
+  std::vector<std::uint64_t> candidates_, new_keys_;
   mutable std::vector<std::uint64_t> key_scratch_, written_keys_;
   State incoming_;
   IndexSet seen_;
@@ -188,7 +185,7 @@ void PairFinder::cast(const Sweep& sweep, double limit, CastScratch& scratch, co
   const auto carried = [&](std::uint32_t proxy, float entry) { return limit = hit(proxy, entry); };
   for (const std::uint32_t proxy : unbounded_) {
     float entry = 0.0f;
-    if (!lanes.meets(proxies_[proxy].enlarged, limit, entry)) continue;
+    if (!lanes.meets(bounds_[proxy], limit, entry)) continue;
     if (carried(proxy, entry) < 0.0) return;
   }
   for (const BoundingTree& tree : trees_) {
@@ -204,16 +201,16 @@ void PairFinder::write(Sink& sink) const {
   const auto both = [](std::uint32_t high, std::uint32_t low) {
     return (std::uint64_t{high} << 32) | low;
   };
-  sink.word(proxies_.size());
-  for (std::uint32_t i = 0; i < proxies_.size(); ++i) {
-    const Proxy& p = proxies_[i];
+  sink.word(places_.size());
+  for (std::uint32_t i = 0; i < places_.size(); ++i) {
+    const Filter& f = filters_[i];
     sink.word(both(static_cast<std::uint32_t>(places_[i]), moved_.test(i) ? 1u : 0u));
     if (places_[i] == Place::none) continue;
-    sink.word(both(p.category, p.mask));
-    sink.word(both(p.owner, p.user));
+    sink.word(both(f.category, f.mask));
+    sink.word(both(f.owner, f.user));
     for (int axis = 0; axis < 3; ++axis) {
-      sink.word(both(std::bit_cast<std::uint32_t>(p.enlarged.lower[axis]),
-                     std::bit_cast<std::uint32_t>(p.enlarged.upper[axis])));
+      sink.word(both(std::bit_cast<std::uint32_t>(bounds_[i].lower[axis]),
+                     std::bit_cast<std::uint32_t>(bounds_[i].upper[axis])));
     }
   }
   sink.word(free_.size());
@@ -233,35 +230,37 @@ void PairFinder::read_slot(Reader& in) {
   const auto place = static_cast<Place>(state >> 32);
   const auto index = static_cast<std::uint32_t>(incoming_.places.size());
   const float limit = rounded_up(kFloatFar);
-  Proxy p;
+  FloatBounds b{Lanes4{}, Lanes4{}};
+  Filter f;
   if (place != Place::none) {
     const auto high = [](std::uint64_t w) { return static_cast<std::uint32_t>(w >> 32); };
     const auto low = [](std::uint64_t w) { return static_cast<std::uint32_t>(w); };
     const std::uint64_t filter = in.word(), names = in.word();
-    p.category = high(filter), p.mask = low(filter);
-    p.owner = high(names), p.user = low(names);
-    p.enlarged = {Lanes4{}, Lanes4{}};
+    f.category = high(filter), f.mask = low(filter);
+    f.owner = high(names), f.user = low(names);
     for (int axis = 0; axis < 3; ++axis) {
       const std::uint64_t w = in.word();
       const float lower = std::bit_cast<float>(high(w)), upper = std::bit_cast<float>(low(w));
-      p.enlarged.lower[axis] = lower;
-      p.enlarged.upper[axis] = upper;
+      b.lower[axis] = lower;
+      b.upper[axis] = upper;
       in.check(-lower <= limit && lower <= upper && upper <= limit);  // no NaN passes
     }
-    in.check(place == place_of(p.enlarged, mobility_of(place)));
+    in.check(place == place_of(b, is_moving(place) ? Mobility::moving : Mobility::fixed));
   }
   if ((state & 1u) != 0) {
     in.check(place != Place::none);
     incoming_.moved.push_back(index);
   }
-  incoming_.proxies.push_back(p);
+  incoming_.bounds.push_back(b);
+  incoming_.filters.push_back(f);
   incoming_.places.push_back(place);
 }
 
 template <class Reader>
 void PairFinder::read(Reader& in) {
   State& s = incoming_;
-  s.proxies.clear(), s.places.clear(), s.free.clear(), s.moved.clear(), s.pairs.clear();
+  s.bounds.clear(), s.filters.clear(), s.places.clear(), s.free.clear(), s.moved.clear(),
+      s.pairs.clear();
   // Memory grows with the bytes that there are, not with what they announce.
   const std::uint64_t proxies = in.word();
   for (std::uint64_t i = 0; i < proxies && in.ok(); ++i) read_slot(in);

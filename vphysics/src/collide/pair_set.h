@@ -41,6 +41,10 @@ class PairSet {
     ++size_;
     return true;
   }
+  // Says that the key will be asked for soon.
+  void prefetch(std::uint64_t key) const {
+    if (!table_.empty()) __builtin_prefetch(&table_[home(key)]);
+  }
   bool contains(std::uint64_t key) const {
     if (size_ == 0) return false;
     return table_[find(key)] == key;
