@@ -1,0 +1,134 @@
+#include "collide/surface.h"
+
+namespace vp::collide {
+namespace {
+
+// What rounding may do to a direction: a corner as little above the plane across it, as a share of
+// its distance, is in the plane.
+constexpr double kInPlane = 1e-6;
+
+void set_normal(SurfaceTriangle& t) {
+  const Vec3 n = cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
+  t.normal = (1.0 / norm(n)) * n;
+}
+
+bool is_above(const Vec3& from, const Vec3& corner, const Vec3& d) {
+  const Vec3 way = corner - from;
+  const double height = dot(way, d);
+  return height > 0.0 && height * height > kInPlane * kInPlane * dot(way, way);
+}
+
+// Corners and neighbours of the two triangles of a cell, as steps of columns and rows from its
+// first sample: the corners, and what is across each edge, with the cell that has it.
+struct CellTriangle {
+  int corner[3][2], across[3][2], cell[3][2];
+};
+constexpr CellTriangle kBelow{
+    {{0, 0}, {1, 0}, {1, 1}}, {{0, -1}, {2, 1}, {0, 1}}, {{0, -1}, {1, 0}, {0, 0}}};
+constexpr CellTriangle kAbove{
+    {{0, 0}, {1, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
+
+// Next to a sample, by the diagonals too, each with two cells of which one has to be there.
+constexpr int kAround[6][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 0}, {-1, -1}, {0, -1}};
+constexpr int kAroundCells[6][2][2] = {{{0, 0}, {0, -1}},    {{0, 0}, {0, 0}},
+                                       {{0, 0}, {-1, 0}},    {{-1, 0}, {-1, -1}},
+                                       {{-1, -1}, {-1, -1}}, {{-1, -1}, {0, -1}}};
+
+}  // namespace
+
+Bounds Surface::bounds() const {
+  if (mesh_ != nullptr) return {scaled(mesh_->lower), scaled(mesh_->upper)};
+  const Vec3 far{(field_->columns - 1) * field_->spacing_x, (field_->rows - 1) * field_->spacing_y,
+                 field_->highest};
+  return {scaled({0.0, 0.0, field_->lowest}), scaled(far)};
+}
+
+Bounds Surface::unscaled(const Bounds& b) const {
+  Bounds own;
+  for (int i = 0; i < 3; ++i) {
+    own.lower[i] = b.lower[i] / scale_[i];
+    own.upper[i] = b.upper[i] / scale_[i];
+  }
+  return own;
+}
+
+void Surface::append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const {
+  const Bounds own = unscaled(box);
+  const auto append = [&](std::uint32_t id) { ids.push_back(id); };
+  if (field_ != nullptr) return for_cells(own, append);
+  const auto first = static_cast<std::ptrdiff_t>(ids.size());
+  mesh_->tree.overlapping(rounded_outwards(own), append);
+  std::sort(ids.begin() + first, ids.end());
+}
+
+SurfaceTriangle Surface::triangle(std::uint32_t id) const {
+  return mesh_ != nullptr ? of_mesh(id) : of_field(id);
+}
+
+SurfaceTriangle Surface::of_mesh(std::uint32_t id) const {
+  SurfaceTriangle t;
+  t.id = id;
+  for (std::size_t i = 0; i < 3; ++i) {
+    t.corners[i] = mesh_->triangles[id][i];
+    t.p[i] = scaled(mesh_->vertices[t.corners[i]]);
+    const std::uint32_t across = mesh_->opposite[id][i];
+    t.has_across[i] = across != kNoVertex;
+    if (t.has_across[i]) t.across[i] = scaled(mesh_->vertices[across]);
+  }
+  t.felt = mesh_->felt[id];
+  set_normal(t);
+  return t;
+}
+
+SurfaceTriangle Surface::of_field(std::uint32_t id) const {
+  const HeightData& f = *field_;
+  const std::uint32_t cell = id / 2, i = cell % (f.columns - 1), j = cell / (f.columns - 1);
+  const CellTriangle& shape = id % 2 == 0 ? kBelow : kAbove;
+  const auto sample = [&](const int(&step)[2]) {
+    return scaled(
+        f.sample(i + static_cast<std::uint32_t>(step[0]), j + static_cast<std::uint32_t>(step[1])));
+  };
+  SurfaceTriangle t;
+  t.id = id;
+  t.felt = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int(&c)[2] = shape.corner[k];
+    t.corners[k] =
+        (j + static_cast<std::uint32_t>(c[1])) * f.columns + i + static_cast<std::uint32_t>(c[0]);
+    t.p[k] = sample(c);
+    t.has_across[k] =
+        !f.is_hole(std::int64_t{i} + shape.cell[k][0], std::int64_t{j} + shape.cell[k][1]);
+    if (t.has_across[k]) t.across[k] = sample(shape.across[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const unsigned sides =
+        t.has_across[k] ? felt_sides(t.p[k], t.p[(k + 1) % 3], t.p[(k + 2) % 3], t.across[k]) : 3;
+    t.felt |= (sides & 1u) << k | (sides >> 1) << (3 + k);
+  }
+  set_normal(t);
+  return t;
+}
+
+bool Surface::lies_below(std::uint32_t vertex, const Vec3& d) const {
+  if (mesh_ != nullptr) {
+    const Vec3 from = scaled(mesh_->vertices[vertex]);
+    for (std::uint32_t k = mesh_->first_around[vertex]; k < mesh_->first_around[vertex + 1]; ++k) {
+      if (is_above(from, scaled(mesh_->vertices[mesh_->around[k]]), d)) return false;
+    }
+    return true;
+  }
+  const HeightData& f = *field_;
+  const std::int64_t i = vertex % f.columns, j = vertex / f.columns;
+  const Vec3 from = scaled(f.sample(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)));
+  for (int k = 0; k < 6; ++k) {
+    const auto& cells = kAroundCells[k];
+    if (f.is_hole(i + cells[0][0], j + cells[0][1]) && f.is_hole(i + cells[1][0], j + cells[1][1]))
+      continue;
+    const auto at_i = static_cast<std::uint32_t>(i + kAround[k][0]),
+               at_j = static_cast<std::uint32_t>(j + kAround[k][1]);
+    if (is_above(from, scaled(f.sample(at_i, at_j)), d)) return false;
+  }
+  return true;
+}
+
+}  // namespace vp::collide
