@@ -58,6 +58,7 @@ LAYERS = {
     'client/': 'client',
     'foosball/include/foosball/table.h': 'table',
     'tools/': 'tools',
+    'benchmarks/': 'benchmarks',
     'tests/': 'tests',
 }
 
@@ -75,8 +76,8 @@ MAY_USE = {
     'vphysics-tests': ENGINE | {'urdf', 'scenes'},
     'vphysics-samples': {ENGINE_FACE},
     'table': {ENGINE_FACE},
-    'scenes': {ENGINE_FACE, 'table'},
-    'scenes-tests': {ENGINE_FACE, 'table', 'scenes'},
+    'scenes': {ENGINE_FACE},
+    'scenes-tests': {ENGINE_FACE, 'scenes'},
     'foosball': {ENGINE_FACE, 'table'},
     'foosball-tests': {ENGINE_FACE, 'table', 'foosball'},
     'device-frame': set(),
@@ -89,6 +90,7 @@ MAY_USE = {
     # The client draws from snapshots only: the table's geometry, never the match.
     'client': {ENGINE_FACE, 'os', 'table', 'scenes', 'wire', 'device-frame', 'hand'},
     'tools': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
+    'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
     'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',
               'firmware', 'server', 'client'},
 }

@@ -3,7 +3,8 @@
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
 # Groups: build (compile it), play (run it), check (compile and run all that ./check does), bench (the
-# engines that ./bench multibody compares with).
+# engines that ./bench multibody, drift and rigid compare with), node (for those of them in WebAssembly,
+# where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -51,10 +52,13 @@ check  libelf-dev            simavr reads the firmware through it
 bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
 bench  libdart-dev           DART, another one to compare with
 bench  liborocos-kdl-dev     KDL, another one
-bench  libbullet-dev         Bullet's btMultiBody, another one
+bench  libbullet-dev         Bullet and its btMultiBody, others to compare with
+bench  libode-dev            ODE, which ./bench rigid compares with
 bench  libsimbody-dev        Simbody, another one
 bench  libeigen3-dev         matrices of DART and KDL, principal axes
-bench  python3-matplotlib    draws the curves of ./bench drift
+bench  python3-matplotlib    draws the curves of ./bench drift, rigid and scaling
+node   nodejs                runs the engines of ./bench rigid that are WebAssembly
+node   npm                   fetches them
 TABLE
 }
 
@@ -145,7 +149,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     list) packages_table | awk -v groups=" ${*:-build play check bench} " 'index(groups, " " $1 " ")' ;;
     install) packages_install build/log/packages.log "${@:-build}" ;;
     *)
-      echo "usage: scripts/packages.sh list|install [build|play|check|bench]..." >&2
+      echo "usage: scripts/packages.sh list|install [build|play|check|bench|node]..." >&2
       exit 2
       ;;
   esac

@@ -38,6 +38,19 @@ def flat(rows):
     return [*lines, '']
 
 
+def verdicts(rows, ours='Virtual Physics'):
+    """What was reached beside its goal, which is at most that."""
+    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
+    lines = ['| what | of | reached | goal | |', '| --- | --- | ---: | ---: | --- |']
+    for r in rows:
+        reached = value.get((r['subject'], ours, r['metric']))
+        if r['engine'] == 'goal' and reached:
+            verdict = 'met' if float(reached) <= float(r['value']) else 'short'
+            lines.append(f'| {r["metric"].replace("_", " ")} | {r["subject"]} | {reached} | '
+                         f'{r["value"]} {r["unit"]} | {verdict} |'.replace('  |', ' |'))
+    return [*lines, '']
+
+
 def multibody(rows):
     """Times by model and engine, batches by model and lanes, and what was reached beside its goal."""
     value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
@@ -50,14 +63,7 @@ def multibody(rows):
     lanes = in_order(m.group(1) for r in rows if (m := re.fullmatch(r'forward_batch_(\w+)_us', r['metric'])))
     lines += grid('forward dynamics in batches [us a state]', models, lanes,
                   lambda model, lane: value.get((model, 'Virtual Physics', f'forward_batch_{lane}_us')))
-    lines += ['| what | of | reached | goal | |', '| --- | --- | ---: | ---: | --- |']
-    for r in rows:
-        reached = value.get((r['subject'], 'Virtual Physics', r['metric']))
-        if r['engine'] == 'goal' and reached:
-            verdict = 'met' if float(reached) <= float(r['value']) else 'short'
-            lines.append(f'| {r["metric"].replace("_", " ")} | {r["subject"]} | {reached} | {r["value"]} '
-                         f'{r["unit"]} | {verdict} |')
-    return [*lines, '']
+    return [*lines, *verdicts(rows)]
 
 
 def operations(rows):
@@ -69,7 +75,27 @@ def operations(rows):
                 in_order(r['engine'] for r in rows), cell)
 
 
-LAYOUTS = {'multibody': multibody, 'operations': operations}  # all others: flat
+def rigid(rows):
+    """By scene and rate: times, how many bodies are in place, penetration and drift; then the goals."""
+    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
+    ended = {(r['subject'], r['engine']): r['value'] == r['unit'].split()[1] for r in rows
+             if r['metric'] == 'simulated_s'}
+    engines = in_order(r['engine'] for r in rows if r['metric'] == 'step_median_us')
+    subjects = in_order(r['subject'] for r in rows if r['engine'] in engines)
+    lines = []
+    for title, metrics in [('step, median / p99 [us]', ('step_median_us', 'step_p99_us')),
+                           ('in place / penetration [mm] / drift [mm]', ('in_place', 'penetration_mm', 'drift_mm')),
+                           ('peak memory [MB]', ('rss_mb',))]:
+        def cell(subject, engine):
+            found = [value.get((subject, engine, metric)) for metric in metrics]
+            if found[0] is None:
+                return None
+            return ' / '.join(f or '-' for f in found) + ('' if ended.get((subject, engine)) else ' *')
+        lines += grid(title, subjects, engines, cell)
+    return [*lines, '\\* not to the end of the scene within its processor time', '', *verdicts(rows)]
+
+
+LAYOUTS = {'multibody': multibody, 'operations': operations, 'rigid': rigid}  # all others: flat
 
 
 def table(name, root):

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "scenes/touchstone.h"
+
 namespace scenes {
 namespace {
 
@@ -20,11 +22,7 @@ constexpr Builder kBuilders[] = {
      [] { return pile(1120, Pour::mixed); }},
     {{"wall1128", "the pyramid, hit by a 10 t sphere at 50 m/s"}, [] { return wall(47); }},
     {{"pile10k", "10,000 boxes poured into a pit of 30 x 30 m"},
-     [] {
-       Scene scene = pile(10000, Pour::boxes);
-       scene.seconds = 4.0;
-       return scene;
-     }},
+     [] { return pile(10000, Pour::boxes); }},
     {{"ragdolls", "100 figures of 12 bodies let fall into a pit"},
      [] { return ragdolls(5, 5, 4); }},
     {{"chain200", "200 links swing a weight of 1000 links' mass"},
@@ -44,6 +42,10 @@ constexpr Builder kBuilders[] = {
      [] { return conveyor(); }},
     {{"plumb", "20 links hanging straight under 1000 links' mass"}, [] { return chain(20, 0.0); }},
     {{"catenary", "20 hinged planks hanging in equilibrium"}, [] { return bridge(20, 0); }},
+    {{"touchstone", "bodies whose motion is known in closed form"},
+     [] { return touchstone().scene; }},
+    {{"touchstone-joined", "pendulums and limits known in closed form"},
+     [] { return joined_touchstone().scene; }},
 };
 constexpr std::size_t kCount = std::size(kBuilders);
 

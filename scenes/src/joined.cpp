@@ -106,16 +106,21 @@ Vec3 add_hanging_bars(Scene& scene, const BarSpec& bars, const Vec3& start, int 
 }  // namespace
 
 Scene ragdolls(int along_x, int along_y, int layers) {
-  constexpr double kPitch = 1.2, kLayer = 2.0, kLowest = 0.5;  // [m]
+  constexpr double kPitch = 1.2, kLayer = 2.0, kLowest = 0.5, kMiddle = 0.9;  // [m]
+  constexpr double kLean = 0.25;                                              // [rad]
   Scene scene;
   add_pit(scene, kPitch * std::max(along_x, along_y), kLowest + kLayer * (layers + 1));
   for (int k = 0; k < layers; ++k) {
     for (int i = 0; i < along_x; ++i) {
       for (int j = 0; j < along_y; ++j) {
+        // Leaning, each another way, for none to stay on its feet; about the middle of its height.
         const double yaw = 0.7 * i + 1.9 * j + 2.3 * k;
-        add_ragdoll(
-            scene, turned({0, 0, yaw}, {kPitch * (i - 0.5 * (along_x - 1)),
-                                        kPitch * (j - 0.5 * (along_y - 1)), kLowest + kLayer * k}));
+        const auto [s, c] = vp::sin_cos(3.1 * yaw);
+        const SE3 middle = turned(
+            {0, 0, yaw}, {kPitch * (i - 0.5 * (along_x - 1)), kPitch * (j - 0.5 * (along_y - 1)),
+                          kLowest + kLayer * k + kMiddle});
+        add_ragdoll(scene,
+                    middle * turned({kLean * c, kLean * s, 0}, {}) * SE3(Vec3{0, 0, -kMiddle}));
       }
     }
   }

@@ -47,6 +47,7 @@ vp::Expected<void> SceneWorld::add_body(std::size_t index) {
   desc.motion = engine_motion(body.motion);
   desc.T_world_body = body.T_world_body;
   desc.velocity = engine_velocity(body.T_world_body, body.velocity, body.spin);
+  desc.continuous = body.fast;
   desc.user_data = index;
   if (body.motion == Motion::dynamic) {
     const Mass mass = mass_of(body);

@@ -99,6 +99,7 @@ double pit_side(int count) {
 
 Scene pile(int count, Pour what) {
   Scene scene;
+  if (what == Pour::boxes) scene.seconds = 4.0;  // the last layer is down after 3
   const int cells = cells_of(count);
   const int layers = (count + cells * cells - 1) / (cells * cells);
   const double side = pit_side(count);

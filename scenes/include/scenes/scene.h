@@ -53,6 +53,7 @@ struct Body {
   SE3 T_world_body;
   Vec3 velocity, spin;  // of the origin, world frame [m/s], [rad/s]
   std::vector<Part> parts;
+  bool fast = false;  // small and fast: an engine that can sweep bodies sweeps it
 };
 
 // Holds two bodies together; these two do not meet. Its frame is given in both bodies.

@@ -1,0 +1,76 @@
+// Runs scenes with engines, in turns, and keeps what each did.
+//
+// All engines of a scene at a rate run beside each other, each in its process, one at a time: a
+// quarter of a second of the scene's time each, again and again. So what slows the machine for a
+// while slows all of them, at the same moment of the scene.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenes/measure.h"
+
+namespace rigid {
+
+struct EngineKind {
+  const char* option;   // on the command line
+  const char* name;     // in tables
+  const char* program;  // of the folder of programs; of node: the script or its first argument
+  bool node;
+};
+inline constexpr EngineKind kEngines[] = {
+    {"vphysics", "Virtual Physics", "rigid-ours", false},
+    {"bullet", "Bullet", "rigid-bullet", false},
+    {"ode", "ODE", "rigid-ode", false},
+    {"mujoco", "MuJoCo", "rigid-mujoco", false},
+    {"vphysics-wasm", "Virtual Physics (WebAssembly)", "rigid-ours.js", true},
+    {"jolt", "Jolt (WebAssembly)", "jolt", true},
+    {"rapier", "Rapier (WebAssembly)", "rapier", true},
+};
+inline constexpr const char* kOurs = kEngines[0].name;
+
+struct Plan {
+  std::vector<std::string> scenes;
+  std::vector<int> rates;            // [Hz]
+  std::vector<std::string> engines;  // options of kEngines
+  // Of processor time for a peer's run, at most; at 60 Hz, where runs are to reach their end, more.
+  // Ours has six times that.
+  double seconds = 10.0, seconds_at_60 = 30.0;
+  // By the clock: how long the programs may take to answer, beyond ten times that. Others run too.
+  double patience = 120.0;
+  std::string programs{};         // folder of the native engines' programs
+  std::string scripts{};          // folder of run.mjs, beside which node's packages are
+  std::string wasm{};             // folder of rigid-ours.js, as emscripten has built it
+  std::string log = "/dev/null";  // what the programs complain of
+  // By an engine's name: why it is not run, at all or on scenes with joints.
+  std::map<std::string, std::string> left_out{}, left_out_of_joints{};
+};
+
+// One run of an engine.
+struct Figure {
+  std::string scene, engine;
+  int rate = 0;
+  std::string missing{};  // why there is none; empty: there are figures
+  std::string settings{};
+  std::string ended{};     // finished, budget, or stopped: and why
+  double simulated = 0.0;  // of the scene's seconds [s]
+  double median_us = 0.0, p99_us = 0.0;
+  double settled_us = 0.0;  // median of the last quarter of a finished run; else 0
+  double rss_mb = 0.0;
+  scenes::Standing standing{};     // where it ended
+  std::vector<double> steps_us{};  // of each step but the first of each turn
+  std::vector<vp::SE3> poses{};    // the same
+
+  bool stopped() const { return ended.starts_with("stopped"); }
+};
+
+// The median step of a as a share of b's, over the steps that both have made: at the same moments
+// of the scene. 0: there are none.
+double share(const Figure& a, const Figure& b);
+
+// In the order of the plan. said: told what is being done.
+std::vector<Figure> measure(const Plan& plan, const std::function<void(const std::string&)>& said);
+
+}  // namespace rigid

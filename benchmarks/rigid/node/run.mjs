@@ -1,0 +1,104 @@
+// The main of the engines that node runs: node run.mjs ENGINE SCENE.json HZ CPU_SECONDS FILE. It says and
+// is told the same lines, and writes the same file, as benchmarks/rigid/runner.cpp, which describes them.
+import { readFileSync, readSync, writeFileSync, writeSync } from 'node:fs';
+
+const [engineName, sceneFile, hz, cpuSeconds, file] = process.argv.slice(2);
+
+function say(word, text = '') {
+  writeSync(1, `${word} ${text}\n`);
+}
+
+function* lines() {
+  const bytes = Buffer.alloc(256);
+  let heard = '';
+  for (;;) {
+    let got;
+    try {
+      got = readSync(0, bytes);
+    } catch (error) {
+      if (error.code === 'EAGAIN') continue;
+      throw error;
+    }
+    if (got === 0) return;
+    heard += bytes.toString('utf8', 0, got);
+    for (let at; (at = heard.indexOf('\n')) >= 0; heard = heard.slice(at + 1)) yield heard.slice(0, at);
+  }
+}
+
+// Of the process: node gives no thread's own. Its helpers have work only while code is being compiled.
+function cpuMicroseconds() {
+  const used = process.cpuUsage();
+  return used.user + used.system;
+}
+
+// The most that was resident at once. Not by resourceUsage(), which begins at what the parent had.
+function peakMegabytes() {
+  return Number(/VmHWM:\s*(\d+)/.exec(readFileSync('/proc/self/status', 'utf8'))?.[1] ?? 0) / 1024;
+}
+
+class Run {
+  constructor(scene, engine, rate, budget) {
+    Object.assign(this, { scene, engine, budget, dt: 1 / rate, steps: Math.round(scene.seconds * rate) });
+    Object.assign(this, { done: 0, spent: 0, launched: 0, times: [] });
+  }
+
+  step(keep) {
+    const { launches } = this.scene;
+    while (this.launched < launches.length && launches[this.launched].time <= (this.done + 0.5) * this.dt) {
+      this.engine.launch(launches[this.launched++]);
+    }
+    const begun = cpuMicroseconds();
+    this.engine.step();
+    const took = cpuMicroseconds() - begun;
+    this.spent += took;
+    if (keep) this.times.push(took);
+    ++this.done;
+  }
+
+  turn(count) {
+    for (let i = 0; i < count && this.done < this.steps; ++i) {
+      this.step(i > 0 || count < 10);
+      if (this.spent > this.budget && this.done < this.steps) return 'budget';
+    }
+    return this.done === this.steps ? 'finished' : null;
+  }
+
+  // A pose is { p: [x, y, z], q: [x, y, z, w] }; written as the columns of the rotation and the position.
+  write() {
+    const out = [`simulated ${this.done * this.dt}`, `rss_mb ${peakMegabytes()}`,
+      `steps ${this.times.length}`, ...this.times, `poses ${this.scene.bodies.length}`];
+    for (let i = 0; i < this.scene.bodies.length; ++i) {
+      const { p, q: [x, y, z, w] } = this.engine.pose(i);
+      const s = 2 / (x * x + y * y + z * z + w * w);
+      out.push([1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y),
+        s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x),
+        s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y), ...p].join(' '));
+    }
+    writeFileSync(file, out.concat('whole', '').join('\n'));
+  }
+}
+
+async function main() {
+  const scene = JSON.parse(readFileSync(sceneFile, 'utf8'));
+  const unusual = scene.bodies.some((b) => b.parts.length !== 1 || b.motion === 'kinematic');
+  if (unusual) return say('cannot', 'this comparison gives it bodies of one shape that it moves itself');
+  const { make } = await import(`./${engineName}.mjs`);
+  const engine = await make(scene, 1 / Number(hz));
+  say('ready', engine.settings);
+  const run = new Run(scene, engine, Number(hz), 1e6 * Number(cpuSeconds));
+  for (const line of lines()) {
+    const why = run.turn(Number(line));
+    if (!why) {
+      say('more');
+      continue;
+    }
+    run.write();
+    return say('end', why);
+  }
+}
+
+main().then(() => process.exit(0), (error) => {
+  console.error(error);
+  say('cannot', `${error.message ?? error}`.split('\n')[0]);
+  process.exit(1);
+});

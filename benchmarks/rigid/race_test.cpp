@@ -1,0 +1,174 @@
+// What engines' programs may do, played by shell scripts: whatever it is, it is a line in the
+// table.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "agreement.h"
+#include "load.h"
+#include "measure.h"
+#include "report.h"
+#include "scenes/touchstone.h"
+
+namespace rigid {
+namespace {
+
+class Race : public testing::Test {
+ protected:
+  Race() {
+    std::string name = (std::filesystem::temp_directory_path() / "rigid-race-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    plan_.scenes = {"tower10"};
+    plan_.rates = {60};
+    plan_.engines = {"bullet"};
+    plan_.seconds = plan_.seconds_at_60 = 0.5;
+    plan_.patience = 10.0;
+    plan_.programs = folder_;
+  }
+  ~Race() override { std::filesystem::remove_all(folder_); }
+
+  void script(const std::string& name, const std::string& text) {
+    const std::string path = folder_ + "/" + name;
+    std::ofstream(path) << "#!/bin/sh\n" << text;
+    chmod(path.c_str(), 0755);
+  }
+  std::vector<Figure> run() {
+    return measure(plan_, [](const std::string&) {});
+  }
+  // Why there is nothing of the one engine.
+  std::string missing() {
+    const auto figures = run();
+    EXPECT_EQ(figures.size(), 1u);
+    EXPECT_NE(table(figures).find(figures[0].missing), std::string::npos);
+    return figures[0].missing;
+  }
+
+  std::string folder_;
+  Plan plan_{.scenes = {}, .rates = {}, .engines = {}};
+};
+
+TEST_F(Race, LeavesOutWhoIsNotThere) {
+  plan_.engines = {"bullet", "vphysics-wasm", "jolt"};
+  const auto figures = run();
+  ASSERT_EQ(figures.size(), 3u);
+  EXPECT_EQ(figures[0].missing, "not built: its package is missing");
+  EXPECT_EQ(figures[1].missing, "not built for WebAssembly");
+  EXPECT_EQ(figures[2].missing, "its npm package is not installed");
+}
+
+TEST_F(Race, SurvivesWhoCrashesBeforeAndAfterItsFirstTurn) {
+  script("rigid-bullet", "kill -SEGV $$\n");
+  EXPECT_EQ(missing(), "crashed: Segmentation fault");
+  script("rigid-bullet", "echo ready; read turn; kill -ABRT $$\n");
+  EXPECT_EQ(missing(), "crashed: Aborted");
+  script("rigid-bullet", "echo ready; read turn; echo more; read turn; exit 7\n");
+  EXPECT_EQ(missing(), "ended with exit code 7");
+}
+
+TEST_F(Race, EndsWhoDoesNotAnswer) {
+  plan_.patience = 0.2;
+  script("rigid-bullet", "exec sleep 1000\n");
+  EXPECT_EQ(missing(), "gave no answer within 0 s");
+}
+
+TEST_F(Race, PassesOverWhatIsNoAnswer) {
+  script("rigid-bullet", "echo hello; head -c 300000 /dev/zero; echo; echo cannot do it\n");
+  EXPECT_EQ(missing(), "do it");
+}
+
+TEST_F(Race, TellsWhatIsLeftBehindBroken) {
+  for (const char* left : {"", "simulated 10", "simulated 10\\nrss_mb 1\\nsteps 2\\n1\\n",
+                           "simulated 10\\nrss_mb 1\\nsteps 0\\nposes 3\\n"}) {
+    script("rigid-bullet",
+           std::string("echo ready; read turn; printf '") + left + "' >$4; echo end finished\n");
+    EXPECT_EQ(missing(), "what it left behind cannot be read") << left;
+  }
+}
+
+TEST_F(Race, LeavesOutWhoStopsEarlyAndCountsLostBodies) {
+  const std::string poses =
+      " for i in 1 2 3 4 5 6 7 8 9 10 11; do echo nan 0 0 0 1 0 0 0 1 0 0 0; done;";
+  const auto leaving = [&](const std::string& seconds) {
+    script("rigid-bullet", "echo ready; read turn; (echo simulated " + seconds +
+                               "; echo rss_mb 1; echo steps 2; echo 5; echo 7; echo poses 11;" +
+                               poses + " echo whole) >$4; echo end stopped: diverged\n");
+  };
+  leaving("0.5");
+  EXPECT_EQ(missing(), "stopped: diverged, after 0.5 s");
+  leaving("5");
+  const auto figures = run();
+  ASSERT_EQ(figures[0].missing, "");
+  EXPECT_EQ(figures[0].standing.lost, 10);
+  EXPECT_EQ(figures[0].standing.in_place, 0);
+  EXPECT_EQ(figures[0].settled_us, 0.0);
+  EXPECT_NE(table(figures).find("stopped: diverged"), std::string::npos);
+}
+
+// Our own program, whole: two engines that take turns, one of which does not answer.
+TEST_F(Race, GoesOnWithTheOthers) {
+  std::filesystem::create_symlink(RIGID_OURS, folder_ + "/rigid-ours");
+  script("rigid-bullet", "echo ready; read turn; echo more; kill -KILL $$\n");
+  plan_.engines = {"bullet", "vphysics"};
+  plan_.seconds_at_60 = 10.0;
+  const auto figures = run();
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures[0].missing, "crashed: Killed");
+  EXPECT_EQ(figures[1].missing, "");
+  EXPECT_EQ(figures[1].ended, "finished");
+  EXPECT_DOUBLE_EQ(figures[1].simulated, 10.0);
+  EXPECT_EQ(figures[1].steps_us.size(), 560u);  // 600 less the first of each of 40 turns
+  EXPECT_GT(figures[1].p99_us, figures[1].median_us);
+  EXPECT_GT(figures[1].rss_mb, 1.0);
+  EXPECT_EQ(figures[1].standing.of, 10);
+  const std::string rows = csv(figures);
+  EXPECT_NE(rows.find("tower10@60,Bullet,missing,crashed: Killed,"), std::string::npos);
+  EXPECT_NE(rows.find("tower10@60,Virtual Physics,step_median_us,"), std::string::npos);
+}
+
+TEST_F(Race, TimesNobodyWhoHasTheScenesWrong) {
+  // Stays where it is.
+  script("rigid-bullet",
+         "echo ready; read turn; (echo simulated 1; echo rss_mb 1; echo steps 0; echo poses " +
+             std::to_string(scenes::touchstone().scene.bodies.size()) +
+             "; for i in 1 2 3 4 5 6 7 8; do echo 1 0 0 0 1 0 0 0 1 0 0 0; done; echo whole) >$4;"
+             " echo end finished\n");
+  std::filesystem::create_symlink(RIGID_OURS, folder_ + "/rigid-ours");
+  plan_.engines = {"bullet", "vphysics"};
+  const auto agreed = agreement(plan_);
+  ASSERT_EQ(agreed.size(), 2u);
+  EXPECT_TRUE(agreed[0].wrong.starts_with("a box slides: off by")) << agreed[0].wrong;
+  EXPECT_EQ(agreed[1].wrong, "");
+  EXPECT_LT(agreed[1].worst, 0.03);
+  plan_ = of_those_who_agree(plan_, agreed);
+  const auto figures = run();
+  EXPECT_EQ(figures[0].missing, agreed[0].wrong);
+  EXPECT_EQ(figures[1].missing, "");
+}
+
+Figure timed(const char* engine, const std::vector<double>& steps) {
+  Figure figure{.scene = "tower10", .engine = engine, .rate = 60};
+  figure.steps_us = steps;
+  return figure;
+}
+
+// A pile costs little while it falls: who was cut short there must not look the faster for it.
+TEST(Share, IsOfTheStepsThatBothHaveMade) {
+  const Figure whole = timed("Bullet", {10, 10, 10, 90, 90, 90, 90, 90});
+  const Figure cut = timed("ODE", {20, 20, 20});
+  EXPECT_DOUBLE_EQ(share(cut, whole), 2.0);
+  EXPECT_DOUBLE_EQ(share(whole, cut), 0.5);
+  EXPECT_DOUBLE_EQ(share(whole, timed("MuJoCo", {})), 0.0);
+}
+
+TEST(Load, RefusesTablesThatAreNone) {
+  for (const char* name : {"table", "table0", "table-1", "table1001", "table1x"}) {
+    EXPECT_FALSE(load(name).has_value()) << name;
+  }
+  EXPECT_EQ(load("table200").value().bodies.size(), 211u);
+}
+
+}  // namespace
+}  // namespace rigid

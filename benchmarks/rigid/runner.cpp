@@ -1,0 +1,134 @@
+// The main of each engine's program: rigid-ENGINE SCENE HZ CPU_SECONDS FILE. It steps the scene
+// when it is told to, so that engines take turns, and leaves in FILE what it measured.
+//
+//   it says    ready SETTINGS           the scene is built
+//              cannot SENTENCE          and ends: the engine cannot have the scene
+//   it is told N                        steps to do
+//   it says    more                     they are done
+//              end WHY                  FILE is written, it ends: finished, budget, or stopped and
+//              why
+//
+// FILE: "simulated S", "rss_mb M", "steps K" and K lines [us], "poses B" and B lines, each the
+// three columns of the rotation and the position. It ends with "whole".
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "cpu.h"
+#include "engine.h"
+#include "load.h"
+
+namespace {
+
+using rigid::cpu_us;
+
+struct Order {
+  std::string scene, file;
+  double rate = 60.0, budget_us = 10e6;
+};
+
+int say(const char* word, const std::string& text) {
+  std::printf("%s %s\n", word, text.c_str());
+  std::fflush(stdout);
+  return 0;
+}
+
+class Run {
+ public:
+  Run(const scenes::Scene& scene, rigid::Engine& engine, const Order& order)
+      : scene_(scene),
+        engine_(engine),
+        order_(order),
+        steps_(std::lround(scene.seconds * order.rate)) {
+    times_.reserve(static_cast<std::size_t>(steps_));
+  }
+
+  // Steps of a turn; why it is over, or nothing. The first of several finds the caches as the last
+  // engine left them and is not kept, unless a turn is so short that it would be a large share.
+  std::string turn(long count) {
+    const bool drop_first = count >= 10;
+    for (long i = 0; i < count && done_ < steps_; ++i) {
+      if (!step(i > 0 || !drop_first)) return "stopped: " + engine_.trouble();
+      if (spent_us_ > order_.budget_us && done_ < steps_) return "budget";
+    }
+    return done_ == steps_ ? "finished" : "";
+  }
+
+  bool write() const {
+    std::ofstream out(order_.file);
+    out.precision(17);
+    out << "simulated " << static_cast<double>(done_) / order_.rate << "\nrss_mb "
+        << rigid::peak_mb() << "\nsteps " << times_.size() << '\n';
+    for (const double t : times_) out << t << '\n';
+    const auto poses = engine_.poses();
+    out << "poses " << poses.size() << '\n';
+    for (const vp::SE3& T : poses) {
+      for (int k = 0; k < 9; ++k) out << T.rotation()(k % 3, k / 3) << ' ';
+      out << T.position().x << ' ' << T.position().y << ' ' << T.position().z << '\n';
+    }
+    out << "whole\n";
+    out.close();
+    return static_cast<bool>(out);
+  }
+
+ private:
+  bool step(bool keep) {
+    const double dt = 1.0 / order_.rate, now = static_cast<double>(done_) * dt;
+    while (launched_ < scene_.launches.size() &&
+           scene_.launches[launched_].time <= now + 0.5 * dt) {
+      engine_.launch(scene_.launches[launched_++]);
+    }
+    const double begun = cpu_us();
+    const bool went = engine_.step();
+    const double took = cpu_us() - begun;
+    spent_us_ += took;
+    if (!went) return false;
+    if (keep) times_.push_back(took);
+    ++done_;
+    return true;
+  }
+
+  const scenes::Scene& scene_;
+  rigid::Engine& engine_;
+  const Order& order_;
+  long steps_, done_ = 0;
+  double spent_us_ = 0.0;
+  std::size_t launched_ = 0;
+  std::vector<double> times_;
+};
+
+int run(const Order& order) {
+  const auto scene = rigid::load(order.scene);
+  if (!scene) return say("cannot", scene.error().message);
+  const auto engine = rigid::make_engine(*scene, 1.0 / order.rate);
+  if (!engine) return say("cannot", engine.error());
+  say("ready", (*engine)->settings());
+  Run run(*scene, **engine, order);
+  char line[64];
+  while (std::fgets(line, sizeof(line), stdin)) {
+    const std::string why = run.turn(std::atol(line));
+    if (why.empty()) {
+      say("more", "");
+      continue;
+    }
+    if (!run.write()) return say("cannot", "write " + order.file);
+    return say("end", why);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Order order;
+  if (argc == 5) {
+    order = {argv[1], argv[4], std::atof(argv[2]), 1e6 * std::atof(argv[3])};
+  }
+  if (argc != 5 || !(order.rate >= 1.0) || !(order.budget_us > 0.0)) {
+    std::fprintf(stderr, "usage: %s SCENE HZ CPU_SECONDS FILE; see ./bench rigid\n", argv[0]);
+    return 2;
+  }
+  return run(order);
+}

@@ -1,0 +1,13 @@
+// A scene as JSON, for engines that are driven from JavaScript.
+#pragma once
+
+#include <string>
+
+#include "scenes/scene.h"
+
+namespace rigid {
+
+// False: the file cannot be written.
+bool write_json(const scenes::Scene& scene, const std::string& file);
+
+}  // namespace rigid
