@@ -8,9 +8,9 @@ namespace {
 constexpr double kEnd = 1.0, kG = 9.81, kMu = 0.6;  // [s], [m/s^2]
 constexpr double kAway = 5.0;                       // between what must not meet [m]
 
-class Builder {
+class Course {
  public:
-  Builder() {
+  Course() {
     out_.scene.seconds = kEnd;
     add_floor(out_.scene);
   }
@@ -37,14 +37,14 @@ Body moving(const Shape& shape, const Vec3& at, const Vec3& velocity, double den
 }
 
 // It slides until friction has stopped it, v^2 / (2 mu g) on.
-void add_slider(Builder& b, double y) {
+void add_slider(Course& b, double y) {
   constexpr double kSpeed = 5.0, kHalf = 0.25;
   const int body = b.add(moving(Box{{0.5, 0.5, kHalf}}, {0, y, kHalf}, {kSpeed, 0, 0}));
   b.expect("a box slides", body, {}, {kSpeed * kSpeed / (2.0 * kMu * kG), y, kHalf}, 0.08);
 }
 
 // It slides until it rolls, at 5/7 of its speed, as long as its moment of inertia is 2/5 m r^2.
-void add_roller(Builder& b, double y) {
+void add_roller(Course& b, double y) {
   constexpr double kSpeed = 3.0, kRadius = 0.5;
   const double slips = 2.0 * kSpeed / (7.0 * kMu * kG);
   const double way = kSpeed * slips - 0.5 * kMu * kG * slips * slips;
@@ -55,7 +55,7 @@ void add_roller(Builder& b, double y) {
 
 // Both fall; the one runs into the other, of twice its mass. However they part, their centre of
 // mass goes on.
-void add_collision(Builder& b, double y) {
+void add_collision(Course& b, double y) {
   constexpr double kSpeed = 3.0, kGap = 0.5, kHeight = 20.0;
   const Box crate{{0.5, 0.5, 0.5}};
   const int one = b.add(moving(crate, {0, y, kHeight}, {kSpeed, 0, 0}, 1000.0));
@@ -69,7 +69,7 @@ void add_collision(Builder& b, double y) {
   b.last().share = share;
 }
 
-void add_flier(Builder& b, double y) {
+void add_flier(Course& b, double y) {
   constexpr double kSpin = 2.0, kHeight = 20.0;
   Body body = moving(Capsule{0.3, 0.3}, {0, y, kHeight}, {1.0, 0, 0});
   body.spin = {0, kSpin, 0};
@@ -79,12 +79,12 @@ void add_flier(Builder& b, double y) {
   b.expect("a capsule turns as it falls", flier, {0, 0, 1}, centre + Vec3{s, 0, c}, 0.08);
 }
 
-void add_dropped(Builder& b, double y) {
+void add_dropped(Course& b, double y) {
   const int body = b.add(moving(Box{{0.5, 0.5, 0.5}}, {0, y, 0.8}, {}));
   b.expect("a box falls and does not bounce", body, {0.5, 0, 0.5}, {0.5, y, 1.0}, 0.03);
 }
 
-void add_launched(Builder& b, double y) {
+void add_launched(Course& b, double y) {
   constexpr double kWhen = 0.5, kSpeed = 4.0, kHeight = 20.0;
   const int body = b.add(moving(Sphere{0.5}, {0, y, kHeight}, {}));
   b.scene().launches.push_back({kWhen, body, {kSpeed, 0, 0}, {}});
@@ -114,7 +114,7 @@ constexpr double kHalf = 0.5;
 constexpr Box kBar{{kHalf, 0.05, 0.05}};
 constexpr double kHeight = 5.0;
 
-int add_bar(Builder& b, Joint::Kind kind, double y, double axis, double lower, double upper) {
+int add_bar(Course& b, Joint::Kind kind, double y, double axis, double lower, double upper) {
   const int post = b.add(fixed_body(Box{{0.1, 0.1, 0.1}}, SE3(Vec3{-0.1, y, kHeight})));
   const int bar = b.add(moving(kBar, {kHalf, y, kHeight}, {}));
   const vp::Mat3 R{{1, 0, 0}, {0, 0, -axis}, {0, axis, 0}};
@@ -123,7 +123,7 @@ int add_bar(Builder& b, Joint::Kind kind, double y, double axis, double lower, d
   return bar;
 }
 
-void expect_angle(Builder& b, const char* what, int bar, double y, double angle, double tolerance) {
+void expect_angle(Course& b, const char* what, int bar, double y, double angle, double tolerance) {
   const auto [s, c] = vp::sin_cos(angle);
   b.expect(what, bar, {kHalf, 0, 0}, Vec3{0, y, kHeight} + 2.0 * kHalf * Vec3{c, 0, -s}, tolerance);
 }
@@ -131,7 +131,7 @@ void expect_angle(Builder& b, const char* what, int bar, double y, double angle,
 }  // namespace
 
 Touchstone touchstone() {
-  Builder b;
+  Course b;
   int lane = 0;
   for (const auto add :
        {add_slider, add_roller, add_collision, add_flier, add_dropped, add_launched}) {
@@ -145,7 +145,7 @@ Touchstone joined_touchstone() {
   const Mass bar = mass_of(kBar, 1000.0);
   const double k = bar.mass * kG * kHalf / (bar.moments.y + bar.mass * kHalf * kHalf);
   const double swung = pendulum_angle(k, kEnd);
-  Builder b;
+  Course b;
   int lane = 0;
   const auto next = [&] { return kAway * lane++; };
   for (const auto kind : {Joint::Kind::hinge, Joint::Kind::ball}) {
