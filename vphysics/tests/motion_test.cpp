@@ -254,6 +254,39 @@ TEST(Contact, EveryPairOfShapesCarriesTheOther) {
   }
 }
 
+// Upright on every flat top: standing still, where they stood.
+TEST(Contact, CylinderConeAndHullStandOnEveryFlatTop) {
+  const auto hull_of_box = [](const Vec3& half) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i) {
+      corners.push_back(
+          {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z});
+    }
+    return must(ConvexHull::of(corners));
+  };
+  const Shape shapes[] = {Cylinder{0.1, 0.1}, Cone{0.1, 0.1}, hull_of_box({0.1, 0.08, 0.1})};
+  const Shape grounds[] = {HalfSpace{}, Box{{1, 1, 0.1}}, Cylinder{0.5, 0.1}, Cone{0.5, 0.1},
+                           hull_of_box({0.6, 0.6, 0.1})};
+  for (const Shape& shape : shapes) {
+    for (const Shape& ground : grounds) {
+      const bool cone = std::holds_alternative<Cone>(ground);  // its base up
+      World world;
+      add_fixed(world, ground, {0.6, 0.0, 0.0}, cone ? SE3(Exp(Vec3{kPi, 0, 0}), {}) : SE3(Vec3{}));
+      const double top = std::holds_alternative<HalfSpace>(ground) ? 0.0 : 0.1;
+      const BodyId body = add_dynamic(
+          world,
+          {.shape = shape, .material = {0.6, 0.0, 0.0}, .pose = SE3(Vec3{0.02, 0.01, top + 0.1})});
+      run(world, 0.5);
+      const SE3 T = world.pose(body);
+      EXPECT_LT(norm(T.position() - Vec3{0.02, 0.01, top + 0.1}), 2e-4)
+          << shape.index() << " on " << ground.index();
+      EXPECT_GT(T.rotation().cz.z, 1.0 - 1e-6) << shape.index() << " on " << ground.index();
+      EXPECT_LT(norm(world_velocity(world, body)), 1e-3)
+          << shape.index() << " on " << ground.index();
+    }
+  }
+}
+
 TEST(Contact, BoxOnRoundIsCarriedToo) {
   for (const Shape& ground : {Shape{Sphere{0.5}}, Shape{Capsule{0.5, 0.5}}}) {
     World world;

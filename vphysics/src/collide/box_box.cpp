@@ -1,211 +1,193 @@
-// Box against box: separating axis theorem, then the incident face clipped to the reference face,
-// or the nearest points of two edges. Source: Gottschalk, Lin, Manocha 1996 (OBBTree), section 5;
-// Sutherland and Hodgman 1974 for the clipping.
-#include <algorithm>
-#include <array>
+// Box against box: the separating axis theorem over six face normals and nine crossings of edges,
+// the last separating axis first.
+//
+// In a's frame b's axes are the columns of R, its centre t. Along the crossing of edge i of a and
+// edge j of b, which is of the length sqrt(1 - R_ij^2), all projections are sums of two products.
+//
+// Source: Gottschalk, Lin, Manocha, OBBTree, 1996, section 5.
 #include <cmath>
-#include <span>
 
-#include "collide/bounds.h"
-#include "collide/manifold.h"
+#include "collide/convex_contact.h"
+#include "collide/polytope.h"
 
 namespace vp::collide {
 namespace {
 
-// An edge pair wins over a face only if it separates clearly better: face manifolds have several
-// points and are steadier. Share of the depth, and metres.
-constexpr double kEdgeRelative = 0.95;
-constexpr double kEdgeAbsolute = 1e-5;
-constexpr double kParallel = 1e-8;  // squared sine below which two edges give no axis
+// Square of the sine below which two edges give no axis.
+constexpr double kParallel = 1e-12;
+
+struct Boxes {
+  Vec3 ha, hb, t;
+  double r[3][3], q[3][3];  // R and its magnitudes
+
+  explicit Boxes(const CorePair& pair)
+      : ha(pair.a.half), hb(pair.b.half), t(pair.T_a_b.position()) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        r[i][j] = pair.T_a_b.rotation()(i, j);
+        q[i][j] = std::fabs(r[i][j]);
+      }
+    }
+  }
+
+  double towards_b(int j) const { return t.x * r[0][j] + t.y * r[1][j] + t.z * r[2][j]; }
+  double gap_of_a(int i) const {
+    return std::fabs(t[i]) - (ha[i] + q[i][0] * hb.x + q[i][1] * hb.y + q[i][2] * hb.z);
+  }
+  double gap_of_b(int j) const {
+    return std::fabs(towards_b(j)) - (hb[j] + q[0][j] * ha.x + q[1][j] * ha.y + q[2][j] * ha.z);
+  }
+  double squared_sine(int i, int j) const { return 1.0 - r[i][j] * r[i][j]; }
+  // Times the sine of the angle between the edges.
+  double edge_gap(int i, int j) const {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    const double along = t[i2] * r[i1][j] - t[i1] * r[i2][j];
+    return std::fabs(along) -
+           (ha[i1] * q[i2][j] + ha[i2] * q[i1][j] + hb[j1] * q[i][j2] + hb[j2] * q[i][j1]);
+  }
+};
 
 Vec3 axis_of(const Mat3& R, int i) {
   return i == 0 ? R.cx : i == 1 ? R.cy : R.cz;
 }
-
-struct BestAxis {
-  double separation = -kFar;
-  Vec3 normal;  // from a to b
-  int i = 0;    // axis of a; or of b, see face_of_b
-  int j = -1;   // axis of b of an edge pair; -1: a face
-  bool face_of_b = false;
-};
-
-double extent_along(const Mat3& R, const Vec3& half, const Vec3& n) {
-  return std::fabs(dot(R.cx, n)) * half.x + std::fabs(dot(R.cy, n)) * half.y +
-         std::fabs(dot(R.cz, n)) * half.z;
+int axis_from_face(int face) {
+  return kBoxFaceAxis[static_cast<std::size_t>(face)];
 }
 
-// False as soon as an axis separates by more than margin.
-bool find_best_axis(const Vec3& ha, const Mat3& A, const Vec3& hb, const Mat3& B, const Vec3& d,
-                    double margin, BestAxis& best) {
-  for (int k = 0; k < 6; ++k) {
-    const bool of_b = k >= 3;
-    const Vec3 n = axis_of(of_b ? B : A, k % 3);
-    const double along = dot(n, d);
-    const double reach =
-        of_b ? hb[k % 3] + extent_along(A, ha, n) : ha[k % 3] + extent_along(B, hb, n);
-    const double separation = std::fabs(along) - reach;
-    if (separation > margin) return false;
-    if (separation > best.separation) best = {separation, along < 0.0 ? -n : n, k % 3, -1, of_b};
-  }
-  BestAxis edge;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      Vec3 n = cross(axis_of(A, i), axis_of(B, j));
-      const double n2 = dot(n, n);
-      if (n2 < kParallel) continue;
-      n = (1.0 / std::sqrt(n2)) * n;
-      const double along = dot(n, d);
-      const double separation = std::fabs(along) - extent_along(A, ha, n) - extent_along(B, hb, n);
-      if (separation > margin) return false;
-      if (separation > edge.separation) edge = {separation, along < 0.0 ? -n : n, i, j, false};
+// Whether what separated them last time still does.
+bool still_apart(const Boxes& boxes, double margin, const CorePair& pair, const PairCache& cache) {
+  switch (cache.feature) {
+    case PairCache::face_of_a:
+      return cache.i < 6 && boxes.gap_of_a(axis_from_face(cache.i)) > margin;
+    case PairCache::face_of_b:
+      return cache.i < 6 && boxes.gap_of_b(axis_from_face(cache.i)) > margin;
+    case PairCache::edges: {
+      if (cache.i >= 3 || cache.j >= 3) return false;
+      const double sine2 = boxes.squared_sine(cache.i, cache.j);
+      return sine2 > kParallel && boxes.edge_gap(cache.i, cache.j) > margin * std::sqrt(sine2);
     }
+    default:
+      return gap_along(pair, first_direction(pair, cache)) > margin;
   }
-  const double face = best.separation;
-  const double needed = face < 0.0 ? kEdgeRelative * face + kEdgeAbsolute : face + kEdgeAbsolute;
-  if (edge.separation > needed) best = edge;
+}
+
+Vec3 face_normal(const CorePair& pair, const Boxes& boxes, bool of_a, int axis) {
+  if (of_a) {
+    Vec3 n;
+    n[axis] = boxes.t[axis] < 0.0 ? -1.0 : 1.0;
+    return n;
+  }
+  const Vec3 n = axis_of(pair.T_a_b.rotation(), axis);
+  return boxes.towards_b(axis) < 0.0 ? -n : n;
+}
+
+// The face of which the normal, outwards, points to the other box.
+int facing(const Boxes& boxes, bool of_a, int axis) {
+  const bool positive = of_a ? !(boxes.t[axis] < 0.0) : boxes.towards_b(axis) < 0.0;
+  return kBoxFace[axis][positive ? 1 : 0];
+}
+
+// False as soon as a face separates by more than margin; that one is then the best.
+bool find_best_face(const ContactQuery& query, const Boxes& boxes, FaceAxis& best) {
+  best = {boxes.gap_of_a(0), {}, true, 0};
+  const auto consider = [&](bool of_a, int axis, double gap, double needed) {
+    if (gap > needed) best = {gap, {}, of_a, axis};
+    return gap <= query.margin;
+  };
+  if (best.gap > query.margin) return false;
+  for (int i = 1; i < 3; ++i) {
+    if (!consider(true, i, boxes.gap_of_a(i), best.gap)) return false;
+  }
+  double needed = best.gap + query.face_bias();
+  for (int j = 0; j < 3; ++j) {
+    if (!consider(false, j, boxes.gap_of_b(j), needed)) return false;
+    needed = std::max(needed, best.of_a ? needed : best.gap);
+  }
   return true;
 }
 
-// Centre of the edge of a box, along its axis i, that lies farthest in the direction n.
-Vec3 supporting_edge(const SE3& T, const Vec3& half, int i, const Vec3& n) {
-  Vec3 p;
-  for (int k = 0; k < 3; ++k) {
-    if (k != i) p[k] = dot(axis_of(T.rotation(), k), n) > 0.0 ? half[k] : -half[k];
+// The best two edges, if better than the face; ends at once where they are apart by more than
+// margin.
+void find_better_edges(const Boxes& boxes, double margin, const FaceAxis& face, EdgeAxis& edge) {
+  edge.axis.gap = face.gap;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      // A gap below zero is no more than its part along the longer vector.
+      const double part = boxes.edge_gap(i, j);
+      if (part <= edge.axis.gap) continue;
+      const double sine2 = boxes.squared_sine(i, j);
+      if (sine2 < kParallel) continue;
+      const double gap = part / std::sqrt(sine2);
+      if (gap <= edge.axis.gap) continue;
+      edge.better = true;
+      edge.axis.gap = gap;
+      edge.i = i;
+      edge.j = j;
+      if (gap > margin) return;
+    }
   }
-  return T * p;
 }
 
-void edge_contact(const Vec3& ha, const SE3& Ta, const Vec3& hb, const SE3& Tb,
-                  const BestAxis& best, Manifold& m) {
-  const Vec3 da = axis_of(Ta.rotation(), best.i), db = axis_of(Tb.rotation(), best.j);
-  const Vec3 pa = supporting_edge(Ta, ha, best.i, best.normal);
-  const Vec3 pb = supporting_edge(Tb, hb, best.j, -best.normal);
+// Where the edges along axis i of a and j of b that face one another are nearest. False if that is
+// beyond their ends.
+bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
+  const SE3& T = pair.T_a_b;
+  Vec3 da;
+  da[edge.i] = 1.0;
+  const Vec3 db = axis_of(T.rotation(), edge.j);
+  Vec3 n = cross(da, db);
+  n = ((dot(n, boxes.t) < 0.0 ? -1.0 : 1.0) / norm(n)) * n;
+  const Vec3 nb = T.unrotate(n);
+  Vec3 pa, pb;  // the middles of the edges
+  for (int k = 0; k < 3; ++k) {
+    if (k != edge.i) pa[k] = std::copysign(boxes.ha[k], n[k]);
+    if (k != edge.j) pb[k] = std::copysign(boxes.hb[k], -nb[k]);
+  }
+  pb = T * pb;
   const double k = dot(da, db);
   const Vec3 r = pa - pb;
   const double s = (k * dot(db, r) - dot(da, r)) / (1.0 - k * k);
-  const double t = dot(db, r) + k * s;
-  m.normal = best.normal;
-  m.add(0.5 * (pa + s * da + pb + t * db), best.separation,
-        static_cast<std::uint32_t>(256 + 3 * best.i + best.j));
-}
-
-struct ClipVertex {
-  Vec3 p;
-  std::uint32_t feature;
-};
-// A quadrilateral cut by four planes has at most eight corners.
-struct Polygon {
-  std::array<ClipVertex, 8> v;
-  int count = 0;
-  void add(const ClipVertex& c) {
-    if (count < 8) v[static_cast<std::size_t>(count++)] = c;
-  }
-};
-
-// Corners so little outside [m] are left in: equal boxes on one another would else gain and lose
-// corners with every rounding error.
-constexpr double kOnPlane = 1e-6;
-
-// Keeps what lies below dot(n, p) <= offset. A cut is named by its plane and the corner before it.
-Polygon clip(const Polygon& in, const Vec3& n, double offset, std::uint32_t plane) {
-  Polygon out;
-  for (int i = 0; i < in.count; ++i) {
-    const ClipVertex& a = in.v[static_cast<std::size_t>(i)];
-    const ClipVertex& b = in.v[static_cast<std::size_t>((i + 1) % in.count)];
-    const double da = dot(n, a.p) - offset, db = dot(n, b.p) - offset;
-    if (da <= kOnPlane) out.add(a);
-    if ((da <= kOnPlane) != (db <= kOnPlane)) {
-      out.add({a.p + (da / (da - db)) * (b.p - a.p), (a.feature & 3u) | (4u << plane)});
-    }
-  }
-  return out;
-}
-
-// Four points that keep the extent of the polygon: the deepest, the farthest from it, and the two
-// farthest to either side of the line between them.
-void reduce(std::span<const ManifoldPoint> all, const Vec3& n, Manifold& m) {
-  std::size_t first = 0, second = 0, left = 0, right = 0;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i].separation < all[first].separation - 1e-7) first = i;
-  }
-  double most = -1.0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Vec3 d = all[i].position - all[first].position;
-    if (dot(d, d) > most) most = dot(d, d), second = i;
-  }
-  const Vec3 side = cross(n, all[second].position - all[first].position);
-  double high = 0.0, low = 0.0;
-  left = right = first;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double s = dot(side, all[i].position - all[first].position);
-    if (s > high) high = s, left = i;
-    if (s < low) low = s, right = i;
-  }
-  const std::size_t chosen[] = {first, second, left, right};
-  for (std::size_t k = 0; k < 4; ++k) {
-    const bool repeated = std::find(chosen, chosen + k, chosen[k]) != chosen + k;
-    if (!repeated) m.points[m.count++] = all[chosen[k]];
-  }
-}
-
-// n points out of the reference box towards the other.
-void face_contact(const Vec3& h_ref, const SE3& T_ref, const Vec3& h_inc, const SE3& T_inc,
-                  int axis, const Vec3& n, double margin, std::uint32_t name, Manifold& m) {
-  const Mat3& I = T_inc.rotation();
-  int face = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::fabs(dot(axis_of(I, k), n)) > std::fabs(dot(axis_of(I, face), n))) face = k;
-  }
-  const int fu = (face + 1) % 3, fv = (face + 2) % 3;
-  Polygon polygon;
-  constexpr int kAround[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  for (std::uint32_t c = 0; c < 4; ++c) {
-    Vec3 p;
-    p[face] = dot(axis_of(I, face), n) > 0.0 ? -h_inc[face] : h_inc[face];
-    p[fu] = kAround[c][0] * h_inc[fu];
-    p[fv] = kAround[c][1] * h_inc[fv];
-    polygon.add({T_inc * p, c});
-  }
-  for (int k = 0; k < 4 && polygon.count > 0; ++k) {
-    const int side = (axis + 1 + k / 2) % 3;
-    const Vec3 out = (k % 2 ? -1.0 : 1.0) * axis_of(T_ref.rotation(), side);
-    polygon =
-        clip(polygon, out, dot(out, T_ref.position()) + h_ref[side], static_cast<std::uint32_t>(k));
-  }
-  std::array<ManifoldPoint, 8> found;
-  std::size_t count = 0;
-  const double surface = dot(n, T_ref.position()) + h_ref[axis];
-  for (int k = 0; k < polygon.count; ++k) {
-    const ClipVertex& c = polygon.v[static_cast<std::size_t>(k)];
-    const double separation = dot(n, c.p) - surface;
-    if (separation > margin) continue;
-    found[count++] = {c.p - 0.5 * separation * n, separation, (name << 8) | c.feature};
-  }
-  if (count <= kMaxPoints) {
-    for (std::size_t k = 0; k < count; ++k) m.points[m.count++] = found[k];
-  } else {
-    reduce({found.data(), count}, n, m);
-  }
+  const double u = dot(db, r) + k * s;
+  edge.axis.normal = n;
+  edge.axis.on_a = pa + s * da;
+  edge.axis.on_b = pb + u * db;
+  return std::fabs(s) <= boxes.ha[edge.i] && std::fabs(u) <= boxes.hb[edge.j];
 }
 
 }  // namespace
 
-void collide_boxes(const Vec3& ha, const SE3& Ta, const Vec3& hb, const SE3& Tb, double margin,
-                   Manifold& m) {
-  BestAxis best;
-  const Vec3 d = Tb.position() - Ta.position();
-  if (!find_best_axis(ha, Ta.rotation(), hb, Tb.rotation(), d, margin, best)) return;
-  m.normal = best.normal;
-  if (best.j >= 0) {
-    edge_contact(ha, Ta, hb, Tb, best, m);
-  } else if (best.face_of_b) {
-    face_contact(hb, Tb, ha, Ta, best.i, -best.normal, margin,
-                 static_cast<std::uint32_t>(4 + best.i), m);
-  } else {
-    face_contact(ha, Ta, hb, Tb, best.i, best.normal, margin,
-                 static_cast<std::uint32_t>(1 + best.i), m);
+void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
+  const Boxes boxes(pair);
+  if (still_apart(boxes, margin, pair, cache)) return;
+  const ContactQuery query(pair, margin);
+  FaceAxis face;
+  const bool near = find_best_face(query, boxes, face);
+  face.normal = face_normal(pair, boxes, face.of_a, face.face);
+  face.face = facing(boxes, face.of_a, face.face);
+  EdgeAxis edge;
+  if (face.gap <= 0.0) find_better_edges(boxes, margin, face, edge);
+  const bool by_edges = edge.better && !query.face_suffices(face.gap, edge.axis.gap);
+  if (!by_edges) {
+    remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
+             face.face);
+    if (!near) return;
+    Feature feature;
+    face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
+    // A point of the patch proves how near they are.
+    const double best = edge.better ? edge.axis.gap : face.gap;
+    if (add_face_contact(query, face.of_a, feature, face.normal, best, m)) return;
   }
+  if (edge.better) {
+    const bool within = place_edges(pair, boxes, edge);
+    if (edge.axis.gap > margin || edge.axis.gap <= 0.0 || within) {
+      remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
+      return add_contact_along(query, edge.axis, m);
+    }
+  }
+  // Apart, but neither across a face nor between two edges.
+  const GjkResult found = gjk(pair, face.normal, margin);
+  if (found.state != GjkResult::State::overlaps) return collide_apart(query, found, cache, m);
+  add_contact_along(query, axis_of_face(pair, face), m);  // so near that it is rounding
 }
 
 }  // namespace vp::collide

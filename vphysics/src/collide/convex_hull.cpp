@@ -17,13 +17,13 @@ namespace {
 using collide::HullData;
 using collide::Loop;
 
-constexpr double kFarthest = 1e9;   // of a coordinate [m], as everywhere in the engine
-constexpr double kSmallest = 1e-9;  // extent [m]
-constexpr double kThinnest = 1e-6;  // thickness, share of the extent
-constexpr int kMostVertices = 256;  // names of features and costs of pairs are made for so many
-constexpr double kCoarsest = 0.01;  // tolerance
+constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], as everywhere in the engine
+constexpr double kSmallestExtent = 1e-9;  // extent [m]
+constexpr double kThinnest = 1e-6;        // thickness, share of the extent
+constexpr int kMostHullVertices = 256;  // names of features and costs of pairs are made for so many
+constexpr double kCoarsestTolerance = 0.01;  // tolerance
 
-tl::unexpected<Error> refused(std::string message) {
+tl::unexpected<Error> hull_refused(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "convex hull: " + std::move(message)});
 }
 
@@ -153,29 +153,34 @@ void set_edges(HullData& hull) {
   };
   std::sort(hull.edges.begin(), hull.edges.end(), before);
   for (std::size_t f = 0; f < hull.faces.size(); ++f) {
+    hull.first_corner.push_back(static_cast<std::uint16_t>(hull.corner_edges.size()));
     const auto& loop = hull.faces[f].vertices;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const std::uint16_t from = loop[i], to = loop[(i + 1) % loop.size()];
-      if (from < to) continue;
-      const collide::HullEdge key{to, from, 0, 0};
-      std::lower_bound(hull.edges.begin(), hull.edges.end(), key, before)->right =
-          static_cast<std::uint16_t>(f);
+      const collide::HullEdge key{std::min(from, to), std::max(from, to), 0, 0};
+      const auto edge = std::lower_bound(hull.edges.begin(), hull.edges.end(), key, before);
+      hull.corner_edges.push_back(static_cast<std::uint16_t>(edge - hull.edges.begin()));
+      if (from > to) edge->right = static_cast<std::uint16_t>(f);
     }
   }
 }
 
-void set_faces_around(HullData& hull) {
-  std::vector<std::vector<std::uint16_t>> around(hull.vertices.size());
+// A vertex has as many faces as neighbours.
+void set_surroundings(HullData& hull) {
+  std::vector<std::vector<std::uint16_t>> faces(hull.vertices.size()), next(hull.vertices.size());
   for (std::size_t f = 0; f < hull.faces.size(); ++f) {
-    for (const std::uint16_t v : hull.faces[f].vertices) {
-      around[v].push_back(static_cast<std::uint16_t>(f));
+    const auto& loop = hull.faces[f].vertices;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      faces[loop[i]].push_back(static_cast<std::uint16_t>(f));
+      next[loop[i]].push_back(loop[(i + 1) % loop.size()]);
     }
   }
-  hull.first_around.push_back(0);
-  for (const auto& faces : around) {
-    hull.around.insert(hull.around.end(), faces.begin(), faces.end());
-    hull.first_around.push_back(static_cast<std::uint16_t>(hull.around.size()));
+  for (std::size_t v = 0; v < hull.vertices.size(); ++v) {
+    hull.first_around.push_back(static_cast<std::uint16_t>(hull.faces_around.size()));
+    hull.faces_around.insert(hull.faces_around.end(), faces[v].begin(), faces[v].end());
+    hull.neighbours.insert(hull.neighbours.end(), next[v].begin(), next[v].end());
   }
+  hull.first_around.push_back(static_cast<std::uint16_t>(hull.faces_around.size()));
 }
 
 // A tetrahedron of density 1 from the reference point (the origin here) to a, b, c: volume V,
@@ -220,24 +225,24 @@ void set_mass(HullData& hull) {
 }  // namespace
 
 Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOptions& options) {
-  if (options.max_vertices < 4 || options.max_vertices > kMostVertices) {
-    return refused("max_vertices must be from 4 to 256");
+  if (options.max_vertices < 4 || options.max_vertices > kMostHullVertices) {
+    return hull_refused("max_vertices must be from 4 to 256");
   }
-  if (!(options.tolerance >= 0.0 && options.tolerance <= kCoarsest)) {
-    return refused("the tolerance must be in [0, 0.01]");
+  if (!(options.tolerance >= 0.0 && options.tolerance <= kCoarsestTolerance)) {
+    return hull_refused("the tolerance must be in [0, 0.01]");
   }
   for (const Vec3& p : points) {
     for (const double x : {p.x, p.y, p.z}) {
-      if (!(std::fabs(x) <= kFarthest)) {
-        return refused("every coordinate must be finite and at most 1e9 in magnitude");
+      if (!(std::fabs(x) <= kFarthestPoint)) {
+        return hull_refused("every coordinate must be finite and at most 1e9 in magnitude");
       }
     }
   }
   const std::vector<Vec3> distinct = sorted(points);
-  if (distinct.size() < 4) return refused("at least four different points are needed");
+  if (distinct.size() < 4) return hull_refused("at least four different points are needed");
   const Extent extent = extent_of(distinct);
-  if (!(extent.largest >= kSmallest)) {
-    return refused("the points lie within a nanometre; give them in metres");
+  if (!(extent.largest >= kSmallestExtent)) {
+    return hull_refused("the points lie within a nanometre; give them in metres");
   }
   const double scale = grid_scale(extent.largest);
   const collide::Quickhull found = find_triangles(distinct, extent, scale, options);
@@ -246,9 +251,10 @@ Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOpti
       break;
     case collide::Quickhull::Result::point:
     case collide::Quickhull::Result::line:
-      return refused("the points lie on one line; a capsule has a thickness of its own");
+      return hull_refused("the points lie on one line; a capsule has a thickness of its own");
     case collide::Quickhull::Result::plane:
-      return refused("the points lie in one plane; give the body a thickness, or use a thin box");
+      return hull_refused(
+          "the points lie in one plane; give the body a thickness, or use a thin box");
   }
   auto hull = std::make_shared<HullData>();
   std::vector<Loop> loops = collide::faces_of(distinct, found.triangles, found.tolerance / scale);
@@ -258,7 +264,7 @@ Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOpti
   hull->upper = kept.upper;
   set_faces(*hull, loops);
   set_edges(*hull);
-  set_faces_around(*hull);
+  set_surroundings(*hull);
   set_mass(*hull);
   return ConvexHull(std::move(hull));
 }

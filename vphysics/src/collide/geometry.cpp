@@ -15,6 +15,12 @@ SignedDistance distance_to_point(const Vec3& d, double radius) {
   return {n - radius, (1.0 / n) * d};
 }
 
+SignedDistance distance_to_capsule(double radius, double half, const Vec3& p) {
+  const Vec3 d{p.x, p.y, p.z - std::clamp(p.z, -half, half)};
+  if (d.z == 0.0 && half > 0.0 && norm(d) < kDirectionNoise) return {-radius, {1, 0, 0}};
+  return distance_to_point(d, radius);
+}
+
 SignedDistance distance_to_box(const Vec3& half, const Vec3& p) {
   const Vec3 nearest{std::clamp(p.x, -half.x, half.x), std::clamp(p.y, -half.y, half.y),
                      std::clamp(p.z, -half.z, half.z)};
@@ -161,7 +167,7 @@ SignedDistance signed_distance(const Geometry& g, const Vec3& p) {
     case Kind::sphere:
       return distance_to_point(p, g.radius);
     case Kind::capsule:
-      return distance_to_point({p.x, p.y, p.z - std::clamp(p.z, -g.half.z, g.half.z)}, g.radius);
+      return distance_to_capsule(g.radius, g.half.z, p);
     case Kind::box:
       return distance_to_box(g.half, p);
     case Kind::cylinder:

@@ -20,8 +20,10 @@ struct HullData {
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
   std::vector<std::uint16_t> corners;   // of all faces, one face after the other
   std::vector<HullEdge> edges;          // sorted by their vertices
-  // Faces around each vertex: around[first_around[v]] up to around[first_around[v + 1] - 1]
-  std::vector<std::uint16_t> around, first_around;
+  // The edge from each corner to the next of its face; those of face f begin at first_corner[f].
+  std::vector<std::uint16_t> corner_edges, first_corner;
+  // Faces and neighbours of vertex v: from first_around[v] up to first_around[v + 1].
+  std::vector<std::uint16_t> faces_around, neighbours, first_around;
   Vec3 lower, upper;  // bounds
   Vec3 centre;        // of mass
   double radius;      // of the sphere about it that holds the hull

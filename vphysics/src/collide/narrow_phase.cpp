@@ -1,9 +1,12 @@
-// Manifolds of every pair of shapes except box against box. Each routine takes the shapes in the
-// order of Kind; find_manifold turns the pair and, at the end, the normal around.
+// Manifolds of every pair of shapes: here those with a closed form, the others by convex_contact.h.
+// Each routine takes the shapes in the order of Kind; find_manifold turns the pair and, at the end,
+// the normal around.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "collide/capsule_axes.h"
+#include "collide/convex_contact.h"
 #include "collide/manifold.h"
 
 namespace vp::collide {
@@ -24,35 +27,19 @@ void sphere_against(const Vec3& centre, double radius, const Posed& b, double ma
   m.add(centre + (radius + 0.5 * separation) * m.normal, separation, feature);
 }
 
-Vec3 on_axis(const Posed& capsule, double s) {
-  return capsule.T.position() + s * capsule.T.rotation().cz;
-}
-
-struct AxisPair {
-  double s, t;
-};
-// Parameters of the points of two segments (s on a, t on b) that are nearest to one another.
-AxisPair closest_on_axes(const Posed& a, const Posed& b) {
-  const Vec3 da = a.T.rotation().cz, db = b.T.rotation().cz;
-  const Vec3 r = a.T.position() - b.T.position();
-  const double la = a.g.half.z, lb = b.g.half.z;
-  const double k = dot(da, db), ra = dot(da, r), rb = dot(db, r);
-  const double parallel = 1.0 - k * k;
-  double s = parallel > 1e-12 ? std::clamp((k * rb - ra) / parallel, -la, la) : 0.0;
-  const double t = std::clamp(k * s + rb, -lb, lb);
-  s = std::clamp(k * t - ra, -la, la);
-  return {s, std::clamp(k * s + rb, -lb, lb)};
+Axis axis_of(const Posed& capsule) {
+  return {capsule.T.position(), capsule.T.rotation().cz, capsule.g.half.z};
 }
 
 // Capsules that lie along one another touch along a stretch: its two ends carry them.
 void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m) {
-  const Vec3 da = a.T.rotation().cz, db = b.T.rotation().cz;
-  const AxisPair nearest = closest_on_axes(a, b);
-  const Vec3 d = on_axis(b, nearest.t) - on_axis(a, nearest.s);
-  const double distance = norm(d);
-  const double separation = distance - a.g.radius - b.g.radius;
+  const Axis axis_a = axis_of(a), axis_b = axis_of(b);
+  const Vec3 &da = axis_a.direction, &db = axis_b.direction;
+  const AxisPair nearest = nearest_on_axes(axis_a, axis_b);
+  const Vec3 d = axis_b.at(nearest.t) - axis_a.at(nearest.s);
+  const double separation = norm(d) - a.g.radius - b.g.radius;
   if (separation > margin) return;
-  m.normal = distance > 1e-12 ? (1.0 / distance) * d : a.T.rotation().cx;
+  m.normal = normal_between(axis_a, axis_b, d);
   constexpr double kAlongside = 1e-3;  // sine of the angle below which two points are used
   const double along = dot(da, db);
   if (norm(cross(da, db)) < kAlongside && a.g.half.z > 0.0 && b.g.half.z > 0.0) {
@@ -62,8 +49,8 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
     if (upper > lower) {
       for (int i = 0; i < 2; ++i) {
         const double s = i == 0 ? lower : upper;
-        const Vec3 pa = on_axis(a, s);
-        const Vec3 pb = on_axis(b, std::clamp((s - centre) * along, -b.g.half.z, b.g.half.z));
+        const Vec3 pa = axis_a.at(s);
+        const Vec3 pb = axis_b.at(std::clamp((s - centre) * along, -b.g.half.z, b.g.half.z));
         const double gap = dot(m.normal, pb - pa) - a.g.radius - b.g.radius;
         if (gap <= margin) {
           m.add(pa + (a.g.radius + 0.5 * gap) * m.normal, gap, static_cast<std::uint32_t>(i + 1));
@@ -72,38 +59,7 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
       return;
     }
   }
-  m.add(on_axis(a, nearest.s) + (a.g.radius + 0.5 * separation) * m.normal, separation, 0);
-}
-
-// The signed distance to a convex shape is convex along the capsule's axis: bisection on its slope
-// finds the nearest point; the ends are added so that a lying capsule does not rock.
-void capsule_against(const Posed& a, const Posed& b, double margin, Manifold& m) {
-  const Vec3 axis = b.T.unrotate(a.T.rotation().cz);
-  const Vec3 middle = inverse_times(b.T, a.T.position());
-  double lower = -a.g.half.z, upper = a.g.half.z;
-  constexpr int kHalvings = 48;  // down to 1e-14 of the length
-  for (int i = 0; i < kHalvings && lower < upper; ++i) {
-    const double s = 0.5 * (lower + upper);
-    const double slope = dot(signed_distance(b.g, middle + s * axis).normal, axis);
-    (slope > 0.0 ? upper : lower) = s;
-  }
-  const double nearest = 0.5 * (lower + upper);
-  Manifold ends;
-  sphere_against(on_axis(a, nearest), a.g.radius, b, margin, 0, ends);
-  if (ends.count == 0) return;
-  const Vec3 normal = ends.normal;
-  // Ends beside the nearest point, and only where they face the same surface, carry as well.
-  for (int i = 0; i < 2; ++i) {
-    const double s = i == 0 ? -a.g.half.z : a.g.half.z;
-    if (std::fabs(s - nearest) < 0.05 * a.g.radius) continue;
-    const SignedDistance d = signed_distance(b.g, middle + s * axis);
-    const Vec3 n = -b.T.rotate(d.normal);
-    if (dot(n, normal) < 0.99 || d.distance - a.g.radius > margin) continue;
-    const double gap = d.distance - a.g.radius;
-    m.add(on_axis(a, s) + (a.g.radius + 0.5 * gap) * n, gap, static_cast<std::uint32_t>(i + 1));
-  }
-  m.normal = normal;
-  if (m.count < 2) m.add(ends.points[0].position, ends.points[0].separation, 0);
+  m.add(axis_a.at(nearest.s) + (a.g.radius + 0.5 * separation) * m.normal, separation, 0);
 }
 
 // The four corners of the face that looks into the half-space most: among them is the deepest.
@@ -128,29 +84,68 @@ void box_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) 
   }
 }
 
-void collide_ordered(const Posed& a, const Posed& b, double margin, Manifold& m) {
+// The corners of what lies lowest.
+void lowest_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) {
+  const Vec3 up = b.T.rotation().cz;
+  const SE3 turned(a.T.rotation(), {});  // the position is added last: it may be large
+  const double height = dot(up, a.T.position() - b.T.position()) - core_radius(a.g);
+  Feature feature;
+  find_feature(a.g, turned, -a.T.unrotate(up), feature);
+  PatchPoint found[kMostCorners];
+  int count = 0;
+  for (int i = 0; i < feature.count; ++i) {
+    const FeatureCorner& c = feature.corners[i];
+    const double separation = height + dot(up, c.at());
+    if (separation > margin) continue;
+    const Vec3 p = c.at() - (core_radius(a.g) + 0.5 * separation) * up;
+    found[count++] = {p.x, p.y, p.z, separation, c.name};
+  }
+  m.normal = -up;
+  reduce_patch(found, count, up, core_reach(a.g), m);
+  for (int i = 0; i < m.count; ++i) m.points[i].position += a.T.position();
+}
+
+void collide_posed(const Posed& a, const Posed& b, double margin, PairCache& cache, Manifold& m) {
+  const CorePair pair(a.g, b.g, relative_pose(a.T, b.T));
+  if (a.g.kind == Kind::box && b.g.kind == Kind::box) {
+    collide_boxes(pair, margin, cache, m);
+  } else {
+    collide_convex(pair, margin, cache, m);
+  }
+  if (m.count == 0) return;
+  m.normal = a.T.rotate(m.normal);
+  for (int i = 0; i < m.count; ++i) m.points[i].position = a.T * m.points[i].position;
+}
+
+void collide_ordered(const Posed& a, const Posed& b, double margin, PairCache& cache, Manifold& m) {
   if (a.g.kind == Kind::sphere) {
     sphere_against(a.T.position(), a.g.radius, b, margin, 0, m);
-  } else if (a.g.kind == Kind::capsule) {
-    b.g.kind == Kind::capsule ? capsule_capsule(a, b, margin, m) : capsule_against(a, b, margin, m);
-  } else if (b.g.kind == Kind::box) {
-    collide_boxes(a.g.half, a.T, b.g.half, b.T, margin, m);
-  } else if (a.g.kind == Kind::box) {
-    box_half_space(a, b, margin, m);
+  } else if (b.g.kind == Kind::half_space) {
+    a.g.kind == Kind::box ? box_half_space(a, b, margin, m) : lowest_half_space(a, b, margin, m);
+  } else if (a.g.kind == Kind::capsule && b.g.kind == Kind::capsule) {
+    capsule_capsule(a, b, margin, m);
+  } else {
+    collide_posed(a, b, margin, cache, m);
   }
 }
 
 }  // namespace
 
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                   double margin, Manifold& manifold) {
+                   double margin, PairCache& cache, Manifold& manifold) {
   manifold.count = 0;
   if (a.kind <= b.kind) {
-    collide_ordered({a, T_a}, {b, T_b}, margin, manifold);
+    collide_ordered({a, T_a}, {b, T_b}, margin, cache, manifold);
   } else {
-    collide_ordered({b, T_b}, {a, T_a}, margin, manifold);
+    collide_ordered({b, T_b}, {a, T_a}, margin, cache, manifold);
     manifold.normal = -manifold.normal;
   }
+}
+
+void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                   double margin, Manifold& manifold) {
+  PairCache cache;
+  find_manifold(a, T_a, b, T_b, margin, cache, manifold);
 }
 
 }  // namespace vp::collide

@@ -58,9 +58,9 @@ struct HorizonEdge {
   std::uint32_t beyond;    // the facet that stays
 };
 
-class Builder {
+class QuickhullBuilder {
  public:
-  Builder(std::span<const GridPoint> points, double tolerance)
+  QuickhullBuilder(std::span<const GridPoint> points, double tolerance)
       : points_(points), tolerance_(tolerance), starts_at_(points.size(), kNoFacet) {}
 
   Quickhull::Result start(double thinnest);
@@ -93,7 +93,7 @@ class Builder {
   std::vector<HorizonEdge> horizon_;
 };
 
-std::uint32_t Builder::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+std::uint32_t QuickhullBuilder::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   Facet f;
   f.v = {a, b, c};
   f.beside = {kNoFacet, kNoFacet, kNoFacet};
@@ -105,7 +105,7 @@ std::uint32_t Builder::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t
 }
 
 // Tells two facets that share an edge of one another.
-void Builder::link(std::uint32_t f, std::uint32_t g) {
+void QuickhullBuilder::link(std::uint32_t f, std::uint32_t g) {
   Facet &a = facets_[f], &b = facets_[g];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -116,7 +116,7 @@ void Builder::link(std::uint32_t f, std::uint32_t g) {
   }
 }
 
-void Builder::put(std::uint32_t p, Facet& f, double d) {
+void QuickhullBuilder::put(std::uint32_t p, Facet& f, double d) {
   f.outside.push_back(p);
   if (d > f.farthest_distance || (d == f.farthest_distance && p < f.farthest)) {
     f.farthest_distance = d;
@@ -126,7 +126,7 @@ void Builder::put(std::uint32_t p, Facet& f, double d) {
 
 // To the facet above which it is the highest. What no candidate has far enough below it may still
 // be seen by another; if not, it is within the tolerance of the hull and left out.
-void Builder::assign(std::uint32_t p, std::span<const std::uint32_t> candidates) {
+void QuickhullBuilder::assign(std::uint32_t p, std::span<const std::uint32_t> candidates) {
   std::uint32_t best = kNoFacet;
   double most = 0.0;
   for (const std::uint32_t f : candidates) {
@@ -144,7 +144,7 @@ void Builder::assign(std::uint32_t p, std::span<const std::uint32_t> candidates)
   }
 }
 
-void Builder::assign_to_any(std::uint32_t p) {
+void QuickhullBuilder::assign_to_any(std::uint32_t p) {
   for (Facet& f : facets_) {
     const double d = f.alive ? distance(f, p) : 0.0;
     if (d > tolerance_) return put(p, f, d);
@@ -152,7 +152,7 @@ void Builder::assign_to_any(std::uint32_t p) {
 }
 
 // Four points as far apart as can be had cheaply.
-Quickhull::Result Builder::start(double thinnest) {
+Quickhull::Result QuickhullBuilder::start(double thinnest) {
   using Result = Quickhull::Result;
   const auto n = static_cast<std::uint32_t>(points_.size());
   // The longest of the three lines between the extremes along the axes; ties to the lowest index.
@@ -214,7 +214,7 @@ Quickhull::Result Builder::start(double thinnest) {
 }
 
 // Marks the facets that p is above of, and the edges around them.
-void Builder::see(std::uint32_t first, std::uint32_t p) {
+void QuickhullBuilder::see(std::uint32_t first, std::uint32_t p) {
   seen_.assign(1, first);
   horizon_.clear();
   facets_[first].visible = true;
@@ -233,7 +233,7 @@ void Builder::see(std::uint32_t first, std::uint32_t p) {
   }
 }
 
-void Builder::add_cone(std::uint32_t p) {
+void QuickhullBuilder::add_cone(std::uint32_t p) {
   fresh_.clear();
   for (const HorizonEdge& e : horizon_) {
     const std::uint32_t f = add_facet(e.from, e.to, p);
@@ -245,7 +245,7 @@ void Builder::add_cone(std::uint32_t p) {
 }
 
 // Adds the point that is farthest outside; false if there is none.
-bool Builder::grow() {
+bool QuickhullBuilder::grow() {
   std::uint32_t best = kNoFacet;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
     if (!facets_[f].alive || facets_[f].outside.empty()) continue;
@@ -271,7 +271,7 @@ bool Builder::grow() {
   return true;
 }
 
-std::vector<Triangle> Builder::triangles() const {
+std::vector<Triangle> QuickhullBuilder::triangles() const {
   std::vector<Triangle> found;
   for (const Facet& f : facets_) {
     if (f.alive) found.push_back(f.v);
@@ -283,7 +283,7 @@ std::vector<Triangle> Builder::triangles() const {
 
 Quickhull quickhull(std::span<const GridPoint> points, int max_vertices, double tolerance,
                     double thinnest) {
-  Builder builder(points, tolerance);
+  QuickhullBuilder builder(points, tolerance);
   Quickhull hull;
   hull.result = builder.start(thinnest);
   if (hull.result != Quickhull::Result::hull) return hull;

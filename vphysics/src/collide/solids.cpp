@@ -52,7 +52,7 @@ namespace {
 
 constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 
-tl::unexpected<Error> refused(const char* message) {
+tl::unexpected<Error> scale_refused(const char* message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, message});
 }
 
@@ -61,13 +61,14 @@ tl::unexpected<Error> refused(const char* message) {
 Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
   for (const double s : {scale.x, scale.y, scale.z}) {
     if (!(s >= kLeastScale && s <= kMostScale)) {
-      return refused("scaled: every factor must be from 1e-6 to 1e6");
+      return scale_refused("scaled: every factor must be from 1e-6 to 1e6");
     }
   }
   const bool round = scale.x == scale.y, uniform = round && scale.y == scale.z;
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     if (!uniform) {
-      return refused("scaled: a sphere keeps its shape by equal factors only; use a convex hull");
+      return scale_refused(
+          "scaled: a sphere keeps its shape by equal factors only; use a convex hull");
     }
     return Sphere{scale.x * sphere->radius};
   }
@@ -77,22 +78,24 @@ Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     if (!uniform) {
-      return refused("scaled: a capsule keeps its shape by equal factors only; use a convex hull");
+      return scale_refused(
+          "scaled: a capsule keeps its shape by equal factors only; use a convex hull");
     }
     return Capsule{scale.x * capsule->radius, scale.x * capsule->half_length};
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     if (!round) {
-      return refused("scaled: a cylinder needs equal factors of x and y; use a convex hull");
+      return scale_refused("scaled: a cylinder needs equal factors of x and y; use a convex hull");
     }
     return Cylinder{scale.x * cylinder->radius, scale.z * cylinder->half_length};
   }
   if (const auto* cone = std::get_if<Cone>(&shape)) {
-    if (!round) return refused("scaled: a cone needs equal factors of x and y; use a convex hull");
+    if (!round)
+      return scale_refused("scaled: a cone needs equal factors of x and y; use a convex hull");
     return Cone{scale.x * cone->radius, scale.z * cone->half_height};
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
-    if (!hull->data()) return refused("scaled: the convex hull was moved from");
+    if (!hull->data()) return scale_refused("scaled: the convex hull was moved from");
     std::vector<Vec3> points(hull->vertices().begin(), hull->vertices().end());
     for (Vec3& p : points) p = {scale.x * p.x, scale.y * p.y, scale.z * p.z};
     HullOptions all;

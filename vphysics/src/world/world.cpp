@@ -139,11 +139,6 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
         Errc::unsupported,
         "add_collider: only spheres are swept in this version; give a continuous body spheres");
   }
-  if (desc.shape.index() >= Shape(Cylinder{}).index()) {
-    return refuse(
-        Errc::unsupported,
-        "add_collider: cylinders, cones and hulls do not meet others in this version yet");
-  }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
   Collider& c = impl_->colliders[index];
   c.body = body_handle.index - 1;

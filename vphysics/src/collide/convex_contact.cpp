@@ -1,0 +1,170 @@
+#include "collide/convex_contact.h"
+
+#include <limits>
+
+#include "collide/epa.h"
+#include "collide/polytope.h"
+
+namespace vp::collide {
+namespace {
+
+// The better of the two features' face normals.
+bool find_face_axis(const ContactQuery& q, const Feature& a, const Feature& b, FaceAxis& best) {
+  bool found = false;
+  for (const bool of_a : {true, false}) {
+    const Feature& f = of_a ? a : b;
+    if (f.count < 3) continue;
+    const Vec3 n = of_a ? f.normal() : -f.normal();
+    const double gap = gap_along(q.pair, n);
+    if (found && !(gap > best.gap + q.face_bias())) continue;
+    best = {gap, n, of_a, 0};
+    found = true;
+  }
+  return found;
+}
+
+void features_along(const ContactQuery& q, const Vec3& n, Feature& a, Feature& b) {
+  find_feature(q.pair.a, SE3{}, n, a);
+  find_feature(q.pair.b, q.pair.T_a_b, -q.pair.T_a_b.unrotate(n), b);
+}
+
+PatchQuery patch_query(const ContactQuery& q, const Feature& a, const Feature& b, const Vec3& n) {
+  return {a,  b,  n,  core_radius(q.pair.a), core_radius(q.pair.b), q.margin, q.pair.size,
+          {}, {}, 0.0};
+}
+
+void add_patch(const ContactQuery& q, const BestAxis& axis, const Feature& a, const Feature& b,
+               Manifold& m) {
+  PatchQuery patch = patch_query(q, a, b, axis.normal);
+  patch.on_a = axis.on_a;
+  patch.on_b = axis.on_b;
+  patch.core_separation = axis.gap;
+  m.normal = axis.normal;
+  find_patch(patch, true, m);
+}
+
+// Along the axis, or along the normal of a face there if that does.
+void add_contact(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
+  Feature a, b;
+  features_along(q, axis.normal, a, b);
+  FaceAxis face;
+  if (find_face_axis(q, a, b, face) && q.face_suffices(face.gap, axis.gap)) {
+    if (add_face_contact(q, face.of_a, face.of_a ? a : b, face.normal, axis.gap, m)) return;
+  }
+  add_patch(q, axis, a, b, m);
+}
+
+// What overlaps and is not two polytopes. A face seen along the last normal tells how deep they are
+// at most: nothing that is hardly better needs to be looked for.
+void collide_overlapping(const ContactQuery& q, const Simplex& simplex, const Vec3& last,
+                         PairCache& cache, Manifold& m) {
+  Feature a, b;
+  features_along(q, last, a, b);
+  FaceAxis face;
+  const bool found = find_face_axis(q, a, b, face);
+  if (found) {
+    const double slack = kFaceAbsolute * q.pair.size + kFaceRelative * q.radii;
+    const Penetration p = epa(q.pair, simplex, (-face.gap - slack) / (1.0 + kFaceRelative));
+    if (q.face_suffices(face.gap, -p.at_least)) {
+      remember(cache, face.normal);
+      if (add_face_contact(q, face.of_a, face.of_a ? a : b, face.normal, -p.at_least, m)) return;
+    }
+  }
+  const Penetration p = epa(q.pair, simplex, std::numeric_limits<double>::infinity());
+  remember(cache, p.normal);
+  add_contact(q, {-p.depth, p.normal, p.on_a, p.on_b}, m);
+}
+
+void collide_polytopes(const ContactQuery& q, PairCache& cache, Manifold& m) {
+  FaceAxis face;
+  EdgeAxis edge;
+  find_overlap_axes(q.pair, q.face_bias(), cache, face, edge);
+  const double best = edge.better ? edge.axis.gap : face.gap;
+  if (q.face_suffices(face.gap, best)) {
+    remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
+             face.face);
+    Feature feature;
+    face_feature(face.of_a ? q.pair.a : q.pair.b, face.of_a ? SE3{} : q.pair.T_a_b, face.face,
+                 feature);
+    if (add_face_contact(q, face.of_a, feature, face.normal, best, m)) return;
+  }
+  if (edge.better) {
+    remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
+    add_contact_along(q, edge.axis, m);
+  } else {
+    add_contact_along(q, axis_of_face(q.pair, face), m);
+  }
+}
+
+bool is_direction(const Vec3& v) {
+  const double n2 = dot(v, v);
+  return n2 > 0.5 && n2 < 2.0;  // not of NaN
+}
+
+}  // namespace
+
+bool add_face_contact(const ContactQuery& q, bool face_of_a, const Feature& face,
+                      const Vec3& normal, double best_gap, Manifold& m) {
+  Feature other;
+  if (face_of_a) {
+    find_feature(q.pair.b, q.pair.T_a_b, -q.pair.T_a_b.unrotate(normal), other);
+  } else {
+    find_feature(q.pair.a, SE3{}, normal, other);
+  }
+  m.normal = normal;
+  find_patch(patch_query(q, face_of_a ? face : other, face_of_a ? other : face, normal), false, m);
+  if (q.tells(m, best_gap)) return true;
+  m.count = 0;
+  return false;
+}
+
+BestAxis axis_of_face(const CorePair& pair, const FaceAxis& face) {
+  const CorePoint p = support_of(pair, face.normal);
+  return face.of_a ? BestAxis{face.gap, face.normal, p.b() - face.gap * face.normal, p.b()}
+                   : BestAxis{face.gap, face.normal, p.a, p.a + face.gap * face.normal};
+}
+
+void add_contact_along(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
+  if (axis.gap - q.radii > q.margin) return;
+  Feature a, b;
+  features_along(q, axis.normal, a, b);
+  add_patch(q, axis, a, b, m);
+}
+
+Vec3 first_direction(const CorePair& pair, const PairCache& cache) {
+  const Vec3 last{cache.normal[0], cache.normal[1], cache.normal[2]};
+  if (is_direction(last)) return (1.0 / norm(last)) * last;
+  const Vec3 v = pair.T_a_b * core_middle(pair.b) - core_middle(pair.a);
+  const double length = norm(v);
+  return length > 0.0 ? (1.0 / length) * v : Vec3{0, 0, 1};
+}
+
+void remember(PairCache& cache, const Vec3& normal, PairCache::Feature feature, int i, int j) {
+  cache = {};
+  for (int k = 0; k < 3; ++k) cache.normal[k] = static_cast<float>(normal[k]);
+  cache.feature = feature;
+  cache.i = static_cast<std::uint16_t>(i);
+  cache.j = static_cast<std::uint16_t>(j);
+}
+
+void collide_apart(const ContactQuery& q, const GjkResult& found, PairCache& cache, Manifold& m) {
+  remember(cache, found.normal);
+  if (found.state == GjkResult::State::beyond) return;
+  if (found.distance - q.radii > q.margin) return;
+  add_contact(q, {found.distance, found.normal, found.on_a, found.on_b}, m);
+}
+
+void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
+  const ContactQuery q(pair, margin);
+  const Vec3 last = first_direction(pair, cache);
+  const GjkResult found = gjk(pair, last, margin + q.radii);
+  if (found.state != GjkResult::State::overlaps) {
+    collide_apart(q, found, cache, m);
+  } else if (is_polytope(pair.a) && is_polytope(pair.b)) {
+    collide_polytopes(q, cache, m);
+  } else {
+    collide_overlapping(q, found.simplex, last, cache, m);
+  }
+}
+
+}  // namespace vp::collide

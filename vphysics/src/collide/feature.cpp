@@ -1,0 +1,153 @@
+// A disc is a polygon of 16 corners that turn with the shape, so that what stands on it stands on
+// points that keep their names, and the corner that lies deepest, exactly, so that what tips or
+// rolls on its rim rolls on a circle.
+#include "collide/feature.h"
+
+#include "collide/polytope.h"
+
+namespace vp::collide {
+namespace {
+
+constexpr int kRim = 16;
+// cos and sin of multiples of pi / 8.
+constexpr double kC1 = 0.9238795325112867, kS1 = 0.3826834323650898, kR = 0.7071067811865476;
+constexpr double kRimCos[kRim] = {1,  kC1,  kR,  kS1,  0, -kS1, -kR, -kC1,
+                                  -1, -kC1, -kR, -kS1, 0, kS1,  kR,  kC1};
+constexpr double kRimSin[kRim] = {0, kS1,  kR,  kC1,  1,  kC1,  kR,  kS1,
+                                  0, -kS1, -kR, -kC1, -1, -kC1, -kR, -kS1};
+// Names: corners and edges of the upper rim, of the lower one, and of the side.
+constexpr int kUpper = 0, kLower = 32, kSide = 64;
+
+void add(Feature& f, const SE3& T, const Vec3& p, int name, int edge) {
+  const Vec3 q = T * p;
+  f.corners[f.count++] = {q.x, q.y, q.z, static_cast<std::uint16_t>(name),
+                          static_cast<std::uint16_t>(edge)};
+}
+
+void set_normal(Feature& f, const SE3& T, const Vec3& n) {
+  const Vec3 m = T.rotate(n);
+  f.normal_x = m.x;
+  f.normal_y = m.y;
+  f.normal_z = m.z;
+}
+
+// The disc at the height z, which looks up or down.
+void disc_feature(double radius, double z, const SE3& T, const Vec3& d, Feature& f) {
+  const bool up = z > 0.0;
+  const int base = up ? kUpper : kLower;
+  f.count = 0;
+  set_normal(f, T, {0, 0, up ? 1.0 : -1.0});
+  const double across = std::sqrt(d.x * d.x + d.y * d.y);
+  const double cos = across > 0.0 ? d.x / across : 1.0, sin = across > 0.0 ? d.y / across : 0.0;
+  for (int k = 0; k < kRim; ++k) {
+    const int i = up ? k : kRim - 1 - k, next = up ? (i + 1) % kRim : (i + kRim - 1) % kRim;
+    add(f, T, {radius * kRimCos[i], radius * kRimSin[i], z}, base + i, base + (up ? i : next));
+    // Between this corner and the next, well clear of both, lies the deepest one. Upright (sine of
+    // the tilt), it would be deeper by less than a millionth of the radius, and in any place.
+    constexpr double kClear = 1e-4, kUpright = 3e-5;
+    const double after = kRimCos[i] * sin - kRimSin[i] * cos;
+    const double before = cos * kRimSin[next] - sin * kRimCos[next];
+    const bool between =
+        up ? after > kClear && before > kClear : after < -kClear && before < -kClear;
+    if (across > kUpright * norm(d) && between) {
+      add(f, T, {radius * cos, radius * sin, z}, base + kRim, base + kRim);
+    }
+  }
+}
+
+void segment_feature(const SE3& T, const Vec3& p, const Vec3& q, int name, Feature& f) {
+  f.count = 0;
+  add(f, T, p, name, name);
+  add(f, T, q, name + 1, name);
+}
+
+void cylinder_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
+  const double across = std::sqrt(d.x * d.x + d.y * d.y);
+  if (std::fabs(d.z) > across) {
+    disc_feature(g.radius, std::copysign(g.half.z, d.z), T, d, f);
+  } else {
+    const Vec3 rim = g.radius * rim_direction(d);
+    segment_feature(T, rim - g.half, rim + g.half, kSide, f);
+  }
+}
+
+void cone_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
+  const double across = std::sqrt(d.x * d.x + d.y * d.y), h = 2.0 * g.half.z, r = g.radius;
+  // Alignment with the base's normal and with the side's.
+  const double base = -d.z, side = (h * across + r * d.z) / std::sqrt(h * h + r * r);
+  if (base > side) {
+    disc_feature(r, -g.half.z, T, d, f);
+  } else {
+    segment_feature(T, r * rim_direction(d) - g.half, g.half, kSide, f);
+  }
+}
+
+int aligned_box_face(const Vec3& d) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::fabs(d[i]) > std::fabs(d[axis])) axis = i;
+  }
+  return kBoxFace[axis][d[axis] > 0.0 ? 1 : 0];
+}
+
+// Of the faces around the farthest vertex the one that looks most along d.
+int aligned_hull_face(const HullData& hull, const Vec3& d) {
+  const auto v = static_cast<std::size_t>(support_vertex(hull, d, 0));
+  int best = hull.faces_around[hull.first_around[v]];
+  double most = -2.0;
+  for (std::size_t k = hull.first_around[v]; k < hull.first_around[v + 1]; ++k) {
+    const double along = dot(hull.faces[hull.faces_around[k]].normal, d);
+    if (along > most) {
+      most = along;
+      best = hull.faces_around[k];
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void face_feature(const Geometry& g, const SE3& T, int face, Feature& f) {
+  f.count = 0;
+  const auto k = static_cast<std::size_t>(face);
+  if (g.kind == Kind::box) {
+    Vec3 n;
+    n[kBoxFaceAxis[k]] = kBoxFaceSide[k];
+    set_normal(f, T, n);
+    for (int i = 0; i < 4; ++i) {
+      add(f, T, box_corner(g.half, kBoxCorners[k][i]), kBoxCorners[k][i], kBoxCornerEdges[k][i]);
+    }
+    return;
+  }
+  const HullData& hull = *g.hull;
+  set_normal(f, T, hull.faces[k].normal);
+  const std::size_t first = hull.first_corner[k], n = hull.faces[k].vertices.size();
+  const std::size_t stride = (n + kMostCorners - 1) / kMostCorners;
+  for (std::size_t i = 0; i < n; i += stride) {
+    const std::uint16_t v = hull.corners[first + i];
+    add(f, T, hull.vertices[v], v, hull.corner_edges[first + i]);
+  }
+}
+
+void find_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
+  switch (g.kind) {
+    case Kind::sphere:
+    case Kind::half_space:
+      f.count = 0;
+      return add(f, T, {}, 0, 0);
+    case Kind::capsule:
+      if (g.half.z > 0.0) return segment_feature(T, -g.half, g.half, 0, f);
+      f.count = 0;
+      return add(f, T, {}, 0, 0);
+    case Kind::cylinder:
+      return cylinder_feature(g, T, d, f);
+    case Kind::cone:
+      return cone_feature(g, T, d, f);
+    case Kind::box:
+      return face_feature(g, T, aligned_box_face(d), f);
+    case Kind::hull:
+      return face_feature(g, T, aligned_hull_face(*g.hull, d), f);
+  }
+}
+
+}  // namespace vp::collide

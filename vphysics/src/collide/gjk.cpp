@@ -1,0 +1,220 @@
+// The point v nearest to the origin of a simplex in A - B moves towards that of A - B itself: each
+// round adds the support point w opposite to v and keeps of the simplex what v needs. v . w / |v|
+// is a lower bound of the distance, |v| an upper one.
+//
+// Source: van den Bergen, A Fast and Robust GJK Implementation for Collision Detection of Convex
+// Objects, 1999; nearest points of triangles: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+#include "collide/gjk.h"
+
+#include <limits>
+
+namespace vp::collide {
+namespace {
+
+constexpr int kMaxRounds = 96;
+// Bounds this near to one another [share of the distance, squared] are one. Normals are good to the
+// root of it.
+constexpr double kRelative = 1e-14;
+// Rounding of a support point [share of the pair's reach].
+constexpr double kRounding = 4e-16;
+// Of six products of three differences [share of the largest].
+constexpr double kDoubt = 2e-15;
+// Nearer than this [share of the reach] is no direction.
+constexpr double kTouching = 1e-11;
+
+// What of a simplex is nearest to the origin.
+struct Nearest {
+  Vec3 v;
+  double weight[4];
+  int index[4];
+  int count = 0;
+
+  void add(int i, double w) {
+    index[count] = i;
+    weight[count++] = w;
+  }
+};
+
+Nearest at_vertex(const Simplex& s, int i) {
+  Nearest n;
+  n.v = s.p[i].w;
+  n.add(i, 1.0);
+  return n;
+}
+
+Nearest on_segment(const Simplex& s, int i, int k) {
+  const Vec3 a = s.p[i].w, ab = s.p[k].w - a;
+  const double along = -dot(a, ab), length = dot(ab, ab);
+  if (!(along > 0.0)) return at_vertex(s, i);
+  if (!(along < length)) return at_vertex(s, k);
+  const double t = along / length;
+  Nearest n;
+  n.v = a + t * ab;
+  n.add(i, 1.0 - t);
+  n.add(k, t);
+  return n;
+}
+
+const Nearest& nearer(const Nearest& a, const Nearest& b) {
+  return dot(b.v, b.v) < dot(a.v, a.v) ? b : a;
+}
+
+Nearest on_triangle(const Simplex& s, int i, int k, int l) {
+  const Vec3 a = s.p[i].w, b = s.p[k].w, c = s.p[l].w;
+  const Vec3 n = cross(b - a, c - a);
+  // Weights times n . n: each the part of the area beyond an edge.
+  const double wa = dot(n, cross(b, c)), wb = dot(n, cross(c, a)), wc = dot(n, cross(a, b));
+  const double nn = dot(n, n);
+  if (wa > 0.0 && wb > 0.0 && wc > 0.0 && nn > 0.0) {
+    Nearest found;
+    const double k1 = 1.0 / (wa + wb + wc);
+    found.v = (dot(n, a) / nn) * n;
+    found.add(i, wa * k1);
+    found.add(k, wb * k1);
+    found.add(l, wc * k1);
+    return found;
+  }
+  // Beyond an edge, or a triangle too thin to say: the nearest of its edges.
+  const Nearest ab = on_segment(s, i, k), bc = on_segment(s, k, l), ca = on_segment(s, l, i);
+  return nearer(nearer(ab, bc), ca);
+}
+
+// count 4 if the origin is inside.
+Nearest in_tetrahedron(const Simplex& s) {
+  constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
+  Nearest best;
+  double least = std::numeric_limits<double>::infinity();
+  double largest = 0.0;
+  for (int i = 0; i < 4; ++i) largest = std::max(largest, dot(s.p[i].w, s.p[i].w));
+  for (const auto& f : kFaces) {
+    const Vec3 a = s.p[f[0]].w, ab = s.p[f[1]].w - a, ac = s.p[f[2]].w - a, n = cross(ab, ac);
+    // The origin is on the face's inner side, beyond doubt: corners that are nearly the same make
+    // faces of rounding alone.
+    const double opposite = dot(n, s.p[f[3]].w - a), origin = -dot(n, a);
+    const double doubt = kDoubt * largest * (norm(ab) + norm(ac));
+    if ((opposite > doubt && origin > doubt) || (opposite < -doubt && origin < -doubt)) continue;
+    const Nearest on_face = on_triangle(s, f[0], f[1], f[2]);
+    const double d2 = dot(on_face.v, on_face.v);
+    if (d2 < least) {
+      least = d2;
+      best = on_face;
+    }
+  }
+  if (best.count == 0) {
+    for (int i = 0; i < 4; ++i) best.add(i, 0.25);
+  }
+  return best;
+}
+
+Nearest nearest_of(const Simplex& s) {
+  switch (s.count) {
+    case 1:
+      return at_vertex(s, 0);
+    case 2:
+      return on_segment(s, 0, 1);
+    case 3:
+      return on_triangle(s, 0, 1, 2);
+    default:
+      return in_tetrahedron(s);
+  }
+}
+
+void keep(Simplex& s, const Nearest& n) {
+  Simplex kept;
+  for (int i = 0; i < n.count; ++i) {
+    kept.p[i] = s.p[n.index[i]];
+    kept.weight[i] = n.weight[i];
+  }
+  kept.count = n.count;
+  s = kept;
+}
+
+bool contains(const Simplex& s, const Vec3& w) {
+  for (int i = 0; i < s.count; ++i) {
+    if (s.p[i].w == w) return true;
+  }
+  return false;
+}
+
+void set_apart(GjkResult& r, const Vec3& v, double distance) {
+  r.state = GjkResult::State::apart;
+  r.distance = distance;
+  r.normal = (-1.0 / distance) * v;
+  r.on_a = r.on_b = {};
+  for (int i = 0; i < r.simplex.count; ++i) {
+    r.on_a += r.simplex.weight[i] * r.simplex.p[i].a;
+    r.on_b += r.simplex.weight[i] * r.simplex.p[i].b();
+  }
+}
+
+}  // namespace
+
+CorePair::CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
+    : a(shape_a), b(shape_b), T_a_b(pose) {
+  const double reach_a = core_reach(a), reach_b = core_reach(b);
+  reach = reach_a + reach_b + norm(pose * core_middle(b) - core_middle(a));
+  size = std::min(reach_a + core_radius(a), reach_b + core_radius(b));
+}
+
+GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
+  GjkResult r;
+  r.state = GjkResult::State::overlaps;
+  CorePoint next = support_of(pair, start);
+  const double first_gap = -dot(start, next.w);
+  if (first_gap > limit) {
+    r.state = GjkResult::State::beyond;
+    r.distance = first_gap;
+    r.normal = start;
+    return r;
+  }
+  r.simplex.p[0] = next;
+  r.simplex.weight[0] = 1.0;
+  r.simplex.count = 1;
+  Vec3 v = next.w;
+  double v2 = dot(v, v);
+  const double touching = kTouching * pair.reach;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (v2 <= touching * touching) return r;
+    const double length = std::sqrt(v2);
+    const Vec3 n = (-1.0 / length) * v;
+    next = support_of(pair, n);
+    const double gap = -dot(n, next.w);  // v . w / |v|
+    if (gap > limit) {
+      r.state = GjkResult::State::beyond;
+      r.distance = gap;
+      r.normal = n;
+      return r;
+    }
+    const double closed = kRelative * length + kRounding * pair.reach;
+    if (length - gap <= closed) {
+      set_apart(r, v, length);
+      return r;
+    }
+    // Where rounding ends the search, v is the nearest point as far as can be told; but only a gap
+    // tells that they are apart.
+    if (contains(r.simplex, next.w)) {
+      if (gap > 0.0) set_apart(r, v, length);
+      return r;
+    }
+    r.simplex.p[r.simplex.count++] = next;
+    const Nearest nearest = nearest_of(r.simplex);
+    if (nearest.count == 4) {
+      r.simplex.count = 4;
+      return r;
+    }
+    const double n2 = dot(nearest.v, nearest.v);
+    if (!(n2 < v2)) {
+      --r.simplex.count;
+      if (gap > 0.0) set_apart(r, v, length);
+      return r;
+    }
+    keep(r.simplex, nearest);
+    v = nearest.v;
+    v2 = n2;
+  }
+  const double length = std::sqrt(v2);
+  if (gap_along(pair, (-1.0 / length) * v) > 0.0) set_apart(r, v, length);
+  return r;
+}
+
+}  // namespace vp::collide

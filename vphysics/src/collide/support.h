@@ -1,0 +1,75 @@
+// The farthest point of a shape in a direction.
+//
+// A shape is a core swept by a sphere: a sphere's core is its centre, a capsule's its axis; all
+// others are their own core, swept by nothing.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "collide/geometry.h"
+
+namespace vp::collide {
+
+inline double core_radius(const Geometry& g) {
+  return g.kind == Kind::sphere || g.kind == Kind::capsule ? g.radius : 0.0;
+}
+
+// A point of the core from which no other point of it is farther than core_reach.
+inline Vec3 core_middle(const Geometry& g) {
+  return g.kind == Kind::hull ? g.hull->centre : Vec3{};
+}
+inline double core_reach(const Geometry& g) {
+  switch (g.kind) {
+    case Kind::sphere:
+      return 0.0;
+    case Kind::hull:
+      return g.hull->radius;
+    case Kind::cylinder:
+    case Kind::cone:
+      return std::sqrt(g.radius * g.radius + g.half.z * g.half.z);
+    case Kind::capsule:
+    case Kind::box:
+    case Kind::half_space:
+      break;
+  }
+  return norm(g.half);
+}
+
+// Few vertices are looked through; from one neighbour to the next among more.
+int support_vertex(const HullData& hull, const Vec3& d, int hint);
+
+inline Vec3 rim_direction(const Vec3& d) {
+  const double across = std::sqrt(d.x * d.x + d.y * d.y);
+  if (!(across > 1e-150)) return {1, 0, 0};
+  return {d.x / across, d.y / across, 0};
+}
+
+// In the shape's frame; d need not be of unit length. hint: a vertex of a hull to begin with, and
+// the one found.
+inline Vec3 core_support(const Geometry& g, const Vec3& d, int& hint) {
+  switch (g.kind) {
+    case Kind::sphere:
+    case Kind::half_space:
+      return {};
+    case Kind::capsule:
+      return {0, 0, std::copysign(g.half.z, d.z)};
+    case Kind::box:
+      return {std::copysign(g.half.x, d.x), std::copysign(g.half.y, d.y),
+              std::copysign(g.half.z, d.z)};
+    case Kind::cylinder:
+      return g.radius * rim_direction(d) + Vec3{0, 0, std::copysign(g.half.z, d.z)};
+    case Kind::cone: {
+      // The apex is farther than the base's rim if 2 h d_z > r |(d_x, d_y)|.
+      const double across = std::sqrt(d.x * d.x + d.y * d.y);
+      if (2.0 * g.half.z * d.z > g.radius * across) return {0, 0, g.half.z};
+      return g.radius * rim_direction(d) - Vec3{0, 0, g.half.z};
+    }
+    case Kind::hull:
+      break;
+  }
+  hint = support_vertex(*g.hull, d, hint);
+  return g.hull->vertices[static_cast<std::size_t>(hint)];
+}
+
+}  // namespace vp::collide
