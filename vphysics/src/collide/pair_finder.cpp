@@ -41,6 +41,10 @@ void PairFinder::resize(std::size_t proxies) {
   pair_counts_.resize(proxies, 0);
   moved_.resize(proxies);
   pending_.resize(proxies);
+  // So that the first busy step need not take them from the heap.
+  const std::size_t room = 64 + 2 * bounds_.capacity();
+  for (auto* list : {&candidates_, &new_keys_, &key_scratch_}) list->reserve(room);
+  for (auto* list : {&moved_list_, &pending_list_}) list->reserve(room);
 }
 
 std::uint32_t PairFinder::add(const ProxyDesc& desc) {
@@ -241,6 +245,17 @@ void PairFinder::overlapping(const Bounds& box, std::vector<std::uint32_t>& foun
   }
   for (const BoundingTree& t : trees_) t.overlapping(b, append);
   std::sort(found.begin() + first, found.end());
+}
+
+bool PairFinder::incoming_fits() const {
+  const State& s = incoming_;
+  if (s.places.size() != places_.size() || s.free != free_) return false;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if ((s.places[i] == Place::none) != (places_[i] == Place::none)) return false;
+    if (places_[i] == Place::none) continue;
+    if (is_moving(s.places[i]) != is_moving(places_[i]) || s.filters[i] != filters_[i]) return false;
+  }
+  return true;
 }
 
 // A rollback by some steps changes few bounds: then the trees are changed, not built.

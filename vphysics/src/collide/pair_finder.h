@@ -98,6 +98,8 @@ class PairFinder {
   template <class Reader>
   void read(Reader& in);
   void adopt();
+  // Whether what was read has the same proxies as there are now, but for their bounds.
+  bool incoming_fits() const;
 
  private:
   // Which tree or list it is in.
@@ -105,6 +107,8 @@ class PairFinder {
 
   struct Filter {
     std::uint32_t category = 0, mask = 0, owner = 0, user = 0;
+
+    bool operator==(const Filter&) const = default;
   };
 
   // What a snapshot carries.

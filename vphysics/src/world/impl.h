@@ -7,10 +7,15 @@
 
 #include "collide/bounds.h"
 #include "collide/broad_phase.h"
+#include "collide/pair_finder.h"
 #include "collide/sweep.h"
+#include "solve/contact_graph.h"
+#include "solve/contact_lane.h"
 #include "solve/contact_solver.h"
+#include "solve/passes.h"
 #include "vphysics/world.h"
 #include "world/articulation.h"
+#include "world/contact.h"
 
 namespace vp {
 
@@ -30,13 +35,19 @@ struct Body {
   bool has_sensor = false;
   bool unbounded = false;  // carries a half-space
   std::uint64_t user_data = 0;
+  std::uint32_t first_edge = kNone;  // of its contacts
+  std::uint32_t lanes = 0;           // of the solver that hold it
+  bool rested = false;               // something carried it in the last step
+  bool by_impacts = false;           // in this step: it is connected to a link (islands.cpp)
+  float bounded_at[6] = {};          // its way when its proxies' bounds were last set
   // Constant.
   double mass = 0.0;
   Vec3 centre;                    // of mass, body frame
   Sym3 central, inverse_central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
-  collide::Bounds local;  // of its bounded colliders, body frame
-  double reach = 0.0;     // to the farthest point of these from the reference point
+  collide::Bounds local;    // of its bounded colliders, body frame
+  double reach = 0.0;       // to the farthest point of these from the reference point
+  double least_size = 1e9;  // of its colliders
   // State.
   SE3 T;           // T_world_body
   Vec3 w, v;       // world frame; v of the reference point (centre of mass; a link's origin)
@@ -61,8 +72,11 @@ struct Collider {
   collide::Geometry geometry;
   SE3 T_body_shape;
   Material material;
+  Vec3 surface_velocity;  // shape's frame
   CollisionFilter filter;
   std::uint64_t user_data = 0;
+  std::uint32_t proxy = kNone;  // in the broad phase
+  double size = 0.0;            // half of its least extent [m]; 0: a half-space
   // Follows from the body's pose; refreshed by the step (Body::posed).
   SE3 T;
   collide::Bounds bounds;
@@ -121,11 +135,23 @@ struct World::Impl {
   std::vector<PairRecord> records;  // sorted by key
   std::vector<DestroyedPair> destroyed_pairs;
 
+  collide::PairFinder finder;
+  std::vector<Contact> contact_pool;
+  std::vector<std::uint32_t> free_contacts;
+  std::vector<std::uint32_t> near_contacts;  // that have no points
+  solve::ContactGraph graph;
+  std::vector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
+
   // --- of the last step
   std::vector<ContactEvent> events;
   StepCounters counters;
 
   // --- scratch of a step; kept for its capacity
+  std::vector<collide::ProxyPair> new_pairs;
+  std::vector<std::uint32_t> stale_contacts, body_stack;
+  std::vector<std::uint16_t> lane_bits;
+  std::vector<Velocity> drift;  // mean velocity over the step less that at its end
+  std::vector<std::array<float, 6>> start_ways;
   StepStatus status;
   collide::BroadPhase broad_phase;
   std::vector<collide::Bounds> bounds, discrete_bounds;
@@ -165,7 +191,8 @@ struct World::Impl {
   void hold(std::uint32_t body);
 
   // step.cpp
-  void begin_step(double dt);
+  void begin_step();
+  void prescribe_velocities(double dt);
   void integrate_forces(double dt);
   void refresh_solver_bodies();
   void refresh_motions(double h);
@@ -179,6 +206,45 @@ struct World::Impl {
   void run(double dt);
   double next_impact(double h);
   void hold_what_meets(double h);
+
+  // bodies.cpp
+  void load_rows(double dt);
+  void load_row(std::uint32_t body, double dt);
+  void store_bodies(double dt, int sub_steps);
+  void update_bounds(double dt);
+  void add_proxy(std::uint32_t collider);
+  void forget_contacts(std::uint32_t body);
+  void jumped(std::uint32_t body);
+
+  // find_contacts.cpp
+  void find_contacts(double dt);
+  void find_new_contacts();
+  void find_stale_contacts(double dt);
+  void drop_parted_contacts();
+  void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
+  void remove_contact(std::uint32_t contact);
+  void look_at(std::uint32_t contact, double dt);
+  void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
+  void take_out_of_lane(std::uint32_t contact);
+  void set_near(std::uint32_t contact, double clearance);
+  void unset_near(std::uint32_t contact);
+  void mark_contacts_stale(std::uint32_t body);
+  void find_link_islands();
+  void give_to_impacts(std::uint32_t contact);
+  void take_from_impacts(std::uint32_t contact);
+  bool is_by_impacts(const Contact& contact) const;
+  solve::ContactGraph::End end_of(std::uint32_t body) const;
+  bool joins_sub_steps(const Body& body) const;
+
+  // sub_steps.cpp
+  void run_sub_steps(double dt);
+  void clear_hits();
+  template <class F>
+  void for_runs(const F& f);
+
+  // touches.cpp
+  void report_touches(int sub_steps);
+  void report_touch(std::uint32_t contact, bool loaded);
 
   // pairs.cpp
   void refresh_bounds(double h);
@@ -199,6 +265,7 @@ struct World::Impl {
   void solve_contacts(double h, double dt, bool first);
   void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
   void report_contacts(double time);
+  bool has_impact_stage() const;
   void remember_impulses();
   void report_ends();
   void report_ends_of_destroyed();
@@ -208,11 +275,16 @@ struct World::Impl {
             const Vec3& normal, double approach, double impulse, double time);
   void add_event(const ContactEvent& event);
 
-  // snapshot.cpp
+  // snapshot.cpp, contact_state.h
+  class ContactState;
+  template <class Sink>
+  void write_contacts(Sink& sink) const;
   template <class Sink>
   void write(Sink& sink) const;
 };
 
+// The rotation R after a small turn, a vector of the outer frame.
+Mat3 turned(const Mat3& R, const Vec3& turn);
 // Orders a pair by creation.
 ColliderPair make_pair(const std::vector<Collider>& colliders, std::uint32_t i, std::uint32_t j);
 bool should_meet(const Collider& a, const Collider& b);

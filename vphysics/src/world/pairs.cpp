@@ -127,6 +127,8 @@ void World::Impl::find_discrete_pairs(double h) {
   for (const collide::IndexPair& pair : body_pairs) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
+    const bool of_impacts = continuous || a.is_link || b.is_link || a.by_impacts || b.by_impacts;
+    if (!of_impacts) continue;  // of the sub-stepped solver
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
     pose_colliders(pair.a);

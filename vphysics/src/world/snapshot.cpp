@@ -6,12 +6,12 @@
 //   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
 //   records:        key, a | b, count | touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
+//   contacts:       contact_state.h
 //   digest of all words before
 #include <bit>
 #include <cstring>
 
-#include "world/impl.h"
-#include "world/validate.h"
+#include "world/contact_state.h"
 
 namespace vp {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 3;
+constexpr std::uint64_t kFormat = 4;
 
 struct Digest {
   std::uint64_t digest = kMagic;
@@ -37,16 +37,7 @@ struct ByteSink : Digest {
   }
 };
 
-template <class Sink>
-void put(Sink& sink, double x) {
-  sink.word(std::bit_cast<std::uint64_t>(x));
-}
-template <class Sink>
-void put(Sink& sink, const Vec3& a) {
-  put(sink, a.x);
-  put(sink, a.y);
-  put(sink, a.z);
-}
+using vp::put;
 
 template <class Sink>
 void put(Sink& sink, const PairRecord& r) {
@@ -71,44 +62,6 @@ void put(Sink& sink, const DestroyedPair& pair) {
   sink.word(word_of(pair.b));
   sink.word(pair.sensor ? 1u : 0u);
 }
-
-// Reads words; out of bytes or out of range makes it fail for good.
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-
-  std::uint64_t word() {
-    std::uint64_t w = 0;
-    if (bytes_.size() < sizeof w) {
-      ok_ = false;
-      return 0;
-    }
-    std::memcpy(&w, bytes_.data(), sizeof w);
-    bytes_ = bytes_.subspan(sizeof w);
-    return w;
-  }
-  double number() {
-    const double x = std::bit_cast<double>(word());
-    check(std::isfinite(x));
-    return x;
-  }
-  double bounded() {
-    const double x = number();
-    check(in_range(x));
-    return x;
-  }
-  Vec3 vector() {
-    const double x = bounded(), y = bounded(), z = bounded();
-    return {x, y, z};
-  }
-  void check(bool condition) { ok_ = ok_ && condition; }
-  bool ok() const { return ok_; }
-  bool at_end() const { return bytes_.empty(); }
-
- private:
-  std::span<const std::byte> bytes_;
-  bool ok_ = true;
-};
 
 void read(Reader& in, Body& body) {
   const Vec3 cx = in.vector(), cy = in.vector(), cz = in.vector(), p = in.vector();
@@ -224,6 +177,7 @@ void World::Impl::write(Sink& sink) const {
   }
   for (const PairRecord& record : records) put(sink, record);
   for (const DestroyedPair& pair : destroyed_pairs) put(sink, pair);
+  write_contacts(sink);
 }
 
 void World::snapshot(std::vector<std::byte>& bytes) const {
@@ -279,6 +233,8 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   for (std::size_t i = 0; i < destroyed_pairs.size() && in.ok(); ++i) {
     read(in, impl_->colliders, destroyed_pairs[i]);
   }
+  Impl::ContactState contact_state(*impl_);
+  if (in.ok()) contact_state.read(in);
   if (!in.ok() || !in.at_end())
     return bad("restore: a value is out of range; the bytes are damaged");
   impl_->bodies.swap(bodies);
@@ -290,6 +246,7 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     art.refresh();
     impl_->follow(art);
   }
+  contact_state.adopt();
   impl_->records.swap(records);
   impl_->destroyed_pairs.swap(destroyed_pairs);
   impl_->events.clear();

@@ -17,13 +17,13 @@ namespace vp {
 
 Expected<StepStatus> World::step(double dt) {
   if (!(dt > 0.0 && dt <= 0.1)) return refuse("step: dt must be in (0, 0.1] seconds");
-  impl_->begin_step(dt);
+  impl_->begin_step();
   impl_->run(dt);
   impl_->finish_step();
   return impl_->status;
 }
 
-void World::Impl::begin_step(double dt) {
+void World::Impl::begin_step() {
   const std::size_t n = bodies.size();
   status = {};
   counters = {};
@@ -34,12 +34,25 @@ void World::Impl::begin_step(double dt) {
   events.reserve(room);
   records.reserve(room);
   next_records.reserve(room);
+  contact_pool.reserve(room);
+  for (auto* list : {&free_contacts, &near_contacts, &stale_contacts}) list->reserve(room);
+  body_stack.reserve(n);
+  const auto sub_stepped = std::count_if(bodies.begin(), bodies.end(), [this](const Body& body) {
+    return body.motion == Motion::dynamic && joins_sub_steps(body);
+  });
+  if (sub_stepped > 0) graph.reserve(static_cast<std::size_t>(sub_stepped));
+  new_pairs.reserve(room);
+  lane_bits.reserve(room / solve::kLanes + 1);
   body_pairs.reserve(room);
   discrete_pairs.reserve(room);
   swept_pairs.reserve(room);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   reserve_link_rows();
+  body_rows.resize(n + 1);
+  graph.resize(n + 1);
+  drift.assign(n, {});
+  start_ways.resize(n);
   bounds.resize(n);
   discrete_bounds.resize(n);
   movable.resize(n);
@@ -52,31 +65,35 @@ void World::Impl::begin_step(double dt) {
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
   report_ends_of_destroyed();
-  integrate_forces(dt);
 }
 
+// A kinematic body's origin goes along the chord to where its twist takes it.
+void World::Impl::prescribe_velocities(double dt) {
+  for (Body& body : bodies) {
+    if (!body.alive || body.motion != Motion::kinematic) continue;
+    const SE3 end = body.T * Exp(dt * body.prescribed);
+    body.w = body.T.rotate(body.prescribed.w);
+    body.v = (1.0 / dt) * (end.position() - body.T.position());
+  }
+}
+
+// Of what the stage of impacts moves.
 void World::Impl::integrate_forces(double dt) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& body = bodies[i];
-    if (!body.alive) continue;
-    if (body.motion == Motion::dynamic) forced[i] = {body.w, body.v};
-    if (body.motion == Motion::kinematic) {
-      // The origin goes along the chord to where the twist takes it.
-      const SE3 end = body.T * Exp(dt * body.prescribed);
-      body.w = body.T.rotate(body.prescribed.w);
-      body.v = (1.0 / dt) * (end.position() - body.T.position());
-    } else if (body.motion == Motion::dynamic && !body.is_link) {
-      body.v += dt * desc.gravity;
-      body.v *= 1.0 / (1.0 + dt * body.linear_damping);
-      body.w *= 1.0 / (1.0 + dt * body.angular_damping);
-    }
+    if (!body.alive || body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
+    forced[i] = {body.w, body.v};
+    if (body.is_link) continue;
+    body.v += dt * desc.gravity;
+    body.v *= 1.0 / (1.0 + dt * body.linear_damping);
+    body.w *= 1.0 / (1.0 + dt * body.angular_damping);
   }
   integrate_articulations(dt);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive) continue;
     const bool stopped = !body.is_link && stop_if_out_of_range(i);
-    if (body.motion != Motion::dynamic) continue;
+    if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
     forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
   }
 }
@@ -124,10 +141,11 @@ void World::Impl::refresh_motions(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (body.is_link && body.first_collider == kNone) continue;
-    motions[i] = {reference_point(body), body.v, body.w};
+    motions[i] = {reference_point(body), body.v + drift[i].v, body.w + drift[i].w};
     if (held[i] || !body.alive || body.motion == Motion::fixed) {
       motions[i].v = motions[i].w = {};
-    } else if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic) {
+    } else if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic &&
+               body.lanes == 0) {
       const Mat3& R = body.T.rotation();
       const Vec3 w = transposed_times(R, body.w);
       const Vec3 turn = body.inverse_central * cross(body.central * w, w);
@@ -143,8 +161,8 @@ void World::Impl::advance_body(std::uint32_t index, double h) {
   const collide::Motion& m = motions[index];
   const Mat3 R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
-  const Mat3 next = turns ? orthonormalized(Exp(h * m.w).matrix() * R) : R;
-  if (body.motion == Motion::dynamic && !body.isotropic && turns) {
+  const Mat3 next = turns ? turned(R, h * m.w) : R;
+  if (body.motion == Motion::dynamic && !body.isotropic && turns && body.lanes == 0) {
     // Angular momentum is what stays; the rate follows from it.
     const Vec3 momentum = body.central * transposed_times(R, body.w);
     body.w = next * (body.inverse_central * transposed_times(next, R * momentum));
@@ -217,7 +235,24 @@ void World::Impl::hold_what_meets(double h) {
   }
 }
 
+// Impacts in the order of time are for continuous bodies and for what meets links.
+bool World::Impl::has_impact_stage() const {
+  return !articulations.empty() || std::any_of(bodies.begin(), bodies.end(), [](const Body& body) {
+    return body.alive && body.continuous;
+  });
+}
+
 void World::Impl::run(double dt) {
+  prescribe_velocities(dt);
+  load_rows(dt);
+  find_contacts(dt);
+  integrate_forces(dt);
+  run_sub_steps(dt);
+  if (!has_impact_stage()) {
+    refresh_motions(dt);
+    advance(dt);
+    return;
+  }
   double time = 0.0;
   refresh_motions(dt);
   refresh_bounds(dt);

@@ -41,6 +41,7 @@ class Structure {
     add(desc.restitution_threshold);
     add(desc.contact_slop);
     add(static_cast<std::uint64_t>(desc.velocity_iterations));
+    add(static_cast<std::uint64_t>(desc.sub_steps));
     add(static_cast<std::uint64_t>(desc.max_impacts_per_step));
   }
   void add(const BodyDesc& desc) {

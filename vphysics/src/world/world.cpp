@@ -48,6 +48,7 @@ World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   VP_ASSERT(is_finite(desc.gravity) && desc.contact_slop > 0.0 && desc.velocity_iterations > 0 &&
             desc.max_impacts_per_step >= 0 && desc.restitution_threshold >= 0.0);
   impl_->desc = desc;
+  impl_->body_rows.resize(1);
   Structure(impl_->structure).add(desc);
 }
 World::~World() = default;
@@ -90,6 +91,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
     body.linear_damping = desc.linear_damping;
     body.angular_damping = desc.angular_damping;
   }
+  if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
   Structure structure(impl_->structure);
   structure.add(0x100u + index);
   structure.add(desc);
@@ -107,7 +109,22 @@ void World::Impl::release_collider(std::uint32_t index) {
     }
     return true;
   });
-  colliders[index].alive = false;
+  Collider& collider = colliders[index];
+  std::uint32_t next = kNone;
+  for (std::uint32_t e = bodies[collider.body].first_edge; e != kNone; e = next) {
+    Contact& c = contact_pool[e / 2];
+    next = c.next[e % 2];
+    if (c.a != index && c.b != index) continue;
+    if (c.touching) {
+      destroyed_pairs.push_back(
+          {collider_id(colliders, c.a), collider_id(colliders, c.b), c.sensor});
+      c.touching = false;
+    }
+    finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
+    remove_contact(e / 2);
+  }
+  finder.remove(collider.proxy);
+  collider.alive = false;
   colliders[index].shape = HalfSpace{};
   free_colliders.push_back(index);
 }
@@ -120,6 +137,7 @@ Expected<void> World::destroy_body(BodyId id) {
     impl_->release_collider(c);
   }
   body->alive = false;
+  if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;
   impl_->free_bodies.push_back(id.index - 1);
   Structure(impl_->structure).add(0x200u + id.index);
@@ -148,6 +166,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   c.geometry = collide::make_geometry(c.shape);
   c.T_body_shape = SE3(orthonormalized(desc.T_body_shape.rotation()), desc.T_body_shape.position());
   c.material = desc.material;
+  c.surface_velocity = desc.surface_velocity;
   c.filter = desc.filter;
   c.user_data = desc.user_data;
   (body->last_collider == kNone ? body->first_collider
@@ -162,8 +181,13 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->unbounded = true;
   } else {
     body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
+    const collide::Bounds own = bounds_of(c.geometry, SE3{});
+    const Vec3 extents = own.upper - own.lower;
+    c.size = 0.5 * std::min({extents.x, extents.y, extents.z});
     body->reach = reach_of(*body);
+    body->least_size = std::min(body->least_size, c.size);
   }
+  impl_->add_proxy(index);
   Structure structure(impl_->structure);
   structure.add(0x300u + index);
   structure.add(body_handle.index);
@@ -205,6 +229,7 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
   body->T = SE3(orthonormalized(T.rotation()), T.position());
   body->moved();
+  impl_->jumped(id.index - 1);
   return {};
 }
 

@@ -1,0 +1,91 @@
+// Sixteen contacts side by side.
+//
+// Lane l of every field is of one contact between the bodies of rows a[l] and b[l]; no body but
+// the fixed world is in two lanes of a block. A block lives as long as its contacts: from step to
+// step nothing in it is made anew but what a pass writes. With rA, rB a point's arms from the
+// centres of mass a and b, d = x_a - x_b (so that rB = rA + d), n the normal from a to b:
+//
+//   u_i = n . (v_b - v_a) + (d x n) . w_b + (rA_i x n) . (w_b - w_a)        speed of separation
+//   s_i = base_i + the same of the rows' x and turn                          separation
+//   K_ij = du_i / dp_j = 1/m_a + 1/m_b + jA_i . I_a^-1 jA_j + jB_i . I_b^-1 jB_j
+//
+// with jA_i = rA_i x n, jB_i = jA_i + d x n. Friction acts at the middle of the points: along two
+// tangents t, n x t, and about the normal.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace vphysics_solver {
+
+inline constexpr int kLanes = 16;
+
+struct alignas(64) Field {
+  float lane[kLanes];
+};
+struct alignas(64) IndexField {
+  std::uint32_t lane[kLanes];
+};
+struct Field3 {
+  Field x, y, z;
+};
+
+// The place of K_ij, i != j, among `off_diagonal`.
+constexpr int pair_index(int i, int j) {
+  const int low = i < j ? i : j, high = i < j ? j : i;
+  return high * (high - 1) / 2 + low;
+}
+
+template <int kPoints>
+struct ContactBlock {
+  static constexpr int kPairs = kPoints * (kPoints - 1) / 2;
+
+  IndexField a, b;     // rows of the bodies; of an empty lane the world's
+  IndexField contact;  // index in the world's contacts; kNoContact: an empty lane
+
+  Field3 normal, tangent, d;
+  Field3 arm[kPoints];      // jA_i = rA_i x n
+  Field base[kPoints];      // [m]; of a point that is not there: far
+  Field impulse[kPoints];   // [N s], accumulated
+  Field diagonal[kPoints];  // K_ii and its inverse; the latter is 0 of a point that is not there
+  Field inverse[kPoints];
+  Field off_diagonal[kPairs > 0 ? kPairs : 1];
+
+  // Friction. The 2x2 inverse of what the tangents feel (xx, xy, yy), and the one mass with which
+  // sliding points are corrected.
+  Field friction;  // coefficient
+  Field3 grip;     // rA of where friction acts
+  Field stick[3];
+  Field slide;
+  Field tangent_impulse[2];
+  Field surface_speed[2];  // wanted relative velocity along the tangents [m/s]
+  Field twist_mass, twist_arm, twist_impulse;
+  Field roll_mass, roll_arm, roll_impulse[2];
+
+  // Not of the hot passes.
+  Field restitution;
+  Field closing;  // the fastest approach seen in this step [m/s]
+  Field impact;   // the impulse of its bounces [N s]
+  // Where the two were when the geometry was last computed (find_moved).
+  Field3 slid;  // relative displacement at the grip
+  Field3 turned_a, turned_b;
+  Field slid_limit;  // how far they may slide by until it is computed again [m]
+};
+
+// All fields but those of indices, as they lie.
+template <int P>
+inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) - 3 * sizeof(IndexField)) /
+                                         sizeof(Field);
+
+static_assert(sizeof(ContactBlock<4>) % sizeof(Field) == 0);
+static_assert(sizeof(ContactBlock<1>) % sizeof(Field) == 0);
+
+inline constexpr std::uint32_t kNoContact = 0xffffffffu;
+// A separation that no point comes near: of those that are not there.
+inline constexpr float kFarApart = 1e9f;
+
+}  // namespace vphysics_solver
+
+namespace vp::solve {
+using namespace vphysics_solver;  // NOLINT(google-build-using-namespace): see passes.h
+}  // namespace vp::solve

@@ -1,0 +1,123 @@
+#include "solve/contact_graph.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace vp::solve {
+namespace {
+
+constexpr std::uint64_t kOfFixed = ~std::uint64_t{0} << kFirstFixedColour;
+
+template <int P>
+constexpr std::size_t kFields = sizeof(ContactBlock<P>) / sizeof(Field);
+
+// All that a block knows of a lane, as words.
+template <int P>
+void copy_lane(const ContactBlock<P>& from, int from_lane, ContactBlock<P>& to, int to_lane) {
+  const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_lane;
+  auto* target = reinterpret_cast<std::byte*>(&to) + sizeof(float) * to_lane;
+  for (std::size_t f = 0; f < kFields<P>; ++f) {
+    std::memcpy(target + f * sizeof(Field), source + f * sizeof(Field), sizeof(float));
+  }
+}
+
+template <int P>
+void clear_lane(ContactBlock<P>& block, int lane) {
+  static const ContactBlock<P> kEmpty = [] {
+    ContactBlock<P> empty;
+    std::memset(static_cast<void*>(&empty), 0, sizeof empty);
+    for (std::uint32_t& c : empty.contact.lane) c = kNoContact;
+    for (Field& base : empty.base) {
+      for (float& s : base.lane) s = kFarApart;
+    }
+    return empty;
+  }();
+  copy_lane(kEmpty, 0, block, lane);
+}
+
+}  // namespace
+
+void ContactGraph::reserve(std::size_t bodies) {
+  constexpr int kReady = 8;  // colours
+  const std::size_t blocks = bodies / (2 * kLanes) + 1;
+  for (const int first : {0, kFirstFixedColour}) {
+    for (int c = first; c < first + kReady; ++c) {
+      of<1>(c).blocks.reserve(blocks);
+      of<4>(c).blocks.reserve(blocks);
+    }
+  }
+}
+
+Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
+  std::uint64_t taken = 0;
+  if (a.moves) taken |= taken_[a.row];
+  if (b.moves) taken |= taken_[b.row];
+  const bool fixed = !a.moves || !b.moves;
+  const std::uint64_t open = ~taken & (fixed ? kOfFixed : ~kOfFixed | (1ull << kLastColour));
+  // The last colour is open to all.
+  const int colour = open != 0 ? std::min(std::countr_zero(open), kLastColour) : kLastColour;
+  Place place;
+  (void)append(contact, a, b, points, colour, place);
+  return place;
+}
+
+bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
+                          Place& place) {
+  if (colour != kLastColour) {
+    const std::uint64_t bit = 1ull << colour;
+    if ((a.moves && (taken_[a.row] & bit) != 0) || (b.moves && (taken_[b.row] & bit) != 0)) {
+      return false;
+    }
+    if (a.moves) taken_[a.row] |= bit;
+    if (b.moves) taken_[b.row] |= bit;
+  }
+  place.points = static_cast<std::uint8_t>(points);
+  place.colour = static_cast<std::uint8_t>(colour);
+  points == 1 ? add_lane<1>(contact, a, b, place) : add_lane<4>(contact, a, b, place);
+  return true;
+}
+
+std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& b) {
+  if (place.colour != kLastColour) {
+    const std::uint64_t bit = 1ull << place.colour;
+    if (a.moves) taken_[a.row] &= ~bit;
+    if (b.moves) taken_[b.row] &= ~bit;
+  }
+  return place.points == 1 ? remove_lane<1>(place) : remove_lane<4>(place);
+}
+
+template <int P>
+void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
+  ColourBlocks<P>& colour = of<P>(place.colour);
+  place.index = colour.lanes++;
+  const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
+  const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
+  if (block == colour.blocks.size()) {
+    colour.blocks.emplace_back();
+    for (int l = 0; l < kLanes; ++l) clear_lane(colour.blocks.back(), l);
+  }
+  ContactBlock<P>& to = colour.blocks[block];
+  clear_lane(to, lane);
+  to.a.lane[lane] = a.row;
+  to.b.lane[lane] = b.row;
+  to.contact.lane[lane] = contact;
+}
+
+template <int P>
+std::uint32_t ContactGraph::remove_lane(const Place& place) {
+  ColourBlocks<P>& colour = of<P>(place.colour);
+  Place last = place;
+  last.index = --colour.lanes;
+  ContactBlock<P>& from = block<P>(last);
+  std::uint32_t moved = kNoContact;
+  if (last.index != place.index) {
+    copy_lane(from, lane(last), block<P>(place), lane(place));
+    moved = block<P>(place).contact.lane[lane(place)];
+  }
+  clear_lane(from, lane(last));
+  if (place.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
+  return moved;
+}
+
+}  // namespace vp::solve

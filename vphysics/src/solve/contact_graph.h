@@ -1,0 +1,106 @@
+// Where contacts live: in blocks of lanes, sorted by colour.
+//
+// No two contacts of a colour share a body that moves, so that a colour's contacts can be solved
+// side by side, in lanes and by several workers, with the same result in any order. A contact takes
+// the lowest colour that both its bodies have free, and keeps it while it lasts; a lane that
+// becomes empty is filled with the colour's last. So the order of solving follows from the order of
+// the calls alone. Contacts with what nothing pushes have colours of their own, solved last.
+//
+// A body with more contacts than there are colours puts the rest into the last one, where every
+// contact has a block to itself: blocks are solved one after the other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solve/contact_block.h"
+
+namespace vp::solve {
+
+inline constexpr int kColours = 64;
+inline constexpr int kFirstFixedColour = 40;  // of contacts with what nothing pushes
+inline constexpr int kLastColour = kColours - 1;
+
+// Where a contact's lane is; points: 1 or 4, or 0 for nowhere.
+struct Place {
+  std::uint8_t points = 0, colour = 0;
+  std::uint32_t index = 0;  // of the lane, among all of its colour and kind
+};
+
+template <int P>
+struct ColourBlocks {
+  std::vector<ContactBlock<P>> blocks;
+  std::uint32_t lanes = 0;  // used; in the last colour one a block
+
+  static constexpr std::uint32_t block_of(std::uint32_t index, int colour) {
+    return colour == kLastColour ? index : index / kLanes;
+  }
+  static constexpr int lane_of(std::uint32_t index, int colour) {
+    return colour == kLastColour ? 0 : static_cast<int>(index % kLanes);
+  }
+};
+
+// All of a block that is not an index.
+template <int P>
+std::span<Field> fields_of(ContactBlock<P>& block) {
+  return {reinterpret_cast<Field*>(&block.normal), kFieldsOf<P>};
+}
+template <int P>
+std::span<const Field> fields_of(const ContactBlock<P>& block) {
+  return {reinterpret_cast<const Field*>(&block.normal), kFieldsOf<P>};
+}
+
+class ContactGraph {
+ public:
+  // The lowest colour free for two rows; moves: an impulse can move it.
+  struct End {
+    std::uint32_t row;
+    bool moves;
+  };
+  // An empty lane for the contact; all its fields are zero but the rows and the contact.
+  Place add(std::uint32_t contact, const End& a, const End& b, int points);
+  // The same at the end of a given colour, as when a state is restored; false if that is not open
+  // to it.
+  bool append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
+              Place& place);
+  // Returns the contact whose lane was moved to fill the gap, or kNoContact: its place is now this
+  // one's.
+  std::uint32_t remove(const Place& place, const End& a, const End& b);
+
+  template <int P>
+  ContactBlock<P>& block(const Place& place) {
+    return of<P>(place.colour).blocks[ColourBlocks<P>::block_of(place.index, place.colour)];
+  }
+  static int lane(const Place& place) {
+    return ColourBlocks<1>::lane_of(place.index, place.colour);
+  }
+  template <int P>
+  ColourBlocks<P>& of(int colour) {
+    if constexpr (P == 1)
+      return ones_[static_cast<std::size_t>(colour)];
+    else
+      return fours_[static_cast<std::size_t>(colour)];
+  }
+  template <int P>
+  const ColourBlocks<P>& of(int colour) const {
+    return const_cast<ContactGraph*>(this)->of<P>(colour);
+  }
+  // Room for rows; and for the first contacts of so many bodies, so that a busy step need not take
+  // it from the heap.
+  void resize(std::size_t rows) { taken_.resize(rows); }
+  void reserve(std::size_t bodies);
+
+ private:
+  template <int P>
+  void add_lane(std::uint32_t contact, const End& a, const End& b, Place& place);
+  template <int P>
+  std::uint32_t remove_lane(const Place& place);
+
+  std::array<ColourBlocks<1>, kColours> ones_;
+  std::array<ColourBlocks<4>, kColours> fours_;
+  std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
+};
+
+}  // namespace vp::solve

@@ -1,0 +1,151 @@
+#include "solve/contact_lane.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vphysics/lie/inertia.h"
+
+namespace vp::solve {
+namespace {
+
+// What an impulse meets on one side.
+struct Side {
+  double mass;
+  Sym3 inertia;
+  Vec3 way, turn;
+
+  explicit Side(const BodyRow& row)
+      : mass(static_cast<double>(row.velocity[kInverseMass])),
+        inertia{at(row.inertia, 0), at(row.inertia, 1), at(row.inertia, 2),
+                at(row.inertia, 3), at(row.inertia, 4), at(row.inertia, 5)},
+        way{at(row.way, 0), at(row.way, 1), at(row.way, 2)},
+        turn{at(row.way, 3), at(row.way, 4), at(row.way, 5)} {}
+
+ private:
+  static double at(const float* f, int i) { return static_cast<double>(f[i]); }
+};
+
+void put(Field& f, int lane, double x) {
+  f.lane[lane] = static_cast<float>(x);
+}
+void put(Field3& f, int lane, const Vec3& v) {
+  put(f.x, lane, v.x);
+  put(f.y, lane, v.y);
+  put(f.z, lane, v.z);
+}
+
+Vec3 any_tangent(const Vec3& n) {
+  const Vec3 t = std::fabs(n.x) < 0.6 ? Vec3{0, n.z, -n.y} : Vec3{-n.z, 0, n.x};
+  return (1.0 / norm(t)) * t;
+}
+
+// Points that are not there push nothing.
+template <int P>
+void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const Side& a,
+                   const Side& b) {
+  const Vec3& n = c.normal;
+  const Vec3 d_n = cross(c.x_a - c.x_b, n);
+  const double linear = dot(n, b.way - a.way) + dot(d_n, b.turn);
+  Vec3 arm_a[4], arm_b[4], answer_a[4], answer_b[4];
+  for (int i = 0; i < P; ++i) {
+    if (i >= c.count) {
+      put(block.arm[i], lane, {});
+      put(block.base[i], lane, static_cast<double>(kFarApart));
+      for (Field* f : {&block.impulse[i], &block.diagonal[i], &block.inverse[i]})
+        put(*f, lane, 0.0);
+      for (int j = 0; j < i; ++j) put(block.off_diagonal[pair_index(i, j)], lane, 0.0);
+      continue;
+    }
+    arm_a[i] = cross(c.points[i].position - c.x_a, n);
+    arm_b[i] = arm_a[i] + d_n;
+    answer_a[i] = a.inertia * arm_a[i];
+    answer_b[i] = b.inertia * arm_b[i];
+    for (int j = 0; j <= i; ++j) {
+      const double k = a.mass + b.mass + dot(arm_a[j], answer_a[i]) + dot(arm_b[j], answer_b[i]);
+      if (j < i) {
+        put(block.off_diagonal[pair_index(i, j)], lane, k);
+      } else {
+        put(block.diagonal[i], lane, k);
+        put(block.inverse[i], lane, k > 0.0 ? 1.0 / k : 0.0);
+      }
+    }
+    put(block.arm[i], lane, arm_a[i]);
+    put(block.base[i], lane, c.points[i].separation - linear - dot(arm_a[i], b.turn - a.turn));
+    block.impulse[i].lane[lane] = c.points[i].impulse;
+  }
+}
+
+// The weighted middle of the points: those that are apart carry nothing and do not count, unless
+// none does.
+Vec3 middle_of(const NewContact& c) {
+  Vec3 sum{};
+  for (int i = 0; i < c.count; ++i) sum += c.points[i].position - c.points[0].position;
+  return c.points[0].position + (1.0 / c.count) * sum;
+}
+
+template <int P>
+void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const Side& a,
+                    const Side& b) {
+  const Vec3& n = c.normal;
+  const Vec3 middle = middle_of(c), r_a = middle - c.x_a, r_b = middle - c.x_b;
+  const Vec3 t1 = any_tangent(n), t2 = cross(n, t1);
+  const Vec3 a1 = cross(r_a, t1), a2 = cross(r_a, t2), b1 = cross(r_b, t1), b2 = cross(r_b, t2);
+  const double mass = a.mass + b.mass;
+  const double xx = mass + dot(a1, a.inertia * a1) + dot(b1, b.inertia * b1);
+  const double xy = dot(a1, a.inertia * a2) + dot(b1, b.inertia * b2);
+  const double yy = mass + dot(a2, a.inertia * a2) + dot(b2, b.inertia * b2);
+  const double determinant = xx * yy - xy * xy, trace = xx + yy;
+  const bool regular = determinant > 1e-6 * trace * trace;
+  const double one = trace > 0.0 ? 1.0 / trace : 0.0;
+  put(block.stick[0], lane, regular ? yy / determinant : one);
+  put(block.stick[1], lane, regular ? -xy / determinant : 0.0);
+  put(block.stick[2], lane, regular ? xx / determinant : one);
+  const double largest = 0.5 * (trace + std::sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy));
+  put(block.slide, lane, largest > 0.0 ? 1.0 / largest : 0.0);
+  put(block.friction, lane, c.friction);
+  put(block.tangent, lane, t1);
+  put(block.grip, lane, r_a);
+  put(block.tangent_impulse[0], lane, dot(t1, c.old_friction));
+  put(block.tangent_impulse[1], lane, dot(t2, c.old_friction));
+  put(block.surface_speed[0], lane, dot(t1, c.surface_velocity));
+  put(block.surface_speed[1], lane, dot(t2, c.surface_velocity));
+
+  double reach = 0.0;
+  for (int i = 0; i < c.count; ++i) reach += norm(c.points[i].position - middle);
+  const Sym3 both = a.inertia + b.inertia;
+  const double turns = dot(n, both * n);
+  put(block.twist_mass, lane, turns > 0.0 ? 1.0 / turns : 0.0);
+  put(block.twist_arm, lane, c.friction * reach / c.count + c.spinning);
+  put(block.twist_impulse, lane, turns > 0.0 ? dot(n, c.old_moment) : 0.0);
+  const double turns_over = dot(t1, both * t1) + dot(t2, both * t2);
+  const bool rolls = c.rolling > 0.0 && turns_over > 0.0;
+  put(block.roll_mass, lane, rolls ? 1.0 / turns_over : 0.0);
+  put(block.roll_arm, lane, c.rolling);
+  // What resists nothing must not be handed on: no pass would ever take it back.
+  put(block.roll_impulse[0], lane, rolls ? dot(t1, c.old_moment) : 0.0);
+  put(block.roll_impulse[1], lane, rolls ? dot(t2, c.old_moment) : 0.0);
+  put(block.slid, lane, b.way + cross(b.turn, r_b) - a.way - cross(a.turn, r_a));
+}
+
+}  // namespace
+
+template <int P>
+void write_lane(ContactBlock<P>& block, int lane, const NewContact& c, const BodyRow& row_a,
+                const BodyRow& row_b) {
+  const Side a(row_a), b(row_b);
+  put(block.normal, lane, c.normal);
+  put(block.d, lane, c.x_a - c.x_b);
+  write_normals(block, lane, c, a, b);
+  write_friction(block, lane, c, a, b);
+  put(block.restitution, lane, c.restitution);
+  put(block.turned_a, lane, a.turn);
+  put(block.turned_b, lane, b.turn);
+  put(block.slid_limit, lane, c.slid_limit);
+}
+
+template void write_lane<1>(ContactBlock<1>&, int, const NewContact&, const BodyRow&,
+                            const BodyRow&);
+template void write_lane<4>(ContactBlock<4>&, int, const NewContact&, const BodyRow&,
+                            const BodyRow&);
+
+}  // namespace vp::solve

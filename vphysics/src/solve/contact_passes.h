@@ -1,0 +1,332 @@
+// The passes over blocks of contacts, W lanes at a time.
+//
+// A sub-step h of the solver is, over all colours in turn where two stand below one another,
+//
+//   v += h a
+//   strike      what reaches its partner within h and bounces does so now, in sequence
+//   warm start  v += M^-1 J^T p          p: the impulses of the sub-step before
+//   solve       soft: penetration is pushed out at a rate, gaps may close and no more
+//   x += h v
+//   relax       the same without the push, so that it leaves no velocity behind
+//
+// One contact is solved as a block: what its points do to one another passes through K (see
+// contact_block.h), and only the sum is given to the bodies.
+//
+// Sources: Catto, Soft Contact (Solver2D), 2024, for the order and the softness; Catto, Modeling
+// and Solving Constraints, GDC 2009; Tonge, Solving Rigid Body Contacts, GDC 2012, for patches of
+// friction. Bounces: docs/decisions/0019.
+#pragma once
+
+#include "solve/body_row.h"
+#include "solve/contact_block.h"
+#include "solve/lanes.h"
+#include "solve/passes.h"
+
+namespace vp::solve {
+
+// W lanes of a block from `at` on, with the velocities of their bodies.
+template <int W, int P>
+class LanesOf {
+ public:
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  using S = Sym3T<F>;
+  using Block = ContactBlock<P>;
+
+  LanesOf(Block& block, int at, BodyRow* rows) : block_(block), at_(at), rows_(rows) {}
+
+  F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
+  V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
+  void put(Field& f, const F& x) const { lanes::store<W>(f.lane + at_, x.lanes); }
+  void put(Field3& f, const V& x) const {
+    put(f.x, x.x);
+    put(f.y, x.y);
+    put(f.z, x.z);
+  }
+  Block& block() const { return block_; }
+
+  void gather_velocities() {
+    F r[16];
+    lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
+    take(r, v_a, w_a, mass_a_, falls_a, inertia_a_);
+    lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
+    take(r, v_b, w_b, mass_b_, falls_b, inertia_b_);
+  }
+  void scatter_velocities() const {
+    const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
+    const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
+    lanes::scatter8<W>([this](int i) { return row_a(i).velocity; }, a);
+    lanes::scatter8<W>([this](int i) { return row_b(i).velocity; }, b);
+  }
+  void gather_ways() {
+    F r[8];
+    lanes::gather8<W>([this](int i) { return row_a(i).way; }, r);
+    x_a = {r[0], r[1], r[2]};
+    turn_a = {r[3], r[4], r[5]};
+    lanes::gather8<W>([this](int i) { return row_b(i).way; }, r);
+    x_b = {r[0], r[1], r[2]};
+    turn_b = {r[3], r[4], r[5]};
+  }
+  void scatter_ways() const {
+    const F zero(0.0f);
+    const F a[8] = {x_a.x, x_a.y, x_a.z, turn_a.x, turn_a.y, turn_a.z, zero, zero};
+    const F b[8] = {x_b.x, x_b.y, x_b.z, turn_b.x, turn_b.y, turn_b.z, zero, zero};
+    lanes::scatter8<W>([this](int i) { return row_a(i).way; }, a);
+    lanes::scatter8<W>([this](int i) { return row_b(i).way; }, b);
+  }
+  // Accelerations by the forces matter to bounces alone.
+  void gather_accelerations(V& a, V& b) const {
+    F r[8];
+    lanes::gather8<W>([this](int i) { return row_a(i).rate; }, r);
+    a = {r[0], r[1], r[2]};
+    lanes::gather8<W>([this](int i) { return row_b(i).rate; }, r);
+    b = {r[0], r[1], r[2]};
+  }
+
+  void push_linear(const V& p) {
+    v_a -= mass_a_ * p;
+    v_b += mass_b_ * p;
+  }
+  void push_angular(const V& on_a, const V& on_b) {
+    w_a -= inertia_a_ * on_a;
+    w_b += inertia_b_ * on_b;
+  }
+
+  V v_a, w_a, v_b, w_b, x_a, turn_a, x_b, turn_b;
+  F falls_a, falls_b;
+
+ private:
+  BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
+  BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
+  static const float* first_line(const BodyRow& row) {
+    return reinterpret_cast<const float*>(&row);
+  }
+  static void take(const F* r, V& v, V& w, F& mass, F& falls, S& inertia) {
+    v = {r[0], r[1], r[2]};
+    w = {r[3], r[4], r[5]};
+    mass = r[6];
+    falls = r[7];
+    inertia = {r[8], r[9], r[10], r[11], r[12], r[13]};
+  }
+
+  Block& block_;
+  int at_;
+  BodyRow* rows_;
+  F mass_a_, mass_b_;
+  S inertia_a_, inertia_b_;
+};
+
+template <int W>
+Lanes<W> larger(const Lanes<W>& a, const Lanes<W>& b) {
+  return select(a > b, a, b);
+}
+template <int W>
+Lanes<W> smaller(const Lanes<W>& a, const Lanes<W>& b) {
+  return select(a < b, a, b);
+}
+
+// What is common to the normal rows of a contact.
+template <int W, int P>
+struct Normals {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+
+  explicit Normals(const LanesOf<W, P>& c)
+      : n(c.get(c.block().normal)), d_n(cross(c.get(c.block().d), n)) {
+    for (int i = 0; i < P; ++i) arm[i] = c.get(c.block().arm[i]);
+  }
+  // n . b + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
+  void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
+    const F common = dot(n, linear) + dot(d_n, turn_b);
+    const V turn = turn_b - turn_a;
+    for (int i = 0; i < P; ++i) out[i] = common + dot(arm[i], turn);
+  }
+  void speeds(const LanesOf<W, P>& c, F* u) const { along(c.v_b - c.v_a, c.w_a, c.w_b, u); }
+  void separations(const LanesOf<W, P>& c, F* s) const {
+    along(c.x_b - c.x_a, c.turn_a, c.turn_b, s);
+    for (int i = 0; i < P; ++i) s[i] += c.get(c.block().base[i]);
+  }
+  // Gives the bodies the changes of the points' impulses.
+  void push(LanesOf<W, P>& c, const F* change) const {
+    F sum = change[0];
+    V moment = change[0] * arm[0];
+    for (int i = 1; i < P; ++i) {
+      sum += change[i];
+      moment += change[i] * arm[i];
+    }
+    c.push_linear(sum * n);
+    c.push_angular(moment, moment + sum * d_n);
+  }
+
+  V n, d_n, arm[P];
+};
+
+template <int W, int P>
+Lanes<W> sum_of_impulses(const LanesOf<W, P>& c) {
+  Lanes<W> sum = c.get(c.block().impulse[0]);
+  for (int i = 1; i < P; ++i) sum += c.get(c.block().impulse[i]);
+  return sum;
+}
+
+// What one point's change of impulse does to the speeds of all.
+template <int W, int P>
+void pass_on(const LanesOf<W, P>& c, int i, const Lanes<W>& change, Lanes<W>* u) {
+  for (int j = 0; j < P; ++j) {
+    const Field& k = i == j ? c.block().diagonal[i] : c.block().off_diagonal[pair_index(i, j)];
+    u[j] += c.get(k) * change;
+  }
+}
+
+// --- friction
+// -------------------------------------------------------------------------------------
+
+template <int W, int P>
+struct Grip {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+
+  Grip(const LanesOf<W, P>& c, const V& n)
+      : t(c.get(c.block().tangent)),
+        b(cross(n, t)),
+        r_a(c.get(c.block().grip)),
+        r_b(r_a + c.get(c.block().d)) {}
+  V velocity(const LanesOf<W, P>& c) const {
+    return c.v_b + cross(c.w_b, r_b) - c.v_a - cross(c.w_a, r_a);
+  }
+  V t, b, r_a, r_b;
+};
+
+// The impulse q + change of two tangents that stops the slip u, no longer than most: by the whole
+// 2x2 block where it sticks; where it slides by one mass, since the block would turn it away from
+// the slip.
+template <int W, int P>
+void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& most, Lanes<W>* p) {
+  using F = Lanes<W>;
+  auto& block = c.block();
+  const F q0 = p[0], q1 = p[1], xy = c.get(block.stick[1]);
+  p[0] = q0 - (c.get(block.stick[0]) * u[0] + xy * u[1]);
+  p[1] = q1 - (xy * u[0] + c.get(block.stick[2]) * u[1]);
+  const auto slides = p[0] * p[0] + p[1] * p[1] > most * most;
+  if (none(slides)) return;
+  const F mass = c.get(block.slide);
+  const F s0 = q0 - mass * u[0], s1 = q1 - mass * u[1];
+  const F size = sqrt(s0 * s0 + s1 * s1);
+  const F share = select(size > most, most / size, F(1.0f));
+  p[0] = select(slides, share * s0, p[0]);
+  p[1] = select(slides, share * s1, p[1]);
+}
+
+template <int W>
+Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& most) {
+  return larger(-most, smaller(x, most));
+}
+
+template <int W, int P>
+void solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  auto& block = c.block();
+  const F load = sum_of_impulses(c);
+  const Grip<W, P> at(c, n);
+  const V slip = at.velocity(c);
+  F u[2] = {dot(at.t, slip) - c.get(block.surface_speed[0]),
+            dot(at.b, slip) - c.get(block.surface_speed[1])};
+  const F q[2] = {c.get(block.tangent_impulse[0]), c.get(block.tangent_impulse[1])};
+  F p[2] = {q[0], q[1]};
+  grip_or_slide(c, u, c.get(block.friction) * load, p);
+  c.put(block.tangent_impulse[0], p[0]);
+  c.put(block.tangent_impulse[1], p[1]);
+  const V force = (p[0] - q[0]) * at.t + (p[1] - q[1]) * at.b;
+
+  const V spin = c.w_b - c.w_a;
+  const F twist = c.get(block.twist_impulse);
+  const F next =
+      clamped(twist - c.get(block.twist_mass) * dot(n, spin), c.get(block.twist_arm) * load);
+  c.put(block.twist_impulse, next);
+  V moment = (next - twist) * n;
+  const F mass = c.get(block.roll_mass);
+  if (!none(mass > F(0.0f))) {
+    const F most = c.get(block.roll_arm) * load;
+    const F r0 = c.get(block.roll_impulse[0]), r1 = c.get(block.roll_impulse[1]);
+    const F s0 = r0 - mass * dot(at.t, spin), s1 = r1 - mass * dot(at.b, spin);
+    const F size = sqrt(s0 * s0 + s1 * s1);
+    const F share = select(size > most, most / size, F(1.0f));
+    c.put(block.roll_impulse[0], share * s0);
+    c.put(block.roll_impulse[1], share * s1);
+    moment += (share * s0 - r0) * at.t + (share * s1 - r1) * at.b;
+  }
+  c.push_linear(force);
+  c.push_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
+}
+
+// --- the passes
+// -----------------------------------------------------------------------------------
+
+template <int W, int P>
+void warm_start_lanes(LanesOf<W, P>& c) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  auto& block = c.block();
+  c.gather_velocities();
+  const Normals<W, P> normals(c);
+  F p[P];
+  for (int i = 0; i < P; ++i) p[i] = c.get(block.impulse[i]);
+  normals.push(c, p);
+  const Grip<W, P> at(c, normals.n);
+  const V force = c.get(block.tangent_impulse[0]) * at.t + c.get(block.tangent_impulse[1]) * at.b;
+  const V moment = c.get(block.twist_impulse) * normals.n + c.get(block.roll_impulse[0]) * at.t +
+                   c.get(block.roll_impulse[1]) * at.b;
+  c.push_linear(force);
+  c.push_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
+  c.scatter_velocities();
+}
+
+// How often the points of one contact are gone through before the bodies are told.
+inline constexpr int kInnerSweeps = 4;
+inline constexpr float kLargestImpulse = 1e30f;  // [N s]
+
+template <int W, int P, bool kPush>
+void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
+  using F = Lanes<W>;
+  auto& block = c.block();
+  c.gather_velocities();
+  c.gather_ways();
+  const Normals<W, P> normals(c);
+  solve_friction(c, normals.n);
+
+  F u[P], s[P], before[P], p[P], mass[P], loss[P], most[P];
+  normals.speeds(c, u);
+  normals.separations(c, s);
+  for (int i = 0; i < P; ++i) {
+    const auto open = s[i] > F(0.0f);
+    const F gap = F(soft.inverse_h) * s[i];
+    const F push = kPush ? larger(F(soft.rate) * s[i], F(-soft.fastest_push)) : F(0.0f);
+    u[i] += select(open, gap, push);
+    mass[i] = c.get(block.inverse[i]);
+    loss[i] = F(0.0f);
+    if constexpr (kPush) {
+      mass[i] *= select(open, F(1.0f), F(soft.mass_share));
+      loss[i] = select(open, F(0.0f), F(soft.impulse_loss));
+    }
+    before[i] = p[i] = c.get(block.impulse[i]);
+    // Gaps that close in the next sub-step are its own affair: it may be a bounce.
+    most[i] = kPush ? F(kLargestImpulse) : select(open, p[i], F(kLargestImpulse));
+  }
+  for (int sweep = 0; sweep < (P > 1 ? kInnerSweeps : 1); ++sweep) {
+    for (int i = 0; i < P; ++i) {
+      const F wanted = p[i] - (mass[i] * u[i] + loss[i] * p[i]);
+      const F next = smaller(most[i], larger(F(0.0f), wanted));
+      if (P > 1) pass_on(c, i, next - p[i], u);
+      p[i] = next;
+    }
+  }
+  F change[P];
+  for (int i = 0; i < P; ++i) {
+    change[i] = p[i] - before[i];
+    c.put(block.impulse[i], p[i]);
+  }
+  normals.push(c, change);
+  c.scatter_velocities();
+}
+
+}  // namespace vp::solve

@@ -1,0 +1,130 @@
+// Rows of bodies to lanes and back: what lets W contacts of W disjoint pairs of bodies be solved
+// side by side.
+//
+// A body's numbers are a row of memory, a lane of a pack is a body: gathering W bodies is the
+// transposition of W rows. Lanes never meet, and nothing is contracted: every W gives the same
+// bits.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "vphysics/lie/inertia.h"
+#include "vphysics/lie/pack.h"
+
+namespace vp::solve {
+
+template <int W>
+using Lanes = PackT<float, W>;
+template <int W>
+using LaneMask = typename Lanes<W>::Mask;
+
+namespace lanes {
+
+// g++ drops the attribute of a dependent `using`.
+template <int N>
+struct Raw {
+  // NOLINTNEXTLINE(modernize-use-using)
+  typedef float Type __attribute__((vector_size(sizeof(float) * N)));
+};
+template <int N>
+using RawT = typename Raw<N>::Type;
+
+template <int N>
+RawT<N> load(const float* p) {
+  RawT<N> r;
+  __builtin_memcpy(&r, __builtin_assume_aligned(p, sizeof r), sizeof r);
+  return r;
+}
+template <int N>
+void store(float* p, const RawT<N>& r) {
+  __builtin_memcpy(__builtin_assume_aligned(p, sizeof r), &r, sizeof r);
+}
+
+// One stage of a transposition of groups of 2 k lanes: low and high take turns in blocks of k.
+template <int W, int K, std::size_t... I>
+RawT<W> mix_low(const RawT<W>& a, const RawT<W>& b, std::index_sequence<I...>) {
+  return __builtin_shufflevector(a, b, ((I / K) % 2 == 0 ? I : I - K + W)...);
+}
+template <int W, int K, std::size_t... I>
+RawT<W> mix_high(const RawT<W>& a, const RawT<W>& b, std::index_sequence<I...>) {
+  return __builtin_shufflevector(a, b, ((I / K) % 2 == 0 ? I + K : I + W)...);
+}
+
+// N rows of W lanes; every group of N lanes is transposed: lane g N + j of row i becomes lane
+// g N + i of row j.
+template <int W, int N, int K = 1>
+void transpose(RawT<W>* r) {
+  constexpr auto kAll = std::make_index_sequence<W>();
+  for (int i = 0; i < N; ++i) {
+    if ((i / K) % 2 != 0) continue;
+    const RawT<W> a = r[i], b = r[i + K];
+    r[i] = mix_low<W, K>(a, b, kAll);
+    r[i + K] = mix_high<W, K>(a, b, kAll);
+  }
+  if constexpr (2 * K < N) transpose<W, N, 2 * K>(r);
+}
+
+template <std::size_t... I>
+RawT<16> joined(const RawT<8>& a, const RawT<8>& b, std::index_sequence<I...>) {
+  return __builtin_shufflevector(a, b, I...);
+}
+template <int FROM, std::size_t... I>
+RawT<8> half(const RawT<16>& a, std::index_sequence<I...>) {
+  return __builtin_shufflevector(a, a, (I + FROM)...);
+}
+
+// 8 floats of each of W rows, as 8 packs; p(i) is where row i's are, aligned to 32 bytes.
+template <int W, class Row>
+void gather8(const Row& p, Lanes<W>* out) {
+  if constexpr (W == 16) {
+    RawT<16> r[8];
+    for (int i = 0; i < 8; ++i) {
+      r[i] = joined(load<8>(p(i)), load<8>(p(i + 8)), std::make_index_sequence<16>());
+    }
+    transpose<16, 8>(r);
+    for (int i = 0; i < 8; ++i) out[i] = Lanes<W>(r[i]);
+  } else {
+    for (int c = 0; c < 8; c += W) {
+      RawT<W> r[W];
+      for (int i = 0; i < W; ++i) r[i] = load<W>(p(i) + c);
+      transpose<W, W>(r);
+      for (int i = 0; i < W; ++i) out[c + i] = Lanes<W>(r[i]);
+    }
+  }
+}
+template <int W, class Row>
+void scatter8(const Row& p, const Lanes<W>* in) {
+  if constexpr (W == 16) {
+    RawT<16> r[8];
+    for (int i = 0; i < 8; ++i) r[i] = in[i].lanes;
+    transpose<16, 8>(r);
+    for (int i = 0; i < 8; ++i) {
+      store<8>(p(i), half<0>(r[i], std::make_index_sequence<8>()));
+      store<8>(p(i + 8), half<8>(r[i], std::make_index_sequence<8>()));
+    }
+  } else {
+    for (int c = 0; c < 8; c += W) {
+      RawT<W> r[W];
+      for (int i = 0; i < W; ++i) r[i] = in[c + i].lanes;
+      transpose<W, W>(r);
+      for (int i = 0; i < W; ++i) store<W>(p(i) + c, r[i]);
+    }
+  }
+}
+// 16 floats of each row, aligned to 64 bytes.
+template <int W, class Row>
+void gather16(const Row& p, Lanes<W>* out) {
+  if constexpr (W == 16) {
+    RawT<16> r[16];
+    for (int i = 0; i < 16; ++i) r[i] = load<16>(p(i));
+    transpose<16, 16>(r);
+    for (int i = 0; i < 16; ++i) out[i] = Lanes<W>(r[i]);
+  } else {
+    gather8<W>(p, out);
+    gather8<W>([&](int i) { return p(i) + 8; }, out + 8);
+  }
+}
+
+}  // namespace lanes
+}  // namespace vp::solve

@@ -1,0 +1,99 @@
+// The passes for one instruction set; compiled once for each, with VP_PASSES the table's name and
+// VP_LANES the width (CMakeLists.txt).
+#include "solve/passes.h"
+
+#include <algorithm>
+
+#include "solve/contact_passes.h"
+#include "solve/strike_pass.h"
+
+namespace vp::solve {
+namespace {
+
+constexpr int W = VP_LANES;
+
+// Rows are as they lie: eight floats of velocities, ways and accelerations each.
+using Row8 = lanes::RawT<8>;
+
+void accelerate(BodyRow* rows, std::uint32_t count, float h) {
+  const Row8 one = {1, 1, 1, 1, 1, 1, 1, 1};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    BodyRow& row = rows[i];
+    const Row8 tail = lanes::load<8>(row.inertia);
+    const Row8 keep = __builtin_shufflevector(tail, one, 6, 6, 6, 7, 7, 7, 8, 8);
+    lanes::store<8>(row.velocity,
+                    (lanes::load<8>(row.velocity) + h * lanes::load<8>(row.rate)) * keep);
+  }
+}
+
+void move(BodyRow* rows, std::uint32_t count, float h) {
+  const Row8 step = {h, h, h, h, h, h, 0, 0};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    BodyRow& row = rows[i];
+    lanes::store<8>(row.way, lanes::load<8>(row.way) + step * lanes::load<8>(row.velocity));
+  }
+}
+
+// Runs f(lanes, block, lane) on all lanes in use, W at a time.
+template <int P, class F>
+void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
+  ContactBlock<P>* block = run.blocks;
+  for (std::uint32_t first = 0; first < run.lanes; first += run.stride, ++block) {
+    const int end = static_cast<int>(std::min(run.stride, run.lanes - first));
+    for (int at = 0; at < end; at += W) {
+      LanesOf<W, P> lanes(*block, at, run.rows);
+      f(lanes, static_cast<std::size_t>(block - run.blocks), at);
+    }
+  }
+}
+
+template <int P>
+[[gnu::flatten]] bool strike(const typename ContactPasses<P>::Run& run, float h, float threshold) {
+  bool bounced = false;
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
+    bounced = strike_lanes<W, P>(c, h, threshold) || bounced;
+  });
+  return bounced;
+}
+template <int P>
+[[gnu::flatten]] void warm_start(const typename ContactPasses<P>::Run& run) {
+  for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { warm_start_lanes<W, P>(c); });
+}
+template <int P, bool kPush>
+[[gnu::flatten]] void solve(const typename ContactPasses<P>::Run& run, const Soft& soft) {
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kPush>(c, soft); });
+}
+// Lanes that are not in use have no say.
+std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block) {
+  const std::uint32_t count = std::min(stride, lanes - static_cast<std::uint32_t>(block) * stride);
+  return (1u << count) - 1u;
+}
+template <int P>
+[[gnu::flatten]] void find_moved(const typename ContactPasses<P>::Run& run, float dt, float turn,
+                                 std::uint16_t* bits) {
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
+    const std::uint32_t found = find_moved_lanes<W, P>(c, dt, turn) << at;
+    const std::uint32_t before = at == 0 ? 0u : bits[block];
+    bits[block] = static_cast<std::uint16_t>(before | (found & used(run.lanes, run.stride, block)));
+  });
+}
+template <int P>
+[[gnu::flatten]] void find_loaded(const typename ContactPasses<P>::Run& run, std::uint16_t* bits) {
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
+    const std::uint32_t found = find_loaded_lanes<W, P>(c) << at;
+    const std::uint32_t before = at == 0 ? 0u : bits[block];
+    bits[block] = static_cast<std::uint16_t>(before | (found & used(run.lanes, run.stride, block)));
+  });
+}
+
+template <int P>
+constexpr ContactPasses<P> contact_passes() {
+  return {strike<P>, warm_start<P>, solve<P, true>, solve<P, false>, find_moved<P>, find_loaded<P>};
+}
+
+}  // namespace
+}  // namespace vp::solve
+
+const vphysics_solver::Passes vphysics_solver::VP_PASSES = {vp::solve::accelerate, vp::solve::move,
+                                                            vp::solve::contact_passes<1>(),
+                                                            vp::solve::contact_passes<4>()};

@@ -1,0 +1,65 @@
+// What a solver's stage may be asked to do, whatever the width of the machine's registers.
+//
+// passes.cpp is compiled once for each instruction set, with `vp` defined as another name, so that
+// no function of one set can be taken for another's. All that the sets share has addresses and
+// layouts in a namespace that keeps its name.
+#pragma once
+
+#include <cstdint>
+
+#include "solve/body_row.h"
+#include "solve/contact_block.h"
+
+namespace vphysics_solver {
+
+// How a contact answers penetration s < 0 in a sub-step h: as a spring and a damper of frequency f
+// and damping ratio z, integrated implicitly, that is by
+//   p' = p - mass_share m (u + max(rate s, -fastest_push)) - impulse_loss p
+struct Soft {
+  float rate;          // [1/s]
+  float mass_share;    // of the effective mass
+  float impulse_loss;  // of the accumulated impulse
+  float fastest_push;  // [m/s]
+  float inverse_h;     // [1/s]
+};
+
+// The passes over the blocks of one colour, of which `lanes` are used. One block a lane: of the
+// last colour, whose contacts are solved one after the other; `stride` is then 1, else kLanes.
+template <int P>
+struct ContactPasses {
+  using Blocks = ContactBlock<P>*;
+  struct Run {
+    Blocks blocks;
+    std::uint32_t lanes, stride;
+    BodyRow* rows;
+  };
+  bool (*strike)(const Run& run, float h, float threshold);  // true: something bounced
+  void (*warm_start)(const Run& run);
+  void (*solve)(const Run& run, const Soft& soft);
+  void (*relax)(const Run& run, const Soft& soft);
+  // A bit for each lane, a word for each block.
+  void (*find_moved)(const Run& run, float dt, float turn, std::uint16_t* bits);
+  void (*find_loaded)(const Run& run, std::uint16_t* bits);
+};
+
+struct Passes {
+  void (*accelerate)(BodyRow* rows, std::uint32_t count, float h);
+  void (*move)(BodyRow* rows, std::uint32_t count, float h);
+  ContactPasses<1> one;
+  ContactPasses<4> four;
+};
+
+extern const Passes kBaseline;
+// Only in libraries built with VP_INSTRUCTION_SETS.
+extern const Passes kAvx2;
+extern const Passes kAvx512;
+
+}  // namespace vphysics_solver
+
+namespace vp::solve {
+using namespace vphysics_solver;  // NOLINT(google-build-using-namespace): see passes.h
+
+// Those for this machine. All give the same bits.
+const Passes& passes();
+
+}  // namespace vp::solve

@@ -1,0 +1,170 @@
+// Bounces, and what a step wants to know of its contacts.
+//
+// strike: a contact that closes and reaches its partner within the sub-step h, faster than the
+// threshold, hits. What bounces does so now, one contact after another: each takes from the bodies
+// what Newton's law asks of it, so that an impact runs through a row of balls as it does in a
+// cradle. What its bodies have done by then of this sub-step's way is put right.
+//
+// Velocities hold the forces of the whole sub-step, so they are those of its middle. With c the
+// closing speed, g the acceleration that closes the gap s (of what falls; what something carried in
+// the last step does not):
+//   at the surface     a = sqrt((c - g h / 2)^2 + 2 g s),       reached after t
+//   after the bounce   u = e a - g (h / 2 - t)                  again of the middle of the sub-step
+//   and at its end     s' = e a (h - t) - g (h - t)^2 / 2
+// so a ball that bounces keeps the heights of the true parabola, whatever the step.
+#pragma once
+
+#include "solve/contact_passes.h"
+
+namespace vp::solve {
+
+// The impulses of a bounce take this many rounds among the points of one contact: a box that falls
+// flat needs more than one that falls on a corner.
+inline constexpr int kStrikeSweeps = 8;
+
+template <int W>
+bool any(const LaneMask<W>& m) {
+  return !none(m);
+}
+
+template <int W, int P>
+struct Closing {
+  using F = Lanes<W>;
+
+  Closing(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
+    Vec3T<F> a, b;
+    c.gather_accelerations(a, b);
+    gain = larger(F(0.0f), dot(normals.n, c.falls_a * a - c.falls_b * b));
+    const F added = F(h) * dot(normals.n, a - b);
+    normals.speeds(c, u);
+    normals.separations(c, s);
+    soonest = F(h);
+    fastest = F(0.0f);
+    for (int i = 0; i < P; ++i) {
+      gap[i] = larger(F(0.0f), s[i]);
+      const F now = -u[i] - added;  // what the sub-step's own forces add is no approach
+      reaches[i] = both(F(h) * -u[i] >= gap[i], now > F(0.0f));
+      fastest = larger(fastest, select(reaches[i], now, F(0.0f)));
+      const F time = gap[i] / larger(-u[i], F(1e-30f));
+      soonest = select(reaches[i], smaller(soonest, time), soonest);
+    }
+  }
+  F u[P], s[P], gap[P], gain, soonest, fastest;
+  LaneMask<W> reaches[P];
+};
+
+// True if any lane bounced.
+template <int W, int P>
+bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  auto& block = c.block();
+  const auto rests = sum_of_impulses(c) > F(0.0f);
+  const F e = c.get(block.restitution);
+  if (all(both(rests, !(e > F(0.0f))))) return false;  // neither bounces nor comes to touch
+  c.gather_velocities();
+  c.gather_ways();
+  const Normals<W, P> normals(c);
+  const Closing<W, P> closing(c, normals, h);
+  const auto hits = closing.fastest > F(threshold);
+  if (none(hits)) return false;
+  const auto fresh = both(hits, !rests);
+  c.put(block.closing,
+        select(fresh, larger(c.get(block.closing), closing.fastest), c.get(block.closing)));
+  const auto bounces = both(hits, e > F(0.0f));
+  if (none(bounces)) return false;
+
+  F u[P], p[P];
+  const F after = F(h) - closing.soonest;
+  F leaving(0.0f), gained(0.0f);
+  for (int i = 0; i < P; ++i) {
+    const F start = larger(F(0.0f), -closing.u[i] - F(0.5f * h) * closing.gain);
+    const F at_surface = sqrt(start * start + F(2.0f) * closing.gain * closing.gap[i]);
+    const F target = e * at_surface - closing.gain * (F(0.5f * h) - closing.soonest);
+    leaving = larger(leaving, select(closing.reaches[i], e * at_surface, F(0.0f)));
+    const auto acts = both(bounces, closing.reaches[i]);
+    u[i] = select(acts, closing.u[i] - target, F(1e30f));  // others are not pushed
+    p[i] = F(0.0f);
+  }
+  for (int sweep = 0; sweep < (P > 1 ? kStrikeSweeps : 1); ++sweep) {
+    for (int i = 0; i < P; ++i) {
+      const F next = larger(F(0.0f), p[i] - c.get(block.inverse[i]) * u[i]);
+      if (P > 1) pass_on(c, i, next - p[i], u);
+      p[i] = next;
+    }
+  }
+  F load = p[0];
+  for (int i = 1; i < P; ++i) load += p[i];
+  c.put(block.impact, c.get(block.impact) + load);
+  const V v_a = c.v_a, w_a = c.w_a, v_b = c.v_b, w_b = c.w_b;
+  normals.push(c, p);
+
+  // The way of this sub-step, which will be gone at the new velocities as a whole.
+  F now[P];
+  normals.speeds(c, now);
+  for (int i = 0; i < P; ++i) {
+    gained = larger(gained, select(closing.reaches[i], now[i] - closing.u[i], F(0.0f)));
+  }
+  F speed = now[0], gap = closing.s[0];
+  for (int i = 1; i < P; ++i) {
+    const auto first = both(closing.reaches[i], closing.s[i] < gap);
+    speed = select(first, now[i], speed);
+    gap = select(first, closing.s[i], gap);
+  }
+  const F wanted = leaving * after - F(0.5f) * closing.gain * after * after;
+  const F error = wanted - (larger(F(0.0f), gap) + F(h) * speed);
+  const auto moves = both(bounces, gained > F(1e-9f));
+  const F share = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
+  c.x_a += share * (c.v_a - v_a);
+  c.turn_a += share * (c.w_a - w_a);
+  c.x_b += share * (c.v_b - v_b);
+  c.turn_b += share * (c.w_b - w_b);
+  c.scatter_ways();
+
+  // Friction of the bounce.
+  const Grip<W, P> at(c, normals.n);
+  const V slip = at.velocity(c);
+  const F slide[2] = {dot(at.t, slip) - c.get(block.surface_speed[0]),
+                      dot(at.b, slip) - c.get(block.surface_speed[1])};
+  F q[2] = {F(0.0f), F(0.0f)};
+  grip_or_slide(c, slide, c.get(block.friction) * load, q);
+  const V force = q[0] * at.t + q[1] * at.b;
+  c.push_linear(force);
+  c.push_angular(cross(at.r_a, force), cross(at.r_b, force));
+  c.scatter_velocities();
+  return true;
+}
+
+// Bits of lanes whose geometry must be computed again: by the end of a step of dt, at their present
+// speeds, they will have slid by more than slid_limit or turned by more than `turn` [rad].
+template <int W, int P>
+std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  auto& block = c.block();
+  c.gather_velocities();
+  c.gather_ways();
+  const V r_a = c.get(block.grip), r_b = r_a + c.get(block.d);
+  const F step(dt);
+  const V x_a = c.x_a + step * c.v_a, x_b = c.x_b + step * c.v_b;
+  const V turn_a = c.turn_a + step * c.w_a, turn_b = c.turn_b + step * c.w_b;
+  const V slid = x_b + cross(turn_b, r_b) - x_a - cross(turn_a, r_a) - c.get(block.slid);
+  const V by_a = turn_a - c.get(block.turned_a), by_b = turn_b - c.get(block.turned_b);
+  const F limit = c.get(block.slid_limit), most(turn * turn);
+  const auto still = both(both(dot(slid, slid) <= limit * limit, dot(by_a, by_a) <= most),
+                          dot(by_b, by_b) <= most);
+  std::uint32_t bits = 0;
+  for (int i = 0; i < W; ++i) bits |= (still.lanes[i] == 0 ? 1u : 0u) << i;
+  return bits;
+}
+
+// Bits of lanes that push.
+template <int W, int P>
+std::uint32_t find_loaded_lanes(const LanesOf<W, P>& c) {
+  const auto loaded = sum_of_impulses(c) + c.get(c.block().impact) > Lanes<W>(0.0f);
+  std::uint32_t bits = 0;
+  for (int i = 0; i < W; ++i) bits |= (loaded.lanes[i] != 0 ? 1u : 0u) << i;
+  return bits;
+}
+
+}  // namespace vp::solve

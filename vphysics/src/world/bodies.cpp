@@ -1,0 +1,211 @@
+// Between bodies and the rows of the sub-stepped solver.
+//
+// A body that no lane holds falls freely: it is moved here, in double. So that it falls as it would
+// in n sub-steps h = dt / n of semi-implicit Euler, it goes by  dt v + a dt^2 (n + 1) / (2 n).
+#include <algorithm>
+#include <cmath>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+// An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
+// overlap more neighbours.
+constexpr double kMargin = 0.1;
+// A row's way is started anew beyond this [m or rad], so that single precision tells small steps.
+constexpr float kFarWay = 0.0625f;
+
+void put(float* f, const Vec3& v) {
+  f[0] = static_cast<float>(v.x);
+  f[1] = static_cast<float>(v.y);
+  f[2] = static_cast<float>(v.z);
+}
+Vec3 vector(const float* f) {
+  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+}
+
+// The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
+// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source: Catto,
+// Numerical Methods, GDC 2015.
+Vec3 gyroscopic_acceleration(const Body& body, double dt) {
+  const Mat3& R = body.T.rotation();
+  const Sym3& I = body.central;
+  const Vec3 w = transposed_times(R, body.w), L = I * w;
+  const Mat3 inertia{I * Vec3{1, 0, 0}, I * Vec3{0, 1, 0}, I * Vec3{0, 0, 1}};
+  const Mat3 J = inertia + dt * (skew(w) * inertia - skew(L));
+  const double determinant = dot(J.cx, cross(J.cy, J.cz));
+  if (!(std::fabs(determinant) > 0.0)) return {};
+  const Vec3 f = cross(L, w);
+  const double scale = 1.0 / determinant;
+  return R * Vec3{scale * dot(f, cross(J.cy, J.cz)), scale * dot(J.cx, cross(f, J.cz)),
+                  scale * dot(J.cx, cross(J.cy, f))};
+}
+
+// Half a margin of the least collider is surely within all enlarged bounds.
+bool stays_within_bounds(const Body& body, const solve::BodyRow& row, double dt) {
+  const float* at = body.bounded_at;
+  const auto gone = [&](int i) {
+    return static_cast<double>(std::fabs(row.way[i] - at[i]) +
+                               std::fabs(row.way[i + 1] - at[i + 1]) +
+                               std::fabs(row.way[i + 2] - at[i + 2]));
+  };
+  return gone(0) + dt * norm(body.v) + body.reach * (gone(3) + dt * norm(body.w)) <
+         0.5 * kMargin * body.least_size;
+}
+// Of all that a collider passes in a step.
+collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& way, double more) {
+  const collide::Bounds end{b.lower + way, b.upper + way};
+  return grown(merged(b, end), more);
+}
+
+}  // namespace
+
+// R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
+// exact to rounding for turns of a step; larger ones take the long way.
+Mat3 turned(const Mat3& R, const Vec3& t) {
+  const double tt = dot(t, t);
+  if (tt > 1e-3) return orthonormalized(Exp(t).matrix() * R);
+  const double s = 1.0 - tt * (1.0 / 6.0 - tt * (1.0 / 120.0 - tt * (1.0 / 5040.0)));
+  const double c = 0.5 - tt * (1.0 / 24.0 - tt * (1.0 / 720.0));
+  const auto turn = [&](const Vec3& a) {
+    const Vec3 once = cross(t, a);
+    return a + s * once + c * cross(t, once);
+  };
+  return orthonormalized(Mat3{turn(R.cx), turn(R.cy), turn(R.cz)});
+}
+
+// Whether it takes part in the sub-stepped solver.
+bool World::Impl::joins_sub_steps(const Body& body) const {
+  return body.alive && !body.is_link && !body.continuous && !body.by_impacts &&
+         body.motion != Motion::fixed;
+}
+
+void World::Impl::load_row(std::uint32_t index, double dt) {
+  Body& body = bodies[index];
+  solve::BodyRow& row = body_rows[index + 1];
+  const bool pushed = body.motion == Motion::dynamic;
+  put(row.velocity, body.v);
+  put(row.velocity + 3, body.w);
+  row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(1.0 / body.mass) : 0.0f;
+  row.velocity[solve::kFalls] = pushed && !body.rested ? 1.0f : 0.0f;
+  row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
+  std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
+  if (!pushed) {
+    std::fill_n(row.inertia, 6, 0.0f);
+    return;
+  }
+  const Sym3 I =
+      body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
+  const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
+  for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
+  put(row.rate, desc.gravity);
+  if (!body.isotropic) put(row.rate + 3, gyroscopic_acceleration(body, dt));
+  float* way = row.way;
+  const bool far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
+  if (!far) return;
+  std::fill_n(way, 6, 0.0f);
+  std::fill_n(body.bounded_at, 6, 1e9f);
+  mark_contacts_stale(index);
+}
+
+void World::Impl::load_rows(double dt) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (body.alive && !body.is_link && body.motion != Motion::fixed) load_row(i, dt);
+  }
+}
+
+// Velocities become those of the end of the step, drift what leads there.
+void World::Impl::store_bodies(double dt, int sub_steps) {
+  const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
+    drift[i] = {};
+    if (!joins_sub_steps(body) || body.motion != Motion::dynamic) continue;
+    if (body.lanes == 0) {
+      forced[i].v = dt * desc.gravity;
+      const Vec3 v = body.v;
+      body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
+      body.w *= 1.0 / (1.0 + dt * body.angular_damping);
+      drift[i].v = v + half * desc.gravity - body.v;
+      continue;
+    }
+    solve::BodyRow& row = body_rows[i + 1];
+    const float* start = start_ways[i].data();
+    body.v = vector(row.velocity);
+    body.w = vector(row.velocity + 3);
+    const double per_step = 1.0 / dt;
+    drift[i].v = per_step * (vector(row.way) - vector(start)) - body.v;
+    drift[i].w = per_step * (vector(row.way + 3) - vector(start + 3)) - body.w;
+    if (!in_range(body.v) || !in_range(body.w) || !in_range(drift[i].v) || !in_range(drift[i].w)) {
+      status.non_finite = true;
+      body.v = body.w = {};
+      drift[i] = {};
+      forget_contacts(i);
+    }
+  }
+}
+
+// What its lanes hold is no good to start from.
+void World::Impl::forget_contacts(std::uint32_t body) {
+  std::fill_n(body_rows[body + 1].way, 6, 0.0f);
+  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
+    if (contact_pool[e / 2].place.points > 0) {
+      take_out_of_lane(e / 2);
+      set_near(e / 2, 0.0);
+    }
+    contact_pool[e / 2].stale = true;
+  }
+}
+
+// Put elsewhere by the user.
+void World::Impl::jumped(std::uint32_t index) {
+  Body& body = bodies[index];
+  mark_contacts_stale(index);
+  std::fill_n(body.bounded_at, 6, 1e9f);
+  if (body.motion != Motion::fixed) return;
+  pose_colliders(index);
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);
+  }
+}
+
+// Gives the broad phase the bounds of what has gone far enough to leave its enlarged ones.
+void World::Impl::update_bounds(double dt) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
+    if (!body.alive || body.first_collider == kNone || body.motion == Motion::fixed) continue;
+    const bool rows_tell = joins_sub_steps(body);
+    if (rows_tell && stays_within_bounds(body, body_rows[i + 1], dt)) continue;
+    pose_colliders(i);
+    const Vec3 way = dt * body.v;
+    const double turns = dt * norm(body.w) * body.reach + desc.contact_slop;
+    for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+      const Collider& collider = colliders[c];
+      finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, turns),
+                        kMargin * collider.size, 2.0 * way);
+    }
+    if (rows_tell) std::copy_n(body_rows[i + 1].way, 6, body.bounded_at);
+  }
+}
+
+void World::Impl::add_proxy(std::uint32_t index) {
+  Collider& collider = colliders[index];
+  Body& body = bodies[collider.body];
+  pose_colliders(collider.body);
+  collide::ProxyDesc proxy;
+  proxy.bounds = collider.bounds;
+  proxy.mobility =
+      body.motion == Motion::fixed ? collide::Mobility::fixed : collide::Mobility::moving;
+  // Continuous bodies look for others themselves (pairs.cpp).
+  proxy.category = body.continuous ? 0 : collider.filter.category;
+  proxy.mask = body.continuous ? 0 : collider.filter.mask;
+  proxy.owner = body.is_link ? 0x80000000u + body.articulation : collider.body;
+  proxy.user = index;
+  proxy.margin = kMargin * collider.size;
+  collider.proxy = finder.add(proxy);
+}
+
+}  // namespace vp

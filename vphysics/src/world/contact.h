@@ -1,0 +1,41 @@
+// A pair of colliders that are near one another, for as long as their enlarged bounds overlap.
+//
+// The narrow phase looks at it only when the two may have moved by more than a little against each
+// other since it last did (find_contacts.cpp). What it finds lives in a lane of the solver's
+// blocks.
+#pragma once
+
+#include <cstdint>
+
+#include "collide/manifold.h"
+#include "solve/contact_graph.h"
+
+namespace vp {
+
+struct Contact {
+  std::uint64_t key = 0;       // serials of both
+  std::uint32_t a = 0, b = 0;  // colliders, in order of creation
+  // Neighbours in the lists of their bodies: side 0 in that of a's, 1 in that of b's. An edge is
+  // 2 * contact + side.
+  std::uint32_t next[2] = {}, previous[2] = {};
+  bool alive = false;
+  bool sensor = false;
+  bool of_link = false;  // one of the two is of a link: looked at in the stage of impacts
+  bool touching = false;
+  bool at_impacts = false;  // solved there in the last step
+  bool stale = true;        // must be looked at in the next step, wherever the two are
+  solve::Place place;
+
+  // Points, if it has any.
+  std::uint8_t count = 0;
+  std::uint32_t feature[collide::kMaxPoints] = {};
+  Vec3 position[collide::kMaxPoints] = {};  // world frame, when they were found
+
+  // If it has none: its place among those, the bodies' ways then, and how far they may go against
+  // each other before a point can come to be [m].
+  std::uint32_t near_index = 0;
+  float way_a[6] = {}, way_b[6] = {};
+  float clearance = 0.0f;
+};
+
+}  // namespace vp

@@ -1,0 +1,174 @@
+#include "world/contact_state.h"
+
+#include <algorithm>
+
+namespace vp {
+
+void World::Impl::ContactState::read(Reader& in) {
+  world_.finder.read(in);
+  in.check(world_.finder.incoming_fits());
+  bodies_.assign(world_.bodies.size(), {});
+  for (OfBody& body : bodies_) read_body(in, body);
+  read_pool(in);
+  for (std::uint32_t i = 0; i < bodies_.size() && in.ok(); ++i) read_edges(in, i);
+  for (std::size_t i = 0; i < pool_.size(); ++i) in.check(!pool_[i].alive || (seen_[i] & 3u) == 3u);
+  if (!in.ok()) return;
+  const std::size_t free = in.count(1);
+  for (std::size_t i = 0; i < free && in.ok(); ++i) {
+    const std::uint32_t c = in.index(pool_.size());
+    if (!in.ok()) return;
+    in.check(!pool_[c].alive && seen_[c] == 0);
+    seen_[c] = 8;
+    free_.push_back(c);
+  }
+  read_near(in);
+  graph_.resize(world_.bodies.size() + 1);
+  for (int c = 0; c < solve::kColours && in.ok(); ++c) {
+    read_lanes<1>(in, c);
+    read_lanes<4>(in, c);
+  }
+  for (std::size_t i = 0; i < pool_.size(); ++i) in.check(seen_[i] == (pool_[i].alive ? 7 : 8));
+}
+
+void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
+  const std::uint64_t flags = in.word();
+  in.check(flags <= 3);
+  body.rested = (flags & 1u) != 0;
+  body.by_impacts = (flags & 2u) != 0;
+  for (int k = 0; k < 6; ++k) {
+    const Reader::TwoFloats both = in.two_floats();
+    body.way[k] = both.high;
+    body.bounded_at[k] = both.low;
+  }
+}
+
+void World::Impl::ContactState::read_pool(Reader& in) {
+  using namespace contact_flags;
+  pool_.resize(in.count(1));
+  seen_.assign(pool_.size(), 0);
+  for (Contact& c : pool_) {
+    if (!in.ok()) return;
+    const std::uint64_t flags = in.word();
+    in.check(flags <= kAll && ((flags & kAlive) != 0 || flags == 0));
+    c.alive = (flags & kAlive) != 0;
+    c.sensor = (flags & kSensor) != 0;
+    c.touching = (flags & kTouching) != 0;
+    c.stale = (flags & kStale) != 0;
+    c.of_link = (flags & kOfLink) != 0;
+    c.at_impacts = (flags & kAtImpacts) != 0;
+    if (c.alive && in.ok()) read_contact(in, c);
+  }
+}
+
+void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
+  const std::vector<Collider>& all = world_.colliders;
+  c.key = in.word();
+  const Reader::Two both = in.two();
+  c.a = both.high;
+  c.b = both.low;
+  in.check(c.a < all.size() && c.b < all.size() && c.a != c.b);
+  if (!in.ok()) return;
+  const Collider &a = all[c.a], &b = all[c.b];
+  in.check(a.alive && b.alive && a.serial < b.serial &&
+           make_pair(all, c.a, c.b).key == c.key && c.sensor == (a.sensor || b.sensor));
+  const std::uint64_t count = in.word();
+  in.check(count <= collide::kMaxPoints);
+  if (!in.ok()) return;
+  const Body &body_a = world_.bodies[a.body], &body_b = world_.bodies[b.body];
+  in.check(c.of_link == (body_a.is_link || body_b.is_link) && !body_a.continuous &&
+           !body_b.continuous && (count == 0 || !(c.sensor || c.of_link)));
+  c.count = static_cast<std::uint8_t>(count);
+  for (int i = 0; i < c.count; ++i) {
+    const std::uint64_t feature = in.word();
+    in.check(feature <= 0xffffffffu);
+    c.feature[i] = static_cast<std::uint32_t>(feature);
+    c.position[i] = in.vector();
+  }
+  if (c.count > 0) return;
+  for (int k = 0; k < 6; ++k) {
+    const Reader::TwoFloats ways = in.two_floats();
+    c.way_a[k] = ways.high;
+    c.way_b[k] = ways.low;
+  }
+  c.clearance = in.two_floats().high;
+}
+
+// In their order, each contact's sides once.
+void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
+  const std::size_t count = in.count(1);
+  std::uint32_t previous = kNone;
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    const std::uint32_t e = in.index(2 * pool_.size());
+    if (!in.ok()) return;
+    Contact& c = pool_[e / 2];
+    const auto side = static_cast<std::uint8_t>(1u << (e % 2));
+    const bool own = c.alive && world_.colliders[e % 2 == 0 ? c.a : c.b].body == body;
+    in.check(own && (seen_[e / 2] & side) == 0);
+    if (!in.ok()) return;
+    seen_[e / 2] = static_cast<std::uint8_t>(seen_[e / 2] | side);
+    c.previous[e % 2] = previous;
+    c.next[e % 2] = kNone;
+    (previous == kNone ? bodies_[body].first_edge : pool_[previous / 2].next[previous % 2]) = e;
+    previous = e;
+  }
+}
+
+void World::Impl::ContactState::read_near(Reader& in) {
+  const std::size_t near = in.count(1);
+  for (std::size_t i = 0; i < near && in.ok(); ++i) {
+    const std::uint32_t index = in.index(pool_.size());
+    if (!in.ok()) return;
+    Contact& c = pool_[index];
+    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);
+    seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
+    c.near_index = static_cast<std::uint32_t>(near_.size());
+    near_.push_back(index);
+  }
+}
+
+template <int P>
+void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
+  constexpr std::size_t kFields = solve::kFieldsOf<P>;
+  const std::size_t lanes = in.count(1 + kFields / 2);
+  for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
+    const std::uint32_t index = in.index(pool_.size());
+    if (!in.ok()) return;
+    Contact& c = pool_[index];
+    in.check(c.alive && c.count > 0 && c.count <= P && (seen_[index] & 4u) == 0);
+    if (!in.ok()) return;
+    seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
+    const std::uint32_t a = world_.colliders[c.a].body, b = world_.colliders[c.b].body;
+    in.check(graph_.append(index, world_.end_of(a), world_.end_of(b), P, colour, c.place));
+    if (!in.ok()) return;
+    ++bodies_[a].lanes;
+    ++bodies_[b].lanes;
+    const auto fields = solve::fields_of(graph_.block<P>(c.place));
+    const int lane = graph_.lane(c.place);
+    for (std::size_t f = 0; f < kFields; f += 2) {
+      const Reader::TwoFloats both = in.two_floats();
+      fields[f].lane[lane] = both.high;
+      if (f + 1 < kFields) fields[f + 1].lane[lane] = both.low;
+    }
+  }
+}
+
+void World::Impl::ContactState::adopt() {
+  world_.finder.adopt();
+  world_.body_rows.resize(bodies_.size() + 1);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = world_.bodies[i];
+    const OfBody& from = bodies_[i];
+    body.rested = from.rested;
+    body.by_impacts = from.by_impacts;
+    body.first_edge = from.first_edge;
+    body.lanes = from.lanes;
+    std::copy_n(from.way, 6, world_.body_rows[i + 1].way);
+    std::copy_n(from.bounded_at, 6, body.bounded_at);
+  }
+  world_.contact_pool.swap(pool_);
+  world_.free_contacts.swap(free_);
+  world_.near_contacts.swap(near_);
+  std::swap(world_.graph, graph_);
+}
+
+}  // namespace vp

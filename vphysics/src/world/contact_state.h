@@ -1,0 +1,117 @@
+// All that a world remembers of contacts from step to step, as words.
+//
+//   broad phase     pair_finder.h
+//   of each body    rested, by impacts; its row's way and where its bounds were set; its contacts,
+//   in order, as
+//                   edges (2 contact + side)
+//   pool            of each slot its flags, and if it is alive the contact; free slots, in order
+//   near contacts   in order
+//   lanes           of each colour and kind: how many, and of each its contact and all its fields
+//
+// What follows from these is not written: neighbours in lists, rows of lanes, colours taken.
+#pragma once
+
+#include <vector>
+
+#include "world/impl.h"
+#include "world/snapshot_io.h"
+
+namespace vp {
+
+// Read from bytes, checked, and not yet the world's.
+class World::Impl::ContactState {
+ public:
+  explicit ContactState(World::Impl& world) : world_(world) {}
+  void read(Reader& in);
+  // Precondition: the reader was ok after read().
+  void adopt();
+
+ private:
+  struct OfBody {
+    bool rested = false, by_impacts = false;
+    float way[6] = {}, bounded_at[6] = {};
+    std::uint32_t first_edge = kNone, lanes = 0;
+  };
+  void read_body(Reader& in, OfBody& body);
+  void read_contact(Reader& in, Contact& contact);
+  void read_pool(Reader& in);
+  void read_edges(Reader& in, std::uint32_t body);
+  void read_near(Reader& in);
+  template <int P>
+  void read_lanes(Reader& in, int colour);
+
+  World::Impl& world_;
+  std::vector<OfBody> bodies_;
+  std::vector<Contact> pool_;
+  std::vector<std::uint32_t> free_, near_;
+  std::vector<std::uint8_t> seen_;  // of each contact: 1, 2: the sides found; 4: near or in a lane
+  solve::ContactGraph graph_;
+};
+
+namespace contact_flags {
+inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kStale = 8, kOfLink = 16,
+                               kAtImpacts = 32, kAll = 63;
+}
+
+template <class Sink>
+void World::Impl::write_contacts(Sink& sink) const {
+  finder.write(sink);
+  static const solve::BodyRow kNoRow{};
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const solve::BodyRow& row = i + 1 < body_rows.size() ? body_rows[i + 1] : kNoRow;
+    sink.word((body.rested ? 1u : 0u) | (body.by_impacts ? 2u : 0u));
+    for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
+  }
+  sink.word(contact_pool.size());
+  for (const Contact& c : contact_pool) {
+    using namespace contact_flags;
+    const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
+                                (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
+                                (c.of_link ? kOfLink : 0) | (c.at_impacts ? kAtImpacts : 0);
+    sink.word(c.alive ? flags : 0);
+    if (!c.alive) continue;
+    sink.word(c.key);
+    put_two(sink, c.a, c.b);
+    sink.word(c.count);
+    for (int i = 0; i < c.count; ++i) {
+      sink.word(c.feature[i]);
+      put(sink, c.position[i]);
+    }
+    if (c.count > 0) continue;
+    for (int k = 0; k < 6; ++k) put_two(sink, c.way_a[k], c.way_b[k]);
+    put_two(sink, c.clearance, 0.0f);
+  }
+  for (const Body& body : bodies) {
+    std::uint64_t count = 0;
+    const auto for_edges = [&](const auto& f) {
+      for (std::uint32_t e = body.first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) f(e);
+    };
+    for_edges([&](std::uint32_t) { ++count; });
+    sink.word(count);
+    for_edges([&](std::uint32_t e) { sink.word(e); });
+  }
+  for (const auto* list : {&free_contacts, &near_contacts}) {
+    sink.word(list->size());
+    for (const std::uint32_t c : *list) sink.word(c);
+  }
+  const auto write_lanes = [&sink](const auto& colour, int index) {
+    sink.word(colour.lanes);
+    for (std::uint32_t l = 0; l < colour.lanes; ++l) {
+      const auto& block = colour.blocks[colour.block_of(l, index)];
+      const int lane = colour.lane_of(l, index);
+      sink.word(block.contact.lane[lane]);
+      const auto fields = solve::fields_of(block);
+      for (std::size_t f = 0; f < fields.size(); f += 2) {
+        put_two(sink, fields[f].lane[lane],
+                f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
+      }
+    }
+  };
+  for (int c = 0; c < solve::kColours; ++c) {
+    write_lanes(graph.of<1>(c), c);
+    write_lanes(graph.of<4>(c), c);
+  }
+}
+
+}  // namespace vp

@@ -1,0 +1,100 @@
+// Words out and in: how the state of a world is written, and read back with every value checked.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+
+template <class Sink>
+void put(Sink& sink, double x) {
+  sink.word(std::bit_cast<std::uint64_t>(x));
+}
+template <class Sink>
+void put(Sink& sink, const Vec3& a) {
+  put(sink, a.x);
+  put(sink, a.y);
+  put(sink, a.z);
+}
+template <class Sink>
+void put_two(Sink& sink, std::uint32_t high, std::uint32_t low) {
+  sink.word((std::uint64_t{high} << 32) | low);
+}
+template <class Sink>
+void put_two(Sink& sink, float high, float low) {
+  put_two(sink, std::bit_cast<std::uint32_t>(high), std::bit_cast<std::uint32_t>(low));
+}
+
+// Reads words; out of bytes or out of range makes it fail for good.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  std::uint64_t word() {
+    std::uint64_t w = 0;
+    if (bytes_.size() < sizeof w) {
+      ok_ = false;
+      return 0;
+    }
+    std::memcpy(&w, bytes_.data(), sizeof w);
+    bytes_ = bytes_.subspan(sizeof w);
+    return w;
+  }
+  double number() {
+    const double x = std::bit_cast<double>(word());
+    check(std::isfinite(x));
+    return x;
+  }
+  double bounded() {
+    const double x = number();
+    check(in_range(x));
+    return x;
+  }
+  Vec3 vector() {
+    const double x = bounded(), y = bounded(), z = bounded();
+    return {x, y, z};
+  }
+  struct Two {
+    std::uint32_t high, low;
+  };
+  Two two() {
+    const std::uint64_t w = word();
+    return {static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
+  }
+  struct TwoFloats {
+    float high, low;
+  };
+  TwoFloats two_floats() {
+    const Two w = two();
+    const TwoFloats f{std::bit_cast<float>(w.high), std::bit_cast<float>(w.low)};
+    check(std::isfinite(f.high) && std::isfinite(f.low));
+    return f;
+  }
+  // A number below the limit.
+  std::uint32_t index(std::uint64_t limit) {
+    const std::uint64_t w = word();
+    check(w < limit);
+    return ok_ ? static_cast<std::uint32_t>(w) : 0;
+  }
+  // How many items follow, of at least so many words each: no more than the bytes hold.
+  std::size_t count(std::size_t words_each) {
+    const std::uint64_t n = word();
+    check(n <= bytes_.size() / (words_each * sizeof(std::uint64_t)));
+    return ok_ ? static_cast<std::size_t>(n) : 0;
+  }
+  void check(bool condition) { ok_ = ok_ && condition; }
+  bool ok() const { return ok_; }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool ok_ = true;
+};
+
+}  // namespace vp
