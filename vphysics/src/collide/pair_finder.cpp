@@ -253,7 +253,8 @@ bool PairFinder::incoming_fits() const {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     if ((s.places[i] == Place::none) != (places_[i] == Place::none)) return false;
     if (places_[i] == Place::none) continue;
-    if (is_moving(s.places[i]) != is_moving(places_[i]) || s.filters[i] != filters_[i]) return false;
+    if (is_moving(s.places[i]) != is_moving(places_[i]) || s.filters[i] != filters_[i])
+      return false;
   }
   return true;
 }

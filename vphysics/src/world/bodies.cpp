@@ -27,8 +27,8 @@ Vec3 vector(const float* f) {
 }
 
 // The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
-// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source: Catto,
-// Numerical Methods, GDC 2015.
+// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source:
+// Catto, Numerical Methods, GDC 2015.
 Vec3 gyroscopic_acceleration(const Body& body, double dt) {
   const Mat3& R = body.T.rotation();
   const Sym3& I = body.central;

@@ -69,8 +69,8 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
   in.check(c.a < all.size() && c.b < all.size() && c.a != c.b);
   if (!in.ok()) return;
   const Collider &a = all[c.a], &b = all[c.b];
-  in.check(a.alive && b.alive && a.serial < b.serial &&
-           make_pair(all, c.a, c.b).key == c.key && c.sensor == (a.sensor || b.sensor));
+  in.check(a.alive && b.alive && a.serial < b.serial && make_pair(all, c.a, c.b).key == c.key &&
+           c.sensor == (a.sensor || b.sensor));
   const std::uint64_t count = in.word();
   in.check(count <= collide::kMaxPoints);
   if (!in.ok()) return;
