@@ -96,7 +96,7 @@ Scene t_handle() {
   Body handle;
   handle.parts.push_back({bar, SE3(Vec3{0, 0, -share * apart}), kAluminium, {}});
   handle.parts.push_back({stem, SE3(Vec3{0, 0, (1.0 - share) * apart}), kAluminium, {}});
-  handle.spin = {0.02, 0.0, 8.0};  // about the axis of the middle moment, nearly
+  handle.spin = {0.2, 0.0, 8.0};  // about the axis of the middle moment, nearly
   Scene scene;
   scene.gravity = {};
   scene.seconds = 20.0;
@@ -111,9 +111,11 @@ Scene ramp() {
   const Box slope{{3.0, 0.25, 0.1}}, crate{{0.15, 0.15, 0.1}};
   Scene scene;
   scene.seconds = 1.0;
-  for (int i = 0; i <= 10; ++i) {
-    const Material surface{0.40 + 0.02 * i, 0.0, 0.0};
-    const SE3 lane(R, Vec3{0.0, kPitch * (i - 5), 3.0});
+  constexpr double kFrictions[] = {0.40, 0.44, 0.48, 0.495, 0.505, 0.52, 0.56, 0.60};
+  int i = 0;
+  for (const double friction : kFrictions) {
+    const Material surface{friction, 0.0, 0.0};
+    const SE3 lane(R, Vec3{0.0, kPitch * (i++ - 3.5), 3.0});
     add(scene, fixed_body(slope, lane, surface));
     const double above = slope.half_extents.z + crate.half_extents.z;
     add(scene, body_of(crate, lane * SE3(Vec3{-2.5, 0.0, above}), surface));

@@ -2,6 +2,10 @@
 // damping, as nobody else has any.
 import load from 'jolt-physics';
 
+// The build's working memory of 10 MB, which nothing changes, has room for so many contacts; a pile has
+// about three for each body.
+const MOST_CONTACTS = 21000;
+
 const STANDING = 0, MOVING = 1;  // object layers, and broad phase layers
 
 function layers(Jolt, settings) {
@@ -17,12 +21,13 @@ function layers(Jolt, settings) {
 }
 
 export async function make(scene, dt) {
-  const Jolt = await load();
   const count = scene.bodies.length;
+  if (3.5 * count > MOST_CONTACTS) throw new Error(`its build has room for ${MOST_CONTACTS} contacts`);
+  const Jolt = await load();
   const settings = new Jolt.JoltSettings();
   settings.mMaxBodies = count + 16;
   settings.mMaxBodyPairs = 32 * count + 1024;
-  settings.mMaxContactConstraints = 16 * count + 1024;
+  settings.mMaxContactConstraints = Math.min(16 * count + 1024, MOST_CONTACTS);
   settings.mMaxWorkerThreads = 0;
   layers(Jolt, settings);
   const jolt = new Jolt.JoltInterface(settings);

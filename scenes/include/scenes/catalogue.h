@@ -52,7 +52,8 @@ Scene card_house(int storeys);
 Scene dominoes(int count);
 Scene heavy_on_light(double ratio);
 Scene t_handle();
-// Boxes with friction 0.40, 0.42 .. 0.60 on slopes of the same friction whose tangent is 0.5.
+// Boxes with friction from 0.40 to 0.60, two of them 1% below and above 0.5, on slopes of the same
+// friction whose tangent is 0.5.
 Scene ramp();
 // Spheres with restitution 0, 0.1 .. 1 are let fall by 1 m.
 Scene bounce();
