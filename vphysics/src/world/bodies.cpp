@@ -73,7 +73,13 @@ Mat3 turned(const Mat3& R, const Vec3& t) {
     const Vec3 once = cross(t, a);
     return a + s * once + c * cross(t, once);
   };
-  return orthonormalized(Mat3{turn(R.cx), turn(R.cy), turn(R.cz)});
+  // Back to a rotation by a step of Newton's method, M (3 - M^T M) / 2: what a step leaves is
+  // rounding.
+  const Vec3 x = turn(R.cx), y = turn(R.cy), z = turn(R.cz);
+  const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
+  return {(1.5 - 0.5 * dot(x, x)) * x - xy * y - zx * z,
+          (1.5 - 0.5 * dot(y, y)) * y - xy * x - yz * z,
+          (1.5 - 0.5 * dot(z, z)) * z - zx * x - yz * y};
 }
 
 // Whether it takes part in the sub-stepped solver.

@@ -25,6 +25,7 @@ struct Contact {
   bool at_impacts = false;  // solved there in the last step
   bool stale = true;        // must be looked at in the next step, wherever the two are
   solve::Place place;
+  collide::PairCache cache;  // of the narrow phase
 
   // Points, if it has any.
   std::uint8_t count = 0;

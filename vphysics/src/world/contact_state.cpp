@@ -71,6 +71,16 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
   const Collider &a = all[c.a], &b = all[c.b];
   in.check(a.alive && b.alive && a.serial < b.serial && make_pair(all, c.a, c.b).key == c.key &&
            c.sensor == (a.sensor || b.sensor));
+  const Reader::TwoFloats xy = in.two_floats();
+  const Reader::Two z = in.two(), ij = in.two();
+  c.cache.normal[0] = xy.high;
+  c.cache.normal[1] = xy.low;
+  c.cache.normal[2] = std::bit_cast<float>(z.high);
+  in.check(std::isfinite(c.cache.normal[2]) && z.low <= 0xff && ij.high <= 0xffff &&
+           ij.low <= 0xffff);
+  c.cache.feature = static_cast<std::uint8_t>(z.low);
+  c.cache.i = static_cast<std::uint16_t>(ij.high);
+  c.cache.j = static_cast<std::uint16_t>(ij.low);
   const std::uint64_t count = in.word();
   in.check(count <= collide::kMaxPoints);
   if (!in.ok()) return;

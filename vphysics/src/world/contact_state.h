@@ -73,6 +73,9 @@ void World::Impl::write_contacts(Sink& sink) const {
     if (!c.alive) continue;
     sink.word(c.key);
     put_two(sink, c.a, c.b);
+    put_two(sink, c.cache.normal[0], c.cache.normal[1]);
+    put_two(sink, std::bit_cast<std::uint32_t>(c.cache.normal[2]), std::uint32_t{c.cache.feature});
+    put_two(sink, std::uint32_t{c.cache.i}, std::uint32_t{c.cache.j});
     sink.word(c.count);
     for (int i = 0; i < c.count; ++i) {
       sink.word(c.feature[i]);

@@ -241,7 +241,7 @@ void World::Impl::look_at(std::uint32_t index, double dt) {
   // The ball at the centre of its body feels no turning.
   const double margin = c.sensor ? 0.0 : desc.contact_slop + leeway + speed * dt;
   collide::Manifold m;
-  find_manifold(a.geometry, a.T, b.geometry, b.T, margin, m);
+  find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
   c.stale = false;
   ++counters.looked_at;
   if (c.sensor) {

@@ -91,9 +91,9 @@ void World::Impl::integrate_forces(double dt) {
   integrate_articulations(dt);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!body.alive) continue;
+    if (!body.alive || joins_sub_steps(body)) continue;
     const bool stopped = !body.is_link && stop_if_out_of_range(i);
-    if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
+    if (body.motion != Motion::dynamic) continue;
     forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
   }
 }
