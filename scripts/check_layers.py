@@ -32,6 +32,7 @@ LAYERS = {
     'vphysics/src/urdf/': 'urdf',
     'vphysics/include/vphysics/multibody/urdf.h': 'urdf',
     'vphysics/src/collide/': 'collide',
+    'vphysics/include/vphysics/compound.h': 'collide',
     'vphysics/include/vphysics/convex_hull.h': 'collide',
     'vphysics/include/vphysics/height_field.h': 'collide',
     'vphysics/include/vphysics/shapes.h': 'collide',

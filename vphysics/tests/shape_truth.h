@@ -52,6 +52,10 @@ inline Solid random_solid(Random& random, Kind kind) {
     case Kind::half_space:
       return Solid(HalfSpace{});
     case Kind::box:
+    case Kind::triangle:
+    case Kind::mesh:
+    case Kind::height_field:
+    case Kind::compound:
       break;
     case Kind::hull: {
       std::vector<Vec3> points(4 + random.word() % 21);

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <variant>
 
+#include "vphysics/compound.h"
 #include "vphysics/convex_hull.h"
 #include "vphysics/error.h"
+#include "vphysics/height_field.h"
 #include "vphysics/lie.h"
+#include "vphysics/triangle_mesh.h"
 
 namespace vp {
 
@@ -40,8 +43,16 @@ struct Cone {
   double half_height;  // > 0
 };
 
-// ConvexHull: vphysics/convex_hull.h
-using Shape = std::variant<Sphere, Box, Capsule, HalfSpace, Cylinder, Cone, ConvexHull>;
+// ConvexHull: vphysics/convex_hull.h. Only for colliders of fixed bodies, like the half-space:
+// TriangleMesh, vphysics/triangle_mesh.h, and HeightField, vphysics/height_field.h. Several shapes
+// as one: Compound, vphysics/compound.h.
+using Shape = std::variant<Sphere, Box, Capsule, HalfSpace, Cylinder, Cone, ConvexHull,
+                           TriangleMesh, HeightField, Compound>;
+
+struct CompoundPart {
+  Shape shape;
+  SE3 T_compound_part;  // pose of the shape in the compound's frame
+};
 
 struct Material {
   double friction = 0.5;          // Coulomb; a pair uses sqrt(a * b)
@@ -73,7 +84,7 @@ struct ColliderDesc {
 };
 
 // Inertia of a solid of uniform density [kg/m^3], about the shape's own origin, in the shape's
-// frame. HalfSpace has none: returns zero.
+// frame. HalfSpace and HeightField have none, nor has a TriangleMesh without an inside: zero.
 Inertia solid_inertia(const Shape& shape, double density);
 
 // The shape stretched along the axes of its own frame, each factor in [1e-6, 1e6]. Refused: factors

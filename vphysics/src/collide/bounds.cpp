@@ -1,5 +1,8 @@
 #include "collide/bounds.h"
 
+#include "collide/compound_data.h"
+#include "collide/surface.h"
+
 namespace vp::collide {
 namespace {
 
@@ -44,6 +47,16 @@ Bounds hull_bounds(const HullData& hull, const SE3& T) {
 
 Bounds bounds_of(const Geometry& g, const SE3& T) {
   switch (g.kind) {
+    case Kind::triangle: {
+      Bounds b;
+      for (int i = 0; i < 3; ++i) b = merged(b, {T * g.corners[i], T * g.corners[i]});
+      return b;
+    }
+    case Kind::mesh:
+    case Kind::height_field:
+      return transformed(T, surface_of(g).bounds());
+    case Kind::compound:
+      return transformed(T, {g.compound->lower, g.compound->upper});
     case Kind::half_space:
       return half_space_bounds(T);
     case Kind::cylinder:

@@ -82,6 +82,17 @@ void cone_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
   }
 }
 
+// Seen from behind its corners run the other way round.
+void triangle_feature(const Vec3* p, const SE3& T, const Vec3& d, Feature& f) {
+  const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
+  const bool front = dot(n, d) >= 0.0;
+  f.count = 0;
+  set_normal(f, T, ((front ? 1.0 : -1.0) / norm(n)) * n);
+  add(f, T, p[0], 0, front ? 0 : 2);
+  add(f, T, p[front ? 1 : 2], front ? 1 : 2, 1);
+  add(f, T, p[front ? 2 : 1], front ? 2 : 1, front ? 2 : 0);
+}
+
 int aligned_box_face(const Vec3& d) {
   int axis = 0;
   for (int i = 1; i < 3; ++i) {
@@ -133,6 +144,9 @@ void find_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
   switch (g.kind) {
     case Kind::sphere:
     case Kind::half_space:
+    case Kind::mesh:
+    case Kind::height_field:
+    case Kind::compound:
       f.count = 0;
       return add(f, T, {}, 0, 0);
     case Kind::capsule:
@@ -147,6 +161,8 @@ void find_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
       return face_feature(g, T, aligned_box_face(d), f);
     case Kind::hull:
       return face_feature(g, T, aligned_hull_face(*g.hull, d), f);
+    case Kind::triangle:
+      return triangle_feature(g.corners, T, d, f);
   }
 }
 

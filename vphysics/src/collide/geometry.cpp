@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collide/compound_data.h"
+#include "collide/surface.h"
+#include "collide/triangle_parts.h"
+
 namespace vp::collide {
 namespace {
 
@@ -131,6 +135,15 @@ SignedDistance distance_to_hull(const HullData& hull, const Vec3& p) {
   return {d, (1.0 / d) * (p - on_edge)};
 }
 
+// A sheet: nowhere negative.
+SignedDistance distance_to_triangle(const Vec3* corners, const Vec3& p) {
+  const Vec3 way = p - nearest_on_triangle(corners, p).point;
+  const double d = norm(way);
+  if (d > kDirectionNoise) return {d, (1.0 / d) * way};
+  const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return {d, (1.0 / norm(n)) * n};
+}
+
 }  // namespace
 
 Geometry make_geometry(const Shape& shape) {
@@ -156,10 +169,33 @@ Geometry make_geometry(const Shape& shape) {
   } else if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
     g.kind = Kind::hull;
     g.hull = hull->data().get();
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+    g.kind = Kind::mesh;
+    g.mesh = mesh->data().get();
+    g.half = mesh->scale();
+  } else if (const auto* field = std::get_if<HeightField>(&shape)) {
+    g.kind = Kind::height_field;
+    g.field = field->data().get();
+    g.half = field->scale();
+  } else if (const auto* compound = std::get_if<Compound>(&shape)) {
+    g.kind = Kind::compound;
+    g.compound = compound->data().get();
   } else {
     g.kind = Kind::half_space;
   }
   return g;
+}
+
+Geometry triangle_geometry(const Vec3 corners[3]) {
+  Geometry g;
+  g.kind = Kind::triangle;
+  g.corners = corners;
+  return g;
+}
+
+Surface surface_of(const Geometry& g) {
+  if (g.kind == Kind::mesh) return {*g.mesh, g.half};
+  return {*g.field, g.half};
 }
 
 SignedDistance signed_distance(const Geometry& g, const Vec3& p) {
@@ -176,6 +212,11 @@ SignedDistance signed_distance(const Geometry& g, const Vec3& p) {
       return distance_to_cone(g.radius, g.half.z, p);
     case Kind::hull:
       return distance_to_hull(*g.hull, p);
+    case Kind::triangle:
+      return distance_to_triangle(g.corners, p);
+    case Kind::mesh:
+    case Kind::height_field:
+    case Kind::compound:
     case Kind::half_space:
       break;
   }

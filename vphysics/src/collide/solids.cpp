@@ -45,6 +45,10 @@ Inertia solid_inertia(const Shape& shape, double density) {
     return Inertia(m, Vec3{across, across, 0.3 * m * r * r}).about({0, 0, 0.5 * h});
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) return hull->inertia(density);
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+    return mesh->data() ? mesh->inertia(density).value_or(Inertia{}) : Inertia{};
+  }
+  if (const auto* compound = std::get_if<Compound>(&shape)) return compound->inertia(density);
   return {};
 }
 
@@ -54,6 +58,28 @@ constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 
 tl::unexpected<Error> scale_refused(const char* message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, message});
+}
+
+template <class T>
+Expected<Shape> as_shape(Expected<T> made) {
+  if (!made) return tl::make_unexpected(made.error());
+  return Shape(*std::move(made));
+}
+
+// Parts that are turned would be sheared by unequal factors.
+Expected<Shape> scaled_compound(const Compound& compound, const Vec3& scale) {
+  if (!compound.data()) return scale_refused("scaled: the compound was moved from");
+  if (scale.x != scale.y || scale.y != scale.z) {
+    return scale_refused("scaled: a compound takes equal factors only; scale its parts");
+  }
+  std::vector<CompoundPart> parts;
+  for (const CompoundPart& part : compound.parts()) {
+    Expected<Shape> made = scaled(part.shape, scale);
+    if (!made) return made;
+    const SE3& T = part.T_compound_part;
+    parts.push_back({*std::move(made), SE3(T.rotation(), scale.x * T.position())});
+  }
+  return as_shape(Compound::of(parts));
 }
 
 }  // namespace
@@ -104,6 +130,10 @@ Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
     if (!made) return tl::make_unexpected(made.error());
     return *std::move(made);
   }
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) return as_shape(mesh->scaled(scale));
+  if (const auto* field = std::get_if<HeightField>(&shape)) return as_shape(field->scaled(scale));
+  if (const auto* compound = std::get_if<Compound>(&shape))
+    return scaled_compound(*compound, scale);
   return shape;  // a half-space is the same at any scale
 }
 

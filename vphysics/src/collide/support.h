@@ -17,7 +17,11 @@ inline double core_radius(const Geometry& g) {
 
 // A point of the core from which no other point of it is farther than core_reach.
 inline Vec3 core_middle(const Geometry& g) {
-  return g.kind == Kind::hull ? g.hull->centre : Vec3{};
+  if (g.kind == Kind::hull) return g.hull->centre;
+  if (g.kind == Kind::triangle) {
+    return (1.0 / 3.0) * (g.corners[0] + g.corners[1] + g.corners[2]);
+  }
+  return {};
 }
 inline double core_reach(const Geometry& g) {
   switch (g.kind) {
@@ -28,9 +32,16 @@ inline double core_reach(const Geometry& g) {
     case Kind::cylinder:
     case Kind::cone:
       return std::sqrt(g.radius * g.radius + g.half.z * g.half.z);
+    case Kind::triangle: {
+      const Vec3 m = core_middle(g);
+      return std::max({norm(g.corners[0] - m), norm(g.corners[1] - m), norm(g.corners[2] - m)});
+    }
     case Kind::capsule:
     case Kind::box:
     case Kind::half_space:
+    case Kind::mesh:
+    case Kind::height_field:
+    case Kind::compound:
       break;
   }
   return norm(g.half);
@@ -51,7 +62,15 @@ inline Vec3 core_support(const Geometry& g, const Vec3& d, int& hint) {
   switch (g.kind) {
     case Kind::sphere:
     case Kind::half_space:
+    case Kind::mesh:
+    case Kind::height_field:
+    case Kind::compound:
       return {};
+    case Kind::triangle: {
+      const double along[3] = {dot(d, g.corners[0]), dot(d, g.corners[1]), dot(d, g.corners[2])};
+      const int best = along[1] > along[0] ? 1 : 0;
+      return g.corners[along[2] > along[best] ? 2 : best];
+    }
     case Kind::capsule:
       return {0, 0, std::copysign(g.half.z, d.z)};
     case Kind::box:

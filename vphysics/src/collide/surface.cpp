@@ -23,9 +23,9 @@ bool is_above(const Vec3& from, const Vec3& corner, const Vec3& d) {
 struct CellTriangle {
   int corner[3][2], across[3][2], cell[3][2];
 };
-constexpr CellTriangle kBelow{
+constexpr CellTriangle kLowerCell{
     {{0, 0}, {1, 0}, {1, 1}}, {{0, -1}, {2, 1}, {0, 1}}, {{0, -1}, {1, 0}, {0, 0}}};
-constexpr CellTriangle kAbove{
+constexpr CellTriangle kUpperCell{
     {{0, 0}, {1, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
 
 // Next to a sample, by the diagonals too, each with two cells of which one has to be there.
@@ -83,7 +83,7 @@ SurfaceTriangle Surface::of_mesh(std::uint32_t id) const {
 SurfaceTriangle Surface::of_field(std::uint32_t id) const {
   const HeightData& f = *field_;
   const std::uint32_t cell = id / 2, i = cell % (f.columns - 1), j = cell / (f.columns - 1);
-  const CellTriangle& shape = id % 2 == 0 ? kBelow : kAbove;
+  const CellTriangle& shape = id % 2 == 0 ? kLowerCell : kUpperCell;
   const auto sample = [&](const int(&step)[2]) {
     return scaled(
         f.sample(i + static_cast<std::uint32_t>(step[0]), j + static_cast<std::uint32_t>(step[1])));

@@ -13,7 +13,7 @@ namespace {
 
 using collide::MeshData;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26, kMostVertices = kMostTriangles;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26, kMostMeshVertices = kMostTriangles;
 constexpr double kFarthestVertex = 1e9;  // of a coordinate [m], as everywhere in the engine
 constexpr double kLeastFactor = 1e-6, kMostFactor = 1e6;
 // Height over the longest edge, as a share of it, below which a triangle has no area: its normal is
@@ -27,7 +27,7 @@ tl::unexpected<Error> refused_mesh(std::string message) {
 Expected<void> check(std::span<const Vec3> vertices,
                      std::span<const TriangleMesh::Triangle> triangles) {
   if (triangles.empty()) return refused_mesh("there are no triangles; give at least one");
-  if (triangles.size() > kMostTriangles || vertices.size() > kMostVertices) {
+  if (triangles.size() > kMostTriangles || vertices.size() > kMostMeshVertices) {
     return refused_mesh("more than 2^26 triangles or vertices; split the mesh into several");
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {

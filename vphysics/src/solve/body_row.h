@@ -7,8 +7,6 @@
 
 #include <cstdint>
 
-#include "vphysics/lie/vec3.h"
-
 namespace vphysics_solver {
 
 struct alignas(64) BodyRow {
@@ -33,10 +31,5 @@ inline constexpr std::uint32_t kWorldRow = 0;
 }  // namespace vphysics_solver
 
 namespace vp::solve {
-// Three numbers of a row.
-inline Vec3 vector_at(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
-}
-
 using namespace vphysics_solver;  // NOLINT(google-build-using-namespace): see passes.h
 }  // namespace vp::solve

@@ -22,6 +22,9 @@ void put(float* f, const Vec3& v) {
   f[1] = static_cast<float>(v.y);
   f[2] = static_cast<float>(v.z);
 }
+Vec3 vector(const float* f) {
+  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+}
 
 // The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
 // method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source:
@@ -137,11 +140,11 @@ void World::Impl::store_bodies(double dt, int sub_steps) {
     }
     solve::BodyRow& row = body_rows[i + 1];
     const float* start = start_ways[i].data();
-    body.v = solve::vector_at(row.velocity);
-    body.w = solve::vector_at(row.velocity + 3);
+    body.v = vector(row.velocity);
+    body.w = vector(row.velocity + 3);
     const double per_step = 1.0 / dt;
-    drift[i].v = per_step * (solve::vector_at(row.way) - solve::vector_at(start)) - body.v;
-    drift[i].w = per_step * (solve::vector_at(row.way + 3) - solve::vector_at(start + 3)) - body.w;
+    drift[i].v = per_step * (vector(row.way) - vector(start)) - body.v;
+    drift[i].w = per_step * (vector(row.way + 3) - vector(start + 3)) - body.w;
     if (!in_range(body.v) || !in_range(body.w) || !in_range(drift[i].v) || !in_range(drift[i].w)) {
       status.non_finite = true;
       body.v = body.w = {};

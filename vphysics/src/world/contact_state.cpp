@@ -153,7 +153,7 @@ void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
     const auto fields = solve::fields_of(graph_.block<P>(c.place));
-    const int lane = solve::ContactGraph::lane(c.place);
+    const int lane = graph_.lane(c.place);
     for (std::size_t f = 0; f < kFields; f += 2) {
       const Reader::TwoFloats both = in.two_floats();
       fields[f].lane[lane] = both.high;

@@ -20,6 +20,9 @@ namespace {
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
 
+Vec3 vector(const float* f) {
+  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+}
 Vec3 at(const solve::Field3& f, int lane) {
   return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
           static_cast<double>(f.z.lane[lane])};
@@ -202,7 +205,7 @@ void World::Impl::find_stale_contacts(double dt) {
     }
   });
   const auto vector_between = [](const float* from, const float* to) {
-    return solve::vector_at(to) - solve::vector_at(from);
+    return vector(to) - vector(from);
   };
   for (const std::uint32_t index : near_contacts) {
     Contact& c = contact_pool[index];
@@ -280,9 +283,8 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
     ++bodies[a.body].lanes;
     ++bodies[b.body].lanes;
   } else {
-    impulses = c.place.points == 1
-                   ? held_in(graph.block<1>(c.place), solve::ContactGraph::lane(c.place))
-                   : held_in(graph.block<4>(c.place), solve::ContactGraph::lane(c.place));
+    impulses = c.place.points == 1 ? held_in(graph.block<1>(c.place), graph.lane(c.place))
+                                   : held_in(graph.block<4>(c.place), graph.lane(c.place));
   }
   solve::NewContact n{};
   n.normal = m.normal;
@@ -313,9 +315,9 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   }
   const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
   if (ball) {
-    write_lane(graph.block<1>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
+    write_lane(graph.block<1>(c.place), graph.lane(c.place), n, row_a, row_b);
   } else {
-    write_lane(graph.block<4>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
+    write_lane(graph.block<4>(c.place), graph.lane(c.place), n, row_a, row_b);
   }
 }
 

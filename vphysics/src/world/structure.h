@@ -52,23 +52,7 @@ class Structure {
     add(desc.angular_damping);
   }
   void add(const ColliderDesc& desc) {
-    add(static_cast<std::uint64_t>(desc.shape.index()));
-    if (const auto* s = std::get_if<Sphere>(&desc.shape)) {
-      add(s->radius);
-    } else if (const auto* b = std::get_if<Box>(&desc.shape)) {
-      add(b->half_extents);
-    } else if (const auto* c = std::get_if<Capsule>(&desc.shape)) {
-      add(c->radius);
-      add(c->half_length);
-    } else if (const auto* y = std::get_if<Cylinder>(&desc.shape)) {
-      add(y->radius);
-      add(y->half_length);
-    } else if (const auto* k = std::get_if<Cone>(&desc.shape)) {
-      add(k->radius);
-      add(k->half_height);
-    } else if (const auto* hull = std::get_if<ConvexHull>(&desc.shape)) {
-      add(*hull);
-    }
+    add(desc.shape);
     add(desc.T_body_shape);
     for (const double x :
          {desc.material.friction, desc.material.restitution, desc.material.rolling_friction}) {
@@ -82,6 +66,60 @@ class Structure {
     add_unless(usual.material.spinning_friction, 'n', desc.material.spinning_friction);
     add_unless(usual.surface_velocity, 's', desc.surface_velocity);
     add_unless(usual.density, 'd', desc.density);
+  }
+  void add(const Shape& shape) {
+    add(static_cast<std::uint64_t>(shape.index()));
+    if (const auto* s = std::get_if<Sphere>(&shape)) {
+      add(s->radius);
+    } else if (const auto* b = std::get_if<Box>(&shape)) {
+      add(b->half_extents);
+    } else if (const auto* c = std::get_if<Capsule>(&shape)) {
+      add(c->radius);
+      add(c->half_length);
+    } else if (const auto* y = std::get_if<Cylinder>(&shape)) {
+      add(y->radius);
+      add(y->half_length);
+    } else if (const auto* k = std::get_if<Cone>(&shape)) {
+      add(k->radius);
+      add(k->half_height);
+    } else {
+      add_built(shape);
+    }
+  }
+  // Shapes that are built of points or parts.
+  void add_built(const Shape& shape) {
+    if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
+      add(*hull);
+    } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+      add(*mesh);
+    } else if (const auto* field = std::get_if<HeightField>(&shape)) {
+      add(*field);
+    } else if (const auto* compound = std::get_if<Compound>(&shape)) {
+      add(static_cast<std::uint64_t>(compound->parts().size()));
+      for (const CompoundPart& part : compound->parts()) {
+        add(part.shape);
+        add(part.T_compound_part);
+      }
+    }
+  }
+  void add(const TriangleMesh& mesh) {
+    add(static_cast<std::uint64_t>(mesh.two_sided()));
+    add(mesh.scale());
+    add(static_cast<std::uint64_t>(mesh.vertices().size()));
+    for (const Vec3& v : mesh.vertices()) add(v);
+    add(static_cast<std::uint64_t>(mesh.triangles().size()));
+    for (const TriangleMesh::Triangle& t : mesh.triangles()) {
+      for (const std::uint32_t v : t) add(v);
+    }
+  }
+  void add(const HeightField& field) {
+    add(std::uint64_t{field.columns()} << 32 | field.rows());
+    for (std::uint32_t j = 0; j < field.rows(); ++j) {
+      for (std::uint32_t i = 0; i < field.columns(); ++i) {
+        add(field.sample(i, j));
+        add(static_cast<std::uint64_t>(field.is_hole(i, j)));
+      }
+    }
   }
   // The faces too: they depend on the options that the hull was built with.
   void add(const ConvexHull& hull) {

@@ -148,6 +148,13 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   Body* body = impl_->find(body_handle);
   if (!body) return stale("body");
   if (auto problem = problem_with(desc)) return refuse("add_collider: " + *problem);
+  if (std::holds_alternative<TriangleMesh>(desc.shape) ||
+      std::holds_alternative<HeightField>(desc.shape) ||
+      std::holds_alternative<Compound>(desc.shape)) {
+    return refuse(Errc::unsupported,
+                  "add_collider: meshes, height fields and compounds are not simulated yet; give "
+                  "the body convex shapes");
+  }
   const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
   if (half_space && (body->motion != Motion::fixed)) {
     return refuse("add_collider: a half-space needs a fixed body");

@@ -1,0 +1,105 @@
+#include "collide/manifolds.h"
+
+#include <algorithm>
+#include <span>
+
+#include "collide/compound_data.h"
+#include "collide/gjk.h"
+#include "collide/mixed_name.h"
+#include "collide/surface_manifolds.h"
+
+namespace vp::collide {
+namespace {
+
+void to_world(const SE3& T, Manifold& m) {
+  m.normal = T.rotate(m.normal);
+  for (int k = 0; k < m.count; ++k) m.points[k].position = T * m.points[k].position;
+}
+
+class Finder {
+ public:
+  Finder(double margin, ManifoldScratch& scratch, std::vector<SubManifold>& out)
+      : margin_(margin), scratch_(scratch), out_(out) {}
+
+  // a has no parts that are compounds; neither has b.
+  void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+            PairCache& cache) {
+    if (is_surface(a) || is_surface(b)) {
+      if (is_convex_body(a)) find_on_surface(b, T_b, a, T_a, true);
+      if (is_convex_body(b)) find_on_surface(a, T_a, b, T_b, false);
+      return;
+    }
+    SubManifold found;
+    find_manifold(a, T_a, b, T_b, margin_, cache, found.manifold);
+    if (found.manifold.count > 0) out_.push_back(found);
+  }
+
+  // of: the parts of a compound, each against the other.
+  void find_of_parts(const Geometry& of, const SE3& T_of, const Geometry& other, const SE3& T_other,
+                     bool swapped) {
+    const CompoundData& compound = *of.compound;
+    const Bounds near = grown(bounds_of(other, relative_pose(T_of, T_other)), margin_);
+    const std::size_t begin = scratch_.parts.size();
+    compound.tree.overlapping(rounded_outwards(near),
+                              [&](std::uint32_t i) { scratch_.parts.push_back(i); });
+    std::sort(scratch_.parts.begin() + static_cast<std::ptrdiff_t>(begin), scratch_.parts.end());
+    const std::size_t end = scratch_.parts.size();
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = scratch_.parts[k];
+      const std::size_t first = out_.size();
+      const SE3 T = T_of * compound.parts[i].T_compound_part;
+      const Geometry& part = compound.geometries[i];
+      PairCache fresh;
+      if (other.kind == Kind::compound) {
+        find_of_parts(other, T_other, part, T, !swapped);
+      } else if (swapped) {
+        find(other, T_other, part, T, fresh);
+      } else {
+        find(part, T, other, T_other, fresh);
+      }
+      for (std::size_t m = first; m < out_.size(); ++m) {
+        (swapped ? out_[m].sub_b : out_[m].sub_a) = i;
+        for (ManifoldPoint& p : std::span(out_[m].manifold.points)
+                                    .first(static_cast<std::size_t>(out_[m].manifold.count))) {
+          p.feature = mixed_name(i, 0, p.feature);
+        }
+      }
+    }
+    scratch_.parts.resize(begin);
+  }
+
+ private:
+  void find_on_surface(const Geometry& surface, const SE3& T_surface, const Geometry& shape,
+                       const SE3& T_shape, bool surface_is_b) {
+    const std::size_t first = out_.size();
+    collide_surface(surface_of(surface), shape, relative_pose(T_surface, T_shape), margin_,
+                    scratch_, out_);
+    for (std::size_t i = first; i < out_.size(); ++i) {
+      to_world(T_surface, out_[i].manifold);
+      if (!surface_is_b) continue;
+      out_[i].manifold.normal = -out_[i].manifold.normal;
+      std::swap(out_[i].sub_a, out_[i].sub_b);
+    }
+  }
+
+  double margin_;
+  ManifoldScratch& scratch_;
+  std::vector<SubManifold>& out_;
+};
+
+}  // namespace
+
+void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                    double margin, PairCache& cache, ManifoldScratch& scratch,
+                    std::vector<SubManifold>& manifolds) {
+  Finder finder(margin, scratch, manifolds);
+  if (a.kind == Kind::compound) {
+    finder.find_of_parts(a, T_a, b, T_b, false);
+  } else if (b.kind == Kind::compound) {
+    finder.find_of_parts(b, T_b, a, T_a, true);
+  } else {
+    finder.find(a, T_a, b, T_b, cache);
+  }
+}
+
+}  // namespace vp::collide

@@ -1,0 +1,44 @@
+// Manifolds of any two shapes: one of two convex ones, any number where one is made of parts.
+#pragma once
+
+#include <vector>
+
+#include "collide/manifold.h"
+#include "collide/triangle_contact.h"
+
+namespace vp::collide {
+
+// Between a part of a and a part of b: a part of a compound, a triangle of a mesh or a height field
+// (of several triangles that lie in one plane, the one with the deepest point); 0 of others.
+struct SubManifold {
+  Manifold manifold;
+  std::uint32_t sub_a = 0, sub_b = 0;
+};
+
+// Memory of find_manifolds, kept by whoever calls it. Between calls there is nothing in it.
+struct ManifoldScratch {
+  std::vector<std::uint32_t> triangles, parts;
+  // Of a surface: what touches each triangle, and the number of the manifold that it becomes part
+  // of.
+  struct Contact {
+    TriangleContact contact;
+    std::uint32_t triangle, cluster;
+  };
+  static constexpr std::uint32_t kNoTriangle = ~0u;
+  std::vector<Contact> contacts;
+  std::vector<ManifoldPoint> points;
+};
+
+// More normals than that are never told apart of a surface and one convex shape.
+inline constexpr std::size_t kMostClusters = 12;
+
+// Appends the manifolds with points of a separation of at most margin, in an order that depends on
+// the shapes and poses alone. Those of triangles that lie in one plane, as far as 2 degrees allow,
+// are one. Features have names that no two manifolds of the pair share unless by chance, one in
+// 2^32. cache is used where both are convex, and else left alone. Two surfaces, or a surface and a
+// half-space, have none.
+void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                    double margin, PairCache& cache, ManifoldScratch& scratch,
+                    std::vector<SubManifold>& manifolds);
+
+}  // namespace vp::collide

@@ -1,0 +1,205 @@
+#include "collide/triangle_contact.h"
+
+#include <utility>
+
+#include "collide/convex_contact.h"
+#include "collide/epa.h"
+#include "collide/mixed_name.h"
+#include "collide/triangle_axis.h"
+#include "collide/triangle_clip.h"
+
+namespace vp::collide {
+namespace {
+
+// Nearer than this [m] to a triangle, the direction to a centre is rounding noise.
+constexpr double kNoDirection = 1e-12;
+// As little beside a triangle [share of its size], a centre is over it: over an edge that cannot be
+// felt, rounding might else put it beside both neighbours.
+constexpr double kBeside = 1e-9;
+
+std::uint64_t felt_part(const SurfaceTriangle& t, const TrianglePart& part) {
+  if (part.kind == TrianglePart::face) return TriangleContact::kFace;
+  const std::uint64_t v = t.corners[part.index];
+  const std::uint64_t w =
+      part.kind == TrianglePart::edge ? t.corners[(part.index + 1) % 3] : t.corners[part.index];
+  return std::min(v, w) << 32 | std::max(v, w);
+}
+
+std::uint32_t part_name(const SurfaceTriangle& t, const TrianglePart& part, std::uint32_t feature) {
+  if (part.kind == TrianglePart::face) return mixed_name(t.id, kNoVertex, feature);
+  const std::uint64_t felt = felt_part(t, part);
+  return mixed_name(static_cast<std::uint32_t>(felt >> 32), static_cast<std::uint32_t>(felt),
+                    feature);
+}
+
+void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre,
+                    double radius, double margin, TriangleContact& contact,
+                    std::vector<ManifoldPoint>& points) {
+  const NearestOnTriangle nearest = nearest_on_triangle(t.p, centre);
+  const Vec3 way = centre - nearest.point;
+  const double distance = norm(way);
+  if (distance - radius > margin) return;
+  const double height = dot(t.normal, way);
+  const double beside = norm(way - height * t.normal);
+  const bool on_face = nearest.part.kind == TrianglePart::face || distance < kNoDirection ||
+                       beside <= kBeside * norm(t.p[1] - t.p[0]);
+  contact.part = on_face ? TrianglePart{} : nearest.part;
+  contact.normal = on_face ? t.normal : (1.0 / distance) * way;
+  if (!on_face && !may_touch_along(surface, t, nearest.part, contact.normal)) return;
+  contact.gap = (on_face ? height : distance) - radius;
+  points.push_back({nearest.point + 0.5 * contact.gap * contact.normal, contact.gap,
+                    part_name(t, contact.part, 0)});
+}
+
+// The triangle's frame has its axes along the surface's, and its first corner as origin, so that
+// triangles far from the surface's origin lose nothing.
+class TriangleCollider {
+ public:
+  TriangleCollider(const Surface& surface, const SurfaceTriangle& t, const Geometry& shape,
+                   const SE3& T, double margin, std::vector<ManifoldPoint>& points)
+      : surface_(surface),
+        t_(t),
+        p_{{}, t.p[1] - t.p[0], t.p[2] - t.p[0]},
+        own_(triangle_geometry(p_)),
+        pair_(own_, shape, SE3(T.rotation(), T.position() - t.p[0])),
+        query_(pair_, margin),
+        points_(points) {}
+
+  void find(TriangleContact& contact);
+
+ private:
+  void along_face(double gap, TriangleContact& contact);
+  void along(const BestAxis& axis, const TrianglePart& part, bool nearest_known,
+             TriangleContact& contact);
+  void finish(TriangleContact& contact, const TrianglePart& part, const Vec3& normal, double gap);
+  bool tells(std::size_t first, double gap) const;
+  bool find_witness(BestAxis& axis) const;
+
+  const Surface& surface_;
+  const SurfaceTriangle& t_;
+  Vec3 p_[3];
+  Geometry own_;
+  CorePair pair_;
+  ContactQuery query_;
+  std::vector<ManifoldPoint>& points_;
+};
+
+void TriangleCollider::find(TriangleContact& contact) {
+  const double gap = gap_along(pair_, t_.normal);
+  if (gap - query_.radii > query_.margin) return;
+  if ((t_.felt & 7u) == 0) return along_face(gap, contact);
+  const GjkResult found = gjk(pair_, t_.normal, query_.margin + query_.radii);
+  if (found.state == GjkResult::State::beyond) return;
+  BestAxis best{found.distance, found.normal, found.on_a, found.on_b};
+  if (found.state == GjkResult::State::overlaps) {
+    const Penetration p = epa(pair_, found.simplex, 1e300);
+    best = {-p.depth, p.normal, p.on_a, p.on_b};
+  }
+  bool nearest_known = true;
+  TrianglePart part = foremost_part(p_, best.normal);
+  bool allowed = may_touch_along(surface_, t_, part, best.normal);
+  if (!allowed && found.state == GjkResult::State::overlaps) {
+    const TriangleAxis out = best_way_out(surface_, t_, p_, pair_);
+    best = {out.gap, out.normal, {}, {}};
+    part = out.part;
+    allowed = true;
+    nearest_known = find_witness(best);
+  }
+  const std::size_t first = points_.size();
+  if (part.kind == TrianglePart::face || !allowed || query_.face_suffices(gap, best.gap)) {
+    along_face(gap, contact);
+    if (part.kind == TrianglePart::face || !allowed || tells(first, best.gap)) return;
+    points_.resize(first);
+  }
+  along(best, part, nearest_known, contact);
+}
+
+// Points of both where they touch once the shape is moved out: those nearest to one another when it
+// is moved a little farther. False: its foremost point is beside the triangle.
+bool TriangleCollider::find_witness(BestAxis& axis) const {
+  constexpr double kFarther = 1e-3;  // share of the pair's size
+  const double farther = kFarther * pair_.size;
+  const SE3& T = pair_.T_a_b;
+  const Vec3 shift = (farther - axis.gap) * axis.normal;
+  const CorePair apart(own_, pair_.b, SE3(T.rotation(), T.position() + shift));
+  const GjkResult near = gjk(apart, axis.normal, 2.0 * farther);
+  if (near.state != GjkResult::State::apart) return false;
+  axis.on_a = near.on_a;
+  axis.on_b = near.on_a + axis.gap * axis.normal;
+  return true;
+}
+
+// Whether the points since the first are as deep as the cores' gap says.
+bool TriangleCollider::tells(std::size_t first, double gap) const {
+  Manifold deepest;
+  for (std::size_t i = first; i < points_.size(); ++i) {
+    if (deepest.count > 0 && points_[i].separation >= deepest.points[0].separation) continue;
+    deepest.count = 0;
+    deepest.add({}, points_[i].separation, 0);
+  }
+  return deepest.count > 0 && query_.tells(deepest, gap);
+}
+
+// What of the shape lies over the triangle.
+void TriangleCollider::along_face(double gap, TriangleContact& contact) {
+  Feature other;
+  find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(t_.normal), other);
+  append_clipped({p_, t_.normal, other, query_.radii, query_.margin, pair_.size}, points_);
+  finish(contact, {}, t_.normal, gap - query_.radii);
+}
+
+// An edge, from the corner with the lower name, or a corner.
+void TriangleCollider::along(const BestAxis& axis, const TrianglePart& part, bool nearest_known,
+                             TriangleContact& contact) {
+  int i = part.index, k = (part.index + 1) % 3;
+  if (part.kind == TrianglePart::edge && t_.corners[i] > t_.corners[k]) std::swap(i, k);
+  Feature own, other;
+  own.count = part.kind == TrianglePart::edge ? 2 : 1;
+  own.corners[0] = {p_[i].x, p_[i].y, p_[i].z, 0, 0};
+  own.corners[1] = {p_[k].x, p_[k].y, p_[k].z, 1, 0};
+  find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(axis.normal), other);
+  const PatchQuery patch{own,           other,      axis.normal, 0.0,       query_.radii,
+                         query_.margin, pair_.size, axis.on_a,   axis.on_b, axis.gap};
+  Manifold m;
+  find_patch(patch, nearest_known, m);
+  for (int j = 0; j < m.count; ++j) points_.push_back(m.points[j]);
+  finish(contact, part, axis.normal, axis.gap - query_.radii);
+}
+
+void TriangleCollider::finish(TriangleContact& contact, const TrianglePart& part,
+                              const Vec3& normal, double gap) {
+  contact.part = part;
+  contact.normal = normal;
+  contact.gap = gap;
+  for (std::size_t i = contact.first_point; i < points_.size(); ++i) {
+    points_[i].position += t_.p[0];
+    points_[i].feature = part_name(t_, part, points_[i].feature);
+  }
+}
+
+}  // namespace
+
+TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& t,
+                                 const Geometry& shape, const SE3& T, double margin,
+                                 std::vector<ManifoldPoint>& points) {
+  TriangleContact contact{{}, {}, 0.0, points.size(), 0, 0};
+  if (shape.kind == Kind::sphere) {
+    collide_sphere(surface, t, T.position(), shape.radius, margin, contact, points);
+  } else {
+    TriangleCollider(surface, t, shape, T, margin, points).find(contact);
+  }
+  contact.count = points.size() - contact.first_point;
+  contact.felt_part = felt_part(t, contact.part);
+  return contact;
+}
+
+bool overlaps_triangle(const SurfaceTriangle& t, const Geometry& shape, const SE3& T) {
+  const Vec3 p[3] = {{}, t.p[1] - t.p[0], t.p[2] - t.p[0]};
+  const Geometry own = triangle_geometry(p);
+  const CorePair pair(own, shape, SE3(T.rotation(), T.position() - t.p[0]));
+  const GjkResult found = gjk(pair, t.normal, core_radius(shape));
+  return found.state == GjkResult::State::overlaps ||
+         (found.state == GjkResult::State::apart && found.distance < core_radius(shape));
+}
+
+}  // namespace vp::collide
