@@ -31,8 +31,8 @@ struct WorldDesc {
   double restitution_threshold = 0.05;  // slower approaches than this [m/s] do not bounce
   double contact_slop = 1e-4;           // penetration left alone [m]; also the contact margin
   int velocity_iterations = 12;         // of the contact solver, per solve
-  int sub_steps = 0;  // of the contact solver; 0: 2 at 1 kHz, 4 at 240 Hz, 8 at 60 Hz
-  int max_impacts_per_step = 32;        // times of impact resolved within one step
+  int sub_steps = 0;              // of the contact solver; 0: 2 at 1 kHz, 4 at 240 Hz, 8 at 60 Hz
+  int max_impacts_per_step = 32;  // times of impact resolved within one step
 };
 
 enum class Motion : std::uint8_t {
@@ -102,9 +102,9 @@ struct StepStatus {
 };
 
 struct StepCounters {
-  std::uint32_t pairs = 0;     // collider pairs whose bounds met
-  std::uint32_t contacts = 0;  // contact points solved, summed over the solves of the step
-  std::uint32_t impacts = 0;   // times of impact found
+  std::uint32_t pairs = 0;      // collider pairs whose bounds met
+  std::uint32_t contacts = 0;   // contact points solved, summed over the solves of the step
+  std::uint32_t impacts = 0;    // times of impact found
   std::uint32_t looked_at = 0;  // pairs given to the narrow phase
 };
 
