@@ -69,11 +69,19 @@ vp::Expected<void> SceneWorld::add_body(std::size_t index) {
   return {};
 }
 
-vp::Expected<void> SceneWorld::add_joint(const Joint&) {
-  return tl::make_unexpected(
-      vp::Error{vp::Errc::unsupported,
-                "the scene has joints between free bodies, which a world cannot have yet: choose "
-                "one without joints"});
+vp::Expected<void> SceneWorld::add_joint(const Joint& joint) {
+  vp::JointDesc desc;
+  desc.T_a_joint = joint.T_a_joint;
+  desc.T_b_joint = joint.T_b_joint;
+  if (joint.kind == Joint::Kind::hinge) {
+    desc.kind = vp::Hinge{joint.lower, joint.upper, {}};
+  } else {
+    desc.kind = vp::BallSocket{};
+  }
+  const auto body = [this](int i) { return bodies_[static_cast<std::size_t>(i)]; };
+  const auto id = world_.create_joint(body(joint.a), body(joint.b), desc);
+  if (!id) return tl::make_unexpected(id.error());
+  return {};
 }
 
 vp::Expected<void> SceneWorld::launch(const Launch& launch) {

@@ -19,5 +19,6 @@ struct Id {
 using BodyId = Id<struct BodyTag>;
 using ColliderId = Id<struct ColliderTag>;
 using ArticulationId = Id<struct ArticulationTag>;
+using JointId = Id<struct JointTag>;
 
 }  // namespace vp

@@ -23,6 +23,7 @@
 #include "vphysics/lie.h"
 #include "vphysics/multibody/model.h"
 #include "vphysics/shapes.h"
+#include "vphysics/world_joints.h"
 
 namespace vp {
 
@@ -50,17 +51,6 @@ struct BodyDesc {
   double angular_damping = 0.0;  // [1/s]
   bool continuous = false;       // swept against everything it may meet: for small fast bodies
   std::uint64_t user_data = 0;
-};
-
-// A motor: force = clamp(stiffness (position - q) + damping (velocity - v), +-max_force),
-// integrated implicitly, so that any stiffness is stable. Units: of a slide | of an angle. Of a
-// ball or a free joint it drives one of the velocities: stiffness must be 0.
-struct JointDrive {
-  double position = 0.0;   // [m] | [rad]
-  double velocity = 0.0;   // [m/s] | [rad/s]
-  double stiffness = 0.0;  // [N/m] | [N m/rad]
-  double damping = 0.0;    // [N s/m] | [N m s/rad]
-  double max_force = 0.0;  // [N] | [N m]; 0: no motor
 };
 
 // A tree of links with any joints (multibody/model.h). Each link is a body of the world, which
@@ -137,6 +127,10 @@ class World {
   Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
   BodyId link_body(ArticulationId articulation, int link) const;  // null if there is none
 
+  // Destroying either body destroys the joint.
+  Expected<JointId> create_joint(BodyId a, BodyId b, const JointDesc& desc);
+  Expected<void> destroy_joint(JointId joint);
+
   // --- state ------------------------------------------------------------------------------------
   bool contains(BodyId body) const;
   SE3 pose(BodyId body) const;      // T_world_body; precondition: contains(body)
@@ -162,6 +156,19 @@ class World {
                                  double velocity);
   // Of any joint.
   Expected<void> set_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
+
+  bool contains(JointId joint) const;
+  // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six
+  // degrees of freedom ask by axis, of a UserConstraint by row. Precondition: the joint exists and
+  // has that coordinate, and a row's number is below rows().
+  double joint_coordinate(JointId joint) const;
+  double joint_coordinate(JointId joint, JointAxis axis) const;
+  double joint_residual(JointId joint, int row) const;
+  // Refused: joints that have no such coordinate, or hold it, as well as those without a drive.
+  Expected<void> set_drive(JointId joint, const JointDrive& drive);
+  Expected<void> set_drive(JointId joint, JointAxis axis, const JointDrive& drive);
+  // Of the last step; zero before the first and after restore(). Precondition: the joint exists.
+  JointForce joint_force(JointId joint) const;
 
   // --- time -------------------------------------------------------------------------------------
   // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.

@@ -95,7 +95,7 @@ void World::Impl::load_row(std::uint32_t index, double dt) {
   put(row.velocity, body.v);
   put(row.velocity + 3, body.w);
   row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(1.0 / body.mass) : 0.0f;
-  row.velocity[solve::kFalls] = pushed && !body.rested ? 1.0f : 0.0f;
+  row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
   std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
   if (!pushed) {
@@ -130,7 +130,7 @@ void World::Impl::store_bodies(double dt, int sub_steps) {
     Body& body = bodies[i];
     drift[i] = {};
     if (!joins_sub_steps(body) || body.motion != Motion::dynamic) continue;
-    if (body.lanes == 0) {
+    if (!body.by_rows()) {
       forced[i].v = dt * desc.gravity;
       const Vec3 v = body.v;
       body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
@@ -150,6 +150,7 @@ void World::Impl::store_bodies(double dt, int sub_steps) {
       body.v = body.w = {};
       drift[i] = {};
       forget_contacts(i);
+      forget_joints(i);
     }
   }
 }

@@ -19,6 +19,7 @@ namespace {
 // by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
+constexpr double kNeverMeets = 1e30;  // a clearance [m]
 
 Vec3 vector(const float* f) {
   return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
@@ -241,9 +242,15 @@ void World::Impl::look_at(std::uint32_t index, double dt) {
   // The ball at the centre of its body feels no turning.
   const double margin = c.sensor ? 0.0 : desc.contact_slop + leeway + speed * dt;
   collide::Manifold m;
-  find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
   c.stale = false;
-  ++counters.looked_at;
+  double clearance = margin - desc.contact_slop;
+  if (keeps_apart(a.body, b.body)) {
+    m.count = 0;
+    clearance = kNeverMeets;
+  } else {
+    find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
+    ++counters.looked_at;
+  }
   if (c.sensor) {
     if ((m.count > 0) != c.touching) report_touch(index, m.count > 0);
     return;
@@ -252,11 +259,12 @@ void World::Impl::look_at(std::uint32_t index, double dt) {
     put_in_lane(index, m);
     return;
   }
+  if (c.touching) report_touch(index, false);
   if (c.place.points > 0) {
     take_out_of_lane(index);
-    set_near(index, margin - desc.contact_slop);
+    set_near(index, clearance);
   }
-  c.clearance = static_cast<float>(margin - desc.contact_slop);
+  c.clearance = static_cast<float>(clearance);
   std::copy_n(body_rows[end_of(a.body).row].way, 6, c.way_a);
   std::copy_n(body_rows[end_of(b.body).row].way, 6, c.way_b);
 }

@@ -16,6 +16,7 @@
 #include "vphysics/world.h"
 #include "world/articulation.h"
 #include "world/contact.h"
+#include "world/joint.h"
 
 namespace vp {
 
@@ -36,10 +37,11 @@ struct Body {
   bool unbounded = false;  // carries a half-space
   std::uint64_t user_data = 0;
   std::uint32_t first_edge = kNone;  // of its contacts
-  std::uint32_t lanes = 0;           // of the solver that hold it
-  bool rested = false;               // something carried it in the last step
-  bool by_impacts = false;           // in this step: it is connected to a link (islands.cpp)
-  float bounded_at[6] = {};          // its way when its proxies' bounds were last set
+  std::uint32_t first_joint = kNone;
+  std::uint32_t lanes = 0;   // of the solver that hold it
+  bool rested = false;       // something carried it in the last step
+  bool by_impacts = false;   // in this step: it is connected to a link (islands.cpp)
+  float bounded_at[6] = {};  // its way when its proxies' bounds were last set
   // Constant.
   double mass = 0.0;
   Vec3 centre;                    // of mass, body frame
@@ -58,6 +60,8 @@ struct Body {
   bool bounded = false;  // so are these
   collide::Bounds bounds;
 
+  // Its row of the solver tells how it goes; else it falls freely.
+  bool by_rows() const { return lanes > 0 || first_joint != kNone; }
   void moved() { posed = bounded = false; }
 };
 
@@ -129,7 +133,8 @@ struct World::Impl {
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
   std::vector<Articulation> articulations;
-  std::vector<std::uint32_t> free_bodies, free_colliders;
+  std::vector<BodyJoint> joints;
+  std::vector<std::uint32_t> free_bodies, free_colliders, free_joints;
   std::uint32_t next_serial = 1;
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key
@@ -152,6 +157,7 @@ struct World::Impl {
   std::vector<std::uint16_t> lane_bits;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
+  std::vector<BodyPlace> joint_places;
   StepStatus status;
   collide::BroadPhase broad_phase;
   std::vector<collide::Bounds> bounds, discrete_bounds;
@@ -215,6 +221,22 @@ struct World::Impl {
   void add_proxy(std::uint32_t collider);
   void forget_contacts(std::uint32_t body);
   void jumped(std::uint32_t body);
+
+  // joints.cpp
+  BodyJoint* find(JointId id);
+  const BodyJoint* find(JointId id) const;
+  BodyPlace place_of(std::uint32_t body) const;
+  BodyPlace place_within_step(std::uint32_t body) const;
+  bool keeps_apart(std::uint32_t a, std::uint32_t b) const;
+  void link_joint(std::uint32_t joint);
+  void remove_joint(std::uint32_t joint);
+  void begin_joints(double h);
+  void refresh_joints(double h);
+  void warm_start_joints();
+  void solve_joints(double h);
+  void relax_joints(double h);
+  void end_joints(double dt);
+  void forget_joints(std::uint32_t body);
 
   // find_contacts.cpp
   void find_contacts(double dt);

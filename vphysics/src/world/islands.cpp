@@ -20,6 +20,7 @@ void World::Impl::find_link_islands() {
   const auto reach = [this](std::uint32_t index) {
     Body& body = bodies[index];
     if (body.by_impacts || body.is_link || body.motion != Motion::dynamic) return;
+    if (body.first_joint != kNone) return;  // joints are solved in sub-steps
     body.by_impacts = true;
     body_stack.push_back(index);
   };

@@ -6,6 +6,8 @@
 //   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
 //   records:        key, a | b, count | touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
+//   joints:         turns; of a gear its bodies' first poses; of each axis its drive (5) and
+//                   impulses (2)
 //   contacts:       contact_state.h
 //   digest of all words before
 #include <bit>
@@ -19,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 4;
+constexpr std::uint64_t kFormat = 5;
 
 struct Digest {
   std::uint64_t digest = kMagic;
@@ -142,6 +144,85 @@ void read(Reader& in, const std::vector<Collider>& colliders, DestroyedPair& pai
   pair.sensor = sensor != 0;
 }
 
+// What of a joint changes.
+struct JointState {
+  double turned[2] = {};
+  SE3 start[2];
+  JointDrive drives[6];
+  double impulse[6] = {}, stop[6] = {};
+};
+
+template <class Sink>
+void put(Sink& sink, const SE3& T) {
+  const Mat3& R = T.rotation();
+  for (const Vec3* v : {&R.cx, &R.cy, &R.cz, &T.position()}) put(sink, *v);
+}
+template <class Sink>
+void put(Sink& sink, const BodyJoint& joint) {
+  put(sink, joint.turned[0]);
+  put(sink, joint.turned[1]);
+  if (joint.law.form == JointLaw::Form::gear) {
+    put(sink, joint.start[0]);
+    put(sink, joint.start[1]);
+  }
+  double impulse[6] = {}, stop[6] = {};
+  for (int i = 0; i < joint.block.count; ++i) {
+    const solve::JointRow6& row = joint.block.rows[i];
+    impulse[row.slot] = row.impulse;
+    stop[row.slot] = row.stop;
+  }
+  for (int i = 0; i < 6; ++i) {
+    if (joint.law.form == JointLaw::Form::axes) {
+      const JointDrive& d = joint.law.axes[i].drive;
+      for (const double x : {d.position, d.velocity, d.stiffness, d.damping, d.max_force})
+        put(sink, x);
+    }
+    put(sink, impulse[i]);
+    put(sink, stop[i]);
+  }
+}
+
+SE3 read_pose(Reader& in) {
+  const Vec3 cx = in.vector(), cy = in.vector(), cz = in.vector(), p = in.vector();
+  const SE3 T({cx, cy, cz}, p);
+  in.check(is_pose(T));
+  return T;
+}
+JointState read(Reader& in, const BodyJoint& joint) {
+  JointState state;
+  for (double& x : state.turned) x = in.bounded();
+  if (joint.law.form == JointLaw::Form::gear) {
+    for (SE3& T : state.start) T = read_pose(in);
+  }
+  for (int i = 0; i < 6; ++i) {
+    if (joint.law.form == JointLaw::Form::axes) {
+      JointDrive& d = state.drives[i];
+      for (double* x : {&d.position, &d.velocity, &d.stiffness, &d.damping, &d.max_force})
+        *x = in.number();
+      const bool held = joint.law.axes[i].motion == AxisMotion::locked;
+      in.check(!problem_with_joint_drive(d).has_value() && !(held && d.max_force > 0.0));
+    }
+    state.impulse[i] = in.number();
+    state.stop[i] = in.number();
+  }
+  return state;
+}
+void adopt(BodyJoint& joint, const JointState& state) {
+  std::copy_n(state.turned, 2, joint.turned);
+  joint.block = {};
+  joint.laid_out_for = 0.0;
+  joint.force = joint.torque = {};
+  const bool axes = joint.law.form == JointLaw::Form::axes;
+  if (joint.law.form == JointLaw::Form::gear) std::copy_n(state.start, 2, joint.start);
+  for (int i = 0; i < 6; ++i) {
+    if (axes) joint.law.axes[i].drive = state.drives[i];
+    solve::JointRow6& row = joint.block.rows[joint.block.count++];
+    row.slot = static_cast<std::uint8_t>(i);
+    row.impulse = state.impulse[i];
+    row.stop = state.stop[i];
+  }
+}
+
 tl::unexpected<Error> bad(const char* message) {
   return tl::make_unexpected(Error{Errc::bad_data, message});
 }
@@ -177,6 +258,9 @@ void World::Impl::write(Sink& sink) const {
   }
   for (const PairRecord& record : records) put(sink, record);
   for (const DestroyedPair& pair : destroyed_pairs) put(sink, pair);
+  for (const BodyJoint& joint : joints) {
+    if (joint.alive) put(sink, joint);
+  }
   write_contacts(sink);
 }
 
@@ -233,6 +317,10 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   for (std::size_t i = 0; i < destroyed_pairs.size() && in.ok(); ++i) {
     read(in, impl_->colliders, destroyed_pairs[i]);
   }
+  std::vector<JointState> joint_states;
+  for (const BodyJoint& joint : impl_->joints) {
+    if (joint.alive && in.ok()) joint_states.push_back(read(in, joint));
+  }
   Impl::ContactState contact_state(*impl_);
   if (in.ok()) contact_state.read(in);
   if (!in.ok() || !in.at_end())
@@ -245,6 +333,10 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     art.dofs = std::move(articulations[i].dofs);
     art.refresh();
     impl_->follow(art);
+  }
+  std::size_t next_joint = 0;
+  for (BodyJoint& joint : impl_->joints) {
+    if (joint.alive) adopt(joint, joint_states[next_joint++]);
   }
   contact_state.adopt();
   impl_->records.swap(records);

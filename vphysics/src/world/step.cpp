@@ -53,6 +53,7 @@ void World::Impl::begin_step() {
   graph.resize(n + 1);
   drift.assign(n, {});
   start_ways.resize(n);
+  joint_places.resize(n);
   bounds.resize(n);
   discrete_bounds.resize(n);
   movable.resize(n);
@@ -145,7 +146,7 @@ void World::Impl::refresh_motions(double h) {
     if (held[i] || !body.alive || body.motion == Motion::fixed) {
       motions[i].v = motions[i].w = {};
     } else if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic &&
-               body.lanes == 0) {
+               !body.by_rows()) {
       const Mat3& R = body.T.rotation();
       const Vec3 w = transposed_times(R, body.w);
       const Vec3 turn = body.inverse_central * cross(body.central * w, w);
@@ -162,7 +163,7 @@ void World::Impl::advance_body(std::uint32_t index, double h) {
   const Mat3 R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? turned(R, h * m.w) : R;
-  if (body.motion == Motion::dynamic && !body.isotropic && turns && body.lanes == 0) {
+  if (body.motion == Motion::dynamic && !body.isotropic && turns && !body.by_rows()) {
     // Angular momentum is what stays; the rate follows from it.
     const Vec3 momentum = body.central * transposed_times(R, body.w);
     body.w = next * (body.inverse_central * transposed_times(next, R * momentum));

@@ -130,6 +130,15 @@ class Structure {
       for (const std::uint16_t i : face.vertices) add(i);
     }
   }
+  void add(const JointDesc& desc) {
+    add(static_cast<std::uint64_t>(desc.kind.index()));
+    std::visit([this](const auto& kind) { add_kind(kind); }, desc.kind);
+    add(desc.T_a_joint);
+    add(desc.T_b_joint);
+    add(static_cast<std::uint64_t>(desc.collide));
+    add(desc.frequency);
+    add(desc.damping_ratio);
+  }
   void add(const ArticulationDesc& desc) {
     const Model& model = desc.model;
     add(static_cast<std::uint64_t>(model.links()));
@@ -158,6 +167,43 @@ class Structure {
     if (value == usual) return;
     add(static_cast<std::uint64_t>(name));
     add(value);
+  }
+  void add_kind(const auto&) {}  // the others have no constants
+  void add_kind(const Hinge& j) { add_limits(j.lower, j.upper); }
+  void add_kind(const Slider& j) { add_limits(j.lower, j.upper); }
+  void add_kind(const Distance& j) { add_limits(j.least, j.most); }
+  void add_kind(const Spring& j) {
+    for (const double x : {j.length, j.stiffness, j.damping}) add(x);
+  }
+  void add_kind(const ConeTwist& j) {
+    add_limits(j.swing_x, j.swing_y);
+    add_limits(j.lower, j.upper);
+  }
+  void add_kind(const SixDof& j) {
+    for (const AxisDesc& axis : j.axes) {
+      add(static_cast<std::uint64_t>(axis.motion));
+      add_limits(axis.lower, axis.upper);
+    }
+  }
+  void add_kind(const Gear& j) {
+    add(j.ratio);
+    add(static_cast<std::uint64_t>(j.slides_a));
+    add(static_cast<std::uint64_t>(j.slides_b));
+  }
+  void add_kind(const UserConstraint& j) {
+    const int rows = j.constraint->rows();
+    add(static_cast<std::uint64_t>(rows));
+    for (int i = 0; i < rows; ++i) {
+      const PairRowLaw law = j.constraint->law(i);
+      for (const double x : {law.frequency, law.damping_ratio, law.least_force, law.most_force}) {
+        add(x);
+      }
+    }
+    for (const double x : j.constraint->constants()) add(x);
+  }
+  void add_limits(double lower, double upper) {
+    add(lower);
+    add(upper);
   }
   void add_joint(const RevoluteJoint& j) { add(j.axis); }
   void add_joint(const PrismaticJoint& j) { add(j.axis); }

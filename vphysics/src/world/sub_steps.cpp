@@ -42,6 +42,7 @@ void World::Impl::run_sub_steps(double dt) {
   const auto count = static_cast<std::uint32_t>(bodies.size());
   const auto threshold = static_cast<float>(desc.restitution_threshold);
   clear_hits();
+  begin_joints(h);
   for (int k = 0; k < n; ++k) {
     pass.accelerate(body_rows.data() + 1, count, h);
     for (int round = 0; round < kStrikes; ++round) {
@@ -51,13 +52,18 @@ void World::Impl::run_sub_steps(double dt) {
       });
       if (!again) break;
     }
+    warm_start_joints();
     for_runs([&](const auto& p, const auto& run, auto&) { p.warm_start(run); });
     for (int round = 0; round < kRounds; ++round) {
+      solve_joints(h);
       for_runs([&](const auto& p, const auto& run, auto&) { p.solve(run, soft); });
     }
     pass.move(body_rows.data() + 1, count, h);
+    refresh_joints(h);
+    relax_joints(h);
     for_runs([&](const auto& p, const auto& run, auto&) { p.relax(run, soft); });
   }
+  end_joints(dt);
   store_bodies(dt, n);
   report_touches(n);
 }

@@ -136,6 +136,7 @@ Expected<void> World::destroy_body(BodyId id) {
   for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
     impl_->release_collider(c);
   }
+  while (body->first_joint != kNone) impl_->remove_joint(body->first_joint / 2);
   body->alive = false;
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;

@@ -1,0 +1,68 @@
+// A joint between two bodies, as the world keeps it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "solve/joint_block.h"
+#include "vphysics/world_joints.h"
+
+namespace vp {
+
+// Where a body is within a step.
+struct BodyPlace {
+  SE3 T;
+  Vec3 centre;  // reference point, world frame
+};
+
+// What all kinds are made into.
+struct JointLaw {
+  enum class Form : std::uint8_t { axes, distance, gear, user };
+  Form form = Form::axes;
+  AxisDesc axes[6];  // of a distance and a gear the first
+  bool cone = false;
+  double swing_x = 0.0, swing_y = 0.0;
+  double ratio = 0.0;
+  bool slides_a = false, slides_b = false;
+  std::shared_ptr<const PairConstraint> user;
+  PairRowLaw user_laws[6];
+  int user_rows = 0;
+};
+JointLaw law_of(const JointKind& kind);
+
+struct BodyJoint {
+  std::uint32_t generation = 0;
+  bool alive = false;
+  std::uint32_t a = 0, b = 0;  // bodies
+  // Neighbours in the lists of the bodies; an edge is 2 * joint + side.
+  std::uint32_t next[2] = {}, previous[2] = {};
+  bool collide = false;
+  SE3 T_a_joint, T_b_joint;
+  double frequency = 0.0, damping_ratio = 1.0;
+  JointLaw law;   // its drives are state
+  int main = -1;  // slot of its one coordinate
+  // Angles counted on beyond whole turns: of the twist; of a gear's two bodies.
+  double turned[2] = {};
+  SE3 start[2];               // of a gear: the bodies' poses at its creation
+  solve::JointBlock block;    // its impulses are state
+  double laid_out_for = 0.0;  // the sub-step of the block's rows; 0: lay them out anew
+  Vec3 force, torque;         // of the last step's sub-steps, added up
+};
+
+// The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
+void lay_out(BodyJoint& joint, double h);
+// Jacobians and residuals where the bodies are.
+void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b);
+// One coordinate; nothing if the joint has none such.
+std::optional<double> coordinate(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
+                                 int slot);
+// Where the count of whole turns of a twist begins: within its limits.
+double first_turn(const JointLaw& law);
+// The slot of the one coordinate, or -1.
+int main_slot(const JointKind& kind);
+
+std::optional<std::string> problem_with(const JointDesc& desc);
+std::optional<std::string> problem_with_joint_drive(const JointDrive& drive);
+
+}  // namespace vp

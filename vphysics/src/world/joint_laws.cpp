@@ -1,0 +1,314 @@
+// What kinds of joints are made of.
+#include <cmath>
+#include <type_traits>
+
+#include "world/joint.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+using solve::JointRow6;
+
+// Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
+constexpr double kPush = 0.2;
+constexpr double kLoss = 0.05;
+
+AxisDesc axis(AxisMotion motion, double lower = 0.0, double upper = 0.0, JointDrive drive = {}) {
+  return {motion, lower, upper, drive};
+}
+AxisDesc free_or_limited(double lower, double upper, const JointDrive& drive) {
+  const bool free = lower == -kNoLimit && upper == kNoLimit;
+  return axis(free ? AxisMotion::free : AxisMotion::limited, lower, upper, drive);
+}
+void lock(JointLaw& law, int first, int last) {
+  for (int i = first; i <= last; ++i) law.axes[i].motion = AxisMotion::locked;
+}
+
+void fill(JointLaw& law, const BallSocket&) {
+  lock(law, 0, 2);
+}
+void fill(JointLaw& law, const Hinge& hinge) {
+  lock(law, 0, 4);
+  law.axes[5] = free_or_limited(hinge.lower, hinge.upper, hinge.drive);
+}
+void fill(JointLaw& law, const Slider& slider) {
+  lock(law, 0, 5);
+  law.axes[2] = free_or_limited(slider.lower, slider.upper, slider.drive);
+}
+void fill(JointLaw& law, const Weld&) {
+  lock(law, 0, 5);
+}
+void fill(JointLaw& law, const Distance& distance) {
+  law.form = JointLaw::Form::distance;
+  const bool rod = distance.least == distance.most;
+  law.axes[0] = axis(rod ? AxisMotion::locked : AxisMotion::limited, distance.least, distance.most);
+}
+void fill(JointLaw& law, const Spring& spring) {
+  law.form = JointLaw::Form::distance;
+  law.axes[0].drive = {spring.length, 0.0, spring.stiffness, spring.damping, kNoLimit};
+}
+void fill(JointLaw& law, const ConeTwist& cone) {
+  lock(law, 0, 2);
+  law.cone = true;
+  law.swing_x = cone.swing_x;
+  law.swing_y = cone.swing_y;
+  law.axes[5] = free_or_limited(cone.lower, cone.upper, cone.drive);
+}
+void fill(JointLaw& law, const SixDof& six) {
+  for (int i = 0; i < 6; ++i) law.axes[i] = six.axes[i];
+}
+void fill(JointLaw& law, const Gear& gear) {
+  law.form = JointLaw::Form::gear;
+  law.axes[0].motion = AxisMotion::locked;
+  law.ratio = gear.ratio;
+  law.slides_a = gear.slides_a;
+  law.slides_b = gear.slides_b;
+}
+void fill(JointLaw& law, const UserConstraint& user) {
+  law.form = JointLaw::Form::user;
+  law.user = user.constraint;
+  law.user_rows = user.constraint->rows();
+  for (int i = 0; i < law.user_rows; ++i) law.user_laws[i] = user.constraint->law(i);
+}
+
+// Rate and loss of a spring of frequency f against K alone, integrated implicitly.
+void soften(JointRow6& row, double frequency, double damping_ratio, double h) {
+  if (frequency == 0.0) {
+    row.rate = kPush / h;
+    row.loss = kLoss;
+    row.relaxes = true;
+    return;
+  }
+  const double turn = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * turn;
+  row.rate = turn / both;
+  row.loss = 1.0 / (h * turn * both);
+  row.relaxes = false;
+}
+
+JointRow6 held_row(int slot) {
+  JointRow6 row;
+  row.slot = static_cast<std::uint8_t>(slot);
+  return row;
+}
+void set_drive(JointRow6& row, const JointDrive& drive, double h) {
+  row.most = std::min(h * drive.max_force, solve::kNowhere);
+  row.least = -row.most;
+  row.stiffness = drive.stiffness;
+  row.damping = drive.damping;
+  row.position = drive.position;
+  row.speed = drive.velocity;
+}
+
+struct Rows {
+  JointRow6 rows[solve::kJointRows];
+  int count = 0, held = 0;
+  void add(const JointRow6& row, bool is_held) {
+    if (is_held) {
+      for (int i = count; i > held; --i) rows[i] = rows[i - 1];
+      rows[held++] = row;
+    } else {
+      rows[count] = row;
+    }
+    ++count;
+  }
+};
+
+bool has_drive(const AxisDesc& desc) {
+  return desc.drive.max_force > 0.0;
+}
+
+Rows rows_of_axes(const JointLaw& law, double h) {
+  Rows out;
+  const int axes = law.form == JointLaw::Form::axes ? 6 : 1;
+  for (int i = 0; i < axes; ++i) {
+    const AxisDesc& desc = law.axes[i];
+    const bool of_cone = law.cone && i == static_cast<int>(JointAxis::turn_x);
+    if (desc.motion == AxisMotion::free && !has_drive(desc) && !of_cone) continue;
+    JointRow6 row = held_row(i);
+    const bool held = desc.motion == AxisMotion::locked;
+    if (held) {
+      row.position = desc.lower;  // of a rod
+    } else {
+      set_drive(row, desc.drive, h);
+      if (desc.motion == AxisMotion::limited) {
+        row.lower = std::max(desc.lower, -solve::kNowhere);
+        row.upper = std::min(desc.upper, solve::kNowhere);
+      }
+      if (of_cone) row.lower = 0.0;
+    }
+    out.add(row, held);
+  }
+  return out;
+}
+
+Rows rows_of_user(const JointLaw& law, double h) {
+  Rows out;
+  for (int i = 0; i < law.user_rows; ++i) {
+    const PairRowLaw& own = law.user_laws[i];
+    JointRow6 row = held_row(i);
+    const bool held = own.least_force == -kNoLimit && own.most_force == kNoLimit;
+    row.bounded_hold = !held;
+    row.least = std::max(h * own.least_force, -solve::kNowhere);
+    row.most = std::min(h * own.most_force, solve::kNowhere);
+    out.add(row, held);
+  }
+  return out;
+}
+
+constexpr const char* kFinite = " must be finite and at most 1e9 in magnitude";
+
+std::optional<std::string> problem_with_limits(double lower, double upper) {
+  const bool sane = lower <= upper && lower < kLargest && upper > -kLargest &&
+                    (in_range(lower) || lower == -kNoLimit) &&
+                    (in_range(upper) || upper == kNoLimit);
+  if (sane) return std::nullopt;
+  return "limits: lower must not be above upper, each within 1e9 or infinite on its own side";
+}
+bool gain(double x) {
+  return x >= 0.0 && x <= 1e15;
+}
+std::optional<std::string> problem_with_axis(double lower, double upper, const JointDrive& drive) {
+  if (auto problem = problem_with_limits(lower, upper)) return problem;
+  return problem_with_joint_drive(drive);
+}
+
+std::optional<std::string> problem_in(const BallSocket&) {
+  return std::nullopt;
+}
+std::optional<std::string> problem_in(const Weld&) {
+  return std::nullopt;
+}
+std::optional<std::string> problem_in(const Hinge& hinge) {
+  return problem_with_axis(hinge.lower, hinge.upper, hinge.drive);
+}
+std::optional<std::string> problem_in(const Slider& slider) {
+  return problem_with_axis(slider.lower, slider.upper, slider.drive);
+}
+std::optional<std::string> problem_in(const Distance& distance) {
+  const double most = distance.most;
+  if (distance.least >= 0.0 && distance.least <= most && in_range(distance.least) &&
+      (in_range(most) || most == kNoLimit) && most > 0.0)
+    return std::nullopt;
+  return "distance: least must be zero or more, most positive and not below it";
+}
+std::optional<std::string> problem_in(const Spring& spring) {
+  if (!in_range(spring.length) || spring.length < 0.0)
+    return "spring: the length must be zero or more and at most 1e9";
+  if (!gain(spring.stiffness) || !gain(spring.damping))
+    return "spring: stiffness and damping must be zero or more and at most 1e15";
+  return std::nullopt;
+}
+std::optional<std::string> problem_in(const ConeTwist& cone) {
+  const auto swing = [](double x) { return x > 0.0 && x <= 3.1; };
+  if (!swing(cone.swing_x) || !swing(cone.swing_y))
+    return "cone and twist: both swings must be above 0 and at most 3.1 radians";
+  return problem_with_axis(cone.lower, cone.upper, cone.drive);
+}
+std::optional<std::string> problem_in(const SixDof& six) {
+  for (const AxisDesc& desc : six.axes) {
+    if (desc.motion > AxisMotion::locked) return "axis: motion must be free, limited or locked";
+    if (desc.motion == AxisMotion::locked) {
+      if (has_drive(desc)) return "axis: what is locked cannot be driven; leave its drive empty";
+      continue;
+    }
+    const bool limited = desc.motion == AxisMotion::limited;
+    if (auto problem =
+            problem_with_axis(limited ? desc.lower : 0.0, limited ? desc.upper : 0.0, desc.drive))
+      return problem;
+  }
+  for (const int i : {3, 4}) {
+    const AxisDesc& desc = six.axes[i];
+    if (desc.motion == AxisMotion::limited && (desc.lower < -kPi || desc.upper > kPi))
+      return "axis: limits of turn_x and turn_y must lie within half a turn";
+  }
+  return std::nullopt;
+}
+std::optional<std::string> problem_in(const Gear& gear) {
+  if (in_range(gear.ratio) && std::fabs(gear.ratio) >= 1e-9) return std::nullopt;
+  return "gear: the ratio must not be zero, and at most 1e9 in magnitude";
+}
+std::optional<std::string> problem_in(const UserConstraint& user) {
+  if (!user.constraint) return "constraint: there is none; hand in a pointer to one";
+  const int rows = user.constraint->rows();
+  if (rows < 1 || rows > solve::kJointRows) return "constraint: it must have 1 to 6 rows";
+  for (int i = 0; i < rows; ++i) {
+    const PairRowLaw law = user.constraint->law(i);
+    if (!in_range(law.frequency) || law.frequency < 0.0 || !in_range(law.damping_ratio) ||
+        law.damping_ratio < 0.0)
+      return "constraint: a row's frequency and damping ratio must be zero or more and finite";
+    if (!(law.least_force <= 0.0 && law.most_force >= 0.0))
+      return "constraint: a row's bounds must have zero between them";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+PairRowLaw PairConstraint::law(int) const {
+  return {};
+}
+
+JointLaw law_of(const JointKind& kind) {
+  JointLaw law;
+  std::visit([&](const auto& k) { fill(law, k); }, kind);
+  return law;
+}
+
+double first_turn(const JointLaw& law) {
+  const AxisDesc& twist = law.axes[static_cast<int>(JointAxis::turn_z)];
+  if (law.form != JointLaw::Form::axes || twist.motion != AxisMotion::limited) return 0.0;
+  if (!(twist.lower > -kNoLimit)) return std::min(0.0, twist.upper);
+  if (!(twist.upper < kNoLimit)) return std::max(0.0, twist.lower);
+  return 0.5 * (twist.lower + twist.upper);
+}
+
+int main_slot(const JointKind& kind) {
+  if (std::holds_alternative<Hinge>(kind) || std::holds_alternative<ConeTwist>(kind)) return 5;
+  if (std::holds_alternative<Slider>(kind)) return 2;
+  if (std::holds_alternative<Distance>(kind) || std::holds_alternative<Spring>(kind) ||
+      std::holds_alternative<Gear>(kind))
+    return 0;
+  return -1;
+}
+
+std::optional<std::string> problem_with_joint_drive(const JointDrive& drive) {
+  if (auto problem = problem_with(drive)) return problem;
+  if (gain(drive.stiffness) && gain(drive.damping)) return std::nullopt;
+  return "drive: stiffness and damping must be at most 1e15";
+}
+
+void lay_out(BodyJoint& joint, double h) {
+  const bool user = joint.law.form == JointLaw::Form::user;
+  Rows laid = user ? rows_of_user(joint.law, h) : rows_of_axes(joint.law, h);
+  solve::JointBlock& block = joint.block;
+  for (int i = 0; i < laid.count; ++i) {
+    JointRow6& row = laid.rows[i];
+    if (user) {
+      const PairRowLaw& own = joint.law.user_laws[row.slot];
+      soften(row, own.frequency, own.damping_ratio, h);
+    } else {
+      soften(row, joint.frequency, joint.damping_ratio, h);
+    }
+    for (int k = 0; k < block.count; ++k) {
+      if (block.rows[k].slot != row.slot) continue;
+      row.impulse = block.rows[k].impulse;
+      row.stop = block.rows[k].stop;
+    }
+  }
+  std::copy_n(laid.rows, laid.count, block.rows);
+  block.count = laid.count;
+  block.held = laid.held;
+}
+
+std::optional<std::string> problem_with(const JointDesc& desc) {
+  if (!is_pose(desc.T_a_joint) || !is_pose(desc.T_b_joint))
+    return "T_a_joint and T_b_joint must be finite rotations and positions";
+  if (!in_range(desc.frequency) || desc.frequency < 0.0)
+    return std::string("frequency must be zero or more and") + kFinite;
+  if (!in_range(desc.damping_ratio) || desc.damping_ratio < 0.0)
+    return std::string("damping_ratio must be zero or more and") + kFinite;
+  return std::visit([](const auto& kind) { return problem_in(kind); }, desc.kind);
+}
+
+}  // namespace vp

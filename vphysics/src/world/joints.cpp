@@ -1,0 +1,274 @@
+// Joints between bodies: who is joined, and their part of a step.
+#include <algorithm>
+
+#include "vphysics/assert.h"
+#include "world/impl.h"
+#include "world/refuse.h"
+#include "world/slots.h"
+#include "world/structure.h"
+#include "world/validate.h"
+
+namespace vp {
+
+const BodyJoint* World::Impl::find(JointId id) const {
+  if (id.index == 0 || id.index > joints.size()) return nullptr;
+  const BodyJoint& joint = joints[id.index - 1];
+  return joint.alive && joint.generation == id.generation ? &joint : nullptr;
+}
+BodyJoint* World::Impl::find(JointId id) {
+  return const_cast<BodyJoint*>(std::as_const(*this).find(id));
+}
+
+BodyPlace World::Impl::place_of(std::uint32_t body) const {
+  return {bodies[body].T, reference_point(bodies[body])};
+}
+
+bool World::Impl::keeps_apart(std::uint32_t a, std::uint32_t b) const {
+  for (std::uint32_t e = bodies[a].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
+    const BodyJoint& joint = joints[e / 2];
+    if (!joint.collide && (joint.a == b || joint.b == b)) return true;
+  }
+  return false;
+}
+
+void World::Impl::link_joint(std::uint32_t index) {
+  BodyJoint& joint = joints[index];
+  for (const int side : {0, 1}) {
+    Body& body = bodies[side == 0 ? joint.a : joint.b];
+    const std::uint32_t edge = 2 * index + static_cast<std::uint32_t>(side);
+    joint.next[side] = body.first_joint;
+    joint.previous[side] = kNone;
+    if (body.first_joint != kNone)
+      joints[body.first_joint / 2].previous[body.first_joint % 2] = edge;
+    body.first_joint = edge;
+  }
+}
+
+void World::Impl::remove_joint(std::uint32_t index) {
+  BodyJoint& joint = joints[index];
+  for (const int side : {0, 1}) {
+    Body& body = bodies[side == 0 ? joint.a : joint.b];
+    const std::uint32_t next = joint.next[side], previous = joint.previous[side];
+    if (next != kNone) joints[next / 2].previous[next % 2] = previous;
+    (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
+  }
+  mark_contacts_stale(joint.a);
+  joint.alive = false;
+  joint.law.user.reset();
+  free_joints.push_back(index);
+}
+
+Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc& desc) {
+  const Body *a = impl_->find(a_id), *b = impl_->find(b_id);
+  if (!a || !b) return stale("body");
+  if (a == b) return refuse("create_joint: a body cannot be joined to itself; name two bodies");
+  for (const Body* body : {a, b}) {
+    if (body->is_link) {
+      return refuse(Errc::unsupported,
+                    "create_joint: links cannot be joined to other bodies in this version; make "
+                    "the joint part of the articulation's model");
+    }
+    if (body->continuous) {
+      return refuse(Errc::unsupported,
+                    "create_joint: continuous bodies cannot be joined in this version; create the "
+                    "body without continuous");
+    }
+  }
+  if (a->motion != Motion::dynamic && b->motion != Motion::dynamic)
+    return refuse("create_joint: one of the two bodies must be dynamic");
+  if (auto problem = problem_with(desc)) return refuse("create_joint: " + *problem);
+
+  const std::uint32_t index = take_slot(impl_->joints, impl_->free_joints);
+  BodyJoint& joint = impl_->joints[index];
+  joint.a = a_id.index - 1;
+  joint.b = b_id.index - 1;
+  joint.collide = desc.collide;
+  const auto straight = [](const SE3& T) {
+    return SE3(orthonormalized(T.rotation()), T.position());
+  };
+  joint.T_a_joint = straight(desc.T_a_joint);
+  joint.T_b_joint = straight(desc.T_b_joint);
+  joint.frequency = desc.frequency;
+  joint.damping_ratio = desc.damping_ratio;
+  joint.law = law_of(desc.kind);
+  joint.main = main_slot(desc.kind);
+  joint.start[0] = impl_->bodies[joint.a].T;
+  joint.start[1] = impl_->bodies[joint.b].T;
+  joint.turned[0] = first_turn(joint.law);
+  impl_->link_joint(index);
+  impl_->mark_contacts_stale(joint.a);
+  Structure structure(impl_->structure);
+  structure.add(0x500u + index);
+  structure.add(a_id.index);
+  structure.add(b_id.index);
+  structure.add(desc);
+  return JointId{index + 1, joint.generation};
+}
+
+Expected<void> World::destroy_joint(JointId id) {
+  if (!impl_->find(id)) return stale("joint");
+  impl_->remove_joint(id.index - 1);
+  Structure(impl_->structure).add(0x600u + id.index);
+  return {};
+}
+
+bool World::contains(JointId id) const {
+  return impl_->find(id) != nullptr;
+}
+
+namespace {
+
+double number_or_zero(const std::optional<double>& x) {
+  VP_ASSERT(x && "joint_coordinate: the joint has no such coordinate");
+  return x.value_or(0.0);
+}
+
+}  // namespace
+
+double World::joint_coordinate(JointId id) const {
+  const BodyJoint* joint = impl_->find(id);
+  VP_ASSERT(joint && joint->main >= 0 && "joint_coordinate: name an axis, or an id that exists");
+  if (!joint || joint->main < 0) return 0.0;
+  return number_or_zero(
+      coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b), joint->main));
+}
+
+double World::joint_coordinate(JointId id, JointAxis axis) const {
+  const BodyJoint* joint = impl_->find(id);
+  const bool has = joint && joint->law.form == JointLaw::Form::axes && axis <= JointAxis::turn_z;
+  VP_ASSERT(has && "joint_coordinate: no such joint, or it has no axes");
+  if (!has) return 0.0;
+  return number_or_zero(coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b),
+                                   static_cast<int>(axis)));
+}
+
+double World::joint_residual(JointId id, int row) const {
+  const BodyJoint* joint = impl_->find(id);
+  const bool has = joint && joint->law.form == JointLaw::Form::user && row >= 0;
+  VP_ASSERT(has && "joint_residual: no such joint, or not a UserConstraint");
+  if (!has) return 0.0;
+  return number_or_zero(
+      coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b), row));
+}
+
+namespace {
+
+Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
+  if (auto problem = problem_with_joint_drive(drive)) return refuse("set_drive: " + *problem);
+  AxisDesc& desc = joint.law.axes[slot];
+  if (desc.motion == AxisMotion::locked)
+    return refuse("set_drive: the joint holds this coordinate; drive one that it leaves free");
+  desc.drive = drive;
+  joint.laid_out_for = 0.0;
+  return {};
+}
+
+}  // namespace
+
+Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
+  BodyJoint* joint = impl_->find(id);
+  if (!joint) return stale("joint");
+  if (joint->main < 0 || joint->law.form != JointLaw::Form::axes)
+    return refuse("set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
+  return drive_slot(*joint, joint->main, drive);
+}
+
+Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& drive) {
+  BodyJoint* joint = impl_->find(id);
+  if (!joint) return stale("joint");
+  const bool swings = axis == JointAxis::turn_x || axis == JointAxis::turn_y;
+  if (joint->law.form != JointLaw::Form::axes || axis > JointAxis::turn_z ||
+      (joint->law.cone && swings))
+    return refuse("set_drive: the joint has no drive of this axis");
+  return drive_slot(*joint, static_cast<int>(axis), drive);
+}
+
+JointForce World::joint_force(JointId id) const {
+  const BodyJoint* joint = impl_->find(id);
+  VP_ASSERT(joint && "joint_force: the joint does not exist (any more)");
+  if (!joint) return {};
+  return {joint->force, joint->torque};
+}
+
+// --- within a step
+// --------------------------------------------------------------------------------
+
+void World::Impl::begin_joints(double h) {
+  for (BodyJoint& joint : joints) {
+    if (!joint.alive) continue;
+    joint.force = joint.torque = {};
+    if (joint.laid_out_for == h) continue;
+    lay_out(joint, h);
+    joint.block.a = end_of(joint.a).row;
+    joint.block.b = end_of(joint.b).row;
+    joint.laid_out_for = h;
+  }
+  refresh_joints(h);
+}
+
+// Bodies that joints hold where their rows' ways have taken them since the step began.
+BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
+  const Body& body = bodies[index];
+  if (body.motion == Motion::fixed) return place_of(index);
+  const float *way = body_rows[index + 1].way, *start = start_ways[index].data();
+  const auto gone = [&](int i) {
+    return Vec3{static_cast<double>(way[i]) - static_cast<double>(start[i]),
+                static_cast<double>(way[i + 1]) - static_cast<double>(start[i + 1]),
+                static_cast<double>(way[i + 2]) - static_cast<double>(start[i + 2])};
+  };
+  const Vec3 centre = reference_point(body) + gone(0);
+  const Mat3 R = turned(body.T.rotation(), gone(3));
+  const bool at_centre = body.motion == Motion::dynamic;
+  return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
+}
+
+void World::Impl::refresh_joints(double) {
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
+  }
+  for (BodyJoint& joint : joints) {
+    if (!joint.alive) continue;
+    evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
+    solve::prepare(joint.block, body_rows.data());
+  }
+}
+
+void World::Impl::warm_start_joints() {
+  for (BodyJoint& joint : joints) {
+    if (joint.alive) solve::warm_start(joint.block, body_rows.data());
+  }
+}
+void World::Impl::solve_joints(double h) {
+  for (BodyJoint& joint : joints) {
+    if (joint.alive) solve::solve(joint.block, body_rows.data(), h);
+  }
+}
+void World::Impl::relax_joints(double h) {
+  for (BodyJoint& joint : joints) {
+    if (!joint.alive) continue;
+    solve::relax(joint.block, body_rows.data(), h);
+    const BodyPlace& b = joint_places[joint.b];
+    const bool user = joint.law.form == JointLaw::Form::user;
+    const Vec3 arm = user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre;
+    for (int i = 0; i < joint.block.count; ++i) {
+      const solve::JointRow6& row = joint.block.rows[i];
+      const double p = row.impulse + row.stop;
+      joint.force += p * row.jacobian.linear_b;
+      joint.torque += p * (row.jacobian.angular_b - cross(arm, row.jacobian.linear_b));
+    }
+  }
+}
+void World::Impl::end_joints(double dt) {
+  for (BodyJoint& joint : joints) {
+    joint.force *= 1.0 / dt;
+    joint.torque *= 1.0 / dt;
+  }
+}
+
+void World::Impl::forget_joints(std::uint32_t body) {
+  for (std::uint32_t e = bodies[body].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
+    for (solve::JointRow6& row : joints[e / 2].block.rows) row.impulse = row.stop = 0.0;
+  }
+}
+
+}  // namespace vp
