@@ -172,8 +172,8 @@ TEST(Ids, OfTheDestroyedAreStaleForever) {
   EXPECT_EQ(first.index, second.index);
   EXPECT_FALSE(world.contains(first));
   EXPECT_TRUE(world.contains(second));
-  EXPECT_FALSE(world.contains({}));
-  EXPECT_FALSE(world.contains({77, 1}));
+  EXPECT_FALSE(world.contains(BodyId{}));
+  EXPECT_FALSE(world.contains(BodyId{77, 1}));
   expect_refused(world, [&] { return world.destroy_body(first); });
   expect_refused(world, [&] { return world.set_pose(first, {}); });
   expect_refused(world, [&] { return world.add_collider(first, {}); });

@@ -70,8 +70,9 @@ class PairSet {
     size_ = 0;
   }
   std::size_t size() const { return size_; }
-  // In no order that may be seen.
+  // In no order that may be seen. Takes room for as many as come before the table grows.
   void append_keys(std::vector<std::uint64_t>& keys) const {
+    keys.reserve(keys.size() + table_.size() / 2);
     for (const std::uint64_t key : table_) {
       if (key != kEmpty) keys.push_back(key);
     }

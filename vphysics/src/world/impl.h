@@ -265,6 +265,7 @@ struct World::Impl {
   void for_runs(const F& f);
 
   // touches.cpp
+  void find_loaded();
   void report_touches(int sub_steps);
   void report_touch(std::uint32_t contact, bool loaded);
 

@@ -190,8 +190,7 @@ JointForce World::joint_force(JointId id) const {
   return {joint->force, joint->torque};
 }
 
-// --- within a step
-// --------------------------------------------------------------------------------
+// --- within a step ---------------------------------------------------------------------------
 
 void World::Impl::begin_joints(double h) {
   for (BodyJoint& joint : joints) {

@@ -42,7 +42,7 @@ void World::Impl::begin_step() {
   });
   if (sub_stepped > 0) graph.reserve(static_cast<std::size_t>(sub_stepped));
   new_pairs.reserve(room);
-  lane_bits.reserve(room / solve::kLanes + 1);
+  lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours);
   body_pairs.reserve(room);
   discrete_pairs.reserve(room);
   swept_pairs.reserve(room);

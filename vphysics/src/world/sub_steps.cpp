@@ -61,6 +61,7 @@ void World::Impl::run_sub_steps(double dt) {
     pass.move(body_rows.data() + 1, count, h);
     refresh_joints(h);
     relax_joints(h);
+    if (k == n - 1) find_loaded();
     for_runs([&](const auto& p, const auto& run, auto&) { p.relax(run, soft); });
   }
   end_joints(dt);

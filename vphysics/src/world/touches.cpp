@@ -43,19 +43,31 @@ void World::Impl::report_touch(std::uint32_t index, bool loaded) {
   emit(kind, pair, loaded && c.count > 0 ? c.position[0] : Vec3{}, {}, 0.0, 0.0, 0.0);
 }
 
+// Before the last relaxing: what pushes two apart that overlap is a load, though nothing of it is
+// left in the velocities.
+void World::Impl::find_loaded() {
+  std::size_t count = 0;
+  for_runs([&](const auto& pass, const auto& run, auto& blocks) {
+    lane_bits.resize(std::max(lane_bits.size(), count + blocks.size()));
+    pass.find_loaded(run, lane_bits.data() + count);
+    count += blocks.size();
+  });
+}
+
 void World::Impl::report_touches(int sub_steps) {
   for (Body& body : bodies) body.rested = false;
-  for_runs([&](const auto& pass, const auto& run, auto& blocks) {
+  std::size_t first = 0;
+  for_runs([&](const auto&, const auto&, auto& blocks) {
     const std::size_t count = blocks.size();
-    lane_bits.resize(std::max(lane_bits.size(), count));
-    pass.find_loaded(run, lane_bits.data());
+    const std::uint16_t* bits = lane_bits.data() + first;
+    first += count;
     for (std::size_t b = 0; b < count; ++b) {
       const auto& block = blocks[b];
       for (int lane = 0; lane < solve::kLanes; ++lane) {
         const std::uint32_t index = block.contact.lane[lane];
         if (index == solve::kNoContact) break;
         Contact& c = contact_pool[index];
-        const bool loaded = ((lane_bits[b] >> lane) & 1u) != 0;
+        const bool loaded = ((bits[b] >> lane) & 1u) != 0;
         if (loaded) {
           bodies[colliders[c.a].body].rested = true;
           bodies[colliders[c.b].body].rested = true;
