@@ -25,6 +25,7 @@ build  libglfw3-dev          the window, its keys, mice and gamepads
 build  libgles-dev           OpenGL ES headers
 build  libglm-dev            vectors and matrices of the renderer
 build  libstb-dev            fonts and PNG files
+build  libimgui-dev          the sandbox's panel
 build  libopenal-dev         sound
 play   libegl1               EGL at run time
 play   libgles2              OpenGL ES at run time

@@ -14,7 +14,7 @@
 namespace client {
 namespace {
 
-tl::expected<Options, Leave> parse(std::vector<const char*> words) {
+tl::expected<Options, draw::Leave> parse(std::vector<const char*> words) {
   words.insert(words.begin(), "space-foosball");
   return parse_options(static_cast<int>(words.size()), words.data());
 }
@@ -27,7 +27,7 @@ TEST(Options, AreTakenAsGiven) {
   EXPECT_EQ(o->connection.port, 9000);
   EXPECT_EQ(o->connection.team, wire::kWatchOnly);
   EXPECT_EQ(o->size, glm::ivec2(800, 600));
-  EXPECT_EQ(o->quality, Quality::low);
+  EXPECT_EQ(o->quality, draw::Quality::low);
   EXPECT_EQ(o->seconds, 3.5);
   EXPECT_TRUE(o->mute);
 }

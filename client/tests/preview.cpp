@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/window.h"
+#include "draw/image.h"
 #include "render/hud.h"
-#include "render/image.h"
 #include "render/scene.h"
 #include "scripted_scene.h"
 
@@ -27,7 +27,7 @@ constexpr Shot kShots[] = {
     {"play-3", 2.4, 2, 0}, {"ceremony", 0.7, 3, 0},  {"end", 1.0, 4, 0},     {"lost", 3.0, 2, 0},
     {"held", 4.1, 2, 0},   {"pause", 3.3, 2, 0},     {"help", 4.6, 2, 1}};
 
-int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
+int run(const std::string& directory, draw::Quality quality, const glm::ivec2& size) {
   auto window = Window::open({.size = size, .title = "preview"});
   if (!window) {
     std::fprintf(stderr, "%s\n", window.error().sentence.c_str());
@@ -95,7 +95,8 @@ int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
       glFinish();
       best = std::min(best, cpu() - start);
     }
-    const auto wrote = write_png(read_pixels(size), directory + "/" + shot.name + ".png");
+    const auto wrote =
+        draw::write_png(draw::read_pixels(size), directory + "/" + shot.name + ".png");
     std::printf("%s: %.1f ms of CPU time%s\n", shot.name, 1e3 * best,
                 wrote ? "" : wrote.error().c_str());
     window->swap();
@@ -107,8 +108,8 @@ int run(const std::string& directory, Quality quality, const glm::ivec2& size) {
 }  // namespace client
 
 int main(int argc, char** argv) {
-  const client::Quality quality =
-      argc > 2 && std::strcmp(argv[2], "low") == 0 ? client::Quality::low : client::Quality::high;
+  const draw::Quality quality =
+      argc > 2 && std::strcmp(argv[2], "low") == 0 ? draw::Quality::low : draw::Quality::high;
   glm::ivec2 size{1280, 720};
   if (argc > 3) std::sscanf(argv[3], "%dx%d", &size.x, &size.y);
   return client::run(argc > 1 ? argv[1] : ".", quality, size);

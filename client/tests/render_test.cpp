@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "app/window.h"
+#include "draw/image.h"
 #include "render/hud.h"
-#include "render/image.h"
 #include "render/scene.h"
 #include "scripted_scene.h"
 
@@ -17,10 +17,10 @@ namespace {
 
 constexpr glm::ivec2 kSize{960, 540};
 
-class RenderTest : public ::testing::TestWithParam<Quality> {
+class RenderTest : public ::testing::TestWithParam<draw::Quality> {
  protected:
   static void SetUpTestSuite() {
-    WindowOptions options;
+    draw::WindowOptions options;
     options.size = kSize;
     auto opened = Window::open(options);
     ASSERT_TRUE(opened) << opened.error().sentence;
@@ -52,7 +52,7 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     camera = player_camera({}, kSize);
   }
 
-  Image draw(const wire::Snapshot& state, std::optional<HudState> hud = {}) {
+  draw::Image draw(const wire::Snapshot& state, std::optional<HudState> hud = {}) {
     SceneView view;
     view.camera = camera;
     Particles none;
@@ -62,19 +62,19 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
       hud->camera = camera;
       draw_hud(*ui, *hud, kSize);
     }
-    const Image image = read_pixels(kSize);
+    const draw::Image image = draw::read_pixels(kSize);
     // For a person to look at after a failure.
     if (const char* directory = std::getenv("CLIENT_TEST_PICTURES")) {
       static int count = 0;
-      (void)write_png(image,
-                      std::string(directory) + "/render-" + std::to_string(count++) + ".png");
+      (void)draw::write_png(image,
+                            std::string(directory) + "/render-" + std::to_string(count++) + ".png");
     }
     window->swap();
     return image;
   }
 
   // The HUD alone, over an even grey.
-  Image written(const wire::Snapshot& state, HudState hud) {
+  draw::Image written(const wire::Snapshot& state, HudState hud) {
     hud.state = &state;
     hud.camera = camera;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -82,7 +82,7 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     glClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
     draw_hud(*ui, hud, kSize);
-    return read_pixels(kSize);
+    return draw::read_pixels(kSize);
   }
 
   glm::ivec2 pixel_of(const std::array<float, 3>& p) const {
@@ -90,7 +90,7 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
     return {static_cast<int>(at.x), static_cast<int>(at.y)};
   }
 
-  static glm::vec3 mean(const Image& image, glm::ivec2 low, glm::ivec2 high) {
+  static glm::vec3 mean(const draw::Image& image, glm::ivec2 low, glm::ivec2 high) {
     glm::vec3 sum(0.0f);
     for (int y = low.y; y < high.y; ++y) {
       for (int x = low.x; x < high.x; ++x) sum += glm::vec3(image.at(x, y));
@@ -99,7 +99,7 @@ class RenderTest : public ::testing::TestWithParam<Quality> {
   }
 
   // How many pixels around differ clearly between two pictures.
-  static int changed(const Image& a, const Image& b, glm::ivec2 centre, int radius) {
+  static int changed(const draw::Image& a, const draw::Image& b, glm::ivec2 centre, int radius) {
     int count = 0;
     for (int y = std::max(0, centre.y - radius); y < std::min(kSize.y, centre.y + radius); ++y) {
       for (int x = std::max(0, centre.x - radius); x < std::min(kSize.x, centre.x + radius); ++x) {
@@ -123,7 +123,7 @@ std::unique_ptr<UiBatch> RenderTest::ui;
 TEST_P(RenderTest, TheFieldIsTealWhereNothingStandsOnIt) {
   wire::Snapshot state = scripted_play(0.35);
   state.ball_in_play = false;
-  const Image image = draw(state);
+  const draw::Image image = draw(state);
   // Between the rods, off the markings, out of every shadow's reach at this moment's light.
   for (const std::array<float, 3>& p :
        {std::array{0.02f, -0.28f, 0.0f}, std::array{-0.30f, 0.20f, 0.0f}}) {
@@ -143,7 +143,7 @@ TEST_P(RenderTest, TheBallIsWhereItsPixelsAre) {
     wire::Snapshot without = with;
     without.ball_in_play = false;
     const glm::ivec2 at = pixel_of(with.ball.position);
-    const Image image = draw(with), empty = draw(without);
+    const draw::Image image = draw(with), empty = draw(without);
     EXPECT_GT(changed(image, empty, at, 8), 60) << moment;
     const glm::vec3 c = mean(image, at - 5, at + 5);
     EXPECT_GT(std::min({c.r, c.g, c.b}), 75.0f) << moment;  // white with dark patches, on dark teal
@@ -156,7 +156,7 @@ TEST_P(RenderTest, TheFieldMirrorsWhatIsAboveItAndNothingWhereNothingIs) {
   with.ball.position = {0.12f, -0.05f, 0.06f};
   wire::Snapshot without = with;
   without.ball_in_play = false;
-  const Image image = draw(with), empty = draw(without);
+  const draw::Image image = draw(with), empty = draw(without);
   const glm::ivec2 mirrored = pixel_of({0.12f, -0.05f, -0.06f}),
                    beside = pixel_of({0.16f, -0.15f, 0});
   const auto brighter = [&](glm::ivec2 at) {
@@ -173,7 +173,7 @@ TEST_P(RenderTest, MenAreAtTheirPlacesInTheirTeamsColours) {
     state.ball_in_play = false;
     wire::Snapshot nobody = state;
     nobody.men.clear();
-    const Image image = draw(state), empty = draw(nobody);
+    const draw::Image image = draw(state), empty = draw(nobody);
     const auto& table = foosball::table_spec(foosball::Layout::tournament);
     for (const wire::ManState& man : state.men) {
       const glm::ivec2 at = pixel_of(man.body.position);
@@ -205,7 +205,7 @@ TEST_P(RenderTest, AManThatMovesLeavesHisPlace) {
   there.rods[3].slide = 0.06f;
   place_men(here);
   place_men(there);
-  const Image a = draw(here), b = draw(there);
+  const draw::Image a = draw(here), b = draw(there);
   const wire::ManState &moved = here.men[8], &still = here.men[4];
   ASSERT_EQ(moved.rod, 3);
   ASSERT_EQ(still.rod, 2);
@@ -217,10 +217,10 @@ TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
   wire::Snapshot state = scripted_play(0.35), next = state;
   next.score[0] = 8;
   const glm::ivec2 left_figure{kSize.x / 2 - 40, 34}, right_figure{kSize.x / 2 + 40, 34};
-  const Image before = written(state, {}), after = written(next, {});
+  const draw::Image before = written(state, {}), after = written(next, {});
   EXPECT_GT(changed(before, after, left_figure, 18), 40);
   EXPECT_EQ(changed(before, after, right_figure, 18), 0);
-  const Image scored = draw(state, HudState{});
+  const draw::Image scored = draw(state, HudState{});
   // Orange figures left of the middle, blue ones right of it.
   const glm::vec3 left = mean(scored, {kSize.x / 2 - 60, 18}, {kSize.x / 2 - 25, 52});
   const glm::vec3 right = mean(scored, {kSize.x / 2 + 25, 18}, {kSize.x / 2 + 60, 52});
@@ -228,7 +228,7 @@ TEST_P(RenderTest, ScoreAndMessagesAreWritten) {
   EXPECT_GT(right.b, right.r + 10);
   HudState lost_hud;
   lost_hud.connection_message = "Physics server lost: waiting at 127.0.0.1:7531";
-  const Image lost = draw(state, lost_hud);
+  const draw::Image lost = draw(state, lost_hud);
   EXPECT_GT(changed(scored, lost, {kSize.x / 2, static_cast<int>(0.42f * kSize.y)}, 60), 2000);
 }
 
@@ -237,7 +237,7 @@ TEST_P(RenderTest, OnlyWhoHasJoinedToWatchIsSaidToWatch) {
   HudState refused;
   refused.connection_message = "The physics server at 127.0.0.1:7531 refuses";
   const glm::ivec2 corner{45, 22};
-  const Image plain = draw(state);
+  const draw::Image plain = draw(state);
   EXPECT_GT(changed(plain, draw(state, HudState{}), corner, 20), 40);
   EXPECT_EQ(changed(plain, draw(state, refused), corner, 20), 0);
 }
@@ -247,7 +247,7 @@ TEST_P(RenderTest, EveryScreenHasItsWords) {
     wire::Snapshot state = scripted_play(0.35);
     state.screen = screen;
     state.ball_in_play = false;
-    const Image plain = draw(state), written = draw(state, HudState{});
+    const draw::Image plain = draw(state), written = draw(state, HudState{});
     EXPECT_GT(changed(plain, written, kSize / 2, kSize.x), 1500) << int{screen};
   }
 }
@@ -279,7 +279,7 @@ TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
   ASSERT_EQ(state.men.size(), 32u);
   wire::Snapshot nobody = state;
   nobody.men.clear();
-  const Image image = draw(state), empty = draw(nobody);
+  const draw::Image image = draw(state), empty = draw(nobody);
   for (const wire::ManState& man : state.men) {
     const glm::ivec2 at = pixel_of(man.body.position);
     EXPECT_GT(changed(image, empty, at, 14), 40)
@@ -287,9 +287,10 @@ TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BothQualities, RenderTest, ::testing::Values(Quality::low, Quality::high),
+INSTANTIATE_TEST_SUITE_P(BothQualities, RenderTest,
+                         ::testing::Values(draw::Quality::low, draw::Quality::high),
                          [](const auto& which) {
-                           return which.param == Quality::low ? "low" : "high";
+                           return which.param == draw::Quality::low ? "low" : "high";
                          });
 
 }  // namespace

@@ -12,22 +12,15 @@
 #include "app/view_motion.h"
 #include "app/window.h"
 #include "client/player_input.h"
+#include "draw/image.h"
 #include "os/clock.h"
 #include "render/hud.h"
-#include "render/image.h"
 #include "render/scene.h"
 
 namespace client {
 namespace {
 
 volatile std::sig_atomic_t asked_to_leave = 0;
-
-bool draws_in_software(const std::string& renderer) {
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
-    if (renderer.find(name) != std::string::npos) return true;
-  }
-  return false;
-}
 
 class App {
  public:
@@ -38,7 +31,7 @@ class App {
   int loop();
 
  private:
-  std::string use_quality(Quality quality);
+  std::string use_quality(draw::Quality quality);
   void hear(std::int64_t now);
   void follow_connection();
   void say_when_in_step(std::int64_t now);
@@ -77,7 +70,10 @@ class App {
 
 std::string App::start(int& exit_code) {
   exit_code = 4;
-  auto window = Window::open({options_.size, options_.fullscreen, "Space Foosball"});
+  auto window = Window::open({.size = options_.size,
+                              .fullscreen = options_.fullscreen,
+                              .title = "Space Foosball",
+                              .otherwise = "play with ./play --headless"});
   if (!window) return window.error().sentence;
   window_ = std::move(*window);
   exit_code = 1;
@@ -86,9 +82,9 @@ std::string App::start(int& exit_code) {
   auto ui = UiBatch::create(std::move(*font));
   if (!ui) return ui.error();
   ui_ = std::move(*ui);
-  const std::string renderer = window_->renderer();
-  const Quality guess = draws_in_software(renderer) ? Quality::low : Quality::high;
-  log_info("drawing with " + renderer);
+  const draw::Quality guess =
+      window_->draws_in_software() ? draw::Quality::low : draw::Quality::high;
+  log_info("drawing with " + window_->renderer());
   if (std::string error = use_quality(options_.quality.value_or(guess)); !error.empty())
     return error;
   if (!options_.mute) {
@@ -109,11 +105,11 @@ std::string App::start(int& exit_code) {
   return {};
 }
 
-std::string App::use_quality(Quality quality) {
+std::string App::use_quality(draw::Quality quality) {
   auto scene = Scene::create(quality);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  log_info(std::string("quality ") + (quality == Quality::high ? "high" : "low"));
+  log_info(std::string("quality ") + (quality == draw::Quality::high ? "high" : "low"));
   return {};
 }
 
@@ -220,10 +216,10 @@ void App::draw(float dt) {
 }
 
 void App::judge_quality() {
-  if (options_.quality || scene_->quality() == Quality::low || !meter_.too_slow()) return;
+  if (options_.quality || scene_->quality() == draw::Quality::low || !meter_.too_slow()) return;
   log_info("high quality is too slow here");
   meter_.restart_judgement();
-  if (const std::string error = use_quality(Quality::low); !error.empty()) {
+  if (const std::string error = use_quality(draw::Quality::low); !error.empty()) {
     log_warning(error);
     window_->close();
   }
@@ -231,13 +227,13 @@ void App::judge_quality() {
 
 // A picture is worth a slow frame: it is drawn in high quality, unless another was asked for.
 std::string App::take_screenshot() {
-  const Quality usual = scene_->quality();
-  const bool better = !options_.quality && usual != Quality::high;
+  const draw::Quality usual = scene_->quality();
+  const bool better = !options_.quality && usual != draw::Quality::high;
   if (better) {
-    if (std::string error = use_quality(Quality::high); !error.empty()) return error;
+    if (std::string error = use_quality(draw::Quality::high); !error.empty()) return error;
     draw(0.0f);
   }
-  const auto wrote = write_png(read_pixels(size_), options_.screenshot);
+  const auto wrote = draw::write_png(draw::read_pixels(size_), options_.screenshot);
   if (wrote) log_info("picture written to " + options_.screenshot);
   const std::string error = better ? use_quality(usual) : std::string();
   return wrote ? error : wrote.error();
@@ -316,7 +312,7 @@ void App::say_figures(double seconds) const {
       "  \"interpolation_delay_us\": %lld,\n  \"inputs_sent\": %llu,\n  \"joins\": %llu,\n  "
       "\"seconds\": %.2f\n}\n",
       static_cast<unsigned long long>(meter_.frames()), rate,
-      scene_->quality() == Quality::high ? "high" : "low",
+      scene_->quality() == draw::Quality::high ? "high" : "low",
       static_cast<unsigned long long>(c.received), static_cast<unsigned long long>(c.lost),
       static_cast<unsigned long long>(c.bad), static_cast<unsigned long long>(c.old),
       static_cast<unsigned long long>(c.foreign), static_cast<unsigned long long>(c.reordered),

@@ -7,7 +7,8 @@
 #include <tl/expected.hpp>
 
 #include "client/connection.h"
-#include "render/quality.h"
+#include "draw/command_line.h"
+#include "draw/quality.h"
 
 namespace client {
 
@@ -17,23 +18,16 @@ struct Options {
   bool fullscreen = false;
   bool mute = false;
   bool show_fps = false;
-  bool until_server_ends = false;       // leave when the server says good-bye, else wait for it
-  std::optional<Quality> quality;       // none: picked by what the machine can do
-  std::optional<double> seconds;        // play so long, then leave
-  std::optional<double> screenshot_at;  // none: at the end
+  bool until_server_ends = false;        // leave when the server says good-bye, else wait for it
+  std::optional<draw::Quality> quality;  // none: picked by what the machine can do
+  std::optional<double> seconds;         // play so long, then leave
+  std::optional<double> screenshot_at;   // none: at the end
   std::string screenshot, stats_file, font_directory;
 };
 
-// What to print, and the exit code, when there is nothing to run: --help, or a bad value.
-struct Leave {
-  int exit_code;
-  std::string text;
-};
-
-tl::expected<Options, Leave> parse_options(int argc, const char* const* argv);
+tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* argv);
 
 // "HOST:PORT", "HOST" or ":PORT"; the error is a sentence.
 tl::expected<void, std::string> parse_server(const std::string& text, ConnectionOptions& into);
-tl::expected<glm::ivec2, std::string> parse_size(const std::string& text);
 
 }  // namespace client

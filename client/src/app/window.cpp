@@ -1,6 +1,5 @@
 #include "app/window.h"
 
-#include <GLES3/gl3.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -10,17 +9,15 @@
 namespace client {
 
 struct Window::Impl {
-  GLFWwindow* handle = nullptr;
+  explicit Impl(draw::Window opened) : window(std::move(opened)), handle(window.handle()) {}
+
+  draw::Window window;
+  GLFWwindow* handle;
   InputEvents events;
   bool captured = false;
   double last_x = 0, last_y = 0, wheel = 0;
   bool have_last = false, close_asked = false;
   bool pad_push_held = false, pad_pause_held = false;
-
-  ~Impl() {
-    if (handle != nullptr) glfwDestroyWindow(handle);
-    glfwTerminate();
-  }
 
   void capture(bool on) {
     captured = on;
@@ -37,28 +34,6 @@ struct Window::Impl {
 namespace {
 
 Window::Impl& impl_of(GLFWwindow* handle);
-
-std::string last_glfw_error() {
-  const char* text = nullptr;
-  glfwGetError(&text);
-  return text != nullptr ? text : "no reason given";
-}
-
-GLFWwindow* create(const WindowOptions& options, int context_api) {
-  glfwDefaultWindowHints();
-  glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);
-  glfwWindowHint(GLFW_CONTEXT_CREATION_API, context_api);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
-  glfwWindowHint(GLFW_DEPTH_BITS, 0);
-  glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  GLFWmonitor* monitor = options.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
-  glm::ivec2 size = options.size;
-  if (monitor != nullptr) {
-    if (const GLFWvidmode* mode = glfwGetVideoMode(monitor)) size = {mode->width, mode->height};
-  }
-  return glfwCreateWindow(size.x, size.y, options.title.c_str(), monitor, nullptr);
-}
 
 }  // namespace
 
@@ -134,23 +109,11 @@ void Window::Impl::read_pad() {
   }
 }
 
-tl::expected<Window, WindowError> Window::open(const WindowOptions& options) {
-  if (!glfwInit()) {
-    return tl::unexpected(WindowError{"No display to open a window on (" + last_glfw_error() +
-                                      "): start it on a desktop, or set DISPLAY, or run it under "
-                                      "xvfb-run, or play with ./play --headless."});
-  }
-  auto impl = std::make_unique<Impl>();
-  impl->handle = create(options, GLFW_NATIVE_CONTEXT_API);
-  if (impl->handle == nullptr) impl->handle = create(options, GLFW_EGL_CONTEXT_API);
-  if (impl->handle == nullptr) {
-    return tl::unexpected(WindowError{
-        "This display gives no OpenGL ES 3.0 (" + last_glfw_error() +
-        "): install a driver (on Debian: apt-get install libgl1-mesa-dri libegl1 libgles2)."});
-  }
+tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& options) {
+  auto opened = draw::Window::open(options);
+  if (!opened) return tl::unexpected(opened.error());
+  auto impl = std::make_unique<Impl>(std::move(*opened));
   GLFWwindow* handle = impl->handle;
-  glfwMakeContextCurrent(handle);
-  glfwSwapInterval(1);
   glfwSetWindowUserPointer(handle, impl.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int action, int) {
     if (action == GLFW_PRESS) impl_of(w).pressed(key);
@@ -185,7 +148,7 @@ Window& Window::operator=(Window&&) noexcept = default;
 Window::~Window() = default;
 
 bool Window::should_close() const {
-  return impl_->close_asked || glfwWindowShouldClose(impl_->handle);
+  return impl_->close_asked || impl_->window.should_close();
 }
 void Window::close() {
   impl_->close_asked = true;
@@ -195,22 +158,20 @@ bool Window::captured() const {
 }
 
 glm::ivec2 Window::size() const {
-  glm::ivec2 size{0, 0};
-  glfwGetFramebufferSize(impl_->handle, &size.x, &size.y);
-  return size;
+  return impl_->window.size();
 }
 
 void Window::wait(double seconds) {
-  glfwWaitEventsTimeout(seconds);
+  impl_->window.wait(seconds);
 }
 
 void Window::swap() {
-  glfwSwapBuffers(impl_->handle);
+  impl_->window.swap();
 }
 
 InputEvents Window::poll() {
   impl_->events = {};
-  glfwPollEvents();
+  impl_->window.poll();
   impl_->read_held_keys();
   impl_->read_pad();
   const double whole = std::trunc(impl_->wheel);  // touch pads scroll in fractions of a step
@@ -220,8 +181,10 @@ InputEvents Window::poll() {
 }
 
 std::string Window::renderer() const {
-  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  return name != nullptr ? name : "unknown";
+  return impl_->window.renderer();
+}
+bool Window::draws_in_software() const {
+  return impl_->window.draws_in_software();
 }
 
 }  // namespace client

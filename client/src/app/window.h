@@ -1,31 +1,19 @@
-// The window: GLFW with an OpenGL ES 3.0 context, and what a person does in it as plain events.
+// The window, and what a person does in it as plain events.
 #pragma once
 
-#include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
 
 #include "client/input_events.h"
-
-struct GLFWwindow;
+#include "draw/window.h"
 
 namespace client {
 
-struct WindowOptions {
-  glm::ivec2 size{1280, 720};
-  bool fullscreen = false;
-  std::string title = "Space Foosball";
-};
-
-struct WindowError {
-  std::string sentence;
-};
-
 class Window {
  public:
-  static tl::expected<Window, WindowError> open(const WindowOptions& options);
+  static tl::expected<Window, draw::WindowError> open(const draw::WindowOptions& options);
   Window(Window&&) noexcept;
   Window& operator=(Window&&) noexcept;
   ~Window();
@@ -38,8 +26,8 @@ class Window {
   InputEvents poll();
   void wait(double seconds);  // until the window has news, at most so long
   bool captured() const;
-  // Name of the driver's renderer, for the log and the choice of quality.
-  std::string renderer() const;
+  std::string renderer() const;  // name of the driver's, for the log
+  bool draws_in_software() const;
 
   struct Impl;
 

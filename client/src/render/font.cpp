@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "draw/font_files.h"
 #include "render/distance_field.h"
 
 namespace client {
@@ -15,9 +16,6 @@ constexpr float kGlyphSize = 40.0f;  // [px] an em in the atlas: sharp up to abo
 constexpr int kPadding = 6;          // [px] of distance around a glyph
 constexpr int kOversize = 3;         // glyphs are drawn larger by this before distances are taken
 
-constexpr std::array<const char*, 5> kDirectories{"/usr/share/fonts/truetype/dejavu",
-                                                  "/usr/share/fonts/dejavu", "/usr/share/fonts/TTF",
-                                                  "/usr/share/fonts/dejavu-sans-fonts", "/fonts"};
 constexpr std::array<const char*, 2> kFiles{"DejaVuSans.ttf", "DejaVuSans-Bold.ttf"};
 
 std::vector<unsigned char> read_all(const std::string& path) {
@@ -64,9 +62,7 @@ std::uint32_t next_character(std::string_view& utf8) {
 }
 
 tl::expected<Font, std::string> Font::load(const std::string& directory) {
-  std::vector<std::string> directories(kDirectories.begin(), kDirectories.end());
-  if (!directory.empty()) directories.insert(directories.begin(), directory);
-  return load_from(directories);
+  return load_from(draw::font_directories(directory));
 }
 
 tl::expected<Font, std::string> Font::load_from(const std::vector<std::string>& directories) {
@@ -79,9 +75,7 @@ tl::expected<Font, std::string> Font::load_from(const std::vector<std::string>& 
                        static_cast<std::size_t>(font.atlas_size_.y));
     return font;
   }
-  return tl::unexpected(
-      std::string("No font to write with: install DejaVu Sans (on Debian: apt-get install "
-                  "fonts-dejavu-core), or name its directory with --font-dir."));
+  return tl::unexpected(draw::no_font());
 }
 
 void Font::add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& glyph) {

@@ -23,7 +23,9 @@ Instance make_instance(const glm::mat4& m, const glm::vec3& tint, float glow) {
 }
 
 GpuMesh::GpuMesh(const MeshData& mesh)
-    : array_(GlVertexArray::make()), vertices_(GlBuffer::make()), indices_(GlBuffer::make()) {
+    : array_(draw::GlVertexArray::make()),
+      vertices_(draw::GlBuffer::make()),
+      indices_(draw::GlBuffer::make()) {
   index_count_ = static_cast<GLsizei>(mesh.indices.size());
   glBindVertexArray(array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, vertices_.get());
@@ -46,7 +48,7 @@ void GpuMesh::set_instances(std::span<const Instance> instances) {
   instance_count_ = static_cast<GLsizei>(instances.size());
   if (!instanced_) {
     instanced_ = true;
-    instances_ = GlBuffer::make();
+    instances_ = draw::GlBuffer::make();
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, instances_.get());
     for (GLuint i = 0; i < 4; ++i) {

@@ -4,7 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <span>
 
-#include "render/gl_handle.h"
+#include "draw/gl_handle.h"
 #include "render/mesh_data.h"
 
 namespace client {
@@ -27,8 +27,8 @@ class GpuMesh {
   void draw() const;  // all instances set; once, without instance attributes, if none ever were
 
  private:
-  GlVertexArray array_;
-  GlBuffer vertices_, indices_, instances_;
+  draw::GlVertexArray array_;
+  draw::GlBuffer vertices_, indices_, instances_;
   GLsizei index_count_ = 0, instance_count_ = 0;
   bool instanced_ = false;
 };

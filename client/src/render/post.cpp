@@ -1,16 +1,18 @@
 #include "render/post.h"
+#include "render/shaders.h"
 
 #include <glm/common.hpp>
 
 namespace client {
 
-tl::expected<Post, std::string> Post::create(Quality quality) {
+tl::expected<Post, std::string> Post::create(draw::Quality quality) {
   Post post;
   post.quality_ = quality;
-  post.empty_ = GlVertexArray::make();
-  if (quality == Quality::low) return post;
-  const auto build = [&](Program& into, std::string_view name) -> std::string {
-    auto program = Program::build({"fullscreen.vert"}, {"common.glsl", name}, quality);
+  post.empty_ = draw::GlVertexArray::make();
+  if (quality == draw::Quality::low) return post;
+  const auto build = [&](draw::Program& into, std::string_view name) -> std::string {
+    auto program =
+        draw::Program::build(shader_source, {"fullscreen.vert"}, {"common.glsl", name}, quality);
     if (!program) return program.error();
     into = std::move(*program);
     return {};
@@ -26,24 +28,25 @@ tl::expected<Post, std::string> Post::create(Quality quality) {
 void Post::resize(const glm::ivec2& screen) {
   if (screen == screen_) return;
   screen_ = screen;
-  if (quality_ == Quality::low) {
-    scene_ = Target({.size = glm::max(screen * 2 / 3, 1), .format = GL_RGBA8, .depth = true});
+  if (quality_ == draw::Quality::low) {
+    scene_ = draw::Target({.size = glm::max(screen * 2 / 3, 1), .format = GL_RGBA8, .depth = true});
     return;
   }
-  scene_ = Target({.size = screen, .samples = 4, .depth = true});
+  scene_ = draw::Target({.size = screen, .samples = 4, .depth = true});
   glm::ivec2 size = screen;
-  for (Target& target : small_) {
+  for (draw::Target& target : small_) {
     size = glm::max(size / 2, 1);
-    target = Target({.size = size});
+    target = draw::Target({.size = size});
   }
-  for (std::size_t i = 0; i < bloom_.size(); ++i) bloom_[i] = Target({.size = small_[i].size()});
+  for (std::size_t i = 0; i < bloom_.size(); ++i)
+    bloom_[i] = draw::Target({.size = small_[i].size()});
 }
 
-void Post::pass(const Program& program, const Target& to, GLuint image) const {
+void Post::pass(const draw::Program& program, const draw::Target& to, GLuint image) const {
   to.bind();
   program.use();
   program.set("u_image", 0);
-  bind_texture(0, GL_TEXTURE_2D, image);
+  draw::bind_texture(0, GL_TEXTURE_2D, image);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -51,7 +54,7 @@ void Post::present(const glm::ivec2& screen) {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   scene_.resolve();
-  if (quality_ == Quality::low) {
+  if (quality_ == draw::Quality::low) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, scene_.framebuffer());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glBlitFramebuffer(0, 0, scene_.size().x, scene_.size().y, 0, 0, screen.x, screen.y,
@@ -67,7 +70,7 @@ void Post::present(const glm::ivec2& screen) {
   for (std::size_t i = bloom_.size(); i-- > 0;) {
     up_.use();
     up_.set("u_detail", 1);
-    bind_texture(1, GL_TEXTURE_2D, small_[i].texture());
+    draw::bind_texture(1, GL_TEXTURE_2D, small_[i].texture());
     pass(up_, bloom_[i], below);
     below = bloom_[i].texture();
   }
@@ -76,8 +79,8 @@ void Post::present(const glm::ivec2& screen) {
   present_.use();
   present_.set("u_image", 0);
   present_.set("u_bloom", 1);
-  bind_texture(0, GL_TEXTURE_2D, scene_.texture());
-  bind_texture(1, GL_TEXTURE_2D, below);
+  draw::bind_texture(0, GL_TEXTURE_2D, scene_.texture());
+  draw::bind_texture(1, GL_TEXTURE_2D, below);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -6,30 +6,30 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "render/program.h"
-#include "render/target.h"
+#include "draw/program.h"
+#include "draw/target.h"
 
 namespace client {
 
 class Post {
  public:
-  static tl::expected<Post, std::string> create(Quality quality);
+  static tl::expected<Post, std::string> create(draw::Quality quality);
 
   void resize(const glm::ivec2& screen);
   // The target that the scene is drawn into.
-  const Target& scene() const { return scene_; }
+  const draw::Target& scene() const { return scene_; }
   // To the window's framebuffer, which stays bound.
   void present(const glm::ivec2& screen);
 
  private:
-  void pass(const Program& program, const Target& to, GLuint image) const;
+  void pass(const draw::Program& program, const draw::Target& to, GLuint image) const;
 
-  Quality quality_ = Quality::low;
-  Program bright_, down_, up_, present_;
-  GlVertexArray empty_;
-  Target scene_;
-  std::array<Target, 5> small_;
-  std::array<Target, 4> bloom_;
+  draw::Quality quality_ = draw::Quality::low;
+  draw::Program bright_, down_, up_, present_;
+  draw::GlVertexArray empty_;
+  draw::Target scene_;
+  std::array<draw::Target, 5> small_;
+  std::array<draw::Target, 4> bloom_;
   glm::ivec2 screen_{0, 0};
 };
 

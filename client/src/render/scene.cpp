@@ -9,6 +9,7 @@
 #include "render/figure_mesh.h"
 #include "render/mesh_builder.h"
 #include "render/palette.h"
+#include "render/shaders.h"
 #include "render/table_mesh.h"
 #include "wire/enums.h"
 
@@ -64,7 +65,7 @@ float Scene::drawn_ball_radius(const foosball::TableSpec& table, float height) {
   return radius * (1.0f + std::min(1.6f * above, 0.45f));
 }
 
-tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality) {
+tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(draw::Quality quality) {
   std::unique_ptr<Scene> scene(new Scene(quality));
   if (const std::string error = scene->build_programs(); !error.empty())
     return tl::unexpected(error);
@@ -74,7 +75,8 @@ tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality)
   auto post = Post::create(quality);
   if (!post) return tl::unexpected(post.error());
   scene->post_ = std::move(*post);
-  scene->shadow_ = quality == Quality::high ? ShadowTarget(2048, true) : ShadowTarget(768, false);
+  scene->shadow_ = quality == draw::Quality::high ? draw::ShadowTarget(2048, true)
+                                                  : draw::ShadowTarget(768, false);
   scene->light_matrix_ = light_matrix();
   scene->build_static_meshes();
   scene->use_layout(foosball::Layout::tournament);
@@ -83,7 +85,7 @@ tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(Quality quality)
 
 std::string Scene::build_programs() {
   struct Wanted {
-    Program* program;
+    draw::Program* program;
     std::initializer_list<std::string_view> vertex, fragment;
   };
   const Wanted wanted[] = {
@@ -97,7 +99,7 @@ std::string Scene::build_programs() {
       {&particle_, {"particle.vert"}, {"common.glsl", "particle.frag"}},
   };
   for (const Wanted& w : wanted) {
-    auto program = Program::build(w.vertex, w.fragment, quality_);
+    auto program = draw::Program::build(shader_source, w.vertex, w.fragment, quality_);
     if (!program) return program.error();
     *w.program = std::move(*program);
   }
@@ -105,7 +107,7 @@ std::string Scene::build_programs() {
 }
 
 void Scene::build_static_meshes() {
-  const float detail = quality_ == Quality::high ? 1.0f : 0.4f;
+  const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
   const auto rod_radius =
       static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
   for (std::size_t c = 0; c < kKinds; ++c) {
@@ -115,8 +117,8 @@ void Scene::build_static_meshes() {
   MeshBuilder ball(detail);
   ball.ellipsoid(glm::vec3(0), glm::vec3(1), 32, 20);
   ball_mesh_ = GpuMesh(ball.take());
-  particle_array_ = GlVertexArray::make();
-  particle_buffer_ = GlBuffer::make();
+  particle_array_ = draw::GlVertexArray::make();
+  particle_buffer_ = draw::GlBuffer::make();
   glBindVertexArray(particle_array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, particle_buffer_.get());
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(ParticleVertex), nullptr);
@@ -131,7 +133,7 @@ void Scene::use_layout(foosball::Layout layout) {
   const foosball::TableSpec& table = foosball::table_spec(layout);
   if (table_ == &table) return;
   table_ = &table;
-  const float detail = quality_ == Quality::high ? 1.0f : 0.4f;
+  const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
   body_mesh_ = GpuMesh(body_mesh(table, detail));
   rim_mesh_ = GpuMesh(rim_mesh(table, detail));
   for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_})
@@ -192,7 +194,7 @@ void Scene::draw_shadows() const {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void Scene::light(const Program& program, const Camera& camera, float fade) const {
+void Scene::light(const draw::Program& program, const Camera& camera, float fade) const {
   program.use();
   program.set("u_view_projection", camera.view_projection);
   program.set("u_shadow_matrix", kTextureFromClip * light_matrix_);
@@ -299,8 +301,8 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   post_.scene().bind();
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
-  bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
+  draw::bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
+  draw::bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
   draw_reflections(state, view);
   light(solid_, view.camera, 0.0f);
   draw_standing();

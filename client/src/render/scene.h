@@ -26,9 +26,9 @@ struct SceneView {
 class Scene {
  public:
   // Needs a current OpenGL ES 3.0 context. The error is a sentence.
-  static tl::expected<std::unique_ptr<Scene>, std::string> create(Quality quality);
+  static tl::expected<std::unique_ptr<Scene>, std::string> create(draw::Quality quality);
 
-  Quality quality() const { return quality_; }
+  draw::Quality quality() const { return quality_; }
   // Draws to the window's framebuffer of that size, and leaves it bound for the HUD.
   void draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
             const glm::ivec2& screen);
@@ -37,7 +37,7 @@ class Scene {
   static float drawn_ball_radius(const foosball::TableSpec& table, float height);
 
  private:
-  explicit Scene(Quality quality) : quality_(quality) {}
+  explicit Scene(draw::Quality quality) : quality_(quality) {}
   std::string build_programs();
   void build_static_meshes();
   void use_layout(foosball::Layout layout);
@@ -50,24 +50,24 @@ class Scene {
   void draw_glass(const SceneView& view) const;
   void load_particles(Particles& particles);
   void draw_particles(const Camera& camera, float height) const;
-  void light(const Program& program, const Camera& camera, float fade) const;
+  void light(const draw::Program& program, const Camera& camera, float fade) const;
 
   static constexpr std::size_t kFigures = foosball::kTeams;
   static constexpr std::size_t kKinds = foosball::kCharacters;
 
-  Quality quality_;
+  draw::Quality quality_;
   const foosball::TableSpec* table_ = nullptr;
-  Program solid_, depth_, field_, ball_, glass_, particle_;
+  draw::Program solid_, depth_, field_, ball_, glass_, particle_;
   Sky sky_;
   Post post_;
-  ShadowTarget shadow_;
+  draw::ShadowTarget shadow_;
   glm::mat4 light_matrix_{1.0f};
   GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
   std::array<GpuMesh, kKinds> figure_meshes_;  // by character; both teams' men may share one
   std::array<std::vector<Instance>, kKinds> men_;
-  GlVertexArray particle_array_;
-  GlBuffer particle_buffer_;
+  draw::GlVertexArray particle_array_;
+  draw::GlBuffer particle_buffer_;
   GLsizei particle_count_ = 0;
 };
 

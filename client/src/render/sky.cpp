@@ -7,7 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "render/target.h"
+#include "draw/target.h"
+#include "render/shaders.h"
 
 namespace client {
 namespace {
@@ -28,34 +29,37 @@ const glm::mat3 kFaces[6] = {
 
 }  // namespace
 
-tl::expected<Sky, std::string> Sky::create(Quality quality) {
-  auto bake = Program::build({"fullscreen.vert"}, {"common.glsl", "sky_bake.frag"}, quality);
-  auto background = Program::build({"sky.vert"}, {"common.glsl", "sky.frag"}, quality);
-  auto star = Program::build({"star.vert"}, {"common.glsl", "star.frag"}, quality);
+tl::expected<Sky, std::string> Sky::create(draw::Quality quality) {
+  auto bake = draw::Program::build(shader_source, {"fullscreen.vert"},
+                                   {"common.glsl", "sky_bake.frag"}, quality);
+  auto background =
+      draw::Program::build(shader_source, {"sky.vert"}, {"common.glsl", "sky.frag"}, quality);
+  auto star =
+      draw::Program::build(shader_source, {"star.vert"}, {"common.glsl", "star.frag"}, quality);
   for (const auto* program : {&bake, &background, &star}) {
     if (!*program) return tl::unexpected(program->error());
   }
   Sky sky;
   sky.background_ = std::move(*background);
   sky.star_ = std::move(*star);
-  sky.empty_ = GlVertexArray::make();
+  sky.empty_ = draw::GlVertexArray::make();
   sky.bake(*bake, quality);
-  sky.scatter_stars(quality == Quality::high ? 11000 : 6000);
+  sky.scatter_stars(quality == draw::Quality::high ? 11000 : 6000);
   return sky;
 }
 
-void Sky::bake(const Program& bake, Quality quality) {
-  const int face_size = quality == Quality::high ? 768 : 384;
-  cube_ = GlTexture::make();
-  bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
+void Sky::bake(const draw::Program& bake, draw::Quality quality) {
+  const int face_size = quality == draw::Quality::high ? 768 : 384;
+  cube_ = draw::GlTexture::make();
+  draw::bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
   // Only high quality has mirrors of every roughness; mixing two levels costs software dear.
-  const bool mirrored = quality == Quality::high;
+  const bool mirrored = quality == draw::Quality::high;
   const int levels = mirrored ? 1 + static_cast<int>(std::log2(face_size)) : 1;
   glTexStorage2D(GL_TEXTURE_CUBE_MAP, levels, GL_RGBA8, face_size, face_size);
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER,
                   mirrored ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  GlFramebuffer framebuffer = GlFramebuffer::make();
+  draw::GlFramebuffer framebuffer = draw::GlFramebuffer::make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
   glViewport(0, 0, face_size, face_size);
   glDisable(GL_DEPTH_TEST);
@@ -85,8 +89,8 @@ void Sky::scatter_stars(int count) {
                      glm::mix(glm::vec3(0.65f, 0.80f, 1.0f), glm::vec3(1.0f, 0.86f, 0.70f), warm)});
   }
   star_count_ = static_cast<GLsizei>(stars.size());
-  stars_ = GlVertexArray::make();
-  star_buffer_ = GlBuffer::make();
+  stars_ = draw::GlVertexArray::make();
+  star_buffer_ = draw::GlBuffer::make();
   glBindVertexArray(stars_.get());
   glBindBuffer(GL_ARRAY_BUFFER, star_buffer_.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(stars.size() * sizeof(Star)), stars.data(),
@@ -104,7 +108,7 @@ void Sky::draw(const Camera& camera, float pixel_scale, float time) const {
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_FALSE);
   background_.use();
-  bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
+  draw::bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
   background_.set("u_sky", 0);
   const glm::mat3 from_view = glm::transpose(glm::mat3(camera.view));
   background_.set("u_ray", glm::mat3(from_view[0] / camera.projection[0][0],

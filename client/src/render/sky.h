@@ -5,14 +5,14 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "draw/program.h"
 #include "render/camera.h"
-#include "render/program.h"
 
 namespace client {
 
 class Sky {
  public:
-  static tl::expected<Sky, std::string> create(Quality quality);
+  static tl::expected<Sky, std::string> create(draw::Quality quality);
 
   GLuint cube() const { return cube_.get(); }
   // Behind all that is drawn already. pixel_scale: pixels of this target for one of a 720-line
@@ -20,13 +20,13 @@ class Sky {
   void draw(const Camera& camera, float pixel_scale, float time) const;
 
  private:
-  void bake(const Program& bake, Quality quality);
+  void bake(const draw::Program& bake, draw::Quality quality);
   void scatter_stars(int count);
 
-  Program background_, star_;
-  GlTexture cube_;
-  GlVertexArray empty_, stars_;
-  GlBuffer star_buffer_;
+  draw::Program background_, star_;
+  draw::GlTexture cube_;
+  draw::GlVertexArray empty_, stars_;
+  draw::GlBuffer star_buffer_;
   GLsizei star_count_ = 0;
 };
 

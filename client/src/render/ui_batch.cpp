@@ -2,18 +2,19 @@
 
 #include <cstddef>
 
-#include "render/target.h"
+#include "draw/target.h"
+#include "render/shaders.h"
 
 namespace client {
 
 tl::expected<UiBatch, std::string> UiBatch::create(Font font) {
-  auto program = Program::build({"ui.vert"}, {"ui.frag"}, Quality::high);
+  auto program = draw::Program::build(shader_source, {"ui.vert"}, {"ui.frag"}, draw::Quality::high);
   if (!program) return tl::unexpected(program.error());
   UiBatch batch;
   batch.program_ = std::move(*program);
   batch.font_ = std::move(font);
-  batch.atlas_ = GlTexture::make();
-  bind_texture(0, GL_TEXTURE_2D, batch.atlas_.get());
+  batch.atlas_ = draw::GlTexture::make();
+  draw::bind_texture(0, GL_TEXTURE_2D, batch.atlas_.get());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   const glm::ivec2 size = batch.font_.atlas_size();
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE,
@@ -22,8 +23,8 @@ tl::expected<UiBatch, std::string> UiBatch::create(Font font) {
     glTexParameteri(GL_TEXTURE_2D, key, GL_LINEAR);
   for (const GLenum key : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, key, GL_CLAMP_TO_EDGE);
-  batch.array_ = GlVertexArray::make();
-  batch.buffer_ = GlBuffer::make();
+  batch.array_ = draw::GlVertexArray::make();
+  batch.buffer_ = draw::GlBuffer::make();
   glBindVertexArray(batch.array_.get());
   glBindBuffer(GL_ARRAY_BUFFER, batch.buffer_.get());
   const auto attribute = [](GLuint index, GLint count, std::size_t offset) {
@@ -69,7 +70,7 @@ void UiBatch::flush(const glm::ivec2& screen) {
     program_.use();
     program_.set("u_screen", glm::vec2(screen));
     program_.set("u_glyphs", 0);
-    bind_texture(0, GL_TEXTURE_2D, atlas_.get());
+    draw::bind_texture(0, GL_TEXTURE_2D, atlas_.get());
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(Vertex)),

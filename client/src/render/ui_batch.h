@@ -5,9 +5,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "draw/gl_handle.h"
+#include "draw/program.h"
 #include "render/font.h"
-#include "render/gl_handle.h"
-#include "render/program.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -38,10 +38,10 @@ class UiBatch {
             const glm::vec2& uv_high, const Colour& colour, const glm::vec4& shape);
 
   Font font_;
-  Program program_;
-  GlTexture atlas_;
-  GlVertexArray array_;
-  GlBuffer buffer_;
+  draw::Program program_;
+  draw::GlTexture atlas_;
+  draw::GlVertexArray array_;
+  draw::GlBuffer buffer_;
   std::vector<Vertex> vertices_;
 };
 

@@ -1,11 +1,11 @@
-#include "render/image.h"
+#include "draw/image.h"
 
 #include <GLES3/gl3.h>
 #include <stb/stb_image_write.h>
 
 #include <cstddef>
 
-namespace client {
+namespace draw {
 
 glm::ivec3 Image::at(int x, int y) const {
   const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
@@ -37,4 +37,4 @@ tl::expected<void, std::string> write_png(const Image& image, const std::string&
                         ": choose a directory that exists and can be written to.");
 }
 
-}  // namespace client
+}  // namespace draw

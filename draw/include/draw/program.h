@@ -9,16 +9,20 @@
 #include <utility>
 #include <vector>
 
-#include "render/gl_handle.h"
-#include "render/quality.h"
+#include "draw/gl_handle.h"
+#include "draw/quality.h"
 
-namespace client {
+namespace draw {
+
+// Text of the shader file of that name; empty if there is none. Each room has its own.
+using ShaderSource = std::string_view (*)(std::string_view file);
 
 class Program {
  public:
   // Concatenates the named shader files (shared parts first) of each stage. The error is the
   // driver's log with the files' names.
-  static tl::expected<Program, std::string> build(std::initializer_list<std::string_view> vertex,
+  static tl::expected<Program, std::string> build(ShaderSource source,
+                                                  std::initializer_list<std::string_view> vertex,
                                                   std::initializer_list<std::string_view> fragment,
                                                   Quality quality);
 
@@ -40,4 +44,4 @@ class Program {
   std::vector<std::pair<std::string, GLint>> uniforms_;
 };
 
-}  // namespace client
+}  // namespace draw

@@ -3,9 +3,9 @@
 
 #include <glm/vec2.hpp>
 
-#include "render/gl_handle.h"
+#include "draw/gl_handle.h"
 
-namespace client {
+namespace draw {
 
 struct TargetDesc {
   glm::ivec2 size{1, 1};
@@ -40,6 +40,7 @@ class ShadowTarget {
   ShadowTarget(int size, bool smooth);
   void bind() const;
   GLuint texture() const { return texture_.get(); }
+  int size() const { return size_; }  // of its side [px]
 
  private:
   int size_ = 0;
@@ -49,4 +50,4 @@ class ShadowTarget {
 
 void bind_texture(int unit, GLenum kind, GLuint texture);
 
-}  // namespace client
+}  // namespace draw

@@ -1,5 +1,5 @@
-# Run by the build: cmake -DDIR=... -DOUT=... -P embed_shaders.cmake. Writes one .cpp in which every
-# shader is a raw string, found by its file name.
+# Run by the build: cmake -DDIR=... -DOUT=... -DHEADER=... -DNAMESPACE=... -P embed_shaders.cmake. Writes
+# one .cpp in which every shader is a raw string, found by its file name: shader_source() of HEADER.
 file(GLOB shaders "${DIR}/*.glsl" "${DIR}/*.vert" "${DIR}/*.frag")
 list(SORT shaders)
 set(body "")
@@ -8,13 +8,13 @@ foreach(path IN LISTS shaders)
   file(READ "${path}" text)
   string(APPEND body "    {\"${name}\", R\"glsl(${text})glsl\"},\n")
 endforeach()
-file(WRITE "${OUT}.new" "// Written by client/cmake/embed_shaders.cmake.
-#include \"render/shaders.h\"
+file(WRITE "${OUT}.new" "// Written by draw/cmake/embed_shaders.cmake.
+#include \"${HEADER}\"
 
 #include <array>
 #include <utility>
 
-namespace client {
+namespace ${NAMESPACE} {
 namespace {
 using Entry = std::pair<std::string_view, std::string_view>;
 const auto kShaders = std::to_array<Entry>({
@@ -28,6 +28,6 @@ std::string_view shader_source(std::string_view name) {
   return {};
 }
 
-}  // namespace client
+}  // namespace ${NAMESPACE}
 ")
 file(COPY_FILE "${OUT}.new" "${OUT}" ONLY_IF_DIFFERENT)

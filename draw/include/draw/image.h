@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-namespace client {
+namespace draw {
 
 struct Image {
   glm::ivec2 size{0, 0};
@@ -21,4 +21,4 @@ struct Image {
 Image read_pixels(const glm::ivec2& size);
 tl::expected<void, std::string> write_png(const Image& image, const std::string& path);
 
-}  // namespace client
+}  // namespace draw

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-namespace client {
+namespace draw {
 
 enum class Quality : std::uint8_t { low, high };
 
-}  // namespace client
+}  // namespace draw

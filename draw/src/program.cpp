@@ -1,25 +1,23 @@
-#include "render/program.h"
+#include "draw/program.h"
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "render/shaders.h"
-
-namespace client {
+namespace draw {
 namespace {
 
-tl::expected<GLuint, std::string> compile(GLenum stage,
+tl::expected<GLuint, std::string> compile(ShaderSource source, GLenum stage,
                                           std::initializer_list<std::string_view> files,
                                           Quality quality) {
   std::string text = "#version 300 es\nprecision highp float;\nprecision highp int;\n";
   if (quality == Quality::low) text += "#define LOW_QUALITY 1\n";
   std::string names;
   for (const std::string_view file : files) {
-    text += shader_source(file);
+    text += source(file);
     names += std::string(file) + " ";
   }
   const GLuint shader = glCreateShader(stage);
-  const char* source = text.c_str();
-  glShaderSource(shader, 1, &source, nullptr);
+  const char* joined = text.c_str();
+  glShaderSource(shader, 1, &joined, nullptr);
   glCompileShader(shader);
   GLint good = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
@@ -32,12 +30,13 @@ tl::expected<GLuint, std::string> compile(GLenum stage,
 
 }  // namespace
 
-tl::expected<Program, std::string> Program::build(std::initializer_list<std::string_view> vertex,
+tl::expected<Program, std::string> Program::build(ShaderSource source,
+                                                  std::initializer_list<std::string_view> vertex,
                                                   std::initializer_list<std::string_view> fragment,
                                                   Quality quality) {
-  const auto v = compile(GL_VERTEX_SHADER, vertex, quality);
+  const auto v = compile(source, GL_VERTEX_SHADER, vertex, quality);
   if (!v) return tl::unexpected(v.error());
-  const auto f = compile(GL_FRAGMENT_SHADER, fragment, quality);
+  const auto f = compile(source, GL_FRAGMENT_SHADER, fragment, quality);
   if (!f) {
     glDeleteShader(*v);
     return tl::unexpected(f.error());
@@ -106,4 +105,4 @@ void Program::set(std::string_view name, const glm::mat4& value) const {
   glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(value));
 }
 
-}  // namespace client
+}  // namespace draw

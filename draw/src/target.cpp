@@ -1,8 +1,8 @@
-#include "render/target.h"
+#include "draw/target.h"
 
 #include <algorithm>
 
-namespace client {
+namespace draw {
 namespace {
 
 GlRenderbuffer make_renderbuffer(const TargetDesc& desc, GLenum format) {
@@ -84,4 +84,4 @@ void ShadowTarget::bind() const {
   glViewport(0, 0, size_, size_);
 }
 
-}  // namespace client
+}  // namespace draw

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace client {
+namespace draw {
 
 template <class Traits>
 class GlHandle {
@@ -81,4 +81,4 @@ using GlRenderbuffer = GlHandle<RenderbufferTraits>;
 using GlFramebuffer = GlHandle<FramebufferTraits>;
 using GlProgram = GlHandle<ProgramTraits>;
 
-}  // namespace client
+}  // namespace draw
