@@ -3,13 +3,6 @@
 namespace scenes {
 namespace {
 
-vp::Shape engine_shape(const Shape& shape) {
-  if (const auto* s = std::get_if<Sphere>(&shape)) return vp::Sphere{s->radius};
-  if (const auto* b = std::get_if<Box>(&shape)) return vp::Box{b->half_extents};
-  if (const auto* c = std::get_if<Capsule>(&shape)) return vp::Capsule{c->radius, c->half_length};
-  return vp::HalfSpace{};
-}
-
 vp::Material engine_material(const Material& material) {
   vp::Material out;
   out.friction = material.friction;
@@ -28,6 +21,13 @@ vp::se3 engine_velocity(const SE3& T_world_body, const Vec3& velocity, const Vec
 }
 
 }  // namespace
+
+vp::Shape engine_shape(const Shape& shape) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) return vp::Sphere{s->radius};
+  if (const auto* b = std::get_if<Box>(&shape)) return vp::Box{b->half_extents};
+  if (const auto* c = std::get_if<Capsule>(&shape)) return vp::Capsule{c->radius, c->half_length};
+  return vp::HalfSpace{};
+}
 
 vp::Expected<SceneWorld> SceneWorld::create(Scene scene, vp::WorldDesc settings) {
   settings.gravity = scene.gravity;

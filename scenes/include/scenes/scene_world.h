@@ -9,6 +9,9 @@
 
 namespace scenes {
 
+// As the engine has it.
+vp::Shape engine_shape(const Shape& shape);
+
 class SceneWorld {
  public:
   // settings.gravity is the scene's. Refused: what the engine cannot have, with its reason.

@@ -1,0 +1,29 @@
+// What a run is summed up by: for the terminal, and as JSON.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/simulation.h"
+#include "scenes/measure.h"
+
+namespace sandbox {
+
+struct Figures {
+  std::string scene;
+  int rate = 0;
+  double seconds = 0.0;  // of the scene's time
+  std::size_t steps = 0;
+  StepTimes::Figures step;  // [us]
+  scenes::Standing standing;
+  std::uint64_t hash = 0;  // of the world's state
+  int frames = 0;          // drawn
+  double frames_per_second = 0.0;
+};
+
+// Of what the simulation has come to; frames are not its own.
+Figures figures_of(const Simulation& simulation);
+std::string sentence(const Figures& figures);
+std::string json(const Figures& figures);
+
+}  // namespace sandbox

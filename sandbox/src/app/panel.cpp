@@ -1,0 +1,233 @@
+#include "app/panel.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/thrown.h"
+#include "draw/font_files.h"
+#include "scenes/catalogue.h"
+
+namespace sandbox {
+namespace {
+
+constexpr std::array<int, 3> kRates{60, 240, 1000};  // [Hz]
+constexpr std::size_t kShown = 1000;                 // steps that the figures are of
+constexpr float kMargin = 12.0f, kWidth = static_cast<float>(kPanelReach) - 2 * kMargin;  // [px]
+const ImVec4 kDim{0.72f, 0.76f, 0.82f, 1.0f}, kBright{1.0f, 0.86f, 0.45f, 1.0f};
+constexpr double kSlowest = 0.01, kFastest = 10.0;
+
+bool pressed(int key) {
+  return ImGui::IsKeyPressed(key, false);
+}
+
+// The scene that is so many places after this one in the catalogue, from its end to its beginning.
+std::string neighbour(std::string_view name, int places) {
+  const auto all = scenes::catalogue();
+  const auto count = static_cast<int>(all.size());
+  int at = 0;
+  for (int i = 0; i < count; ++i) {
+    if (all[static_cast<std::size_t>(i)].name == name) at = i;
+  }
+  return std::string(all[static_cast<std::size_t>((at + places + count) % count)].name);
+}
+
+void scene_chooser(const Simulation& simulation, Wishes& wishes) {
+  ImGui::SetNextItemWidth(-1.0f);
+  ImGui::PushStyleColor(ImGuiCol_Text, kBright);
+  const bool open =
+      ImGui::BeginCombo("##scene", simulation.scene().name.c_str(), ImGuiComboFlags_HeightLargest);
+  ImGui::PopStyleColor();
+  if (open) {
+    for (const scenes::Entry& entry : scenes::catalogue()) {
+      const std::string name(entry.name);
+      if (ImGui::Selectable(name.c_str(), simulation.scene().name == name)) wishes.scene = name;
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(entry.what).c_str());
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::PushStyleColor(ImGuiCol_Text, kDim);
+  for (const scenes::Entry& entry : scenes::catalogue()) {
+    if (entry.name == simulation.scene().name)
+      ImGui::TextWrapped("%s", std::string(entry.what).c_str());
+  }
+  ImGui::PopStyleColor();
+}
+
+void time_controls(const Simulation& simulation, const Meter& meter, Controls& controls,
+                   Wishes& wishes) {
+  if (ImGui::Button(controls.paused ? "Go on" : "Pause", {72, 0}))
+    controls.paused = !controls.paused;
+  ImGui::SameLine();
+  if (ImGui::Button("Step", {60, 0})) wishes.step = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Begin anew", {92, 0})) wishes.reset = true;
+  ImGui::SameLine();
+  ImGui::Text("%.2f s", simulation.time());
+  for (const int rate : kRates) {
+    char label[16];
+    std::snprintf(label, sizeof label, "%d Hz", rate);
+    ImGui::RadioButton(label, &controls.rate, rate);
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+  auto speed = static_cast<float>(controls.speed);
+  ImGui::SetNextItemWidth(150);
+  if (ImGui::SliderFloat("##speed", &speed, static_cast<float>(kSlowest), 1.0f, "speed %.2f",
+                         ImGuiSliderFlags_Logarithmic))
+    controls.speed = speed;
+  ImGui::SameLine();
+  if (controls.paused) {
+    ImGui::TextColored(kBright, "paused");
+  } else {
+    const bool behind = meter.rate() > 0.0 && meter.speed() < 0.95 * controls.speed;
+    ImGui::TextColored(behind ? kBright : kDim, "reached %.2f", meter.speed());
+  }
+}
+
+void row(const char* what, const char* format, double value) {
+  ImGui::TableNextColumn();
+  ImGui::TextColored(kDim, "%s", what);
+  ImGui::TableNextColumn();
+  ImGui::Text(format, value);
+}
+
+void timings(const Simulation& simulation, const Meter& meter, int draw_calls) {
+  const StepTimes::Figures f = simulation.times().figures(kShown);
+  const std::vector<double> last = simulation.times().last(kShown);
+  std::vector<float> shown(last.begin(), last.end());
+  const auto top = static_cast<float>(std::max(1.25 * f.p99, 1.0));
+  char label[64];
+  std::snprintf(label, sizeof label, "%.0f us, of the last %zu steps", static_cast<double>(top),
+                shown.size());
+  ImGui::PlotLines("##steps", shown.data(), static_cast<int>(shown.size()), 0, label, 0.0f, top,
+                   {ImGui::GetContentRegionAvail().x, 64.0f});
+  if (ImGui::BeginTable("figures", 4, ImGuiTableFlags_SizingStretchProp)) {
+    const vp::StepCounters& counters = simulation.world().counters();
+    row("median", "%.0f us", f.median);
+    row("p99", "%.0f us", f.p99);
+    row("bodies", "%.0f", static_cast<double>(simulation.moving()));
+    row("contacts", "%.0f", counters.contacts);
+    row("looked at", "%.0f", counters.looked_at);
+    row("impacts", "%.0f", counters.impacts);
+    row("frames", "%.0f /s", meter.rate());
+    row("draw calls", "%.0f", draw_calls);
+    ImGui::EndTable();
+  }
+}
+
+void show_controls(Controls& controls, Wishes& wishes) {
+  ImGui::Checkbox("contacts", &controls.view.contacts);
+  ImGui::SameLine();
+  ImGui::Checkbox("frames", &controls.view.frames);
+  ImGui::SameLine();
+  ImGui::Checkbox("centres", &controls.view.centres);
+  bool by_speed = controls.view.colouring == Colouring::speed;
+  if (ImGui::Checkbox("speeds", &by_speed))
+    controls.view.colouring = by_speed ? Colouring::speed : Colouring::body;
+  ImGui::SameLine();
+  ImGui::Checkbox("shadows", &controls.view.shadows);
+  ImGui::SameLine();
+  if (ImGui::Button("Show all")) wishes.show_all = true;
+  if (ImGui::Button("Throw a")) wishes.throw_one = true;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1.0f);
+  ImGui::Combo("##thrown", &controls.thrown, kThrownNames.data(),
+               static_cast<int>(kThrownNames.size()));
+}
+
+void keys_help() {
+  if (!ImGui::CollapsingHeader("Mouse and keys")) return;
+  ImGui::TextUnformatted(
+      "left: drag a body, or turn the view\n"
+      "right: pan     wheel: zoom\n"
+      "Space pause    S one step    R begin anew\n"
+      "1 2 3 rate     - + speed     N B scenes\n"
+      "C contacts     F frames      M centres\n"
+      "V speeds       T throw       Home show all\n"
+      "Tab this panel     Esc leave");
+}
+
+}  // namespace
+
+void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes) {
+  if (ImGui::GetIO().WantTextInput) return;
+  if (pressed(GLFW_KEY_SPACE)) controls.paused = !controls.paused;
+  if (ImGui::IsKeyPressed(GLFW_KEY_S, true)) wishes.step = true;
+  if (pressed(GLFW_KEY_R)) wishes.reset = true;
+  for (std::size_t i = 0; i < kRates.size(); ++i) {
+    if (pressed(GLFW_KEY_1 + static_cast<int>(i))) controls.rate = kRates[i];
+  }
+  if (pressed(GLFW_KEY_MINUS) || pressed(GLFW_KEY_KP_SUBTRACT))
+    controls.speed = std::max(0.5 * controls.speed, kSlowest);
+  if (pressed(GLFW_KEY_EQUAL) || pressed(GLFW_KEY_KP_ADD))
+    controls.speed = std::min(2.0 * controls.speed, kFastest);
+  if (pressed(GLFW_KEY_N)) wishes.scene = neighbour(simulation.scene().name, 1);
+  if (pressed(GLFW_KEY_B)) wishes.scene = neighbour(simulation.scene().name, -1);
+  if (pressed(GLFW_KEY_C)) controls.view.contacts = !controls.view.contacts;
+  if (pressed(GLFW_KEY_F)) controls.view.frames = !controls.view.frames;
+  if (pressed(GLFW_KEY_M)) controls.view.centres = !controls.view.centres;
+  if (pressed(GLFW_KEY_V)) {
+    controls.view.colouring =
+        controls.view.colouring == Colouring::speed ? Colouring::body : Colouring::speed;
+  }
+  if (pressed(GLFW_KEY_T)) wishes.throw_one = true;
+  if (pressed(GLFW_KEY_HOME)) wishes.show_all = true;
+  if (pressed(GLFW_KEY_TAB)) controls.panel = !controls.panel;
+  if (pressed(GLFW_KEY_ESCAPE)) wishes.leave = true;
+}
+
+void draw_panel(const Simulation& simulation, const Meter& meter, int draw_calls,
+                const std::string& message, Controls& controls, Wishes& wishes) {
+  if (!controls.panel) return;
+  ImGui::SetNextWindowPos({kMargin, kMargin});
+  ImGui::SetNextWindowSize({kWidth, 0});
+  ImGui::Begin(
+      "sandbox", nullptr,
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
+  scene_chooser(simulation, wishes);
+  ImGui::Separator();
+  time_controls(simulation, meter, controls, wishes);
+  ImGui::Separator();
+  timings(simulation, meter, draw_calls);
+  ImGui::Separator();
+  show_controls(controls, wishes);
+  keys_help();
+  if (simulation.status().non_finite)
+    ImGui::TextColored(kBright, "a body left the range of numbers");
+  if (simulation.status().impact_limit)
+    ImGui::TextColored(kBright, "impacts left over: %.3f s held", simulation.status().time_held);
+  if (!message.empty()) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(kBright, "%s", message.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+tl::expected<void, std::string> style_panel(const std::string& font_directory) {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 8.0f;
+  style.FrameRounding = style.GrabRounding = style.PopupRounding = 4.0f;
+  style.WindowBorderSize = 0.0f;
+  style.WindowPadding = {kMargin, kMargin};
+  style.ItemSpacing = {8, 7};
+  style.Colors[ImGuiCol_WindowBg] = {0.055f, 0.070f, 0.095f, 0.88f};
+  style.Colors[ImGuiCol_PlotLines] = {0.45f, 0.80f, 0.98f, 1.0f};
+  style.Colors[ImGuiCol_FrameBg] = {0.16f, 0.21f, 0.29f, 0.80f};
+  style.Colors[ImGuiCol_Button] = {0.20f, 0.33f, 0.50f, 0.90f};
+  for (const std::string& place : draw::font_directories(font_directory)) {
+    const std::string file = place + "/DejaVuSans.ttf";
+    if (std::error_code none; !std::filesystem::is_regular_file(file, none)) continue;
+    if (ImGui::GetIO().Fonts->AddFontFromFileTTF(file.c_str(), 14.0f) != nullptr) return {};
+  }
+  return tl::unexpected(draw::no_font());
+}
+
+}  // namespace sandbox

@@ -1,0 +1,15 @@
+// The shapes that can be thrown into a scene: one of each kind that moves.
+#pragma once
+
+#include <array>
+
+#include "vphysics/shapes.h"
+
+namespace sandbox {
+
+inline constexpr std::array<const char*, 6> kThrownNames{"box",      "sphere", "capsule",
+                                                         "cylinder", "cone",   "hull"};
+// Precondition: index is one of the names'. About as large as a sphere of that radius [m].
+vp::Shape thrown_shape(int index, double radius);
+
+}  // namespace sandbox

@@ -1,0 +1,162 @@
+#include "core/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenes/catalogue.h"
+
+namespace sandbox {
+namespace {
+
+constexpr std::size_t kTimesKept = 100'000;  // 100 s at 1 kHz, in 0.8 MB
+constexpr double kReach = 1e6;               // of a pick [m]
+constexpr double kDensity = 1000.0;          // of what is thrown [kg/m^3]
+
+Piece piece_of(const scenes::Body& body, vp::BodyId id) {
+  Piece piece{id, body.motion, {}, {}};
+  if (body.motion == scenes::Motion::dynamic) {
+    const scenes::Mass mass = scenes::mass_of(body);
+    piece.inertia = vp::Inertia(mass.mass, mass.moments);
+  }
+  for (const scenes::Part& part : body.parts) {
+    piece.parts.push_back({scenes::engine_shape(part.shape), part.T_body_shape});
+  }
+  return piece;
+}
+
+}  // namespace
+
+Simulation::Simulation(scenes::SceneWorld world, int rate, Clock clock)
+    : world_(std::move(world)), rate_(rate), clock_(clock), times_(kTimesKept) {
+  collect_pieces();
+}
+
+void Simulation::collect_pieces() {
+  pieces_.clear();
+  ids_ = world_.bodies();
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    pieces_.push_back(piece_of(scene().bodies[i], ids_[i]));
+  }
+}
+
+vp::Expected<Simulation> Simulation::open(std::string_view name, int rate, Clock clock) {
+  auto scene = scenes::make_scene(name);
+  if (!scene) return tl::make_unexpected(scene.error());
+  auto world = scenes::SceneWorld::create(std::move(*scene));
+  if (!world) return tl::make_unexpected(world.error());
+  return Simulation(std::move(*world), rate, clock);
+}
+
+vp::Expected<void> Simulation::reset() {
+  auto world = scenes::SceneWorld::create(scene());
+  if (!world) return tl::make_unexpected(world.error());
+  world_ = std::move(*world);
+  collect_pieces();
+  times_.clear();
+  contacts_.clear();
+  status_ = {};
+  grip_.reset();
+  owed_ = 0.0;
+  steps_ = 0;
+  return {};
+}
+
+std::size_t Simulation::moving() const {
+  return static_cast<std::size_t>(
+      std::count_if(pieces_.begin(), pieces_.end(),
+                    [](const Piece& piece) { return piece.motion == scenes::Motion::dynamic; }));
+}
+
+void Simulation::bounds(vp::Vec3& low, vp::Vec3& high) const {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  constexpr double kAround = 0.6;  // a body's own size, half [m]
+  low = {kFar, kFar, kFar};
+  high = -low;
+  const bool any = moving() > 0;
+  for (const Piece& piece : pieces_) {
+    if (any && piece.motion != scenes::Motion::dynamic) continue;
+    const vp::Vec3 p = world().pose(piece.body).position();
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i] - kAround);
+      high[i] = std::max(high[i], p[i] + kAround);
+    }
+  }
+  if (low.x > high.x) low = {-kAround, -kAround, -kAround}, high = -low;
+}
+
+vp::Expected<void> Simulation::step() {
+  if (grip_) {
+    const vp::Vec3 at = world().pose(grip_->body) * grip_->point_body;
+    const auto pulled =
+        world_.world().apply_impulse(grip_->body, pull_impulse(world(), *grip_, dt()), at);
+    if (!pulled) return pulled;
+  }
+  const std::int64_t began = clock_();
+  const auto status = world_.step(dt());
+  times_.add(1e-3 * static_cast<double>(clock_() - began));
+  if (!status) return tl::make_unexpected(status.error());
+  status_.impact_limit = status_.impact_limit || status->impact_limit;
+  status_.non_finite = status_.non_finite || status->non_finite;
+  status_.time_held += status->time_held;
+  ++steps_;
+  contacts_.update(world(), ids_, dt());
+  return {};
+}
+
+vp::Expected<void> Simulation::advance(double frame, double speed, double budget) {
+  owed_ += frame * speed;
+  const std::int64_t until = clock_() + static_cast<std::int64_t>(1e9 * budget);
+  while (owed_ >= dt()) {
+    if (const auto stepped = step(); !stepped) return stepped;
+    owed_ -= dt();
+    if (clock_() > until) owed_ = std::fmod(owed_, dt());
+  }
+  return {};
+}
+
+bool Simulation::grab(const Ray& ray) {
+  grip_.reset();
+  const auto hit = world().ray_cast(ray.origin, ray.direction, kReach);
+  if (!hit || hit->user_data >= pieces_.size()) return false;
+  const Piece& piece = pieces_[hit->user_data];
+  if (piece.motion != scenes::Motion::dynamic) return false;
+  grip_ = Grip{piece.body, piece.inertia, inverse_times(world().pose(piece.body), hit->point),
+               hit->point};
+  return true;
+}
+
+void Simulation::drag(const Ray& ray, const vp::Vec3& forward) {
+  if (!grip_) return;
+  const double along = dot(ray.direction, forward);
+  const double depth = dot(grip_->target - ray.origin, forward);
+  if (along < 1e-3 || depth <= 0.0) return;  // the plane is behind the eye, or seen edge on
+  grip_->target = ray.origin + (depth / along) * ray.direction;
+}
+
+vp::Expected<void> Simulation::throw_body(const vp::Shape& shape, const vp::Vec3& at,
+                                          const vp::Vec3& velocity) {
+  const vp::Inertia solid = vp::solid_inertia(shape, kDensity);
+  const vp::SE3 T_body_shape(-solid.centre_of_mass());
+  vp::BodyDesc desc;
+  desc.T_world_body = vp::SE3(at);
+  desc.velocity.v = velocity;
+  desc.inertia = solid.about(solid.centre_of_mass());
+  desc.user_data = pieces_.size();
+  const auto body = world_.world().create_body(desc);
+  if (!body) return tl::make_unexpected(body.error());
+  vp::ColliderDesc collider;
+  collider.shape = shape;
+  collider.T_body_shape = T_body_shape;
+  collider.material.friction = 0.6;
+  collider.user_data = desc.user_data;
+  if (const auto added = world_.world().add_collider(*body, collider); !added) {
+    (void)world_.world().destroy_body(*body);
+    return tl::make_unexpected(added.error());
+  }
+  pieces_.push_back({*body, scenes::Motion::dynamic, desc.inertia, {{shape, T_body_shape}}});
+  ids_.push_back(*body);
+  return {};
+}
+
+}  // namespace sandbox

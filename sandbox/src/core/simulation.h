@@ -1,0 +1,94 @@
+// A scene that runs: stepped at a rate, paused, slowed down, with a hand in it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/contact_marks.h"
+#include "core/orbit_camera.h"
+#include "core/pull.h"
+#include "core/step_times.h"
+#include "scenes/scene_world.h"
+
+namespace sandbox {
+
+// A body as it is shown.
+struct Piece {
+  struct Part {
+    vp::Shape shape;
+    vp::SE3 T_body_part;
+  };
+  vp::BodyId body;
+  scenes::Motion motion;
+  vp::Inertia inertia;  // of a dynamic one
+  std::vector<Part> parts;
+};
+
+class Simulation {
+ public:
+  using Clock = std::int64_t (*)();  // [ns]
+
+  static constexpr int kLeastRate = 10, kMostRate = 10'000;  // [Hz]
+
+  // The error names the scenes there are, or what of this one the engine cannot have.
+  static vp::Expected<Simulation> open(std::string_view scene, int rate, Clock clock);
+
+  vp::Expected<void> reset();
+  const scenes::Scene& scene() const { return world_.scene(); }
+  const vp::World& world() const { return world_.world(); }
+  double time() const { return world_.time(); }  // [s] since the start
+  std::size_t steps() const { return steps_; }   // since the start
+  // By the user data of bodies and their colliders: those of the scene, then those thrown.
+  std::span<const Piece> pieces() const { return pieces_; }
+  std::size_t moving() const;  // number of dynamic ones
+  std::vector<vp::SE3> scene_poses() const { return world_.poses(); }
+  // Around what moves, or all there is if nothing does; at least a metre wide.
+  void bounds(vp::Vec3& low, vp::Vec3& high) const;
+
+  int rate() const { return rate_; }
+  void set_rate(int hz) { rate_ = hz; }
+  double dt() const { return 1.0 / rate_; }
+  vp::Expected<void> step();
+  // As many steps as fall into a frame of so many seconds, at that share of real time; fewer if
+  // they take longer than the budget [s], and then the rest is let go: the scene runs slower than
+  // asked.
+  vp::Expected<void> advance(double frame, double speed, double budget);
+
+  const StepTimes& times() const { return times_; }
+  const ContactMarks& contacts() const { return contacts_; }
+  // Whatever a step since the start has had to do without.
+  const vp::StepStatus& status() const { return status_; }
+
+  // Of what moves, the first that the ray meets; then it is held, until let go.
+  bool grab(const Ray& ray);
+  // Where the pointer is now: in the plane through the grabbed point that faces the eye.
+  void drag(const Ray& ray, const vp::Vec3& forward);
+  void let_go() { grip_.reset(); }
+  const std::optional<Grip>& grip() const { return grip_; }
+
+  // Adds a body of density 1000, its centre of mass there, flying so [m/s].
+  vp::Expected<void> throw_body(const vp::Shape& shape, const vp::Vec3& at,
+                                const vp::Vec3& velocity);
+
+ private:
+  Simulation(scenes::SceneWorld world, int rate, Clock clock);
+  void collect_pieces();
+
+  scenes::SceneWorld world_;
+  int rate_;
+  Clock clock_;
+  std::vector<Piece> pieces_;
+  std::vector<vp::BodyId> ids_;  // of the pieces
+  StepTimes times_;
+  ContactMarks contacts_;
+  vp::StepStatus status_;
+  std::optional<Grip> grip_;
+  double owed_ = 0.0;  // [s] not stepped yet
+  std::size_t steps_ = 0;
+};
+
+}  // namespace sandbox

@@ -1,0 +1,338 @@
+#include "view/scene_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+
+#include "view/palette.h"
+#include "view/see_through.h"
+#include "view/shaders.h"
+#include "view/shadow_fit.h"
+
+namespace sandbox {
+namespace {
+
+constexpr std::size_t kWatched = 96;   // bodies that walls are asked about
+constexpr float kShadowAround = 2.2f;  // of the camera's distance; farther off nothing casts
+constexpr float kHaze = 0.04f;         // of the light, in the camera's distance
+constexpr double kGroundReach = 50.0;  // of the camera's distance
+
+const glm::mat4 kTextureFromClip{
+    {0.5f, 0, 0, 0}, {0, 0.5f, 0, 0}, {0, 0, 0.5f, 0}, {0.5f, 0.5f, 0.5f, 1}};
+
+glm::vec3 narrow(const vp::Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+std::optional<ShapeKind> kind_of(const vp::Shape& shape) {
+  if (std::holds_alternative<vp::Box>(shape)) return ShapeKind::box;
+  if (std::holds_alternative<vp::Sphere>(shape)) return ShapeKind::sphere;
+  if (std::holds_alternative<vp::Capsule>(shape)) return ShapeKind::capsule;
+  if (std::holds_alternative<vp::Cylinder>(shape)) return ShapeKind::cylinder;
+  if (std::holds_alternative<vp::Cone>(shape)) return ShapeKind::cone;
+  return std::nullopt;
+}
+
+glm::vec4 colour_of(const Piece& piece, std::size_t index, const Simulation& simulation,
+                    Colouring colouring) {
+  if (piece.motion == scenes::Motion::fixed) return kFixedColour;
+  if (simulation.grip() && simulation.grip()->body == piece.body) return kHeldColour;
+  if (colouring == Colouring::speed)
+    return speed_colour(norm(simulation.world().velocity(piece.body).v));
+  return piece.motion == scenes::Motion::kinematic ? kKinematicColour : body_colour(index);
+}
+
+double radius_of(const Instance& instance) {
+  return glm::length(glm::vec3(instance.stretch)) + instance.stretch.w;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<SceneView>, std::string> SceneView::create(draw::Quality quality) {
+  std::unique_ptr<SceneView> view(new SceneView(quality));
+  if (const std::string error = view->build_programs(); !error.empty())
+    return tl::unexpected(error);
+  auto marks = Marks::create(quality);
+  if (!marks) return tl::unexpected(marks.error());
+  view->marks_ = std::move(*marks);
+  const bool high = quality == draw::Quality::high;
+  view->shadow_ = draw::ShadowTarget(high ? 4096 : 1536, true);
+  for (int kind = 0; kind < kShapeKinds; ++kind) {
+    view->meshes_[static_cast<std::size_t>(kind)] =
+        InstancedMesh(shape_mesh(static_cast<ShapeKind>(kind), high ? 1.0f : 0.5f));
+  }
+  view->ghost_mesh_ = InstancedMesh(shape_mesh(ShapeKind::box, 1.0f));
+  view->empty_ = draw::GlVertexArray::make();
+  view->square_ = draw::GlVertexArray::make();
+  view->square_corners_ = draw::GlBuffer::make();
+  constexpr std::array<glm::vec2, 4> kCorners{{{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+  glBindVertexArray(view->square_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, view->square_corners_.get());
+  glBufferData(GL_ARRAY_BUFFER, sizeof kCorners, kCorners.data(), GL_STATIC_DRAW);
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(glm::vec2), nullptr);
+  glEnableVertexAttribArray(0);
+  glBindVertexArray(0);
+  return view;
+}
+
+std::string SceneView::build_programs() {
+  struct Wanted {
+    draw::Program* program;
+    std::initializer_list<std::string_view> vertex, fragment;
+  };
+  const Wanted wanted[] = {
+      {&body_, {"body.vert"}, {"common.glsl", "body.frag"}},
+      {&depth_, {"body.vert"}, {"depth.frag"}},
+      {&ground_, {"ground.vert"}, {"common.glsl", "ground.frag"}},
+      {&ghost_, {"body.vert"}, {"ghost.frag"}},
+      {&sky_, {"sky.vert"}, {"common.glsl", "sky.frag"}},
+  };
+  for (const Wanted& w : wanted) {
+    auto program = draw::Program::build(shader_source, w.vertex, w.fragment, quality_);
+    if (!program) return program.error();
+    *w.program = std::move(*program);
+  }
+  return {};
+}
+
+glm::vec3 SceneView::seen(const vp::Vec3& world) const {
+  return narrow(world - origin_);
+}
+
+std::vector<Instance>& SceneView::instances_of(const vp::ConvexHull& hull) {
+  for (Hull& known : hulls_) {
+    if (known.hull.data() == hull.data()) return known.instances;
+  }
+  hulls_.push_back({hull, InstancedMesh(hull_mesh(hull)), {}});
+  return hulls_.back().instances;
+}
+
+void SceneView::add(const vp::Shape& shape, const vp::SE3& T, const glm::vec4& colour) {
+  if (!vp::is_finite(T.position()) || !vp::is_finite(T.rotation().cx)) return;
+  if (std::holds_alternative<vp::HalfSpace>(shape)) {
+    grounds_.push_back(T);
+    return;
+  }
+  const vp::Mat3& R = T.rotation();
+  const glm::vec3 p = seen(T.position());
+  Instance instance;
+  for (int i = 0; i < 3; ++i) instance.row[i] = {narrow({R.cx[i], R.cy[i], R.cz[i]}), p[i]};
+  instance.stretch = stretch_of(shape);
+  instance.colour = colour;
+  if (const auto kind = kind_of(shape)) {
+    instances_[static_cast<std::size_t>(*kind)].push_back(instance);
+  } else if (const auto* hull = std::get_if<vp::ConvexHull>(&shape)) {
+    instances_of(*hull).push_back(instance);
+  }
+}
+
+// Walls between the eye and what moves become ghosts, without a shadow; so do, for the shadow,
+// those that would put what moves in the dark.
+void SceneView::gather(const Simulation& simulation, const OrbitCamera& camera,
+                       const ViewOptions& options) {
+  for (auto& list : instances_) list.clear();
+  for (Hull& hull : hulls_) hull.instances.clear();
+  ghosts_.clear();
+  grounds_.clear();
+  const std::span<const Piece> pieces = simulation.pieces();
+  std::vector<vp::Vec3> watched;
+  const std::size_t stride = 1 + pieces.size() / kWatched;
+  for (std::size_t i = 0; i < pieces.size(); i += stride) {
+    if (pieces[i].motion == scenes::Motion::dynamic)
+      watched.push_back(simulation.world().pose(pieces[i].body).position());
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const vp::SE3 T = simulation.world().pose(pieces[i].body);
+    const glm::vec4 colour = colour_of(pieces[i], i, simulation, options.colouring);
+    for (const Piece::Part& part : pieces[i].parts) {
+      const vp::SE3 T_world_part = T * part.T_body_part;
+      const auto* box = std::get_if<vp::Box>(&part.shape);
+      if (pieces[i].motion == scenes::Motion::fixed && box != nullptr &&
+          hides_many(*box, T_world_part, camera.eye(), watched)) {
+        auto& boxes = instances_[static_cast<std::size_t>(ShapeKind::box)];
+        add(part.shape, T_world_part, colour);
+        ghosts_.push_back(boxes.back());
+        boxes.pop_back();
+      } else {
+        add(part.shape, T_world_part, colour);
+      }
+    }
+  }
+}
+
+void SceneView::upload() {
+  for (std::size_t kind = 0; kind < meshes_.size(); ++kind)
+    meshes_[kind].set_instances(instances_[kind]);
+  for (Hull& hull : hulls_) hull.mesh.set_instances(hull.instances);
+  ghost_mesh_.set_instances(ghosts_);
+}
+
+void SceneView::draw_bodies(int& calls) const {
+  for (std::size_t kind = 0; kind < meshes_.size(); ++kind) {
+    if (instances_[kind].empty()) continue;
+    meshes_[kind].draw();
+    ++calls;
+  }
+  for (const Hull& hull : hulls_) {
+    if (hull.instances.empty()) continue;
+    hull.mesh.draw();
+    ++calls;
+  }
+}
+
+void SceneView::draw(const Simulation& simulation, const OrbitCamera& camera,
+                     const ViewOptions& options, const glm::ivec2& screen) {
+  if (screen != screen_) {
+    screen_ = screen;
+    target_ = draw::Target({.size = screen,
+                            .format = GL_RGBA8,
+                            .samples = quality_ == draw::Quality::high ? 4 : 0,
+                            .depth = true});
+  }
+  origin_ = camera.target();
+  view_projection_ = camera.projection(screen) * camera.view();
+  draw_calls_ = 0;
+  gather(simulation, camera, options);
+  upload();
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_CULL_FACE);
+  draw_shadow(camera, options.shadows);
+  target_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  draw::bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
+  light(body_, camera);
+  draw_bodies(draw_calls_);
+  draw_grounds(camera);
+  draw_sky(camera);
+  draw_ghosts(camera);
+  glDisable(GL_CULL_FACE);
+  mark(simulation, options);
+  marks_.flush(view_projection_, 0.009f * static_cast<float>(screen.y));
+  glDisable(GL_DEPTH_TEST);
+  target_.resolve();
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, screen.x, screen.y, 0, 0, screen.x, screen.y, GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, screen.x, screen.y);
+}
+
+void SceneView::draw_shadow(const OrbitCamera& camera, bool wanted) {
+  std::vector<Caster> casters;
+  const auto cast = [&](const std::vector<Instance>& instances) {
+    for (const Instance& i : instances) {
+      casters.push_back({{i.row[0].w, i.row[1].w, i.row[2].w}, static_cast<float>(radius_of(i))});
+    }
+  };
+  for (const auto& list : instances_) cast(list);
+  for (const Hull& hull : hulls_) cast(hull.instances);
+  const ShadowFit fit = fit_shadow(casters, kShadowAround * static_cast<float>(camera.distance()));
+  shadow_matrix_ = kTextureFromClip * fit.matrix;
+  shadow_texel_ = fit.width / static_cast<float>(shadow_.size());
+  shadow_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  if (!wanted) return;
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 2.0f);
+  depth_.use();
+  depth_.set("u_view_projection", fit.matrix);
+  draw_bodies(draw_calls_);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void SceneView::light(const draw::Program& program, const OrbitCamera& camera) const {
+  program.use();
+  program.set("u_view_projection", view_projection_);
+  program.set("u_eye", narrow(camera.eye() - origin_));
+  program.set("u_sun_direction", kSunDirection);
+  program.set("u_shadow_matrix", shadow_matrix_);
+  program.set("u_shadow_texel", shadow_texel_);
+  program.set("u_shadow_map", 1);
+  program.set("u_haze", kHaze / static_cast<float>(camera.distance()));
+}
+
+// Its pattern is that of the world, wherever the target is: found in double.
+void SceneView::draw_grounds(const OrbitCamera& camera) {
+  constexpr double kPattern = 10.0;  // [m]
+  light(ground_, camera);
+  glBindVertexArray(square_.get());
+  for (const vp::SE3& T : grounds_) {
+    const vp::Vec3 middle = inverse_times(T, origin_);
+    const vp::Vec3 at = T * vp::Vec3{middle.x, middle.y, 0.0};
+    const glm::mat4 pose{glm::vec4(narrow(T.rotation().cx), 0),
+                         glm::vec4(narrow(T.rotation().cy), 0),
+                         glm::vec4(narrow(T.rotation().cz), 0), glm::vec4(seen(at), 1)};
+    ground_.set("u_pose", pose);
+    ground_.set("u_normal", narrow(T.rotation().cz));
+    ground_.set("u_phase", glm::vec2(std::fmod(middle.x, kPattern), std::fmod(middle.y, kPattern)));
+    ground_.set("u_reach", static_cast<float>(kGroundReach * camera.distance()));
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    ++draw_calls_;
+  }
+}
+
+void SceneView::draw_sky(const OrbitCamera& camera) const {
+  light(sky_, camera);
+  const glm::mat4 view = camera.view(), projection = camera.projection(screen_);
+  const glm::mat3 from_view = glm::transpose(glm::mat3(view));
+  const glm::vec3 half_width = from_view[0] / projection[0][0];
+  sky_.set("u_ray", glm::mat3(half_width, from_view[1] / projection[1][1],
+                              projection[2][0] * half_width - from_view[2]));
+  glDepthFunc(GL_LEQUAL);
+  glBindVertexArray(empty_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
+}
+
+void SceneView::draw_ghosts(const OrbitCamera& camera) {
+  if (ghosts_.empty()) return;
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  light(ghost_, camera);
+  ghost_mesh_.draw();
+  ++draw_calls_;
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void SceneView::mark(const Simulation& simulation, const ViewOptions& options) {
+  const vp::World& world = simulation.world();
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const auto& list : instances_) {
+    for (const Instance& instance : list) sum += radius_of(instance), ++count;
+  }
+  const double typical = count > 0 ? sum / static_cast<double>(count) : 1.0;
+  if (options.contacts) {
+    for (const ContactMark& c : simulation.contacts().marks(world)) {
+      const glm::vec4 colour = glm::mix(kContactColour, kHitColour, static_cast<float>(c.strength));
+      marks_.point(seen(c.point), colour);
+      marks_.line(seen(c.point), seen(c.point + 0.5 * typical * c.normal), colour);
+    }
+  }
+  for (const Piece& piece : simulation.pieces()) {
+    if (piece.motion == scenes::Motion::fixed || !(options.frames || options.centres)) continue;
+    const vp::SE3 T = world.pose(piece.body);
+    const std::array axes{T.rotation().cx, T.rotation().cy, T.rotation().cz};
+    for (std::size_t i = 0; options.frames && i < axes.size(); ++i) {
+      marks_.line(seen(T.position()), seen(T.position() + 0.9 * typical * axes[i]),
+                  kAxisColours[i]);
+    }
+    if (options.centres && piece.motion == scenes::Motion::dynamic)
+      marks_.point(seen(T * piece.inertia.centre_of_mass()), kCentreColour);
+  }
+  if (const auto& grip = simulation.grip()) {
+    const vp::Vec3 held = world.pose(grip->body) * grip->point_body;
+    marks_.line(seen(held), seen(grip->target), kGripColour);
+    marks_.point(seen(held), kGripColour);
+    marks_.point(seen(grip->target), kGripColour);
+  }
+}
+
+}  // namespace sandbox
