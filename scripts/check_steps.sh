@@ -13,7 +13,7 @@ our_files() { # our_files PATTERN...: tracked and new files, without build outpu
   done
 }
 
-step_packages() { packages_install "$LOGS/packages-apt.log" build play check; }
+step_packages() { packages_install "$LOGS/packages-apt.log" build play check wasm; }
 
 step_format() {
   local files
@@ -170,6 +170,18 @@ replay_hash() {
   local preset=$1 words
   words=$("build/$preset/bin/foosball-replay" "${@:2}")
   echo "$preset ${*:3} $(sed -n 's/^hash *//p' <<<"$words")"
+}
+
+# The same sources of tests, compiled for another machine.
+step_wasm() {
+  local status=0
+  configure wasm "$LOGS/wasm-configure.log" -DSF_WERROR=ON
+  build wasm "$LOGS/wasm-build.log" golden_test
+  rm -f "$LOGS/wasm.xml"
+  node --no-warnings scripts/wasi.mjs build/wasm/bin/golden_test.wasm --gtest_output="xml:$PWD/$LOGS/wasm.xml" ||
+    status=$?
+  count_tests "$LOGS/wasm.xml"
+  return "$status"
 }
 
 # expect STATUS COMMAND...: runs it, its words going to LOGS/STEP.said_by, and compares its exit status.

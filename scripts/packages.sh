@@ -3,8 +3,8 @@
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
 # Groups: build (compile it), play (run it), check (compile and run all that ./check does), bench (the
-# engines that ./bench multibody, drift and rigid compare with), node (for those of them in WebAssembly,
-# where there is no node already).
+# engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
+# WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -58,6 +58,14 @@ bench  libode-dev            ODE, which ./bench rigid compares with
 bench  libsimbody-dev        Simbody, another one
 bench  libeigen3-dev         matrices of DART and KDL, principal axes
 bench  python3-matplotlib    draws the curves of ./bench drift, rigid and scaling
+wasm   clang                 the compiler for WebAssembly too
+wasm   lld-14                links WebAssembly
+wasm   llvm-14               archives of WebAssembly
+wasm   wasi-libc             the C library for WebAssembly
+wasm   libc++-14-dev-wasm32  the C++ library
+wasm   libc++abi-14-dev-wasm32 what that stands on
+wasm   libclang-rt-14-dev-wasm32 what clang's code calls
+wasm   nodejs                runs WebAssembly
 node   nodejs                runs the engines of ./bench rigid that are WebAssembly
 node   npm                   fetches them
 TABLE

@@ -1,22 +1,21 @@
-// What this process has used so far. Under emscripten, where clock_gettime knows no processor time,
-// what node says of its process.
+// What this process has used so far. Of WebAssembly that is node's process: WASI has no clock of a
+// thread.
 #pragma once
 
 #include <cstdio>
 #include <ctime>
-#ifdef __EMSCRIPTEN__
-#include <emscripten.h>
+#ifdef __wasi__
+#include <wasi/api.h>
 #endif
 
 namespace rigid {
 
 // Of this thread [us].
 inline double cpu_us() {
-#ifdef __EMSCRIPTEN__
-  return EM_ASM_DOUBLE({
-    const used = process.cpuUsage();
-    return used.user + used.system;
-  });
+#ifdef __wasi__
+  __wasi_timestamp_t ns = 0;
+  (void)__wasi_clock_time_get(__WASI_CLOCKID_PROCESS_CPUTIME_ID, 1, &ns);
+  return 1e-3 * static_cast<double>(ns);
 #else
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.1, 86400.0));
   cli.add_option("--seconds-at-60", plan.seconds_at_60, "the same at 60 Hz and below")
       ->check(CLI::Range(0.1, 86400.0));
-  cli.add_option("--scripts", plan.scripts, "folder of run.mjs and node_modules");
+  cli.add_option("--scripts", plan.scripts, "folder of run.mjs, wasi.mjs and node_modules");
   cli.add_option("--wasm", plan.wasm, "folder of our own WebAssembly build");
   cli.add_option("--log", plan.log, "file for what the engines complain of");
   cli.add_option("--csv", file, "file for the figures");

@@ -46,6 +46,10 @@ const EngineKind& kind_of(const std::string& option) {
                        [&](const EngineKind& kind) { return option == kind.option; });
 }
 
+bool is_ours(std::string_view name) {
+  return name.starts_with(kOurs);
+}
+
 double quantile(std::vector<double> x, double share) {
   if (x.empty()) return 0.0;
   const auto at =
@@ -95,7 +99,7 @@ class Race {
 
   std::vector<Figure> run() {
     for (const std::string& option : plan_.engines) {
-      if (is_table(name_) && option != kEngines[0].option) continue;
+      if (is_table(name_) && !is_ours(kind_of(option).name)) continue;
       enter(kind_of(option));
     }
     while (std::any_of(entries_.begin(), entries_.end(),
@@ -106,6 +110,7 @@ class Race {
     }
     std::vector<Figure> figures;
     for (Entry& entry : entries_) figures.push_back(std::move(entry.figure));
+    compare_bits(figures);
     return figures;
   }
 
@@ -120,7 +125,18 @@ class Race {
   double budget(const EngineKind& kind) const {
     constexpr double kOursMore = 6.0;
     const double peers = rate_ <= 60 ? plan_.seconds_at_60 : plan_.seconds;
-    return kind.name == std::string_view(kOurs) ? kOursMore * peers : peers;
+    return is_ours(kind.name) ? kOursMore * peers : peers;
+  }
+
+  // Of our builds with the native one, if both have come as far.
+  static void compare_bits(std::vector<Figure>& figures) {
+    const auto native = std::find_if(figures.begin(), figures.end(),
+                                     [](const Figure& f) { return f.engine == kOurs; });
+    if (native == figures.end() || native->poses.empty()) return;
+    for (Figure& f : figures) {
+      f.bits_as_native =
+          is_ours(f.engine) && f.simulated == native->simulated && f.poses == native->poses;
+    }
   }
 
   // The program, the scene as it wants it, and the rest alike for all.
@@ -131,9 +147,10 @@ class Race {
     if (!kind.node) {
       words = {plan_.programs + "/" + kind.program, name_};
       if (missing(words[0])) return tl::make_unexpected("not built: its package is missing");
-    } else if (std::string_view(kind.program).ends_with(".js")) {
-      words = {"node", plan_.wasm + "/" + kind.program, name_};
-      if (missing(words[1])) return tl::make_unexpected("not built for WebAssembly");
+    } else if (is_ours(kind.name)) {
+      words = {"node", "--no-warnings", plan_.scripts + "/wasi.mjs",
+               plan_.wasm + "/" + kind.program, name_};
+      if (missing(words[3])) return tl::make_unexpected("not built for WebAssembly");
     } else {
       const std::string json = scratch_.file("scene.json");
       if (missing(json) && !write_json(scene_, json)) {

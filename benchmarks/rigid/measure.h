@@ -17,7 +17,7 @@ namespace rigid {
 struct EngineKind {
   const char* option;   // on the command line
   const char* name;     // in tables
-  const char* program;  // of the folder of programs; of node: the script or its first argument
+  const char* program;  // of the folder of programs; of node: its first argument
   bool node;
 };
 inline constexpr EngineKind kEngines[] = {
@@ -25,10 +25,11 @@ inline constexpr EngineKind kEngines[] = {
     {"bullet", "Bullet", "rigid-bullet", false},
     {"ode", "ODE", "rigid-ode", false},
     {"mujoco", "MuJoCo", "rigid-mujoco", false},
-    {"vphysics-wasm", "Virtual Physics (WebAssembly)", "rigid-ours.js", true},
+    {"vphysics-wasm", "Virtual Physics (WebAssembly)", "rigid-ours.wasm", true},
     {"jolt", "Jolt (WebAssembly)", "jolt", true},
     {"rapier", "Rapier (WebAssembly)", "rapier", true},
 };
+// And, with more behind it, our other builds.
 inline constexpr const char* kOurs = kEngines[0].name;
 
 struct Plan {
@@ -41,8 +42,8 @@ struct Plan {
   // By the clock: how long the programs may take to answer, beyond ten times that. Others run too.
   double patience = 120.0;
   std::string programs{};         // folder of the native engines' programs
-  std::string scripts{};          // folder of run.mjs, beside which node's packages are
-  std::string wasm{};             // folder of rigid-ours.js, as emscripten has built it
+  std::string scripts{};          // folder of run.mjs and wasi.mjs; node's packages are in it
+  std::string wasm{};             // folder of rigid-ours.wasm
   std::string log = "/dev/null";  // what the programs complain of
   // By an engine's name: why it is not run, at all or on scenes with joints.
   std::map<std::string, std::string> left_out{}, left_out_of_joints{};
@@ -59,6 +60,7 @@ struct Figure {
   double median_us = 0.0, p99_us = 0.0;
   double settled_us = 0.0;  // median of the last quarter of a finished run; else 0
   double rss_mb = 0.0;
+  bool bits_as_native = false;     // its poses are those of the native program
   scenes::Standing standing{};     // where it ended
   std::vector<double> steps_us{};  // of each step but the first of each turn
   std::vector<vp::SE3> poses{};    // the same

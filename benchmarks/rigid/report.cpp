@@ -99,6 +99,7 @@ std::vector<Row> rows_of(const std::vector<Figure>& figures, const Figure& f) {
     add("sink_mm", fmt::format("{:.3g}", 1e3 * s.sink), "mm");
   }
   if (!scene.joints.empty()) add("joint_gap_mm", fmt::format("{:.3g}", 1e3 * s.gap), "mm");
+  if (f.bits_as_native && f.engine != kOurs) add("bits_as_native", "1", "");
   add("rss_mb", fmt::format("{:.0f}", f.rss_mb), "MB");
   add("simulated_s", fmt::format("{:.4g}", f.simulated), fmt::format("of {:g} s", scene.seconds));
   return rows;
@@ -127,6 +128,12 @@ std::optional<double> reached(const std::vector<Figure>& figures, const Goal& go
   return 1e3 * (metric == "drift_mm" ? ours->standing.drift : ours->standing.penetration);
 }
 
+// Behind an engine's row.
+std::string note_on(const Figure& f) {
+  if (f.stopped()) return "  " + f.ended;
+  return f.bits_as_native && f.engine != kOurs ? "  the native program's bits" : "";
+}
+
 // "-" where there is none.
 std::string cell(const std::vector<Row>& rows, const char* metric) {
   for (const Row& row : rows) {
@@ -151,12 +158,11 @@ std::string table(const std::vector<Figure>& figures) {
       continue;
     }
     const auto rows = rows_of(figures, f);
-    out += fmt::format("  {:<30}{:>11}{:>11}{:>8}{:>10}{:>9}{:>9}{:>9}{:>8}{:>9}{}\n", f.engine,
-                       cell(rows, "step_median_us"), cell(rows, "step_p99_us"),
-                       cell(rows, "share_of_bullet"), cell(rows, "in_place"),
-                       cell(rows, "penetration_mm"), cell(rows, "drift_mm"),
-                       cell(rows, "joint_gap_mm"), cell(rows, "rss_mb"), cell(rows, "simulated_s"),
-                       f.stopped() ? "  " + f.ended : "");
+    out += fmt::format(
+        "  {:<30}{:>11}{:>11}{:>8}{:>10}{:>9}{:>9}{:>9}{:>8}{:>9}{}\n", f.engine,
+        cell(rows, "step_median_us"), cell(rows, "step_p99_us"), cell(rows, "share_of_bullet"),
+        cell(rows, "in_place"), cell(rows, "penetration_mm"), cell(rows, "drift_mm"),
+        cell(rows, "joint_gap_mm"), cell(rows, "rss_mb"), cell(rows, "simulated_s"), note_on(f));
   }
   return out;
 }

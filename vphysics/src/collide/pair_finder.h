@@ -275,7 +275,7 @@ void PairFinder::read(Reader& in) {
   seen_.clear();
   for (std::uint64_t i = 0; i < free && in.ok(); ++i) {
     const std::uint64_t w = in.word();
-    in.check(w < s.places.size() && s.places[w] == Place::none);
+    in.check(w < s.places.size() && s.places[static_cast<std::size_t>(w)] == Place::none);
     if (!in.ok()) return;
     const auto index = static_cast<std::uint32_t>(w);
     in.check(!seen_.test(index));

@@ -297,10 +297,9 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     return bad(
         "restore: a snapshot of another world; build this one by the same sequence of calls");
   }
-  const std::uint64_t count = in.word(), destroyed_count = in.word();
-  constexpr std::size_t kRecord = 38 * sizeof(std::uint64_t), kPair = 3 * sizeof(std::uint64_t);
-  if (count > bytes.size() / kRecord || destroyed_count > bytes.size() / kPair)
-    return bad("restore: more contacts announced than bytes follow");
+  constexpr std::size_t kRecord = 38, kPair = 3;  // words
+  const std::size_t count = in.count(kRecord), destroyed_count = in.count(kPair);
+  if (!in.ok()) return bad("restore: more contacts announced than bytes follow");
 
   std::vector<Body> bodies = impl_->bodies;
   std::vector<ArticulationState> articulations;

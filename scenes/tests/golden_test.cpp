@@ -1,0 +1,50 @@
+// Scenes of many bodies end in the same bits on every machine: g++, clang++, WebAssembly. A change
+// of a hash is a change of results and belongs into the changelog.
+#include <gtest/gtest.h>
+
+#include "scenes/catalogue.h"
+#include "scenes/scene_world.h"
+
+namespace scenes {
+namespace {
+
+std::uint64_t hash_after(Scene scene, int steps, double rate) {
+  auto world = SceneWorld::create(std::move(scene));
+  if (!world) {
+    ADD_FAILURE() << world.error().message;
+    return 0;
+  }
+  for (int i = 0; i < steps; ++i) {
+    const auto status = world->step(1.0 / rate);
+    if (!status) ADD_FAILURE() << "step " << i << ": " << status.error().message;
+  }
+  return world->world().state_hash();
+}
+
+TEST(GoldenScenes, TowersOf1120Boxes) {
+  EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 10043614118766879848u);
+}
+TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 11430685238676020669u);
+}
+TEST(GoldenScenes, AWallThatIsHit) {
+  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 17403667892844520652u);
+}
+TEST(GoldenScenes, AHouseOfCards) {
+  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 16028029150540282606u);
+}
+TEST(GoldenScenes, Dominoes) {
+  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 13983402844162809839u);
+}
+TEST(GoldenScenes, Ragdolls) {
+  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 24394159797457013u);
+}
+TEST(GoldenScenes, AChainUnderLoad) {
+  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 15087802650591946383u);
+}
+TEST(GoldenScenes, ABridgeUnderCrates) {
+  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 16771999453212240892u);
+}
+
+}  // namespace
+}  // namespace scenes
