@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "vphysics/debug_draw.h"
 #include "vphysics/error.h"
 #include "vphysics/ids.h"
 #include "vphysics/lie.h"
@@ -186,6 +187,10 @@ class World {
   // Colliders that a sphere meets, in order of creation, appended to found.
   void overlap_sphere(const Vec3& centre, double radius, std::vector<ColliderId>& found,
                       CollisionFilter filter = {}) const;
+
+  // Tells draw what the options ask for; a callback must not change the world. Refused: sizes that
+  // are not in (0, 1e6].
+  Expected<void> debug_draw(const DebugDrawOptions& options, DebugDraw& draw) const;
 
   // --- rollback ---------------------------------------------------------------------------------
   // The whole mutable state, warm starts and ids included, appended to bytes. A world made by the

@@ -150,6 +150,7 @@ struct World::Impl {
   // --- of the last step
   std::vector<ContactEvent> events;
   StepCounters counters;
+  int sub_steps_taken = 0;
 
   // --- scratch of a step; kept for its capacity
   std::vector<collide::ProxyPair> new_pairs;
@@ -297,6 +298,8 @@ struct World::Impl {
   void emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
             const Vec3& normal, double approach, double impulse, double time);
   void add_event(const ContactEvent& event);
+
+  class Drawing;  // debug_draw.cpp
 
   // snapshot.cpp, contact_state.h
   class ContactState;

@@ -342,6 +342,7 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   impl_->destroyed_pairs.swap(destroyed_pairs);
   impl_->events.clear();
   impl_->counters = {};
+  impl_->sub_steps_taken = 0;
   return {};
 }
 

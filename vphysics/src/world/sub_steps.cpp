@@ -66,6 +66,7 @@ void World::Impl::run_sub_steps(double dt) {
   }
   end_joints(dt);
   store_bodies(dt, n);
+  sub_steps_taken = n;
   report_touches(n);
 }
 

@@ -1,0 +1,240 @@
+// What a picture is told of a world.
+#include "vphysics/debug_draw.h"
+
+#include <algorithm>
+#include <array>
+
+#include "world/impl.h"
+#include "world/refuse.h"
+#include "world/validate.h"
+#include "world/wires.h"
+
+namespace vp {
+namespace {
+
+constexpr double kLargestSize = 1e6;  // [m]
+
+DebugMark mark_of(const Body& body, const Collider& collider) {
+  if (collider.sensor) return DebugMark::sensor;
+  if (body.motion == Motion::fixed) return DebugMark::fixed_shape;
+  return body.motion == Motion::kinematic ? DebugMark::kinematic_shape : DebugMark::dynamic_shape;
+}
+
+Vec3 lane_of(const solve::Field3& f, int lane) {
+  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
+          static_cast<double>(f.z.lane[lane])};
+}
+Vec3 vector_of(const float* f) {
+  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+}
+
+// The axes that a joint turns about or slides along, in its frame.
+struct JointAxes {
+  std::array<Vec3, 2> axes{};
+  int count = 0;
+
+  void operator()(const RevoluteJoint& j) { add(j.axis); }
+  void operator()(const PrismaticJoint& j) { add(j.axis); }
+  void operator()(const HelicalJoint& j) { add(j.axis); }
+  void operator()(const CylindricalJoint& j) { add(j.axis); }
+  void operator()(const PlanarJoint&) { add({0, 0, 1}); }
+  void operator()(const UniversalJoint& j) {
+    add(j.first);
+    add(j.second);
+  }
+  void operator()(const auto&) {}  // the others have none, or any
+
+ private:
+  void add(const Vec3& axis) {
+    axes[static_cast<std::size_t>(count++)] = (1.0 / norm(axis)) * axis;
+  }
+};
+
+}  // namespace
+
+std::uint32_t usual_colour(DebugMark mark) {
+  constexpr std::array<std::uint32_t, kDebugMarks> kColours{
+      0x8a8f98, 0x8e5bd0, 0x2f8fd8, 0x3fb6a8, 0x6d7787, 0xf5c518, 0xf08a24, 0xe0413a,
+      0xd06fc0, 0xe23b3b, 0x36a852, 0x3f6fe0, 0x1a1a1a, 0xc8a165, 0xe8d9b0};
+  return kColours[static_cast<std::size_t>(mark)];
+}
+
+bool DebugDraw::shape(ColliderId, const Shape&, const SE3&, DebugMark) {
+  return false;
+}
+
+class World::Impl::Drawing {
+ public:
+  Drawing(const Impl& world, const DebugDrawOptions& options, DebugDraw& draw)
+      : world_(world), options_(options), draw_(draw) {}
+
+  void draw() const {
+    if (options_.shapes || options_.bounds) draw_colliders();
+    if (options_.frames || options_.centres) draw_bodies();
+    if (options_.joints) {
+      for (const Articulation& tree : world_.articulations) draw_tree(tree);
+      for (const BodyJoint& joint : world_.joints) {
+        if (joint.alive) draw_joint(joint);
+      }
+    }
+    if (!(options_.contacts || options_.normals || options_.impulses)) return;
+    for (const Contact& c : world_.contact_pool) {
+      if (!c.alive || !c.touching || c.place.points == 0) continue;
+      const auto draw_lane = [&](const auto& colour) {
+        draw_contact(c, colour.blocks[colour.block_of(c.place.index, c.place.colour)]);
+      };
+      if (c.place.points == 1) {
+        draw_lane(world_.graph.of<1>(c.place.colour));
+      } else {
+        draw_lane(world_.graph.of<4>(c.place.colour));
+      }
+    }
+    for (const PairRecord& record : world_.records) draw_record(record);
+  }
+
+ private:
+  void draw_colliders() const {
+    for (std::uint32_t i = 0; i < world_.colliders.size(); ++i) {
+      const Collider& c = world_.colliders[i];
+      if (!c.alive) continue;
+      const Body& body = world_.bodies[c.body];
+      const SE3 T = body.T * c.T_body_shape;
+      const DebugMark mark = mark_of(body, c);
+      if (options_.shapes && !draw_.shape(collider_id(world_.colliders, i), c.shape, T, mark))
+        draw_wire(c.shape, T, options_.half_space_size, mark, draw_);
+      if (options_.bounds && !std::holds_alternative<HalfSpace>(c.shape)) {
+        const collide::Bounds b = bounds_of(c.geometry, T);
+        draw_box(SE3(0.5 * (b.lower + b.upper)), 0.5 * (b.upper - b.lower), DebugMark::bounds,
+                 draw_);
+      }
+    }
+  }
+
+  SE3 pose_of(const Body& body) const {
+    return body.is_link ? world_.articulations[body.articulation].T_world_link(body.link) : body.T;
+  }
+
+  void draw_bodies() const {
+    for (const Body& body : world_.bodies) {
+      if (!body.alive) continue;
+      const SE3 T = pose_of(body);
+      const Vec3& at = T.position();
+      if (options_.frames) {
+        draw_.line(at, at + options_.frame_size * T.rotation().cx, DebugMark::axis_x);
+        draw_.line(at, at + options_.frame_size * T.rotation().cy, DebugMark::axis_y);
+        draw_.line(at, at + options_.frame_size * T.rotation().cz, DebugMark::axis_z);
+      }
+      if (options_.centres && body.motion == Motion::dynamic && body.mass > 0.0)
+        draw_.point(T * body.centre, DebugMark::centre);
+    }
+  }
+
+  void draw_axis(const Vec3& at, const Vec3& axis) const {
+    draw_.line(at, at + options_.frame_size * axis, DebugMark::joint_axis);
+  }
+
+  void draw_tree(const Articulation& tree) const {
+    for (int l = 0; l < tree.model().links(); ++l) {
+      const LinkSpec& link = tree.model().link(l);
+      const SE3 T_world_parent = link.parent == kWorld ? SE3() : tree.T_world_link(link.parent);
+      const SE3 T_world_joint = T_world_parent * link.T_parent_joint;
+      const Vec3& at = T_world_joint.position();
+      if (link.parent != kWorld) draw_.line(T_world_parent.position(), at, DebugMark::joint);
+      draw_.line(at, tree.T_world_link(l).position(), DebugMark::joint);
+      draw_.point(at, DebugMark::joint);
+      JointAxes joint;
+      std::visit([&](const auto& j) { joint(j); }, link.joint);
+      for (int k = 0; k < joint.count; ++k)
+        draw_axis(at, T_world_joint.rotate(joint.axes[static_cast<std::size_t>(k)]));
+    }
+  }
+
+  // What is between the two frames is a spring, a rod, or a gap.
+  void draw_joint(const BodyJoint& joint) const {
+    const Body &a = world_.bodies[joint.a], &b = world_.bodies[joint.b];
+    const bool user = joint.law.form == JointLaw::Form::user;  // has no frames
+    const SE3 T_a = user ? a.T : a.T * joint.T_a_joint, T_b = user ? b.T : b.T * joint.T_b_joint;
+    if (a.motion != Motion::fixed)
+      draw_.line(world_.reference_point(a), T_a.position(), DebugMark::joint);
+    draw_.line(T_a.position(), T_b.position(), DebugMark::joint);
+    if (b.motion != Motion::fixed)
+      draw_.line(T_b.position(), world_.reference_point(b), DebugMark::joint);
+    draw_.point(T_a.position(), DebugMark::joint);
+    draw_.point(T_b.position(), DebugMark::joint);
+    const bool gear = joint.law.form == JointLaw::Form::gear;
+    if (gear || (joint.law.form == JointLaw::Form::axes && joint.main >= 0))
+      draw_axis(T_a.position(), T_a.rotation().cz);
+    if (gear) draw_axis(T_b.position(), T_b.rotation().cz);
+  }
+
+  void draw_point(const Vec3& at, const Vec3& normal, double load, const Vec3& friction) const {
+    if (options_.contacts) draw_.point(at, DebugMark::contact);
+    if (options_.normals) draw_.line(at, at + options_.normal_length * normal, DebugMark::normal);
+    if (!options_.impulses) return;
+    if (load > 0.0) draw_.line(at, at + options_.impulse_scale * load * normal, DebugMark::impulse);
+    if (friction != Vec3{})
+      draw_.line(at, at + options_.impulse_scale * friction, DebugMark::friction);
+  }
+
+  // The points were found some steps ago: since then they have gone with the body that is not
+  // fixed. The last sub-step's impulses stand for all; bounces and friction are the contact's, and
+  // are shared out evenly.
+  template <int P>
+  void draw_contact(const Contact& c, const solve::ContactBlock<P>& block) const {
+    const int lane = solve::ContactGraph::lane(c.place);
+    const std::uint32_t body_a = world_.colliders[c.a].body, body_b = world_.colliders[c.b].body;
+    const bool with_b = world_.bodies[body_a].motion == Motion::fixed;
+    const std::uint32_t body = with_b ? body_b : body_a;
+    const Vec3 centre = world_.reference_point(world_.bodies[body]);
+    const Vec3 turn = vector_of(world_.body_rows[body + 1].way + 3) -
+                      lane_of(with_b ? block.turned_b : block.turned_a, lane);
+    const Mat3 R = turned(Mat3::identity(), turn);
+    Vec3 middle;
+    for (int i = 0; i < c.count; ++i) middle += (1.0 / c.count) * c.position[i];
+    Vec3 grip = lane_of(block.grip, lane);
+    if (with_b) grip += lane_of(block.d, lane);
+
+    const Vec3 n = lane_of(block.normal, lane), t = lane_of(block.tangent, lane);
+    const auto value = [lane](const solve::Field& f) { return static_cast<double>(f.lane[lane]); };
+    const double steps = world_.sub_steps_taken, share = 1.0 / c.count;
+    const Vec3 friction =
+        steps * share *
+        (value(block.tangent_impulse[0]) * t + value(block.tangent_impulse[1]) * cross(n, t));
+    const double bounces = steps > 0.0 ? share * value(block.impact) : 0.0;
+    for (int i = 0; i < c.count; ++i) {
+      const Vec3 at = centre + R * (grip + c.position[i] - middle);
+      draw_point(at, n, steps * value(block.impulse[i]) + bounces, friction);
+    }
+  }
+
+  // Of the stage of impacts; it does not keep normals.
+  void draw_record(const PairRecord& record) const {
+    const Collider &a = world_.colliders[record.a], &b = world_.colliders[record.b];
+    if (!record.touching || !a.alive || !b.alive || a.sensor || b.sensor) return;
+    collide::Manifold m;
+    const SE3 T_a = world_.bodies[a.body].T * a.T_body_shape;
+    const SE3 T_b = world_.bodies[b.body].T * b.T_body_shape;
+    find_manifold(a.geometry, T_a, b.geometry, T_b, 2.0 * world_.desc.contact_slop, m);
+    if (m.count == 0) return;
+    for (std::uint32_t i = 0; i < record.count; ++i) {
+      const PairPoint& p = record.points[i];
+      draw_point(p.position, m.normal, p.normal_impulse, p.friction);
+    }
+  }
+
+  const Impl& world_;
+  const DebugDrawOptions& options_;
+  DebugDraw& draw_;
+};
+
+Expected<void> World::debug_draw(const DebugDrawOptions& options, DebugDraw& draw) const {
+  for (const double size : {options.frame_size, options.normal_length, options.impulse_scale,
+                            options.half_space_size}) {
+    if (!(size > 0.0 && size <= kLargestSize))
+      return refuse("debug_draw: every size and scale must be positive and at most 1e6");
+  }
+  Impl::Drawing(*impl_, options, draw).draw();
+  return {};
+}
+
+}  // namespace vp
