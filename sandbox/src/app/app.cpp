@@ -242,7 +242,7 @@ void App::advance(double frame) {
 void App::draw_frame(Wishes& wishes) {
   const std::int64_t began = os::monotonic_ns();
   view_->draw(simulation_, camera_, controls_.view, size_);
-  draw_panel(simulation_, meter_, view_->draw_calls(), message_, controls_, wishes);
+  draw_panel(simulation_, meter_, drawing_, message_, controls_, wishes);
   ImGui::Render();
   ui_renderer_->draw(*ImGui::GetDrawData());
   window_->swap();

@@ -34,6 +34,11 @@ tl::expected<void, std::string> fit_together(const Options& options) {
     return tl::make_unexpected(std::string("--screenshot-at wants --screenshot FILE.png too."));
   if (options.no_window && !options.screenshot.empty())
     return tl::make_unexpected(std::string("--screenshot wants a window: leave --no-window out."));
+  if (options.no_window && options.skip_to > 0.0)
+    return tl::make_unexpected(std::string("--skip-to wants a window: leave --no-window out."));
+  if (options.seconds && options.skip_to > *options.seconds)
+    return tl::make_unexpected(
+        std::string("--skip-to lies beyond --seconds: nothing would be shown."));
   if (options.no_window && options.paused)
     return tl::make_unexpected(
         std::string("--paused wants a window to go on from: leave --no-window out."));
@@ -62,7 +67,7 @@ std::string scene_list() {
 
 tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* argv) {
   Options options;
-  bool list = false;
+  bool list = false, contacts = false;
   std::string size = "1280x720", quality = "auto", look;
   CLI::App cli("Virtual Physics: shows a scene, and lets you take hold of it.", "vphysics-sandbox");
   cli.add_option("SCENE,--scene", options.scene, "one of --list")->capture_default_str();
@@ -86,9 +91,15 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
                  "... or after so many seconds of the scene's time")
       ->check(draw::within(0.0, kLongest));
   cli.add_option("--look", look, "from where, YAW,PITCH[,DISTANCE], e.g. -60,25,0.8");
-  cli.add_flag("--contacts", options.view.contacts, "draw where bodies touch");
-  cli.add_flag("--frames", options.view.frames, "draw the bodies' axes");
-  cli.add_flag("--centres", options.view.centres, "draw the centres of mass");
+  vp::DebugDrawOptions& marks = options.view.marks;
+  cli.add_flag("--contacts", contacts, "draw where bodies touch, and the normals there");
+  cli.add_flag("--impulses", marks.impulses,
+               "draw what went through the contacts in the last step");
+  cli.add_flag("--frames", marks.frames, "draw the bodies' axes");
+  cli.add_flag("--centres", marks.centres, "draw the centres of mass");
+  cli.add_flag("--joints", marks.joints, "draw the joints and their axes");
+  cli.add_flag("--bounds", marks.bounds, "draw the bounds of the shapes");
+  cli.add_flag("--wires", marks.shapes, "draw the edges of the shapes");
   cli.add_flag("--no-panel", options.no_panel, "the picture alone");
   cli.add_option("--size", size, "of the window, WxH")->capture_default_str();
   cli.add_flag("--fullscreen", options.fullscreen, "take the whole screen");
@@ -102,11 +113,12 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
       "Exit codes: 0 done, 1 failed, 2 bad option or scene, 4 no display.\n"
       "Mouse: left drags a body, or turns the view beside them; right pans, the wheel zooms.\n"
       "Keys: Space pauses, S steps once, R begins anew, 1 2 3 step at 60, 240, 1000 Hz, - and +\n"
-      "slow down and speed up, N and B show the next and the last scene, C contacts, F frames,\n"
-      "M centres of mass, V colours by speed, T throws a body, Home shows all, Tab hides the\n"
-      "panel, Esc leaves.");
+      "slow down and speed up, N and B show the next and the last scene, C contacts, I impulses,\n"
+      "F frames, M centres of mass, J joints, X bounds, W wires, V colours by speed, T throws a\n"
+      "body, Home shows all, Tab hides the panel, Esc leaves.");
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   if (list) return tl::unexpected(draw::Leave{0, scene_list()});
+  marks.contacts = marks.normals = contacts;
   const auto pixels = draw::parse_size(size);
   if (!pixels) return tl::unexpected(draw::refuse(pixels.error()));
   options.size = *pixels;

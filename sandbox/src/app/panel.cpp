@@ -84,8 +84,8 @@ void time_controls(const Simulation& simulation, const Meter& meter, Controls& c
   ImGui::SameLine();
   if (controls.paused) {
     ImGui::TextColored(kBright, "paused");
-  } else {
-    const bool behind = meter.rate() > 0.0 && meter.speed() < 0.95 * controls.speed;
+  } else if (meter.rate() > 0.0) {
+    const bool behind = meter.speed() < 0.95 * controls.speed;
     ImGui::TextColored(behind ? kBright : kDim, "reached %.2f", meter.speed());
   }
 }
@@ -97,13 +97,13 @@ void row(const char* what, const char* format, double value) {
   ImGui::Text(format, value);
 }
 
-void timings(const Simulation& simulation, const Meter& meter, int draw_calls) {
+void timings(const Simulation& simulation, const Meter& meter, double drawing) {
   const StepTimes::Figures f = simulation.times().figures(kShown);
   const std::vector<double> last = simulation.times().last(kShown);
   std::vector<float> shown(last.begin(), last.end());
   const auto top = static_cast<float>(std::max(1.25 * f.p99, 1.0));
   char label[64];
-  std::snprintf(label, sizeof label, "%.0f us, of the last %zu steps", static_cast<double>(top),
+  std::snprintf(label, sizeof label, "up to %.0f us, the last %zu steps", static_cast<double>(top),
                 shown.size());
   ImGui::PlotLines("##steps", shown.data(), static_cast<int>(shown.size()), 0, label, 0.0f, top,
                    {ImGui::GetContentRegionAvail().x, 64.0f});
@@ -116,29 +116,37 @@ void timings(const Simulation& simulation, const Meter& meter, int draw_calls) {
     row("looked at", "%.0f", counters.looked_at);
     row("impacts", "%.0f", counters.impacts);
     row("frames", "%.0f /s", meter.rate());
-    row("draw calls", "%.0f", draw_calls);
+    row("drawing", "%.1f ms", 1e3 * drawing);
     ImGui::EndTable();
   }
 }
 
 void show_controls(Controls& controls, Wishes& wishes) {
-  ImGui::Checkbox("contacts", &controls.view.contacts);
-  ImGui::SameLine();
-  ImGui::Checkbox("frames", &controls.view.frames);
-  ImGui::SameLine();
-  ImGui::Checkbox("centres", &controls.view.centres);
-  bool by_speed = controls.view.colouring == Colouring::speed;
-  if (ImGui::Checkbox("speeds", &by_speed))
-    controls.view.colouring = by_speed ? Colouring::speed : Colouring::body;
-  ImGui::SameLine();
-  ImGui::Checkbox("shadows", &controls.view.shadows);
-  ImGui::SameLine();
-  if (ImGui::Button("Show all")) wishes.show_all = true;
+  vp::DebugDrawOptions& marks = controls.view.marks;
+  if (ImGui::BeginTable("shown", 3, ImGuiTableFlags_SizingStretchSame)) {
+    const auto box = [](const char* what, bool& on) {
+      ImGui::TableNextColumn();
+      return ImGui::Checkbox(what, &on);
+    };
+    if (box("contacts", marks.contacts)) marks.normals = marks.contacts;
+    box("impulses", marks.impulses);
+    box("frames", marks.frames);
+    box("centres", marks.centres);
+    box("joints", marks.joints);
+    box("bounds", marks.bounds);
+    box("wires", marks.shapes);
+    bool by_speed = controls.view.colouring == Colouring::speed;
+    if (box("speeds", by_speed))
+      controls.view.colouring = by_speed ? Colouring::speed : Colouring::body;
+    box("shadows", controls.view.shadows);
+    ImGui::EndTable();
+  }
   if (ImGui::Button("Throw a")) wishes.throw_one = true;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0f);
   ImGui::Combo("##thrown", &controls.thrown, kThrownNames.data(),
                static_cast<int>(kThrownNames.size()));
+  if (ImGui::Button("Show all")) wishes.show_all = true;
 }
 
 void keys_help() {
@@ -148,8 +156,10 @@ void keys_help() {
       "right: pan     wheel: zoom\n"
       "Space pause    S one step    R begin anew\n"
       "1 2 3 rate     - + speed     N B scenes\n"
-      "C contacts     F frames      M centres\n"
-      "V speeds       T throw       Home show all\n"
+      "C contacts     I impulses    F frames\n"
+      "M centres      J joints      X bounds\n"
+      "W wires        V speeds      T throw\n"
+      "Home show all\n"
       "Tab this panel     Esc leave");
 }
 
@@ -169,9 +179,16 @@ void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes)
     controls.speed = std::min(2.0 * controls.speed, kFastest);
   if (pressed(GLFW_KEY_N)) wishes.scene = neighbour(simulation.scene().name, 1);
   if (pressed(GLFW_KEY_B)) wishes.scene = neighbour(simulation.scene().name, -1);
-  if (pressed(GLFW_KEY_C)) controls.view.contacts = !controls.view.contacts;
-  if (pressed(GLFW_KEY_F)) controls.view.frames = !controls.view.frames;
-  if (pressed(GLFW_KEY_M)) controls.view.centres = !controls.view.centres;
+  vp::DebugDrawOptions& marks = controls.view.marks;
+  if (pressed(GLFW_KEY_C)) marks.contacts = marks.normals = !marks.contacts;
+  for (const auto& [key, on] : {std::pair{GLFW_KEY_I, &marks.impulses},
+                                {GLFW_KEY_F, &marks.frames},
+                                {GLFW_KEY_M, &marks.centres},
+                                {GLFW_KEY_J, &marks.joints},
+                                {GLFW_KEY_X, &marks.bounds},
+                                {GLFW_KEY_W, &marks.shapes}}) {
+    if (pressed(key)) *on = !*on;
+  }
   if (pressed(GLFW_KEY_V)) {
     controls.view.colouring =
         controls.view.colouring == Colouring::speed ? Colouring::body : Colouring::speed;
@@ -182,7 +199,7 @@ void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes)
   if (pressed(GLFW_KEY_ESCAPE)) wishes.leave = true;
 }
 
-void draw_panel(const Simulation& simulation, const Meter& meter, int draw_calls,
+void draw_panel(const Simulation& simulation, const Meter& meter, double drawing,
                 const std::string& message, Controls& controls, Wishes& wishes) {
   if (!controls.panel) return;
   ImGui::SetNextWindowPos({kMargin, kMargin});
@@ -194,7 +211,7 @@ void draw_panel(const Simulation& simulation, const Meter& meter, int draw_calls
   ImGui::Separator();
   time_controls(simulation, meter, controls, wishes);
   ImGui::Separator();
-  timings(simulation, meter, draw_calls);
+  timings(simulation, meter, drawing);
   ImGui::Separator();
   show_controls(controls, wishes);
   keys_help();

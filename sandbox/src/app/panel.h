@@ -32,8 +32,8 @@ struct Wishes {
 // By key; the panel's own fields have them first.
 void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes);
 
-// message: of what last went wrong, or empty.
-void draw_panel(const Simulation& simulation, const Meter& meter, int draw_calls,
+// drawing: how long the last picture took [s]; message: of what last went wrong, or empty.
+void draw_panel(const Simulation& simulation, const Meter& meter, double drawing,
                 const std::string& message, Controls& controls, Wishes& wishes);
 
 // Colours and the font of what is drawn; the error says which package to install.

@@ -25,6 +25,12 @@ Piece piece_of(const scenes::Body& body, vp::BodyId id) {
   return piece;
 }
 
+// Of the sphere that is as hard to turn.
+double radius_of(const vp::Inertia& inertia) {
+  const vp::Sym3 I = inertia.central();
+  return std::sqrt(2.5 * (I.xx + I.yy + I.zz) / (3.0 * inertia.mass()));
+}
+
 }  // namespace
 
 Simulation::Simulation(scenes::SceneWorld world, int rate, Clock clock)
@@ -34,9 +40,17 @@ Simulation::Simulation(scenes::SceneWorld world, int rate, Clock clock)
 
 void Simulation::collect_pieces() {
   pieces_.clear();
-  ids_ = world_.bodies();
-  for (std::size_t i = 0; i < ids_.size(); ++i) {
-    pieces_.push_back(piece_of(scene().bodies[i], ids_[i]));
+  for (std::size_t i = 0; i < world_.bodies().size(); ++i) {
+    pieces_.push_back(piece_of(scene().bodies[i], world_.bodies()[i]));
+  }
+  typical_ = {};
+  if (moving() == 0) return;
+  const double share = 1.0 / static_cast<double>(moving());
+  typical_ = {0.0, 0.0};
+  for (const Piece& piece : pieces_) {
+    if (piece.motion != scenes::Motion::dynamic) continue;
+    typical_.mass += share * piece.inertia.mass();
+    typical_.size += share * radius_of(piece.inertia);
   }
 }
 
@@ -54,7 +68,6 @@ vp::Expected<void> Simulation::reset() {
   world_ = std::move(*world);
   collect_pieces();
   times_.clear();
-  contacts_.clear();
   status_ = {};
   grip_.reset();
   owed_ = 0.0;
@@ -70,19 +83,20 @@ std::size_t Simulation::moving() const {
 
 void Simulation::bounds(vp::Vec3& low, vp::Vec3& high) const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  constexpr double kAround = 0.6;  // a body's own size, half [m]
+  constexpr double kAround = 1.25;  // to the corners of a body, in radii of a ball as hard to turn
   low = {kFar, kFar, kFar};
   high = -low;
   const bool any = moving() > 0;
   for (const Piece& piece : pieces_) {
     if (any && piece.motion != scenes::Motion::dynamic) continue;
     const vp::Vec3 p = world().pose(piece.body).position();
+    const double around = kAround * (any ? radius_of(piece.inertia) : 1.0);
     for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i] - kAround);
-      high[i] = std::max(high[i], p[i] + kAround);
+      low[i] = std::min(low[i], p[i] - around);
+      high[i] = std::max(high[i], p[i] + around);
     }
   }
-  if (low.x > high.x) low = {-kAround, -kAround, -kAround}, high = -low;
+  if (low.x > high.x) low = {-1.0, -1.0, -1.0}, high = {1.0, 1.0, 1.0};
 }
 
 vp::Expected<void> Simulation::step() {
@@ -100,7 +114,6 @@ vp::Expected<void> Simulation::step() {
   status_.non_finite = status_.non_finite || status->non_finite;
   status_.time_held += status->time_held;
   ++steps_;
-  contacts_.update(world(), ids_, dt());
   return {};
 }
 
@@ -131,7 +144,11 @@ void Simulation::drag(const Ray& ray, const vp::Vec3& forward) {
   const double along = dot(ray.direction, forward);
   const double depth = dot(grip_->target - ray.origin, forward);
   if (along < 1e-3 || depth <= 0.0) return;  // the plane is behind the eye, or seen edge on
-  grip_->target = ray.origin + (depth / along) * ray.direction;
+  pull_to(ray.origin + (depth / along) * ray.direction);
+}
+
+void Simulation::pull_to(const vp::Vec3& target) {
+  if (grip_) grip_->target = target;
 }
 
 vp::Expected<void> Simulation::throw_body(const vp::Shape& shape, const vp::Vec3& at,
@@ -155,7 +172,6 @@ vp::Expected<void> Simulation::throw_body(const vp::Shape& shape, const vp::Vec3
     return tl::make_unexpected(added.error());
   }
   pieces_.push_back({*body, scenes::Motion::dynamic, desc.inertia, {{shape, T_body_shape}}});
-  ids_.push_back(*body);
   return {};
 }
 

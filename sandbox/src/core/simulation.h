@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/contact_marks.h"
 #include "core/orbit_camera.h"
 #include "core/pull.h"
 #include "core/step_times.h"
@@ -34,6 +33,7 @@ class Simulation {
 
   static constexpr int kLeastRate = 10, kMostRate = 10'000;  // [Hz]
 
+  Simulation(scenes::SceneWorld world, int rate, Clock clock);
   // The error names the scenes there are, or what of this one the engine cannot have.
   static vp::Expected<Simulation> open(std::string_view scene, int rate, Clock clock);
 
@@ -46,7 +46,12 @@ class Simulation {
   std::span<const Piece> pieces() const { return pieces_; }
   std::size_t moving() const;  // number of dynamic ones
   std::vector<vp::SE3> scene_poses() const { return world_.poses(); }
-  // Around what moves, or all there is if nothing does; at least a metre wide.
+  // An average moving body of the scene: half its size [m], its mass [kg].
+  struct Typical {
+    double size = 1.0, mass = 1.0;
+  };
+  const Typical& typical() const { return typical_; }
+  // Around what moves, or all there is if nothing does.
   void bounds(vp::Vec3& low, vp::Vec3& high) const;
 
   int rate() const { return rate_; }
@@ -59,7 +64,6 @@ class Simulation {
   vp::Expected<void> advance(double frame, double speed, double budget);
 
   const StepTimes& times() const { return times_; }
-  const ContactMarks& contacts() const { return contacts_; }
   // Whatever a step since the start has had to do without.
   const vp::StepStatus& status() const { return status_; }
 
@@ -67,6 +71,7 @@ class Simulation {
   bool grab(const Ray& ray);
   // Where the pointer is now: in the plane through the grabbed point that faces the eye.
   void drag(const Ray& ray, const vp::Vec3& forward);
+  void pull_to(const vp::Vec3& target);  // of what is held
   void let_go() { grip_.reset(); }
   const std::optional<Grip>& grip() const { return grip_; }
 
@@ -75,16 +80,14 @@ class Simulation {
                                 const vp::Vec3& velocity);
 
  private:
-  Simulation(scenes::SceneWorld world, int rate, Clock clock);
   void collect_pieces();
 
   scenes::SceneWorld world_;
   int rate_;
   Clock clock_;
   std::vector<Piece> pieces_;
-  std::vector<vp::BodyId> ids_;  // of the pieces
+  Typical typical_;
   StepTimes times_;
-  ContactMarks contacts_;
   vp::StepStatus status_;
   std::optional<Grip> grip_;
   double owed_ = 0.0;  // [s] not stepped yet

@@ -5,12 +5,6 @@
 #include "view/shaders.h"
 
 namespace sandbox {
-namespace {
-
-constexpr float kBehind = 0.15f;  // opacity of what a body hides
-
-}  // namespace
-
 tl::expected<Marks, std::string> Marks::create(draw::Quality quality) {
   auto program = draw::Program::build(shader_source, {"line.vert"}, {"line.frag"}, quality);
   if (!program) return tl::unexpected(program.error());
@@ -23,19 +17,21 @@ tl::expected<Marks, std::string> Marks::create(draw::Quality quality) {
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Vertex),
                         reinterpret_cast<const void*>(offsetof(Vertex, colour)));
-  glEnableVertexAttribArray(0);
-  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                        reinterpret_cast<const void*>(offsetof(Vertex, behind)));
+  for (GLuint i = 0; i < 3; ++i) glEnableVertexAttribArray(i);
   glBindVertexArray(0);
   return marks;
 }
 
-void Marks::line(const glm::vec3& from, const glm::vec3& to, const glm::vec4& colour) {
-  lines_.push_back({from, colour});
-  lines_.push_back({to, colour});
+void Marks::line(const glm::vec3& from, const glm::vec3& to, const glm::vec4& colour,
+                 float behind) {
+  lines_.push_back({from, colour, behind});
+  lines_.push_back({to, colour, behind});
 }
 
-void Marks::point(const glm::vec3& at, const glm::vec4& colour) {
-  points_.push_back({at, colour});
+void Marks::point(const glm::vec3& at, const glm::vec4& colour, float behind) {
+  points_.push_back({at, colour, behind});
 }
 
 void Marks::draw_all(float point_size) const {
@@ -46,7 +42,7 @@ void Marks::draw_all(float point_size) const {
   glDrawArrays(GL_POINTS, static_cast<GLint>(lines_.size()), static_cast<GLsizei>(points_.size()));
 }
 
-void Marks::flush(const glm::mat4& view_projection, float point_size) {
+void Marks::flush(const glm::mat4& view_projection, float point_size, float line_width) {
   if (!lines_.empty() || !points_.empty()) {
     std::vector<Vertex> all = lines_;
     all.insert(all.end(), points_.begin(), points_.end());
@@ -56,14 +52,15 @@ void Marks::flush(const glm::mat4& view_projection, float point_size) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(Vertex)), all.data(),
                  GL_STREAM_DRAW);
+    glLineWidth(line_width);
     glEnable(GL_BLEND);
     glDepthMask(GL_FALSE);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthFunc(GL_GREATER);
-    program_.set("u_opacity", kBehind);
+    program_.set("u_behind", 1);
     draw_all(point_size);
     glDepthFunc(GL_LEQUAL);
-    program_.set("u_opacity", 1.0f);
+    program_.set("u_behind", 0);
     draw_all(point_size);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);

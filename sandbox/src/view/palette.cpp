@@ -1,6 +1,7 @@
 #include "view/palette.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -45,6 +46,12 @@ glm::vec4 speed_colour(double speed) {
   const auto i = std::min<std::size_t>(static_cast<std::size_t>(x), 2);
   const auto share = static_cast<float>(x - static_cast<double>(i));
   return {glm::mix(kSpeedColours[i], kSpeedColours[i + 1], share), kGloss};
+}
+
+glm::vec4 mark_colour(vp::DebugMark mark) {
+  const std::uint32_t rgb = vp::usual_colour(mark);
+  const auto share = [rgb](int shift) { return static_cast<float>(rgb >> shift & 0xFF) / 255.0f; };
+  return {share(16), share(8), share(0), 1.0f};
 }
 
 }  // namespace sandbox

@@ -1,18 +1,16 @@
 // Colours of bodies, linear, and of marks, as the screen shows them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "vphysics/debug_draw.h"
+
 namespace sandbox {
 
-inline constexpr glm::vec4 kContactColour{1.0f, 0.83f, 0.10f, 1.0f},
-    kHitColour{1.0f, 0.25f, 0.1f, 1.0f}, kCentreColour{0.05f, 0.05f, 0.05f, 1.0f},
-    kGripColour{1.0f, 1.0f, 1.0f, 1.0f};
-inline constexpr std::array<glm::vec4, 3> kAxisColours{
-    {{0.90f, 0.20f, 0.20f, 1.0f}, {0.25f, 0.75f, 0.25f, 1.0f}, {0.25f, 0.45f, 0.95f, 1.0f}}};
+inline constexpr glm::vec4 kGripColour{1.0f, 1.0f, 1.0f, 1.0f};
+glm::vec4 mark_colour(vp::DebugMark mark);
 
 // linear rgb; a: gloss
 glm::vec4 body_colour(std::size_t index);

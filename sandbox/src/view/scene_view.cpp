@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <optional>
 
+#include "view/debug_marks.h"
 #include "view/palette.h"
 #include "view/see_through.h"
 #include "view/shaders.h"
@@ -19,6 +20,11 @@ constexpr std::size_t kWatched = 96;   // bodies that walls are asked about
 constexpr float kShadowAround = 2.2f;  // of the camera's distance; farther off nothing casts
 constexpr float kHaze = 0.04f;         // of the light, in the camera's distance
 constexpr double kGroundReach = 50.0;  // of the camera's distance
+
+// Marks: points are as large as they would be on the bodies, within what can be told apart.
+constexpr double kPoint = 0.2;                           // of a body's size
+constexpr double kSmallestPoint = 3.0;                   // [px]
+constexpr double kLargestPoint = 0.012, kLine = 0.0025;  // of the picture's height
 
 const glm::mat4 kTextureFromClip{
     {0.5f, 0, 0, 0}, {0, 0.5f, 0, 0}, {0, 0, 0.5f, 0}, {0.5f, 0.5f, 0.5f, 1}};
@@ -210,8 +216,7 @@ void SceneView::draw(const Simulation& simulation, const OrbitCamera& camera,
   draw_sky(camera);
   draw_ghosts(camera);
   glDisable(GL_CULL_FACE);
-  mark(simulation, options);
-  marks_.flush(view_projection_, 0.009f * static_cast<float>(screen.y));
+  draw_marks(simulation, camera, options.marks);
   glDisable(GL_DEPTH_TEST);
   target_.resolve();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer());
@@ -301,38 +306,15 @@ void SceneView::draw_ghosts(const OrbitCamera& camera) {
   glDisable(GL_BLEND);
 }
 
-void SceneView::mark(const Simulation& simulation, const ViewOptions& options) {
-  const vp::World& world = simulation.world();
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const auto& list : instances_) {
-    for (const Instance& instance : list) sum += radius_of(instance), ++count;
-  }
-  const double typical = count > 0 ? sum / static_cast<double>(count) : 1.0;
-  if (options.contacts) {
-    for (const ContactMark& c : simulation.contacts().marks(world)) {
-      const glm::vec4 colour = glm::mix(kContactColour, kHitColour, static_cast<float>(c.strength));
-      marks_.point(seen(c.point), colour);
-      marks_.line(seen(c.point), seen(c.point + 0.5 * typical * c.normal), colour);
-    }
-  }
-  for (const Piece& piece : simulation.pieces()) {
-    if (piece.motion == scenes::Motion::fixed || !(options.frames || options.centres)) continue;
-    const vp::SE3 T = world.pose(piece.body);
-    const std::array axes{T.rotation().cx, T.rotation().cy, T.rotation().cz};
-    for (std::size_t i = 0; options.frames && i < axes.size(); ++i) {
-      marks_.line(seen(T.position()), seen(T.position() + 0.9 * typical * axes[i]),
-                  kAxisColours[i]);
-    }
-    if (options.centres && piece.motion == scenes::Motion::dynamic)
-      marks_.point(seen(T * piece.inertia.centre_of_mass()), kCentreColour);
-  }
-  if (const auto& grip = simulation.grip()) {
-    const vp::Vec3 held = world.pose(grip->body) * grip->point_body;
-    marks_.line(seen(held), seen(grip->target), kGripColour);
-    marks_.point(seen(held), kGripColour);
-    marks_.point(seen(grip->target), kGripColour);
-  }
+void SceneView::draw_marks(const Simulation& simulation, const OrbitCamera& camera,
+                           const vp::DebugDrawOptions& options) {
+  add_marks(simulation, options, origin_, marks_);
+  const double height = screen_.y;
+  const double metre = 0.5 * static_cast<double>(camera.projection(screen_)[1][1]) * height /
+                       camera.distance();  // [px]
+  const double point = std::min(kPoint * simulation.typical().size * metre, kLargestPoint * height);
+  marks_.flush(view_projection_, static_cast<float>(std::max(point, kSmallestPoint)),
+               static_cast<float>(std::max(kLine * height, 1.0)));
 }
 
 }  // namespace sandbox

@@ -21,7 +21,7 @@ enum class Colouring : std::uint8_t {
 };
 
 struct ViewOptions {
-  bool contacts = false, frames = false, centres = false;
+  vp::DebugDrawOptions marks{.shapes = false};
   bool shadows = true;
   Colouring colouring = Colouring::body;
 };
@@ -56,7 +56,8 @@ class SceneView {
   void draw_grounds(const OrbitCamera& camera);
   void draw_ghosts(const OrbitCamera& camera);
   void draw_sky(const OrbitCamera& camera) const;
-  void mark(const Simulation& simulation, const ViewOptions& options);
+  void draw_marks(const Simulation& simulation, const OrbitCamera& camera,
+                  const vp::DebugDrawOptions& options);
   glm::vec3 seen(const vp::Vec3& world) const;  // relative to the camera's target
 
   draw::Quality quality_;
