@@ -42,6 +42,7 @@ struct ContactBlock {
 
   IndexField a, b;     // rows of the bodies; of an empty lane the world's
   IndexField contact;  // index in the world's contacts; kNoContact: an empty lane
+  IndexField touches;  // 1: it has been told that the two touch
 
   Field3 normal, tangent, d;
   Field3 arm[kPoints];      // jA_i = rA_i x n
@@ -65,7 +66,7 @@ struct ContactBlock {
   // Not of the hot passes.
   Field restitution;
   Field closing;  // the fastest approach seen in this step [m/s]
-  Field impact;   // the impulse of its bounces [N s]
+  Field impact;   // the impulse of its bounces [N s]; both are zero when a step begins
   // Where the two were when the geometry was last computed (find_moved).
   Field3 slid;  // relative displacement at the grip
   Field3 turned_a, turned_b;
@@ -74,7 +75,7 @@ struct ContactBlock {
 
 // All fields but those of indices, as they lie.
 template <int P>
-inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) - 3 * sizeof(IndexField)) /
+inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) - 4 * sizeof(IndexField)) /
                                          sizeof(Field);
 
 static_assert(sizeof(ContactBlock<4>) % sizeof(Field) == 0);

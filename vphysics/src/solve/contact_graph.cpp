@@ -2,25 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+
+#include "solve/lane_copy.h"
 
 namespace vp::solve {
 namespace {
 
 constexpr std::uint64_t kOfFixed = ~std::uint64_t{0} << kFirstFixedColour;
-
-template <int P>
-constexpr std::size_t kFields = sizeof(ContactBlock<P>) / sizeof(Field);
-
-// All that a block knows of a lane, as words.
-template <int P>
-void copy_lane(const ContactBlock<P>& from, int from_lane, ContactBlock<P>& to, int to_lane) {
-  const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_lane;
-  auto* target = reinterpret_cast<std::byte*>(&to) + sizeof(float) * to_lane;
-  for (std::size_t f = 0; f < kFields<P>; ++f) {
-    std::memcpy(target + f * sizeof(Field), source + f * sizeof(Field), sizeof(float));
-  }
-}
 
 template <int P>
 void clear_lane(ContactBlock<P>& block, int lane) {

@@ -92,6 +92,13 @@ class LanesOf {
     w_b += inertia_b_ * on_b;
   }
 
+  // Of bodies that can be carried: those that cannot may be of several lanes.
+  void mark_carried(int i) const {
+    for (BodyRow* row : {&row_a(i), &row_b(i)}) {
+      if (row->velocity[kInverseMass] > 0.0f) row->way[kCarried] = 1.0f;
+    }
+  }
+
   V v_a, w_a, v_b, w_b, x_a, turn_a, x_b, turn_b;
   F falls_a, falls_b;
 
@@ -283,6 +290,7 @@ void warm_start_lanes(LanesOf<W, P>& c) {
 
 // How often the points of one contact are gone through before the bodies are told.
 inline constexpr int kInnerSweeps = 4;
+inline constexpr float kSettled = 1e-3f;  // of the load: the change of a point that is enough
 inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 
 template <int W, int P, bool kPush>
@@ -312,13 +320,27 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     // Gaps that close in the next sub-step are its own affair: it may be a bounce.
     most[i] = kPush ? F(kLargestImpulse) : select(open, p[i], F(kLargestImpulse));
   }
-  for (int sweep = 0; sweep < (P > 1 ? kInnerSweeps : 1); ++sweep) {
+  const auto sweep = [&](const auto& next_of) {
+    F moved(0.0f), load(0.0f);
     for (int i = 0; i < P; ++i) {
       const F wanted = p[i] - (mass[i] * u[i] + loss[i] * p[i]);
-      const F next = smaller(most[i], larger(F(0.0f), wanted));
-      if (P > 1) pass_on(c, i, next - p[i], u);
+      const F next = next_of(smaller(most[i], larger(F(0.0f), wanted)), p[i]);
+      if constexpr (P > 1) {
+        pass_on(c, i, next - p[i], u);
+        moved = larger(moved, larger(next - p[i], p[i] - next));
+        load += next;
+      }
       p[i] = next;
     }
+    return moved <= F(kSettled) * load;
+  };
+  auto settled = sweep([](const F& next, const F&) { return next; });
+  for (int k = 1; P > 1 && k < kInnerSweeps && !all(settled); ++k) {
+    // A lane that has settled stays as it is, so that it does not matter which others it is with.
+    const auto before_it = settled;
+    const auto more =
+        sweep([&](const F& next, const F& last) { return select(before_it, last, next); });
+    settled = !both(!before_it, !more);
   }
   F change[P];
   for (int i = 0; i < P; ++i) {

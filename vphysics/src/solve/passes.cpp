@@ -70,30 +70,40 @@ std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block)
 }
 template <int P>
 [[gnu::flatten]] void find_moved(const typename ContactPasses<P>::Run& run, float dt, float turn,
-                                 std::uint16_t* bits) {
+                                 std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
     const std::uint32_t found = find_moved_lanes<W, P>(c, dt, turn) << at;
     const std::uint32_t before = at == 0 ? 0u : bits[block];
-    bits[block] = static_cast<std::uint16_t>(before | (found & used(run.lanes, run.stride, block)));
+    bits[block] = before | (found & used(run.lanes, run.stride, block));
   });
 }
 template <int P>
-[[gnu::flatten]] void find_loaded(const typename ContactPasses<P>::Run& run, std::uint16_t* bits) {
+[[gnu::flatten]] void find_news(const typename ContactPasses<P>::Run& run, std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
-    const std::uint32_t found = find_loaded_lanes<W, P>(c) << at;
-    const std::uint32_t before = at == 0 ? 0u : bits[block];
-    bits[block] = static_cast<std::uint16_t>(before | (found & used(run.lanes, run.stride, block)));
+    const std::uint32_t found = find_news_lanes<W, P>(c, at) << at;
+    const std::uint32_t lanes = used(run.lanes, run.stride, block);
+    bits[block] = (at == 0 ? 0u : bits[block]) | (found & (lanes | lanes << kLanes));
   });
+}
+[[gnu::flatten]] void find_closer(NearBlock* blocks, std::size_t count, BodyRow* rows, float dt,
+                                  std::uint32_t* bits) {
+  for (std::size_t b = 0; b < count; ++b) {
+    std::uint32_t found = 0;
+    for (int at = 0; at < kLanes; at += W) {
+      found |= find_closer_lanes<W>(blocks[b], at, rows, dt) << at;
+    }
+    bits[b] = found;
+  }
 }
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {strike<P>, warm_start<P>, solve<P, true>, solve<P, false>, find_moved<P>, find_loaded<P>};
+  return {strike<P>, warm_start<P>, solve<P, true>, solve<P, false>, find_moved<P>, find_news<P>};
 }
 
 }  // namespace
 }  // namespace vp::solve
 
-const vphysics_solver::Passes vphysics_solver::VP_PASSES = {vp::solve::accelerate, vp::solve::move,
-                                                            vp::solve::contact_passes<1>(),
-                                                            vp::solve::contact_passes<4>()};
+const vphysics_solver::Passes vphysics_solver::VP_PASSES = {
+    vp::solve::accelerate, vp::solve::move, vp::solve::find_closer, vp::solve::contact_passes<1>(),
+    vp::solve::contact_passes<4>()};

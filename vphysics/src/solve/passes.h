@@ -9,6 +9,7 @@
 
 #include "solve/body_row.h"
 #include "solve/contact_block.h"
+#include "solve/near_list.h"
 
 namespace vphysics_solver {
 
@@ -37,14 +38,19 @@ struct ContactPasses {
   void (*warm_start)(const Run& run);
   void (*solve)(const Run& run, const Soft& soft);
   void (*relax)(const Run& run, const Soft& soft);
-  // A bit for each lane, a word for each block.
-  void (*find_moved)(const Run& run, float dt, float turn, std::uint16_t* bits);
-  void (*find_loaded)(const Run& run, std::uint16_t* bits);
+  // Of all that find: a bit for each lane, a word for each block.
+  void (*find_moved)(const Run& run, float dt, float turn, std::uint32_t* bits);
+  // Those of which there is something to tell: that they begin or end to touch, or a hit; in the
+  // upper half of the word those that push. Marks the rows that something carries.
+  void (*find_news)(const Run& run, std::uint32_t* bits);
 };
 
 struct Passes {
   void (*accelerate)(BodyRow* rows, std::uint32_t count, float h);
   void (*move)(BodyRow* rows, std::uint32_t count, float h);
+  // Bits of the near pairs that may go farther than they may by the end of a step dt.
+  void (*find_closer)(NearBlock* blocks, std::size_t count, BodyRow* rows, float dt,
+                      std::uint32_t* bits);
   ContactPasses<1> one;
   ContactPasses<4> four;
 };

@@ -158,12 +158,48 @@ std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
   return bits;
 }
 
-// Bits of lanes that push.
+// Bits of lanes that hit, or that push and did not touch, or the other way round; kLanes above,
+// those of lanes that push.
 template <int W, int P>
-std::uint32_t find_loaded_lanes(const LanesOf<W, P>& c) {
-  const auto loaded = sum_of_impulses(c) + c.get(c.block().impact) > Lanes<W>(0.0f);
+std::uint32_t find_news_lanes(const LanesOf<W, P>& c, int at) {
+  const Lanes<W> zero(0.0f), impact = c.get(c.block().impact);
+  const auto loaded = sum_of_impulses(c) + impact > zero;
+  const auto hits = c.get(c.block().closing) + impact > zero;
   std::uint32_t bits = 0;
-  for (int i = 0; i < W; ++i) bits |= (loaded.lanes[i] != 0 ? 1u : 0u) << i;
+  for (int i = 0; i < W; ++i) {
+    const bool pushes = loaded.lanes[i] != 0;
+    if (pushes) c.mark_carried(i);
+    const bool news = hits.lanes[i] != 0 || pushes != (c.block().touches.lane[at + i] != 0);
+    bits |= (news ? 1u : 0u) << i | (pushes ? 1u << kLanes : 0u) << i;
+  }
+  return bits;
+}
+
+// Bits of near pairs that may go farther than their clearance.
+template <int W>
+std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, float dt) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  const auto get = [&](const Field& f) { return F(lanes::load<W>(f.lane + at)); };
+  const auto get3 = [&](const Field3& f) { return V{get(f.x), get(f.y), get(f.z)}; };
+  const auto gather = [&](const IndexField& of, V& x, V& turn) {
+    F velocity[8], way[8];
+    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].velocity; }, velocity);
+    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].way; }, way);
+    const F step(dt);
+    x = V{way[0], way[1], way[2]} + step * V{velocity[0], velocity[1], velocity[2]};
+    turn = V{way[3], way[4], way[5]} + step * V{velocity[3], velocity[4], velocity[5]};
+  };
+  V x_a, turn_a, x_b, turn_b;
+  gather(block.a, x_a, turn_a);
+  gather(block.b, x_b, turn_b);
+  const auto size = [](const V& v) { return sqrt(dot(v, v)); };
+  const F gone = size((x_b - get3(block.x_b)) - (x_a - get3(block.x_a))) +
+                 get(block.reach_a) * size(turn_a - get3(block.turn_a)) +
+                 get(block.reach_b) * size(turn_b - get3(block.turn_b));
+  const auto stays = gone <= get(block.clearance);
+  std::uint32_t bits = 0;
+  for (int i = 0; i < W; ++i) bits |= (stays.lanes[i] == 0 ? 1u : 0u) << i;
   return bits;
 }
 

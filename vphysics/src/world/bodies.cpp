@@ -43,15 +43,13 @@ Vec3 gyroscopic_acceleration(const Body& body, double dt) {
                   scale * dot(J.cx, cross(J.cy, f))};
 }
 
-// Half a margin of the least collider is surely within all enlarged bounds.
-bool stays_within_bounds(const Body& body, const solve::BodyRow& row, double dt) {
-  const float* at = body.bounded_at;
-  const auto gone = [&](int i) {
-    return static_cast<double>(std::fabs(row.way[i] - at[i]) +
-                               std::fabs(row.way[i + 1] - at[i + 1]) +
-                               std::fabs(row.way[i + 2] - at[i + 2]));
-  };
-  return gone(0) + dt * norm(body.v) + body.reach * (gone(3) + dt * norm(body.w)) <
+// Half a margin of the least collider is surely within all enlarged bounds. Sums of components, no
+// less than the lengths, will do.
+bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
+  const float *at = body.bounded_at, *way = row.way, *velocity = row.velocity;
+  const auto gone = [&](int i) { return std::fabs(way[i] - at[i]) + dt * std::fabs(velocity[i]); };
+  const float linear = gone(0) + gone(1) + gone(2), turned = gone(3) + gone(4) + gone(5);
+  return static_cast<double>(linear) + body.reach * static_cast<double>(turned) <
          0.5 * kMargin * body.least_size;
 }
 // Of all that a collider passes in a step.
@@ -69,17 +67,16 @@ Mat3 turned(const Mat3& R, const Vec3& t) {
   if (tt > 1e-3) return orthonormalized(Exp(t).matrix() * R);
   const double s = 1.0 - tt * (1.0 / 6.0 - tt * (1.0 / 120.0 - tt * (1.0 / 5040.0)));
   const double c = 0.5 - tt * (1.0 / 24.0 - tt * (1.0 / 720.0));
-  const auto turn = [&](const Vec3& a) {
-    const Vec3 once = cross(t, a);
-    return a + s * once + c * cross(t, once);
-  };
-  // Back to a rotation by a step of Newton's method, M (3 - M^T M) / 2: what a step leaves is
-  // rounding.
-  const Vec3 x = turn(R.cx), y = turn(R.cy), z = turn(R.cz);
-  const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
-  return {(1.5 - 0.5 * dot(x, x)) * x - xy * y - zx * z,
-          (1.5 - 0.5 * dot(y, y)) * y - xy * x - yz * z,
-          (1.5 - 0.5 * dot(z, z)) * z - zx * x - yz * y};
+  const Vec3 st = s * t, ct = c * t;
+  const double xy = ct.x * t.y, yz = ct.y * t.z, zx = ct.z * t.x, rest = 1.0 - c * tt;
+  const Mat3 next = Mat3{{rest + ct.x * t.x, xy + st.z, zx - st.y},
+                         {xy - st.z, rest + ct.y * t.y, yz + st.x},
+                         {zx + st.y, yz - st.x, rest + ct.z * t.z}} *
+                    R;
+  // Rounding adds up over thousands of steps; two of its six errors tell when.
+  constexpr double kWorn = 1e-13;
+  const double size = dot(next.cx, next.cx) - 1.0, skewness = dot(next.cy, next.cz);
+  return std::fabs(size) + std::fabs(skewness) < kWorn ? next : orthonormalized(next);
 }
 
 // Whether it takes part in the sub-stepped solver.
@@ -88,71 +85,129 @@ bool World::Impl::joins_sub_steps(const Body& body) const {
          body.motion != Motion::fixed;
 }
 
+void World::Impl::list_bodies() {
+  if (!lists_are_stale) return;
+  lists_are_stale = false;
+  movers.clear();
+  link_bodies.clear();
+  some_are_continuous = false;
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.alive) continue;
+    if (body.is_link) {
+      if (body.first_collider != kNone) link_bodies.push_back(i);
+    } else if (body.motion != Motion::fixed) {
+      movers.push_back(i);
+      some_are_continuous |= body.continuous;
+    }
+  }
+}
+
 void World::Impl::load_row(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   solve::BodyRow& row = body_rows[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(row.velocity, body.v);
   put(row.velocity + 3, body.w);
-  row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(1.0 / body.mass) : 0.0f;
+  row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
   row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
-  std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
-  if (!pushed) {
-    std::fill_n(row.inertia, 6, 0.0f);
-    return;
-  }
-  const Sym3 I =
-      body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
-  const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
-  for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
-  put(row.rate, desc.gravity);
-  if (!body.isotropic) put(row.rate + 3, gyroscopic_acceleration(body, dt));
+  row.way[solve::kCarried] = 0.0f;
   float* way = row.way;
-  const bool far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
-  if (!far) return;
-  std::fill_n(way, 6, 0.0f);
-  std::fill_n(body.bounded_at, 6, 1e9f);
-  mark_contacts_stale(index);
+  if (!pushed) {
+    std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
+    std::fill_n(row.inertia, 6, 0.0f);
+  } else {
+    const Sym3 I =
+        body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
+    const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
+    for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
+    put(row.rate, desc.gravity);
+    put(row.rate + 3, body.isotropic ? Vec3{} : gyroscopic_acceleration(body, dt));
+    const bool far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
+    if (far) {
+      std::fill_n(way, 6, 0.0f);
+      std::fill_n(body.bounded_at, 6, 1e9f);
+      mark_contacts_stale(index);
+    }
+  }
+  std::copy_n(way, 6, start_ways[index].begin());
 }
 
 void World::Impl::load_rows(double dt) {
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (body.alive && !body.is_link && body.motion != Motion::fixed) load_row(i, dt);
+  for (const std::uint32_t i : movers) {
+    Body& body = bodies[i];
+    if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
+    load_row(i, dt);
+    if (body.first_collider == kNone) continue;
+    const bool by_rows = joins_sub_steps(body);
+    if (by_rows && stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt))) continue;
+    update_bounds(i, dt, by_rows);
   }
+  for (const std::uint32_t i : link_bodies) update_bounds(i, dt, false);
 }
 
-// Velocities become those of the end of the step, drift what leads there.
-void World::Impl::store_bodies(double dt, int sub_steps) {
-  const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    Body& body = bodies[i];
-    drift[i] = {};
-    if (!joins_sub_steps(body) || body.motion != Motion::dynamic) continue;
-    if (!body.by_rows()) {
-      forced[i].v = dt * desc.gravity;
-      const Vec3 v = body.v;
-      body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
-      body.w *= 1.0 / (1.0 + dt * body.angular_damping);
-      drift[i].v = v + half * desc.gravity - body.v;
-      continue;
-    }
-    solve::BodyRow& row = body_rows[i + 1];
-    const float* start = start_ways[i].data();
-    body.v = vector(row.velocity);
-    body.w = vector(row.velocity + 3);
-    const double per_step = 1.0 / dt;
-    drift[i].v = per_step * (vector(row.way) - vector(start)) - body.v;
-    drift[i].w = per_step * (vector(row.way + 3) - vector(start + 3)) - body.w;
-    if (!in_range(body.v) || !in_range(body.w) || !in_range(drift[i].v) || !in_range(drift[i].w)) {
-      status.non_finite = true;
-      body.v = body.w = {};
-      drift[i] = {};
-      forget_contacts(i);
-      forget_joints(i);
-    }
+// Gives the broad phase the bounds of what may have left its enlarged ones.
+void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
+  Body& body = bodies[index];
+  pose_colliders(index);
+  const Vec3 way = dt * body.v;
+  const double turns = dt * norm(body.w) * body.reach + desc.contact_slop;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    const Collider& collider = colliders[c];
+    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, turns),
+                      kMargin * collider.size, 2.0 * way);
   }
+  if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
+}
+
+// After the sub-steps: the velocities of a dynamic body become those of the end of the step.
+// Returns what its mean velocities over the step have more.
+Velocity World::Impl::settle(std::uint32_t index, double dt, int sub_steps) {
+  Body& body = bodies[index];
+  solve::BodyRow& row = body_rows[index + 1];
+  body.rested = row.way[solve::kCarried] > 0.0f;
+  Velocity more;
+  if (!body.by_rows()) {
+    const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
+    const Vec3 v = body.v;
+    body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
+    body.w *= 1.0 / (1.0 + dt * body.angular_damping);
+    more.v = v + half * desc.gravity - body.v;
+    return more;
+  }
+  const float* start = start_ways[index].data();
+  body.v = vector(row.velocity);
+  body.w = vector(row.velocity + 3);
+  const double per_step = 1.0 / dt;
+  more.v = per_step * (vector(row.way) - vector(start)) - body.v;
+  more.w = per_step * (vector(row.way + 3) - vector(start + 3)) - body.w;
+  if (!in_range(body.v) || !in_range(body.w) || !in_range(more.v) || !in_range(more.w)) {
+    status.non_finite = true;
+    body.v = body.w = {};
+    more = {};
+    forget_contacts(index);
+    forget_joints(index);
+  }
+  return more;
+}
+
+// The same, and its pose, of a dynamic body that its row leads; false if it flies out of range.
+bool World::Impl::advance_by_row(std::uint32_t index) {
+  Body& body = bodies[index];
+  const solve::BodyRow& row = body_rows[index + 1];
+  const float* start = start_ways[index].data();
+  const Vec3 v = vector(row.velocity), w = vector(row.velocity + 3);
+  const Vec3 gone = vector(row.way) - vector(start), turn = vector(row.way + 3) - vector(start + 3);
+  const Vec3 x = body.T * body.centre + gone;
+  if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(turn)) return false;
+  body.rested = row.way[solve::kCarried] > 0.0f;
+  body.v = v;
+  body.w = w;
+  const Mat3 R = turned(body.T.rotation(), turn);
+  body.T = SE3(R, x - R * body.centre);
+  body.moved();
+  return true;
 }
 
 // What its lanes hold is no good to start from.
@@ -163,7 +218,7 @@ void World::Impl::forget_contacts(std::uint32_t body) {
       take_out_of_lane(e / 2);
       set_near(e / 2, 0.0);
     }
-    contact_pool[e / 2].stale = true;
+    mark_stale(e / 2);
   }
 }
 
@@ -176,25 +231,6 @@ void World::Impl::jumped(std::uint32_t index) {
   pose_colliders(index);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);
-  }
-}
-
-// Gives the broad phase the bounds of what has gone far enough to leave its enlarged ones.
-void World::Impl::update_bounds(double dt) {
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    Body& body = bodies[i];
-    if (!body.alive || body.first_collider == kNone || body.motion == Motion::fixed) continue;
-    const bool rows_tell = joins_sub_steps(body);
-    if (rows_tell && stays_within_bounds(body, body_rows[i + 1], dt)) continue;
-    pose_colliders(i);
-    const Vec3 way = dt * body.v;
-    const double turns = dt * norm(body.w) * body.reach + desc.contact_slop;
-    for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-      const Collider& collider = colliders[c];
-      finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, turns),
-                        kMargin * collider.size, 2.0 * way);
-    }
-    if (rows_tell) std::copy_n(body_rows[i + 1].way, 6, body.bounded_at);
   }
 }
 

@@ -32,11 +32,7 @@ struct Contact {
   std::uint32_t feature[collide::kMaxPoints] = {};
   Vec3 position[collide::kMaxPoints] = {};  // world frame, when they were found
 
-  // If it has none: its place among those, the bodies' ways then, and how far they may go against
-  // each other before a point can come to be [m].
-  std::uint32_t near_index = 0;
-  float way_a[6] = {}, way_b[6] = {};
-  float clearance = 0.0f;
+  std::uint32_t near_index = 0;  // if it has none: its lane in the near list
 };
 
 }  // namespace vp

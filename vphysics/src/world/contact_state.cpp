@@ -94,13 +94,6 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
     c.feature[i] = static_cast<std::uint32_t>(feature);
     c.position[i] = in.vector();
   }
-  if (c.count > 0) return;
-  for (int k = 0; k < 6; ++k) {
-    const Reader::TwoFloats ways = in.two_floats();
-    c.way_a[k] = ways.high;
-    c.way_b[k] = ways.low;
-  }
-  c.clearance = in.two_floats().high;
 }
 
 // In their order, each contact's sides once.
@@ -131,8 +124,17 @@ void World::Impl::ContactState::read_near(Reader& in) {
     Contact& c = pool_[index];
     in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
-    c.near_index = static_cast<std::uint32_t>(near_.size());
-    near_.push_back(index);
+    c.near_index = near_.add(index, world_.end_of(world_.colliders[c.a].body).row,
+                             world_.end_of(world_.colliders[c.b].body).row);
+    read_fields(in, solve::fields_of(near_.block(c.near_index)), near_.lane(c.near_index));
+  }
+}
+
+void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> fields, int lane) {
+  for (std::size_t f = 0; f < fields.size(); f += 2) {
+    const Reader::TwoFloats both = in.two_floats();
+    fields[f].lane[lane] = both.high;
+    if (f + 1 < fields.size()) fields[f + 1].lane[lane] = both.low;
   }
 }
 
@@ -152,13 +154,10 @@ void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
     if (!in.ok()) return;
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
-    const auto fields = solve::fields_of(graph_.block<P>(c.place));
     const int lane = graph_.lane(c.place);
-    for (std::size_t f = 0; f < kFields; f += 2) {
-      const Reader::TwoFloats both = in.two_floats();
-      fields[f].lane[lane] = both.high;
-      if (f + 1 < kFields) fields[f + 1].lane[lane] = both.low;
-    }
+    graph_.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
+    read_fields(in, solve::fields_of(graph_.block<P>(c.place)), lane);
+    points_in_lanes_ += c.count;
   }
 }
 
@@ -177,7 +176,14 @@ void World::Impl::ContactState::adopt() {
   }
   world_.contact_pool.swap(pool_);
   world_.free_contacts.swap(free_);
-  world_.near_contacts.swap(near_);
+  std::swap(world_.near_list, near_);
+  world_.points_in_lanes = points_in_lanes_;
+  world_.stale_contacts.clear();
+  for (std::uint32_t i = 0; i < world_.contact_pool.size(); ++i) {
+    if (world_.contact_pool[i].alive && world_.contact_pool[i].stale) {
+      world_.stale_contacts.push_back(i);
+    }
+  }
   std::swap(world_.graph, graph_);
 }
 

@@ -5,7 +5,7 @@
 //   in order, as
 //                   edges (2 contact + side)
 //   pool            of each slot its flags, and if it is alive the contact; free slots, in order
-//   near contacts   in order
+//   near contacts   in order: each contact and all its fields
 //   lanes           of each colour and kind: how many, and of each its contact and all its fields
 //
 // What follows from these is not written: neighbours in lists, rows of lanes, colours taken.
@@ -37,13 +37,16 @@ class World::Impl::ContactState {
   void read_pool(Reader& in);
   void read_edges(Reader& in, std::uint32_t body);
   void read_near(Reader& in);
+  static void read_fields(Reader& in, std::span<solve::Field> fields, int lane);
   template <int P>
   void read_lanes(Reader& in, int colour);
 
   World::Impl& world_;
   std::vector<OfBody> bodies_;
   std::vector<Contact> pool_;
-  std::vector<std::uint32_t> free_, near_;
+  std::vector<std::uint32_t> free_;
+  solve::NearList near_;
+  std::uint32_t points_in_lanes_ = 0;
   std::vector<std::uint8_t> seen_;  // of each contact: 1, 2: the sides found; 4: near or in a lane
   solve::ContactGraph graph_;
 };
@@ -81,9 +84,6 @@ void World::Impl::write_contacts(Sink& sink) const {
       sink.word(c.feature[i]);
       put(sink, c.position[i]);
     }
-    if (c.count > 0) continue;
-    for (int k = 0; k < 6; ++k) put_two(sink, c.way_a[k], c.way_b[k]);
-    put_two(sink, c.clearance, 0.0f);
   }
   for (const Body& body : bodies) {
     std::uint64_t count = 0;
@@ -94,21 +94,25 @@ void World::Impl::write_contacts(Sink& sink) const {
     sink.word(count);
     for_edges([&](std::uint32_t e) { sink.word(e); });
   }
-  for (const auto* list : {&free_contacts, &near_contacts}) {
-    sink.word(list->size());
-    for (const std::uint32_t c : *list) sink.word(c);
+  sink.word(free_contacts.size());
+  for (const std::uint32_t c : free_contacts) sink.word(c);
+  const auto write_fields = [&sink](const auto& fields, int lane) {
+    for (std::size_t f = 0; f < fields.size(); f += 2) {
+      put_two(sink, fields[f].lane[lane], f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
+    }
+  };
+  sink.word(near_list.size());
+  for (std::uint32_t i = 0; i < near_list.size(); ++i) {
+    sink.word(near_list.block(i).contact.lane[near_list.lane(i)]);
+    write_fields(solve::fields_of(near_list.block(i)), near_list.lane(i));
   }
-  const auto write_lanes = [&sink](const auto& colour, int index) {
+  const auto write_lanes = [&](const auto& colour, int index) {
     sink.word(colour.lanes);
     for (std::uint32_t l = 0; l < colour.lanes; ++l) {
       const auto& block = colour.blocks[colour.block_of(l, index)];
       const int lane = colour.lane_of(l, index);
       sink.word(block.contact.lane[lane]);
-      const auto fields = solve::fields_of(block);
-      for (std::size_t f = 0; f < fields.size(); f += 2) {
-        put_two(sink, fields[f].lane[lane],
-                f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
-      }
+      write_fields(solve::fields_of(block), lane);
     }
   };
   for (int c = 0; c < solve::kColours; ++c) {

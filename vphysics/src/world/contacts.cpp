@@ -144,7 +144,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     if (first) carry(i, solver_bodies[i].w - body.w, solver_bodies[i].v - body.v);
     body.w = solver_bodies[i].w;
     body.v = solver_bodies[i].v;
-    (void)stop_if_out_of_range(i);
+    (void)stop_if_out_of_range(i, start_poses[i]);
   }
   end_solve_articulations(first);
   apply_corrections();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "world/impl.h"
 #include "world/runs.h"
@@ -21,9 +22,6 @@ constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
 constexpr double kNeverMeets = 1e30;  // a clearance [m]
 
-Vec3 vector(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
-}
 Vec3 at(const solve::Field3& f, int lane) {
   return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
           static_cast<double>(f.z.lane[lane])};
@@ -86,12 +84,11 @@ solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
 }
 
 void World::Impl::find_contacts(double dt) {
-  update_bounds(dt);
   find_new_contacts();
   drop_parted_contacts();
   find_link_islands();
   find_stale_contacts(dt);
-  for (const std::uint32_t c : stale_contacts) look_at(c, dt);
+  look_at_stale_contacts(dt);
 }
 
 void World::Impl::find_new_contacts() {
@@ -136,6 +133,7 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   Contact& c = contact_pool[index];
   c = {};
   c.alive = true;
+  mark_stale(index);
   c.key = pair.key;
   c.a = pair.a;
   c.b = pair.b;
@@ -173,59 +171,80 @@ void World::Impl::remove_contact(std::uint32_t index) {
 
 void World::Impl::set_near(std::uint32_t index, double clearance) {
   Contact& c = contact_pool[index];
-  c.near_index = static_cast<std::uint32_t>(near_contacts.size());
-  near_contacts.push_back(index);
-  c.clearance = static_cast<float>(clearance);
-  std::fill_n(c.way_a, 6, 0.0f);
-  std::fill_n(c.way_b, 6, 0.0f);
+  const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
+  c.near_index = near_list.add(index, end_of(a).row, end_of(b).row);
+  set_clearance(c, clearance);
+}
+
+// It has been looked at where its bodies are now.
+void World::Impl::set_clearance(const Contact& c, double clearance) {
+  solve::NearBlock& block = near_list.block(c.near_index);
+  const int lane = solve::NearList::lane(c.near_index);
+  const auto put = [&](std::uint32_t row, solve::Field3& x, solve::Field3& turn) {
+    const float* way = body_rows[row].way;
+    x.x.lane[lane] = way[0], x.y.lane[lane] = way[1], x.z.lane[lane] = way[2];
+    turn.x.lane[lane] = way[3], turn.y.lane[lane] = way[4], turn.z.lane[lane] = way[5];
+  };
+  put(block.a.lane[lane], block.x_a, block.turn_a);
+  put(block.b.lane[lane], block.x_b, block.turn_b);
+  block.clearance.lane[lane] = static_cast<float>(clearance);
+  block.reach_a.lane[lane] = static_cast<float>(bodies[colliders[c.a].body].reach);
+  block.reach_b.lane[lane] = static_cast<float>(bodies[colliders[c.b].body].reach);
 }
 
 void World::Impl::unset_near(std::uint32_t index) {
-  const std::uint32_t last = near_contacts.back();
-  near_contacts[contact_pool[index].near_index] = last;
-  contact_pool[last].near_index = contact_pool[index].near_index;
-  near_contacts.pop_back();
+  const std::uint32_t place = contact_pool[index].near_index;
+  const std::uint32_t moved = near_list.remove(place);
+  if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
+}
+
+void World::Impl::mark_stale(std::uint32_t contact) {
+  contact_pool[contact].stale = true;
+  stale_contacts.push_back(contact);
 }
 
 void World::Impl::mark_contacts_stale(std::uint32_t body) {
   for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
-    contact_pool[e / 2].stale = true;
+    mark_stale(e / 2);
   }
 }
 
 void World::Impl::find_stale_contacts(double dt) {
-  stale_contacts.clear();
-  for_runs([&](auto& pass, const auto& run, auto& blocks) {
+  const float step = static_cast<float>(dt);
+  for_runs([&](const auto& pass, const auto& run, auto& blocks) {
     const std::size_t count = blocks.size();
     lane_bits.resize(std::max(lane_bits.size(), count));
-    pass.find_moved(run, static_cast<float>(dt), static_cast<float>(kTurn), lane_bits.data());
-    for (std::size_t b = 0; b < count; ++b) {
-      for (std::uint32_t bits = lane_bits[b]; bits != 0; bits &= bits - 1) {
-        contact_pool[blocks[b].contact.lane[std::countr_zero(bits)]].stale = true;
-      }
-    }
+    pass.find_moved(run, step, static_cast<float>(kTurn), lane_bits.data());
+    mark_found_stale(blocks);
   });
-  const auto vector_between = [](const float* from, const float* to) {
-    return vector(to) - vector(from);
-  };
-  for (const std::uint32_t index : near_contacts) {
-    Contact& c = contact_pool[index];
-    if (c.stale) continue;
-    const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
-    const solve::BodyRow &row_a = body_rows[end_of(a).row], &row_b = body_rows[end_of(b).row];
-    const Vec3 apart = vector_between(c.way_b, row_b.way) - vector_between(c.way_a, row_a.way) +
-                       dt * (bodies[b].v - bodies[a].v);
-    const auto turned = [&](const float* way, const solve::BodyRow& row, const Body& body) {
-      return body.reach * norm(vector_between(way + 3, row.way + 3) + dt * body.w);
-    };
-    const double gone =
-        norm(apart) + turned(c.way_a, row_a, bodies[a]) + turned(c.way_b, row_b, bodies[b]);
-    c.stale = gone > static_cast<double>(c.clearance);
+  const std::span<solve::NearBlock> blocks = near_list.blocks();
+  lane_bits.resize(std::max(lane_bits.size(), blocks.size()));
+  solve::passes().find_closer(blocks.data(), blocks.size(), body_rows.data(), step,
+                              lane_bits.data());
+  mark_found_stale(blocks);
+}
+
+template <class Blocks>
+void World::Impl::mark_found_stale(const Blocks& blocks) {
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (std::uint32_t bits = lane_bits[b]; bits != 0; bits &= bits - 1) {
+      mark_stale(blocks[b].contact.lane[std::countr_zero(bits)]);
+    }
   }
-  for (std::uint32_t i = 0; i < contact_pool.size(); ++i) {
-    const Contact& c = contact_pool[i];
-    if (!c.alive || !(c.stale || c.sensor) || is_by_impacts(c)) continue;
-    stale_contacts.push_back(i);
+}
+
+// In the order of their slots.
+void World::Impl::look_at_stale_contacts(double dt) {
+  std::sort(stale_contacts.begin(), stale_contacts.end());
+  looked_at_contacts.swap(stale_contacts);
+  stale_contacts.clear();
+  std::uint32_t last = kNone;
+  for (const std::uint32_t index : looked_at_contacts) {
+    const Contact& c = contact_pool[index];
+    if (index == last || !c.alive || !c.stale) continue;
+    last = index;
+    if (!is_by_impacts(c)) look_at(index, dt);
+    if (c.sensor || is_by_impacts(c)) mark_stale(index);  // again in the next step
   }
 }
 
@@ -263,10 +282,9 @@ void World::Impl::look_at(std::uint32_t index, double dt) {
   if (c.place.points > 0) {
     take_out_of_lane(index);
     set_near(index, clearance);
+  } else {
+    set_clearance(c, clearance);
   }
-  c.clearance = static_cast<float>(clearance);
-  std::copy_n(body_rows[end_of(a.body).row].way, 6, c.way_a);
-  std::copy_n(body_rows[end_of(b.body).row].way, 6, c.way_b);
 }
 
 void World::Impl::take_out_of_lane(std::uint32_t index) {
@@ -275,6 +293,7 @@ void World::Impl::take_out_of_lane(std::uint32_t index) {
   const std::uint32_t moved = graph.remove(c.place, end_of(a), end_of(b));
   if (moved != solve::kNoContact) contact_pool[moved].place = c.place;
   c.place = {};
+  points_in_lanes -= c.count;
   c.count = 0;
   --bodies[a].lanes;
   --bodies[b].lanes;
@@ -316,6 +335,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   n.old_friction = impulses.friction;
   n.old_moment = impulses.moment;
   n.slid_limit = leeway;
+  points_in_lanes += static_cast<std::uint32_t>(n.count) - c.count;
   c.count = static_cast<std::uint8_t>(n.count);
   for (int i = 0; i < n.count; ++i) {
     c.feature[i] = m.points[i].feature;
@@ -324,8 +344,10 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
   if (ball) {
     write_lane(graph.block<1>(c.place), graph.lane(c.place), n, row_a, row_b);
+    graph.block<1>(c.place).touches.lane[graph.lane(c.place)] = c.touching ? 1 : 0;
   } else {
     write_lane(graph.block<4>(c.place), graph.lane(c.place), n, row_a, row_b);
+    graph.block<4>(c.place).touches.lane[graph.lane(c.place)] = c.touching ? 1 : 0;
   }
 }
 

@@ -22,43 +22,46 @@ namespace vp {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-struct Body {
-  std::uint32_t generation = 0;
+// What a step reads of every body comes first.
+struct alignas(64) Body {
   bool alive = false;
   bool is_link = false;
   bool continuous = false;
   bool isotropic = false;  // rotational inertia the same about every axis: no gyroscopic term
   Motion motion = Motion::fixed;
+  bool rested = false;      // something carried it in the last step
+  bool by_impacts = false;  // in this step: it is connected to a link (islands.cpp)
+  // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
+  // colliders; else ask its articulation.
+  bool posed = false;       // the colliders' poses and bounds are those of T
+  bool bounded = false;     // so are `bounds`
+  std::uint32_t lanes = 0;  // of the solver that hold it
+  std::uint32_t first_joint = kNone, first_collider = kNone;
+  float bounded_at[6] = {};  // its way when its proxies' bounds were last set
+  // To the farthest point of its bounded colliders from the reference point; half of the least
+  // extent of one [m].
+  double reach = 0.0, least_size = 1e9;
+  // State, with what is constant of it.
+  Vec3 w, v;  // world frame; v of the reference point (centre of mass; a link's origin)
+  double inverse_mass = 0.0;
+  SE3 T;                          // T_world_body
+  Vec3 centre;                    // of mass, body frame
+  Sym3 inverse_central, central;  // rotational inertia about it, body frame
+  double linear_damping = 0.0, angular_damping = 0.0;
+
+  double mass = 0.0;
+  se3 prescribed;         // kinematic: body frame
+  collide::Bounds local;  // of its bounded colliders, body frame
+  collide::Bounds bounds;
+  std::uint32_t generation = 0;
   std::uint32_t articulation = kNone;
   int link = 0;  // of it
-  std::uint32_t first_collider = kNone, last_collider = kNone;
+  std::uint32_t last_collider = kNone;
+  std::uint32_t first_edge = kNone;         // of its contacts
   std::uint32_t categories = 0, masks = 0;  // union over its colliders
   bool has_sensor = false;
   bool unbounded = false;  // carries a half-space
   std::uint64_t user_data = 0;
-  std::uint32_t first_edge = kNone;  // of its contacts
-  std::uint32_t first_joint = kNone;
-  std::uint32_t lanes = 0;   // of the solver that hold it
-  bool rested = false;       // something carried it in the last step
-  bool by_impacts = false;   // in this step: it is connected to a link (islands.cpp)
-  float bounded_at[6] = {};  // its way when its proxies' bounds were last set
-  // Constant.
-  double mass = 0.0;
-  Vec3 centre;                    // of mass, body frame
-  Sym3 central, inverse_central;  // rotational inertia about it, body frame
-  double linear_damping = 0.0, angular_damping = 0.0;
-  collide::Bounds local;    // of its bounded colliders, body frame
-  double reach = 0.0;       // to the farthest point of these from the reference point
-  double least_size = 1e9;  // of its colliders
-  // State.
-  SE3 T;           // T_world_body
-  Vec3 w, v;       // world frame; v of the reference point (centre of mass; a link's origin)
-  se3 prescribed;  // kinematic: body frame
-  // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
-  // colliders; else ask its articulation.
-  bool posed = false;    // the colliders' poses and bounds are those of T
-  bool bounded = false;  // so are these
-  collide::Bounds bounds;
 
   // Its row of the solver tells how it goes; else it falls freely.
   bool by_rows() const { return lanes > 0 || first_joint != kNone; }
@@ -143,9 +146,18 @@ struct World::Impl {
   collide::PairFinder finder;
   std::vector<Contact> contact_pool;
   std::vector<std::uint32_t> free_contacts;
-  std::vector<std::uint32_t> near_contacts;  // that have no points
+  solve::NearList near_list;  // those that have no points
+  // Those marked as stale, in no order, and with others that are not any more.
+  std::vector<std::uint32_t> stale_contacts;
+  std::uint32_t points_in_lanes = 0;
   solve::ContactGraph graph;
   std::vector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
+
+  // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
+  // or colliders come or go.
+  std::vector<std::uint32_t> movers, link_bodies;
+  bool some_are_continuous = false;
+  bool lists_are_stale = true;
 
   // --- of the last step
   std::vector<ContactEvent> events;
@@ -154,8 +166,8 @@ struct World::Impl {
 
   // --- scratch of a step; kept for its capacity
   std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint32_t> stale_contacts, body_stack;
-  std::vector<std::uint16_t> lane_bits;
+  std::vector<std::uint32_t> looked_at_contacts, body_stack;
+  std::vector<std::uint32_t> lane_bits;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
   std::vector<BodyPlace> joint_places;
@@ -199,15 +211,19 @@ struct World::Impl {
 
   // step.cpp
   void begin_step();
-  void prescribe_velocities(double dt);
+  void begin_impact_stage();
+  void prescribe_velocity(Body& body, double dt);
   void integrate_forces(double dt);
   void refresh_solver_bodies();
   void refresh_motions(double h);
   void pose_colliders(std::uint32_t body);
   const collide::Bounds& bounds_at_pose(std::uint32_t body);
-  bool stop_if_out_of_range(std::uint32_t body);
+  bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
+  collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance(double h);
-  void advance_body(std::uint32_t index, double h);
+  void advance_body(Body& body, const collide::Motion& motion, double h);
+  void advance_all(double dt, int sub_steps);
+  bool advance_by_row(std::uint32_t body);
   void apply_corrections();
   void finish_step();
   void run(double dt);
@@ -215,10 +231,11 @@ struct World::Impl {
   void hold_what_meets(double h);
 
   // bodies.cpp
+  void list_bodies();
   void load_rows(double dt);
   void load_row(std::uint32_t body, double dt);
-  void store_bodies(double dt, int sub_steps);
-  void update_bounds(double dt);
+  Velocity settle(std::uint32_t body, double dt, int sub_steps);
+  void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
   void forget_contacts(std::uint32_t body);
   void jumped(std::uint32_t body);
@@ -250,8 +267,13 @@ struct World::Impl {
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
   void take_out_of_lane(std::uint32_t contact);
   void set_near(std::uint32_t contact, double clearance);
+  void set_clearance(const Contact& contact, double clearance);
   void unset_near(std::uint32_t contact);
+  template <class Blocks>
+  void mark_found_stale(const Blocks& blocks);
+  void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
+  void look_at_stale_contacts(double dt);
   void find_link_islands();
   void give_to_impacts(std::uint32_t contact);
   void take_from_impacts(std::uint32_t contact);
@@ -260,14 +282,15 @@ struct World::Impl {
   bool joins_sub_steps(const Body& body) const;
 
   // sub_steps.cpp
-  void run_sub_steps(double dt);
-  void clear_hits();
+  int run_sub_steps(double dt);  // how many there were
   template <class F>
   void for_runs(const F& f);
 
   // touches.cpp
-  void find_loaded();
-  void report_touches(int sub_steps);
+  void find_news();
+  void report_news(int sub_steps);
+  template <int P>
+  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded, int sub_steps);
   void report_touch(std::uint32_t contact, bool loaded);
 
   // pairs.cpp

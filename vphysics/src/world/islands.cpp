@@ -72,7 +72,7 @@ void World::Impl::give_to_impacts(std::uint32_t index) {
 void World::Impl::take_from_impacts(std::uint32_t index) {
   Contact& c = contact_pool[index];
   c.at_impacts = false;
-  c.stale = true;
+  mark_stale(index);
   const auto place =
       std::lower_bound(records.begin(), records.end(), c.key,
                        [](const PairRecord& r, std::uint64_t k) { return r.key < k; });

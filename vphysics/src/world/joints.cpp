@@ -222,6 +222,7 @@ BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
 }
 
 void World::Impl::refresh_joints(double) {
+  if (joints.empty()) return;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
   }

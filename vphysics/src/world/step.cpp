@@ -35,25 +35,30 @@ void World::Impl::begin_step() {
   records.reserve(room);
   next_records.reserve(room);
   contact_pool.reserve(room);
-  for (auto* list : {&free_contacts, &near_contacts, &stale_contacts}) list->reserve(room);
+  for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts}) list->reserve(room);
+  near_list.reserve(room);
   body_stack.reserve(n);
-  const auto sub_stepped = std::count_if(bodies.begin(), bodies.end(), [this](const Body& body) {
-    return body.motion == Motion::dynamic && joins_sub_steps(body);
-  });
-  if (sub_stepped > 0) graph.reserve(static_cast<std::size_t>(sub_stepped));
+  list_bodies();
+  if (!movers.empty()) graph.reserve(movers.size());
   new_pairs.reserve(room);
   lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours);
+  body_rows.resize(n + 1);
+  graph.resize(n + 1);
+  start_ways.resize(n);
+  if (has_impact_stage()) begin_impact_stage();
+  if (!joints.empty()) joint_places.resize(n);
+  report_ends_of_destroyed();
+}
+
+void World::Impl::begin_impact_stage() {
+  const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + destroyed_pairs.size();
   body_pairs.reserve(room);
   discrete_pairs.reserve(room);
   swept_pairs.reserve(room);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   reserve_link_rows();
-  body_rows.resize(n + 1);
-  graph.resize(n + 1);
   drift.assign(n, {});
-  start_ways.resize(n);
-  joint_places.resize(n);
   bounds.resize(n);
   discrete_bounds.resize(n);
   movable.resize(n);
@@ -65,17 +70,13 @@ void World::Impl::begin_step() {
   for (std::size_t i = 0; i < n; ++i) {
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
-  report_ends_of_destroyed();
 }
 
 // A kinematic body's origin goes along the chord to where its twist takes it.
-void World::Impl::prescribe_velocities(double dt) {
-  for (Body& body : bodies) {
-    if (!body.alive || body.motion != Motion::kinematic) continue;
-    const SE3 end = body.T * Exp(dt * body.prescribed);
-    body.w = body.T.rotate(body.prescribed.w);
-    body.v = (1.0 / dt) * (end.position() - body.T.position());
-  }
+void World::Impl::prescribe_velocity(Body& body, double dt) {
+  const SE3 end = body.T * Exp(dt * body.prescribed);
+  body.w = body.T.rotate(body.prescribed.w);
+  body.v = (1.0 / dt) * (end.position() - body.T.position());
 }
 
 // Of what the stage of impacts moves.
@@ -93,20 +94,20 @@ void World::Impl::integrate_forces(double dt) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive || joins_sub_steps(body)) continue;
-    const bool stopped = !body.is_link && stop_if_out_of_range(i);
+    const bool stopped = !body.is_link && stop_if_out_of_range(i, start_poses[i]);
     if (body.motion != Motion::dynamic) continue;
     forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
   }
 }
 
 // Not of a link.
-bool World::Impl::stop_if_out_of_range(std::uint32_t index) {
+bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   Body& body = bodies[index];
   if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
   status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
-  body.T = start_poses[index];
+  body.T = start;
   body.moved();
   return true;
 }
@@ -136,30 +137,33 @@ void World::Impl::refresh_solver_bodies() {
   }
 }
 
-// Constant twists for the rest of the step. A tumbling body turns at the rate it will have halfway:
-// w + (h/2) w', I w' = -w x I w, which makes the turn second order.
+// A constant twist for h. A tumbling body turns at the rate it will have halfway: w + (h/2) w',
+// I w' = -w x I w, which makes the turn second order.
+collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, double h) const {
+  collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
+  if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic && !body.by_rows()) {
+    const Mat3& R = body.T.rotation();
+    const Vec3 w = transposed_times(R, body.w);
+    const Vec3 turn = body.inverse_central * cross(body.central * w, w);
+    const double share = 0.5 * h * norm(turn) / std::max(1e-30, norm(w));
+    // Beyond half of itself the correction is no correction any more.
+    motion.w = body.w + (0.5 * h * std::min(1.0, 0.5 / std::max(share, 0.5))) * (R * turn);
+  }
+  return motion;
+}
+
+// For the rest of the step.
 void World::Impl::refresh_motions(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (body.is_link && body.first_collider == kNone) continue;
-    motions[i] = {reference_point(body), body.v + drift[i].v, body.w + drift[i].w};
-    if (held[i] || !body.alive || body.motion == Motion::fixed) {
-      motions[i].v = motions[i].w = {};
-    } else if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic &&
-               !body.by_rows()) {
-      const Mat3& R = body.T.rotation();
-      const Vec3 w = transposed_times(R, body.w);
-      const Vec3 turn = body.inverse_central * cross(body.central * w, w);
-      const double share = 0.5 * h * norm(turn) / std::max(1e-30, norm(w));
-      // Beyond half of itself the correction is no correction any more.
-      motions[i].w = body.w + (0.5 * h * std::min(1.0, 0.5 / std::max(share, 0.5))) * (R * turn);
-    }
+    const bool stands = held[i] || !body.alive || body.motion == Motion::fixed;
+    motions[i] =
+        stands ? collide::Motion{reference_point(body), {}, {}} : motion_of(body, drift[i], h);
   }
 }
 
-void World::Impl::advance_body(std::uint32_t index, double h) {
-  Body& body = bodies[index];
-  const collide::Motion& m = motions[index];
+void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
   const Mat3 R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? turned(R, h * m.w) : R;
@@ -171,12 +175,25 @@ void World::Impl::advance_body(std::uint32_t index, double h) {
   place(body, m.x + h * m.v, next);
 }
 
+// Where nothing is left to be met: to the end of the step in one go.
+void World::Impl::advance_all(double dt, int sub_steps) {
+  for (const std::uint32_t i : movers) {
+    Body& body = bodies[i];
+    const bool pushed = body.motion == Motion::dynamic;
+    if (pushed && body.by_rows() && advance_by_row(i)) continue;
+    const SE3 start = body.T;
+    const Velocity more = pushed ? settle(i, dt, sub_steps) : Velocity{};
+    advance_body(body, motion_of(body, more, dt), dt);
+    (void)stop_if_out_of_range(i, start);
+  }
+}
+
 void World::Impl::advance(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive || body.is_link || body.motion == Motion::fixed || held[i]) continue;
-    advance_body(i, h);
-    if (stop_if_out_of_range(i)) held[i] = 1;
+    advance_body(bodies[i], motions[i], h);
+    if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
   }
   advance_articulations(h);
   for (solve::ContactConstraint& c : discrete_contacts) {
@@ -238,21 +255,23 @@ void World::Impl::hold_what_meets(double h) {
 
 // Impacts in the order of time are for continuous bodies and for what meets links.
 bool World::Impl::has_impact_stage() const {
-  return !articulations.empty() || std::any_of(bodies.begin(), bodies.end(), [](const Body& body) {
-    return body.alive && body.continuous;
-  });
+  return !articulations.empty() || some_are_continuous;
 }
 
 void World::Impl::run(double dt) {
-  prescribe_velocities(dt);
   load_rows(dt);
   find_contacts(dt);
-  integrate_forces(dt);
-  run_sub_steps(dt);
+  const int sub_steps = run_sub_steps(dt);
   if (!has_impact_stage()) {
-    refresh_motions(dt);
-    advance(dt);
+    advance_all(dt, sub_steps);
     return;
+  }
+  integrate_forces(dt);
+  for (const std::uint32_t i : movers) {
+    if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
+      drift[i] = settle(i, dt, sub_steps);
+      forced[i].v = bodies[i].by_rows() ? Vec3{} : dt * desc.gravity;
+    }
   }
   double time = 0.0;
   refresh_motions(dt);

@@ -7,33 +7,21 @@
 namespace vp {
 namespace {
 
-// What a lane tells of its contact.
-struct Told {
-  double impulse = 0.0, closing = 0.0;
-  Vec3 normal;
-};
-
+// What a lane tells of its contact, but for where.
 template <int P>
-Told told_by(const solve::ContactBlock<P>& block, int lane, int sub_steps) {
-  Told told;
+double impulse_of(const solve::ContactBlock<P>& block, int lane, int sub_steps) {
   float load = 0.0f;
   for (int i = 0; i < P; ++i) load += block.impulse[i].lane[lane];
-  told.impulse =
-      static_cast<double>(load) * sub_steps + static_cast<double>(block.impact.lane[lane]);
-  told.closing = static_cast<double>(block.closing.lane[lane]);
-  told.normal = {static_cast<double>(block.normal.x.lane[lane]),
-                 static_cast<double>(block.normal.y.lane[lane]),
-                 static_cast<double>(block.normal.z.lane[lane])};
-  return told;
+  return static_cast<double>(load) * sub_steps + static_cast<double>(block.impact.lane[lane]);
+}
+template <int P>
+Vec3 normal_of(const solve::ContactBlock<P>& block, int lane) {
+  const solve::Field3& n = block.normal;
+  return {static_cast<double>(n.x.lane[lane]), static_cast<double>(n.y.lane[lane]),
+          static_cast<double>(n.z.lane[lane])};
 }
 
 }  // namespace
-
-void World::Impl::clear_hits() {
-  for_runs([&](const auto&, const auto&, auto& blocks) {
-    for (auto& block : blocks) block.closing = block.impact = {};
-  });
-}
 
 void World::Impl::report_touch(std::uint32_t index, bool loaded) {
   Contact& c = contact_pool[index];
@@ -45,54 +33,48 @@ void World::Impl::report_touch(std::uint32_t index, bool loaded) {
 
 // Before the last relaxing: what pushes two apart that overlap is a load, though nothing of it is
 // left in the velocities.
-void World::Impl::find_loaded() {
+void World::Impl::find_news() {
   std::size_t count = 0;
   for_runs([&](const auto& pass, const auto& run, auto& blocks) {
     lane_bits.resize(std::max(lane_bits.size(), count + blocks.size()));
-    pass.find_loaded(run, lane_bits.data() + count);
+    pass.find_news(run, lane_bits.data() + count);
     count += blocks.size();
   });
 }
 
-void World::Impl::report_touches(int sub_steps) {
-  for (Body& body : bodies) body.rested = false;
-  std::size_t first = 0;
+void World::Impl::report_news(int sub_steps) {
+  counters.contacts += points_in_lanes;
+  std::size_t next = 0;
   for_runs([&](const auto&, const auto&, auto& blocks) {
-    const std::size_t count = blocks.size();
-    const std::uint16_t* bits = lane_bits.data() + first;
-    first += count;
-    for (std::size_t b = 0; b < count; ++b) {
-      const auto& block = blocks[b];
-      for (int lane = 0; lane < solve::kLanes; ++lane) {
-        const std::uint32_t index = block.contact.lane[lane];
-        if (index == solve::kNoContact) break;
-        Contact& c = contact_pool[index];
-        const bool loaded = ((bits[b] >> lane) & 1u) != 0;
-        if (loaded) {
-          bodies[colliders[c.a].body].rested = true;
-          bodies[colliders[c.b].body].rested = true;
-          counters.contacts += c.count;
-        }
-        const bool hit = loaded && block.closing.lane[lane] > 0.0f;
-        if (loaded == c.touching && !hit) continue;
-        if (!loaded) {
-          report_touch(index, false);
-          continue;
-        }
-        const Told told = told_by(block, lane, sub_steps);
-        const ColliderPair pair{c.key, c.a, c.b};
-        if (!c.touching) {
-          emit(ContactEvent::Kind::begin, pair, c.position[0], told.normal, told.closing,
-               told.impulse, 0.0);
-        }
-        c.touching = true;
-        if (hit) {
-          emit(ContactEvent::Kind::hit, pair, c.position[0], told.normal, told.closing,
-               told.impulse, 0.0);
-        }
+    for (auto& block : blocks) {
+      const std::uint32_t found = lane_bits[next++];
+      for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
+        const int lane = std::countr_zero(bits);
+        report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0, sub_steps);
       }
     }
   });
+}
+
+template <int P>
+void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool loaded, int sub_steps) {
+  const std::uint32_t index = block.contact.lane[lane];
+  Contact& c = contact_pool[index];
+  const double closing = static_cast<double>(block.closing.lane[lane]);
+  const double impulse = impulse_of(block, lane, sub_steps);
+  block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
+  block.touches.lane[lane] = loaded ? 1 : 0;
+  if (!loaded) {
+    if (c.touching) report_touch(index, false);
+    return;
+  }
+  const ColliderPair pair{c.key, c.a, c.b};
+  const auto tell = [&](ContactEvent::Kind kind) {
+    emit(kind, pair, c.position[0], normal_of(block, lane), closing, impulse, 0.0);
+  };
+  if (!c.touching) tell(ContactEvent::Kind::begin);
+  c.touching = true;
+  if (closing > 0.0) tell(ContactEvent::Kind::hit);
 }
 
 }  // namespace vp

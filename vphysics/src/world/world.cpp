@@ -84,6 +84,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   body.T = SE3(orthonormalized(desc.T_world_body.rotation()), desc.T_world_body.position());
   if (desc.motion == Motion::dynamic) {
     body.mass = desc.inertia.mass();
+    body.inverse_mass = 1.0 / body.mass;
     body.centre = desc.inertia.centre_of_mass();
     body.central = desc.inertia.central();
     body.inverse_central = inverse(body.central);
@@ -96,6 +97,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   structure.add(0x100u + index);
   structure.add(desc);
   const BodyId id = body_id(impl_->bodies, index);
+  impl_->lists_are_stale = true;
   if (desc.motion != Motion::fixed) (void)set_velocity(id, desc.velocity);
   return id;
 }
@@ -140,6 +142,7 @@ Expected<void> World::destroy_body(BodyId id) {
   body->alive = false;
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;
+  impl_->lists_are_stale = true;
   impl_->free_bodies.push_back(id.index - 1);
   Structure(impl_->structure).add(0x200u + id.index);
   return {};
@@ -195,6 +198,8 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->reach = reach_of(*body);
     body->least_size = std::min(body->least_size, c.size);
   }
+  impl_->lists_are_stale = true;
+  impl_->mark_contacts_stale(c.body);  // its reach may have grown
   impl_->add_proxy(index);
   Structure structure(impl_->structure);
   structure.add(0x300u + index);

@@ -1,0 +1,21 @@
+// Lanes of blocks as memory: every field of a block is kLanes words side by side.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+
+#include "solve/contact_block.h"
+
+namespace vp::solve {
+
+// All that a block knows of a lane.
+template <class Block>
+void copy_lane(const Block& from, int from_lane, Block& to, int to_lane) {
+  const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_lane;
+  auto* target = reinterpret_cast<std::byte*>(&to) + sizeof(float) * to_lane;
+  for (std::size_t f = 0; f < sizeof(Block) / sizeof(Field); ++f) {
+    std::memcpy(target + f * sizeof(Field), source + f * sizeof(Field), sizeof(float));
+  }
+}
+
+}  // namespace vp::solve

@@ -1,0 +1,57 @@
+// Pairs that are near one another and have no points, sixteen side by side: how far each may still
+// go before the narrow phase must look at it again.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solve/contact_block.h"
+
+namespace vphysics_solver {
+
+struct NearBlock {
+  IndexField a, b;     // rows of the bodies; of an empty lane the world's
+  IndexField contact;  // kNoContact: an empty lane
+  // When it was last looked at: the rows' ways, and how far the two may go against each other [m].
+  Field3 x_a, turn_a, x_b, turn_b;
+  Field clearance;
+  Field reach_a, reach_b;  // of the bodies, about their centres [m]
+};
+inline constexpr std::size_t kNearFields =
+    (sizeof(NearBlock) - 3 * sizeof(IndexField)) / sizeof(Field);
+static_assert(sizeof(NearBlock) % sizeof(Field) == 0);
+
+}  // namespace vphysics_solver
+
+namespace vp::solve {
+
+inline std::span<Field, kNearFields> fields_of(NearBlock& block) {
+  return std::span<Field, kNearFields>(reinterpret_cast<Field*>(&block.x_a), kNearFields);
+}
+inline std::span<const Field, kNearFields> fields_of(const NearBlock& block) {
+  return std::span<const Field, kNearFields>(reinterpret_cast<const Field*>(&block.x_a),
+                                             kNearFields);
+}
+
+// A lane that becomes empty is filled with the last.
+class NearList {
+ public:
+  // The index of its lane; all of that is zero but what is given.
+  std::uint32_t add(std::uint32_t contact, std::uint32_t row_a, std::uint32_t row_b);
+  // Returns the contact whose lane has now this index, or kNoContact.
+  std::uint32_t remove(std::uint32_t index);
+
+  std::uint32_t size() const { return lanes_; }
+  std::span<NearBlock> blocks() { return blocks_; }
+  NearBlock& block(std::uint32_t index) { return blocks_[index / kLanes]; }
+  const NearBlock& block(std::uint32_t index) const { return blocks_[index / kLanes]; }
+  static int lane(std::uint32_t index) { return static_cast<int>(index % kLanes); }
+  void reserve(std::size_t contacts) { blocks_.reserve(contacts / kLanes + 1); }
+
+ private:
+  std::vector<NearBlock> blocks_;
+  std::uint32_t lanes_ = 0;
+};
+
+}  // namespace vp::solve
