@@ -22,28 +22,28 @@ std::uint64_t hash_after(Scene scene, int steps, double rate) {
 }
 
 TEST(GoldenScenes, TowersOf1120Boxes) {
-  EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 10043614118766879848u);
+  EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 13471847908427512783u);
 }
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 11430685238676020669u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 6627427246737220172u);
 }
 TEST(GoldenScenes, AWallThatIsHit) {
-  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 17403667892844520652u);
+  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 15400350598765611203u);
 }
 TEST(GoldenScenes, AHouseOfCards) {
-  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 16028029150540282606u);
+  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 4861920286460748685u);
 }
 TEST(GoldenScenes, Dominoes) {
-  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 13983402844162809839u);
+  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 6959362020907313659u);
 }
 TEST(GoldenScenes, Ragdolls) {
-  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 24394159797457013u);
+  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 17016773475791979061u);
 }
 TEST(GoldenScenes, AChainUnderLoad) {
-  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 15087802650591946383u);
+  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 6970980016886798893u);
 }
 TEST(GoldenScenes, ABridgeUnderCrates) {
-  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 16771999453212240892u);
+  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 9499224550229899201u);
 }
 
 }  // namespace

@@ -58,25 +58,41 @@ collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& way, double m
   return grown(merged(b, end), more);
 }
 
-}  // namespace
+// The rotation nearest to one that rounding has worn: a step of Newton's method, M (3 - M^T M) / 2,
+// which unlike Gram and Schmidt's way turns nothing.
+Mat3 straightened(const Mat3& M) {
+  const Vec3 &x = M.cx, &y = M.cy, &z = M.cz;
+  const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
+  return {(1.5 - 0.5 * dot(x, x)) * x - xy * y - zx * z,
+          (1.5 - 0.5 * dot(y, y)) * y - xy * x - yz * z,
+          (1.5 - 0.5 * dot(z, z)) * z - zx * x - yz * y};
+}
 
-// R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
-// exact to rounding for turns of a step; larger ones take the long way.
-Mat3 turned(const Mat3& R, const Vec3& t) {
+Mat3 turned_nearly(const Mat3& R, const Vec3& t) {
   const double tt = dot(t, t);
   if (tt > 1e-3) return orthonormalized(Exp(t).matrix() * R);
   const double s = 1.0 - tt * (1.0 / 6.0 - tt * (1.0 / 120.0 - tt * (1.0 / 5040.0)));
   const double c = 0.5 - tt * (1.0 / 24.0 - tt * (1.0 / 720.0));
   const Vec3 st = s * t, ct = c * t;
   const double xy = ct.x * t.y, yz = ct.y * t.z, zx = ct.z * t.x, rest = 1.0 - c * tt;
-  const Mat3 next = Mat3{{rest + ct.x * t.x, xy + st.z, zx - st.y},
-                         {xy - st.z, rest + ct.y * t.y, yz + st.x},
-                         {zx + st.y, yz - st.x, rest + ct.z * t.z}} *
-                    R;
-  // Rounding adds up over thousands of steps; two of its six errors tell when.
+  return Mat3{{rest + ct.x * t.x, xy + st.z, zx - st.y},
+              {xy - st.z, rest + ct.y * t.y, yz + st.x},
+              {zx + st.y, yz - st.x, rest + ct.z * t.z}} *
+         R;
+}
+
+// Rounding adds up over thousands of steps; two of its six errors tell when it is enough.
+bool is_worn(const Mat3& R) {
   constexpr double kWorn = 1e-13;
-  const double size = dot(next.cx, next.cx) - 1.0, skewness = dot(next.cy, next.cz);
-  return std::fabs(size) + std::fabs(skewness) < kWorn ? next : orthonormalized(next);
+  return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kWorn;
+}
+
+}  // namespace
+
+// R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
+// exact to rounding for turns of a step; larger ones take the long way.
+Mat3 turned(const Mat3& R, const Vec3& t) {
+  return straightened(turned_nearly(R, t));
 }
 
 // Whether it takes part in the sub-stepped solver.
@@ -204,7 +220,8 @@ bool World::Impl::advance_by_row(std::uint32_t index) {
   body.rested = row.way[solve::kCarried] > 0.0f;
   body.v = v;
   body.w = w;
-  const Mat3 R = turned(body.T.rotation(), turn);
+  Mat3 R = turned_nearly(body.T.rotation(), turn);
+  if (is_worn(R)) R = straightened(R);
   body.T = SE3(R, x - R * body.centre);
   body.moved();
   return true;
