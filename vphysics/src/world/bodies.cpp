@@ -179,13 +179,13 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
 
 // After the sub-steps: the velocities of a dynamic body become those of the end of the step.
 // Returns what its mean velocities over the step have more.
-Velocity World::Impl::settle(std::uint32_t index, double dt, int sub_steps) {
+Velocity World::Impl::settle(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   solve::BodyRow& row = body_rows[index + 1];
   body.rested = row.way[solve::kCarried] > 0.0f;
   Velocity more;
   if (!body.by_rows()) {
-    const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
+    const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps_taken);
     const Vec3 v = body.v;
     body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);

@@ -222,7 +222,7 @@ struct World::Impl {
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance(double h);
   void advance_body(Body& body, const collide::Motion& motion, double h);
-  void advance_all(double dt, int sub_steps);
+  void advance_all(double dt);
   bool advance_by_row(std::uint32_t body);
   void apply_corrections();
   void finish_step();
@@ -234,7 +234,7 @@ struct World::Impl {
   void list_bodies();
   void load_rows(double dt);
   void load_row(std::uint32_t body, double dt);
-  Velocity settle(std::uint32_t body, double dt, int sub_steps);
+  Velocity settle(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
   void forget_contacts(std::uint32_t body);
@@ -282,15 +282,15 @@ struct World::Impl {
   bool joins_sub_steps(const Body& body) const;
 
   // sub_steps.cpp
-  int run_sub_steps(double dt);  // how many there were
+  void run_sub_steps(double dt);
   template <class F>
   void for_runs(const F& f);
 
   // touches.cpp
   void find_news();
-  void report_news(int sub_steps);
+  void report_news();
   template <int P>
-  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded, int sub_steps);
+  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded);
   void report_touch(std::uint32_t contact, bool loaded);
 
   // pairs.cpp

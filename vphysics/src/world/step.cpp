@@ -176,13 +176,13 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
 }
 
 // Where nothing is left to be met: to the end of the step in one go.
-void World::Impl::advance_all(double dt, int sub_steps) {
+void World::Impl::advance_all(double dt) {
   for (const std::uint32_t i : movers) {
     Body& body = bodies[i];
     const bool pushed = body.motion == Motion::dynamic;
     if (pushed && body.by_rows() && advance_by_row(i)) continue;
     const SE3 start = body.T;
-    const Velocity more = pushed ? settle(i, dt, sub_steps) : Velocity{};
+    const Velocity more = pushed ? settle(i, dt) : Velocity{};
     advance_body(body, motion_of(body, more, dt), dt);
     (void)stop_if_out_of_range(i, start);
   }
@@ -261,15 +261,15 @@ bool World::Impl::has_impact_stage() const {
 void World::Impl::run(double dt) {
   load_rows(dt);
   find_contacts(dt);
-  const int sub_steps = run_sub_steps(dt);
+  run_sub_steps(dt);
   if (!has_impact_stage()) {
-    advance_all(dt, sub_steps);
+    advance_all(dt);
     return;
   }
   integrate_forces(dt);
   for (const std::uint32_t i : movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
-      drift[i] = settle(i, dt, sub_steps);
+      drift[i] = settle(i, dt);
       forced[i].v = bodies[i].by_rows() ? Vec3{} : dt * desc.gravity;
     }
   }

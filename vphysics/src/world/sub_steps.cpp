@@ -62,7 +62,7 @@ void World::Impl::run_sub_steps(double dt) {
   }
   end_joints(dt);
   sub_steps_taken = n;
-  report_news(n);
+  report_news();
 }
 
 }  // namespace vp

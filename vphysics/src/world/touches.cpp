@@ -42,7 +42,7 @@ void World::Impl::find_news() {
   });
 }
 
-void World::Impl::report_news(int sub_steps) {
+void World::Impl::report_news() {
   counters.contacts += points_in_lanes;
   std::size_t next = 0;
   for_runs([&](const auto&, const auto&, auto& blocks) {
@@ -50,18 +50,18 @@ void World::Impl::report_news(int sub_steps) {
       const std::uint32_t found = lane_bits[next++];
       for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
-        report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0, sub_steps);
+        report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
       }
     }
   });
 }
 
 template <int P>
-void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool loaded, int sub_steps) {
+void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool loaded) {
   const std::uint32_t index = block.contact.lane[lane];
   Contact& c = contact_pool[index];
   const double closing = static_cast<double>(block.closing.lane[lane]);
-  const double impulse = impulse_of(block, lane, sub_steps);
+  const double impulse = impulse_of(block, lane, sub_steps_taken);
   block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
   block.touches.lane[lane] = loaded ? 1 : 0;
   if (!loaded) {
