@@ -9,6 +9,8 @@
 namespace sandbox {
 namespace {
 
+const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
+
 class SandboxPanel : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -39,7 +41,7 @@ class SandboxPanel : public ::testing::Test {
     return wishes;
   }
 
-  Simulation simulation = Simulation::open("tower10", 1000, [] { return std::int64_t{0}; }).value();
+  Simulation simulation = Simulation::open("tower10", 1000, kStopped).value();
   Meter meter;
   Controls controls;
   Wishes wishes;

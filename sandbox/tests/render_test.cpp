@@ -18,10 +18,12 @@
 namespace sandbox {
 namespace {
 
+const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
+
 constexpr glm::ivec2 kSize{640, 360};
 
 Simulation opened(const std::string& scene) {
-  return Simulation::open(scene, 1000, [] { return std::int64_t{0}; }).value();
+  return Simulation::open(scene, 1000, kStopped).value();
 }
 void run(Simulation& simulation, int steps) {
   for (int i = 0; i < steps; ++i) ASSERT_TRUE(simulation.step());

@@ -11,9 +11,7 @@
 namespace sandbox {
 namespace {
 
-std::int64_t stopped_clock() {
-  return 0;
-}
+const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
 
 template <class T>
 T must(vp::Expected<T> result) {
@@ -25,7 +23,7 @@ void must(const vp::Expected<void>& result) {
 }
 
 Simulation opened(std::string_view scene, int rate = 1000) {
-  return must(Simulation::open(scene, rate, stopped_clock));
+  return must(Simulation::open(scene, rate, kStopped));
 }
 
 // One ball of 1 m that nothing pulls, at the origin.
@@ -37,7 +35,7 @@ Simulation floating_ball(int rate) {
   scenes::Body ball;
   ball.parts.push_back({scenes::Sphere{1.0}, {}, 1000.0, {}});
   scene.bodies.push_back(ball);
-  return {must(scenes::SceneWorld::create(scene)), rate, stopped_clock};
+  return {must(scenes::SceneWorld::create(scene)), rate, kStopped};
 }
 vp::Vec3 velocity_in_world(const Simulation& simulation, vp::BodyId body) {
   return simulation.world().pose(body).rotate(simulation.world().velocity(body).v);
@@ -64,7 +62,7 @@ TEST(SandboxSimulation, EverySceneOpensAndSteps) {
 }
 
 TEST(SandboxSimulation, AnUnknownSceneIsToldWithAllThereAre) {
-  const auto none = Simulation::open("tower of babel", 1000, stopped_clock);
+  const auto none = Simulation::open("tower of babel", 1000, kStopped);
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("tower of babel"), std::string::npos);
   for (const scenes::Entry& entry : scenes::catalogue())
@@ -101,7 +99,7 @@ std::int64_t ticking_clock() {
 }
 
 TEST(SandboxSimulation, LetsGoOfWhatItsBudgetDoesNotHold) {
-  Simulation simulation = must(Simulation::open("tower10", 1000, ticking_clock));
+  Simulation simulation = must(Simulation::open("tower10", 1000, {ticking_clock, ticking_clock}));
   must(simulation.advance(0.1, 1.0, 0.030));
   // Asked three times a step: before it, after it, and for the budget.
   EXPECT_NEAR(static_cast<double>(simulation.steps()), 10.0, 1.0);

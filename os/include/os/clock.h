@@ -1,4 +1,5 @@
-// The monotonic clock, for the edges that live in real time. It begins at some moment of the past.
+// The clocks for the edges that live in real time. The monotonic one begins at some moment of the
+// past.
 #pragma once
 
 #include <time.h>
@@ -15,6 +16,13 @@ inline std::int64_t monotonic_ns() {
 
 inline std::int64_t monotonic_us() {
   return monotonic_ns() / 1000;
+}
+
+// Processor time that this thread has used: what other processes take does not count.
+inline std::int64_t thread_ns() {
+  timespec used{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return used.tv_sec * std::int64_t{1'000'000'000} + used.tv_nsec;
 }
 
 // May return early: when a signal comes.

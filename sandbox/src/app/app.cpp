@@ -26,6 +26,8 @@ constexpr double kLongestFrame = 0.1;  // [s]; what a frame is late by more is l
 // A frame may step for as long as its picture takes to draw, and at least for this [s].
 constexpr double kLeastStepping = 1.0 / 30.0;
 
+constexpr Simulation::Clocks kClocks{os::monotonic_ns, os::thread_ns};
+
 volatile std::sig_atomic_t asked_to_leave = 0;
 
 int fail(const std::string& sentence, int code) {
@@ -196,7 +198,7 @@ void App::throw_one() {
 void App::fulfil(const Wishes& wishes) {
   simulation_.set_rate(controls_.rate);
   if (wishes.scene) {
-    auto opened = Simulation::open(*wishes.scene, controls_.rate, os::monotonic_ns);
+    auto opened = Simulation::open(*wishes.scene, controls_.rate, kClocks);
     message_ = opened ? std::string() : opened.error().message;
     if (opened) simulation_ = std::move(*opened);
   }
@@ -309,7 +311,7 @@ int App::loop() {
 }  // namespace
 
 int run(const Options& options) {
-  auto simulation = Simulation::open(options.scene, options.rate, os::monotonic_ns);
+  auto simulation = Simulation::open(options.scene, options.rate, kClocks);
   if (!simulation) return fail(simulation.error().message + ".", 2);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { asked_to_leave = 1; });
   if (options.no_window) return run_without_window(options, std::move(*simulation));

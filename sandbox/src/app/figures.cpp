@@ -30,8 +30,9 @@ Figures figures_of(const Simulation& simulation) {
 std::string sentence(const Figures& f) {
   const scenes::Standing& s = f.standing;
   std::string out = text(
-      "%s at %d Hz: %.3f s in %zu steps of %.1f us (median; p99 %.1f, max %.1f), %d of %d bodies "
-      "in place, penetration %.2f mm, drift %.2f mm, hash %016" PRIx64,
+      "%s at %d Hz: %.3f s in %zu steps of %.1f us of processor time (median; p99 %.1f, max %.1f), "
+      "%d of %d "
+      "bodies in place, penetration %.2f mm, drift %.2f mm, hash %016" PRIx64,
       f.scene.c_str(), f.rate, f.seconds, f.steps, f.step.median, f.step.p99, f.step.max,
       s.in_place, s.of, 1e3 * s.penetration, 1e3 * s.drift, f.hash);
   if (f.frames > 0) out += text("; %d frames, %.1f a second", f.frames, f.frames_per_second);

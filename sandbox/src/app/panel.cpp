@@ -102,11 +102,10 @@ void timings(const Simulation& simulation, const Meter& meter, double drawing) {
   const std::vector<double> last = simulation.times().last(kShown);
   std::vector<float> shown(last.begin(), last.end());
   const auto top = static_cast<float>(std::max(1.25 * f.p99, 1.0));
-  char label[64];
-  std::snprintf(label, sizeof label, "up to %.0f us, the last %zu steps", static_cast<double>(top),
-                shown.size());
-  ImGui::PlotLines("##steps", shown.data(), static_cast<int>(shown.size()), 0, label, 0.0f, top,
-                   {ImGui::GetContentRegionAvail().x, 64.0f});
+  ImGui::PlotLines("##steps", shown.data(), static_cast<int>(shown.size()), 0, nullptr, 0.0f, top,
+                   {ImGui::GetContentRegionAvail().x, 52.0f});
+  ImGui::TextColored(kDim, "the last %zu steps, from 0 to %.0f us", shown.size(),
+                     static_cast<double>(top));
   if (ImGui::BeginTable("figures", 4, ImGuiTableFlags_SizingStretchProp)) {
     const vp::StepCounters& counters = simulation.world().counters();
     row("median", "%.0f us", f.median);

@@ -33,8 +33,8 @@ double radius_of(const vp::Inertia& inertia) {
 
 }  // namespace
 
-Simulation::Simulation(scenes::SceneWorld world, int rate, Clock clock)
-    : world_(std::move(world)), rate_(rate), clock_(clock), times_(kTimesKept) {
+Simulation::Simulation(scenes::SceneWorld world, int rate, const Clocks& clocks)
+    : world_(std::move(world)), rate_(rate), clocks_(clocks), times_(kTimesKept) {
   collect_pieces();
 }
 
@@ -54,12 +54,12 @@ void Simulation::collect_pieces() {
   }
 }
 
-vp::Expected<Simulation> Simulation::open(std::string_view name, int rate, Clock clock) {
+vp::Expected<Simulation> Simulation::open(std::string_view name, int rate, const Clocks& clocks) {
   auto scene = scenes::make_scene(name);
   if (!scene) return tl::make_unexpected(scene.error());
   auto world = scenes::SceneWorld::create(std::move(*scene));
   if (!world) return tl::make_unexpected(world.error());
-  return Simulation(std::move(*world), rate, clock);
+  return Simulation(std::move(*world), rate, clocks);
 }
 
 vp::Expected<void> Simulation::reset() {
@@ -106,9 +106,9 @@ vp::Expected<void> Simulation::step() {
         world_.world().apply_impulse(grip_->body, pull_impulse(world(), *grip_, dt()), at);
     if (!pulled) return pulled;
   }
-  const std::int64_t began = clock_();
+  const std::int64_t began = clocks_.processor();
   const auto status = world_.step(dt());
-  times_.add(1e-3 * static_cast<double>(clock_() - began));
+  times_.add(1e-3 * static_cast<double>(clocks_.processor() - began));
   if (!status) return tl::make_unexpected(status.error());
   status_.impact_limit = status_.impact_limit || status->impact_limit;
   status_.non_finite = status_.non_finite || status->non_finite;
@@ -119,11 +119,11 @@ vp::Expected<void> Simulation::step() {
 
 vp::Expected<void> Simulation::advance(double frame, double speed, double budget) {
   owed_ += frame * speed;
-  const std::int64_t until = clock_() + static_cast<std::int64_t>(1e9 * budget);
+  const std::int64_t until = clocks_.real() + static_cast<std::int64_t>(1e9 * budget);
   while (owed_ >= dt()) {
     if (const auto stepped = step(); !stepped) return stepped;
     owed_ -= dt();
-    if (clock_() > until) owed_ = std::fmod(owed_, dt());
+    if (clocks_.real() > until) owed_ = std::fmod(owed_, dt());
   }
   return {};
 }

@@ -29,13 +29,17 @@ struct Piece {
 
 class Simulation {
  public:
-  using Clock = std::int64_t (*)();  // [ns]
+  // [ns]
+  struct Clocks {
+    std::int64_t (*real)();
+    std::int64_t (*processor)();  // what a step costs is told by it
+  };
 
   static constexpr int kLeastRate = 10, kMostRate = 10'000;  // [Hz]
 
-  Simulation(scenes::SceneWorld world, int rate, Clock clock);
+  Simulation(scenes::SceneWorld world, int rate, const Clocks& clocks);
   // The error names the scenes there are, or what of this one the engine cannot have.
-  static vp::Expected<Simulation> open(std::string_view scene, int rate, Clock clock);
+  static vp::Expected<Simulation> open(std::string_view scene, int rate, const Clocks& clocks);
 
   vp::Expected<void> reset();
   const scenes::Scene& scene() const { return world_.scene(); }
@@ -84,7 +88,7 @@ class Simulation {
 
   scenes::SceneWorld world_;
   int rate_;
-  Clock clock_;
+  Clocks clocks_;
   std::vector<Piece> pieces_;
   Typical typical_;
   StepTimes times_;
