@@ -3,7 +3,8 @@
 
 - A relative link or picture of a Markdown file leads to a file of the repository.
 - A path in backticks that begins with a folder of the repository exists.
-- An option that a document gives ./play, ./check or ./bench is in that command's --help.
+- An option that a document gives ./play, ./check or ./bench is in that command's --help; one that it
+  gives a program of ours, in a command or in a table headed "option of `PROGRAM`", is in its source.
 - A code block after "<!-- source: FILE -->" is that file, letter for letter; a block in FILE may be
   marked by "// begin: NAME" and "// end: NAME" and is then asked for as FILE#NAME.
 - Each check switched off in .clang-tidy has its reason there.
@@ -20,6 +21,15 @@ IMAGE = re.compile(r'<img[^>]*src="([^"]+)"')
 TICKED = re.compile(r'`([^`\s]+)`')
 COMMAND = re.compile(r'(?<![\w/])\./(play|check|bench)\b([^`|;&\n#]*)')
 SOURCE = re.compile(r'<!-- source: (\S+) -->\s*```\w*\n(.*?)```', re.S)
+PROGRAMS = {
+    'space-foosball': 'client/src/app/options.cpp',
+    'vphysics-sandbox': 'sandbox/src/app/options.cpp',
+}
+# What ./play --sandbox is given is the sandbox's.
+PROGRAM = re.compile(r'(?:(?<![\w/`-])(?:build/\w+/bin/)?(vphysics-sandbox|space-foosball)(?![\w-])'
+                     r'|\./play --(sandbox)\b)([^`|;&\n#]*)')
+TABLE = re.compile(r'^\| option of `([^`]+)` \|.*\n\|[ -|]*\n((?:\|.*\n)+)', re.M)
+OPTION = re.compile(r'(?<!\S)--[a-z][\w-]*')
 MADE = ('build/', 'out/')  # exist only after a run
 
 
@@ -55,6 +65,24 @@ def exists(path):
     return any(ROOT.glob(path)) if '*' in path else (ROOT / path).exists()
 
 
+def has_option(program, option):
+    """Whether the program takes it: a script says so in its help, a program where it is read."""
+    if program.startswith('./'):
+        return re.search(rf'{option}\b', help_of(program[2:]))
+    return option == '--help' or re.search(rf'[",]{option}[",]', (ROOT / PROGRAMS[program]).read_text())
+
+
+def options_in(text):
+    """Of programs, and in tables of options: where, whose, which."""
+    for match in PROGRAM.finditer(text):
+        for option in OPTION.findall(match.group(3)):
+            yield match.start(), match.group(1) or 'vphysics-sandbox', option
+    for match in TABLE.finditer(text):
+        for row in re.finditer(r'^\| (.*?) \|', match.group(2), re.M):
+            for option in re.findall(r'`(--[a-z][\w-]*)', row.group(1)):
+                yield match.start(2) + row.start(), match.group(1), option
+
+
 def faults_in(document):
     text = document.read_text()
     folders = {p.name for p in ROOT.iterdir() if p.is_dir() and not p.name.startswith('.')}
@@ -69,9 +97,15 @@ def faults_in(document):
             if not re.search(r'[<>{}$|,:]|\.\.\.|NNNN|NAME', path) and not exists(path):
                 yield line_of(text, match.start()), f'no such path: {path}'
     for match in COMMAND.finditer(text):
-        for option in re.findall(r'(?<!\S)--[a-z][\w-]*', match.group(2)):
+        words = match.group(2).split('--sandbox')[0]
+        for option in OPTION.findall(words):
             if not re.search(rf'{option}\b', help_of(match.group(1))):
                 yield line_of(text, match.start()), f'./{match.group(1)} has no option {option}'
+    for position, program, option in options_in(text):
+        if program not in PROGRAMS and not program.startswith('./'):
+            yield line_of(text, position), f'options of an unknown program: {program}'
+        elif not has_option(program, option):
+            yield line_of(text, position), f'{program} has no option {option}'
     for match in SOURCE.finditer(text):
         if not (ROOT / match.group(1).split('#')[0]).exists():
             yield line_of(text, match.start()), f'no such source: {match.group(1)}'

@@ -95,6 +95,9 @@ def rigid(rows):
     return [*lines, '\\* not to the end of the scene within its processor time', '', *verdicts(rows)]
 
 
+# What ./bench draws of a comparison: shown over its tables once it is there.
+PICTURES = {'rigid': ('rigid-step-times.png', 'Time of a step by scene and engine'),
+            'scaling': ('rigid-scaling.png', 'Time of a step by number of bodies')}
 LAYOUTS = {'multibody': multibody, 'operations': operations, 'rigid': rigid}  # all others: flat
 
 
@@ -109,6 +112,9 @@ def table(name, root):
     if not lines:
         raise ValueError(f'README.md shows {name}, which nobody has measured: run ./bench {name} and '
                          f'keep its file in benchmarks/results')
+    picture, title = PICTURES.get(name, ('', ''))
+    if picture and (root / 'docs/pictures' / picture).exists():
+        lines[:0] = [f'![{title}](docs/pictures/{picture})', '']
     return '\n'.join(lines)
 
 
