@@ -94,6 +94,7 @@ class App {
   // The next moment of the scene at which something is to be done; none if there is no such.
   std::optional<double> next_stop() const;
   bool has_come_to(double time) const;
+  void begin_frame(bool first);
   void draw_frame(Wishes& wishes);
   std::string take_picture();
   bool leaving() const;
@@ -271,6 +272,16 @@ bool App::leaving() const {
          (options_.seconds && has_come_to(*options_.seconds));
 }
 
+void App::begin_frame(bool first) {
+  window_->poll();
+  size_ = glm::max(window_->size(), 1);
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  const auto width = static_cast<double>(std::max(pointer_screen().x, 1));
+  camera_.leave_free(controls_.panel ? kPanelReach / width : 0.0);
+  if (first) show_all();
+}
+
 int App::loop() {
   skip();
   const std::int64_t began = os::monotonic_ns();
@@ -280,13 +291,7 @@ int App::loop() {
   for (bool last = false; !last;) {
     const std::int64_t now = os::monotonic_ns();
     const double frame = std::min(1e-9 * static_cast<double>(now - before), kLongestFrame);
-    window_->poll();
-    size_ = glm::max(window_->size(), 1);
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    const auto width = static_cast<double>(std::max(pointer_screen().x, 1));
-    camera_.leave_free(controls_.panel ? kPanelReach / width : 0.0);
-    if (before == began) show_all();
+    begin_frame(before == began);
     before = now;
     Wishes wishes;
     point();
