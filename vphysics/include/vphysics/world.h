@@ -35,6 +35,11 @@ struct WorldDesc {
   int velocity_iterations = 12;         // of the contact solver, per solve
   int sub_steps = 0;              // of the contact solver; 0: 2 at 1 kHz, 5 at 240 Hz, 9 at 60 Hz
   int max_impacts_per_step = 32;  // times of impact resolved within one step
+  // Bodies that hang together by contacts and joints fall asleep when none has been faster, at any
+  // of its points, than sleep_speed [m/s] for so long [s]; 0: never. Asleep they cost nothing. What
+  // touches them with a speed of its own, and every call that changes them, wakes them.
+  double sleep_after = 0.0;
+  double sleep_speed = 0.02;
 };
 
 enum class Motion : std::uint8_t {
@@ -97,6 +102,7 @@ struct StepCounters {
   std::uint32_t contacts = 0;   // contact points solved, summed over the solves of the step
   std::uint32_t impacts = 0;    // times of impact found
   std::uint32_t looked_at = 0;  // pairs given to the narrow phase
+  std::uint32_t awake = 0;      // bodies that move, those asleep left out; links are not counted
 };
 
 struct RayHit {
@@ -139,6 +145,9 @@ class World {
   Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
+  bool is_asleep(BodyId body) const;  // precondition: contains(body)
+  // With all that hangs together with it; nothing if it is awake.
+  Expected<void> wake(BodyId body);
 
   const Model* model(ArticulationId articulation) const;  // what it was created of; null: no such
   // All coordinates and velocities of an articulation, as its model orders them; valid until the

@@ -37,22 +37,25 @@ void ContactGraph::reserve(std::size_t bodies) {
   }
 }
 
-Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
+int ContactGraph::free_colour(const End& a, const End& b) const {
   std::uint64_t taken = 0;
   if (a.moves) taken |= taken_[a.row];
   if (b.moves) taken |= taken_[b.row];
   const bool fixed = !a.moves || !b.moves;
   const std::uint64_t open = ~taken & (fixed ? kOfFixed : ~kOfFixed | (1ull << kLastColour));
   // The last colour is open to all.
-  const int colour = open != 0 ? std::min(std::countr_zero(open), kLastColour) : kLastColour;
+  return open != 0 ? std::min(std::countr_zero(open), kLastColour) : kLastColour;
+}
+
+Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
   Place place;
-  (void)append(contact, a, b, points, colour, place);
+  (void)append(contact, a, b, points, free_colour(a, b), place);
   return place;
 }
 
 bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
                           Place& place) {
-  if (colour != kLastColour) {
+  if (colour < kLastColour) {
     const std::uint64_t bit = 1ull << colour;
     if ((a.moves && (taken_[a.row] & bit) != 0) || (b.moves && (taken_[b.row] & bit) != 0)) {
       return false;
@@ -67,7 +70,7 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
 }
 
 std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& b) {
-  if (place.colour != kLastColour) {
+  if (place.colour < kLastColour) {
     const std::uint64_t bit = 1ull << place.colour;
     if (a.moves) taken_[a.row] &= ~bit;
     if (b.moves) taken_[b.row] &= ~bit;
@@ -107,5 +110,15 @@ std::uint32_t ContactGraph::remove_lane(const Place& place) {
   if (place.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
   return moved;
 }
+
+template <int P>
+std::uint32_t ContactGraph::move_lane(Place& place, const End& a, const End& b, int colour) {
+  const Place from = place;
+  (void)append(block<P>(from).contact.lane[lane(from)], a, b, P, colour, place);
+  copy_lane(block<P>(from), lane(from), block<P>(place), lane(place));
+  return remove(from, a, b);
+}
+template std::uint32_t ContactGraph::move_lane<1>(Place&, const End&, const End&, int);
+template std::uint32_t ContactGraph::move_lane<4>(Place&, const End&, const End&, int);
 
 }  // namespace vp::solve

@@ -22,6 +22,7 @@ namespace vp::solve {
 inline constexpr int kColours = 64;
 inline constexpr int kFirstFixedColour = 40;  // of contacts with what nothing pushes
 inline constexpr int kLastColour = kColours - 1;
+inline constexpr int kParked = kColours;  // no colour: lanes put aside, of what is asleep
 
 // Where a contact's lane is; points: 1 or 4, or 0 for nowhere.
 struct Place {
@@ -68,6 +69,17 @@ class ContactGraph {
   // Returns the contact whose lane was moved to fill the gap, or kNoContact: its place is now this
   // one's.
   std::uint32_t remove(const Place& place, const End& a, const End& b);
+  // Puts a lane aside as it is, or back into a colour; place becomes its new one. Returns as
+  // remove() does, of the old place.
+  std::uint32_t park(Place& place, const End& a, const End& b) {
+    return place.points == 1 ? move_lane<1>(place, a, b, kParked)
+                             : move_lane<4>(place, a, b, kParked);
+  }
+  std::uint32_t unpark(Place& place, const End& a, const End& b) {
+    const int colour = free_colour(a, b);
+    return place.points == 1 ? move_lane<1>(place, a, b, colour)
+                             : move_lane<4>(place, a, b, colour);
+  }
 
   template <int P>
   ContactBlock<P>& block(const Place& place) {
@@ -97,9 +109,12 @@ class ContactGraph {
   void add_lane(std::uint32_t contact, const End& a, const End& b, Place& place);
   template <int P>
   std::uint32_t remove_lane(const Place& place);
+  template <int P>
+  std::uint32_t move_lane(Place& place, const End& a, const End& b, int colour);
+  int free_colour(const End& a, const End& b) const;
 
-  std::array<ColourBlocks<1>, kColours> ones_;
-  std::array<ColourBlocks<4>, kColours> fours_;
+  std::array<ColourBlocks<1>, kColours + 1> ones_;
+  std::array<ColourBlocks<4>, kColours + 1> fours_;
   std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
 };
 

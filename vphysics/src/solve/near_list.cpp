@@ -29,6 +29,12 @@ std::uint32_t NearList::add(std::uint32_t contact, std::uint32_t row_a, std::uin
   return index;
 }
 
+std::uint32_t NearList::add(const NearList& from, std::uint32_t index) {
+  const std::uint32_t place = add(0, 0, 0);
+  copy_lane(from.block(index), lane(index), block(place), lane(place));
+  return place;
+}
+
 std::uint32_t NearList::remove(std::uint32_t index) {
   const std::uint32_t last = --lanes_;
   std::uint32_t moved = kNoContact;

@@ -39,6 +39,8 @@ class NearList {
  public:
   // The index of its lane; all of that is zero but what is given.
   std::uint32_t add(std::uint32_t contact, std::uint32_t row_a, std::uint32_t row_b);
+  // The same, of a lane of another list, as it is.
+  std::uint32_t add(const NearList& from, std::uint32_t index);
   // Returns the contact whose lane has now this index, or kNoContact.
   std::uint32_t remove(std::uint32_t index);
 

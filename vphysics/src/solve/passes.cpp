@@ -15,10 +15,10 @@ constexpr int W = VP_LANES;
 // Rows are as they lie: eight floats of velocities, ways and accelerations each.
 using Row8 = lanes::RawT<8>;
 
-void accelerate(BodyRow* rows, std::uint32_t count, float h) {
+void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
   const Row8 one = {1, 1, 1, 1, 1, 1, 1, 1};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    BodyRow& row = rows[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyRow& row = rows[bodies[i] + 1];
     const Row8 tail = lanes::load<8>(row.inertia);
     const Row8 keep = __builtin_shufflevector(tail, one, 6, 6, 6, 7, 7, 7, 8, 8);
     lanes::store<8>(row.velocity,
@@ -26,10 +26,10 @@ void accelerate(BodyRow* rows, std::uint32_t count, float h) {
   }
 }
 
-void move(BodyRow* rows, std::uint32_t count, float h) {
+void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
   const Row8 step = {h, h, h, h, h, h, 0, 0};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    BodyRow& row = rows[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyRow& row = rows[bodies[i] + 1];
     lanes::store<8>(row.way, lanes::load<8>(row.way) + step * lanes::load<8>(row.velocity));
   }
 }

@@ -46,8 +46,9 @@ struct ContactPasses {
 };
 
 struct Passes {
-  void (*accelerate)(BodyRow* rows, std::uint32_t count, float h);
-  void (*move)(BodyRow* rows, std::uint32_t count, float h);
+  // Of bodies, whose rows are one behind their numbers.
+  void (*accelerate)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
+  void (*move)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
   // Bits of the near pairs that may go farther than they may by the end of a step dt.
   void (*find_closer)(NearBlock* blocks, std::size_t count, BodyRow* rows, float dt,
                       std::uint32_t* bits);

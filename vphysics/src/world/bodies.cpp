@@ -112,7 +112,7 @@ void World::Impl::list_bodies() {
     if (!body.alive) continue;
     if (body.is_link) {
       if (body.first_collider != kNone) link_bodies.push_back(i);
-    } else if (body.motion != Motion::fixed) {
+    } else if (body.motion != Motion::fixed && !body.asleep) {
       movers.push_back(i);
       some_are_continuous |= body.continuous;
     }
@@ -242,6 +242,8 @@ void World::Impl::forget_contacts(std::uint32_t body) {
 // Put elsewhere by the user.
 void World::Impl::jumped(std::uint32_t index) {
   Body& body = bodies[index];
+  wake(index);
+  wake_neighbours(index);
   mark_contacts_stale(index);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;

@@ -22,6 +22,7 @@ struct Contact {
   bool sensor = false;
   bool of_link = false;  // one of the two is of a link: looked at in the stage of impacts
   bool touching = false;
+  bool parked = false;      // of bodies that are asleep
   bool at_impacts = false;  // solved there in the last step
   bool stale = true;        // must be looked at in the next step, wherever the two are
   solve::Place place;

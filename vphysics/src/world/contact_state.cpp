@@ -8,7 +8,12 @@ void World::Impl::ContactState::read(Reader& in) {
   world_.finder.read(in);
   in.check(world_.finder.incoming_fits());
   bodies_.assign(world_.bodies.size(), {});
-  for (OfBody& body : bodies_) read_body(in, body);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    read_body(in, bodies_[i]);
+    const Body& body = world_.bodies[i];
+    in.check(!bodies_[i].asleep ||
+             (body.motion == Motion::dynamic && !body.is_link && !body.continuous));
+  }
   read_pool(in);
   for (std::uint32_t i = 0; i < bodies_.size() && in.ok(); ++i) read_edges(in, i);
   for (std::size_t i = 0; i < pool_.size(); ++i) in.check(!pool_[i].alive || (seen_[i] & 3u) == 3u);
@@ -21,9 +26,10 @@ void World::Impl::ContactState::read(Reader& in) {
     seen_[c] = 8;
     free_.push_back(c);
   }
-  read_near(in);
+  read_near(in, near_, false);
+  read_near(in, parked_near_, true);
   graph_.resize(world_.bodies.size() + 1);
-  for (int c = 0; c < solve::kColours && in.ok(); ++c) {
+  for (int c = 0; c <= solve::kParked && in.ok(); ++c) {
     read_lanes<1>(in, c);
     read_lanes<4>(in, c);
   }
@@ -32,9 +38,11 @@ void World::Impl::ContactState::read(Reader& in) {
 
 void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
   const std::uint64_t flags = in.word();
-  in.check(flags <= 3);
+  in.check(flags <= 7);
   body.rested = (flags & 1u) != 0;
   body.by_impacts = (flags & 2u) != 0;
+  body.asleep = (flags & 4u) != 0;
+  body.rest_time = in.bounded();
   for (int k = 0; k < 6; ++k) {
     const Reader::TwoFloats both = in.two_floats();
     body.way[k] = both.high;
@@ -116,17 +124,18 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
   }
 }
 
-void World::Impl::ContactState::read_near(Reader& in) {
-  const std::size_t near = in.count(1);
-  for (std::size_t i = 0; i < near && in.ok(); ++i) {
+void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
+  const std::size_t count = in.count(1);
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
     const std::uint32_t index = in.index(pool_.size());
     if (!in.ok()) return;
     Contact& c = pool_[index];
     in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
-    c.near_index = near_.add(index, world_.end_of(world_.colliders[c.a].body).row,
-                             world_.end_of(world_.colliders[c.b].body).row);
-    read_fields(in, solve::fields_of(near_.block(c.near_index)), near_.lane(c.near_index));
+    c.parked = parked;
+    c.near_index = near.add(index, world_.end_of(world_.colliders[c.a].body).row,
+                            world_.end_of(world_.colliders[c.b].body).row);
+    read_fields(in, solve::fields_of(near.block(c.near_index)), near.lane(c.near_index));
   }
 }
 
@@ -157,7 +166,8 @@ void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
     const int lane = graph_.lane(c.place);
     graph_.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
     read_fields(in, solve::fields_of(graph_.block<P>(c.place)), lane);
-    points_in_lanes_ += c.count;
+    c.parked = colour == solve::kParked;
+    if (!c.parked) points_in_lanes_ += c.count;
   }
 }
 
@@ -169,6 +179,9 @@ void World::Impl::ContactState::adopt() {
     const OfBody& from = bodies_[i];
     body.rested = from.rested;
     body.by_impacts = from.by_impacts;
+    body.asleep = from.asleep;
+    body.rest_time = from.rest_time;
+    if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);
     body.first_edge = from.first_edge;
     body.lanes = from.lanes;
     std::copy_n(from.way, 6, world_.body_rows[i + 1].way);
@@ -177,6 +190,8 @@ void World::Impl::ContactState::adopt() {
   world_.contact_pool.swap(pool_);
   world_.free_contacts.swap(free_);
   std::swap(world_.near_list, near_);
+  std::swap(world_.parked_near, parked_near_);
+  world_.lists_are_stale = true;
   world_.points_in_lanes = points_in_lanes_;
   world_.stale_contacts.clear();
   for (std::uint32_t i = 0; i < world_.contact_pool.size(); ++i) {

@@ -1,12 +1,13 @@
 // All that a world remembers of contacts from step to step, as words.
 //
 //   broad phase     pair_finder.h
-//   of each body    rested, by impacts; its row's way and where its bounds were set; its contacts,
-//   in order, as
+//   of each body    rested, by impacts, asleep; for how long it has been at rest; its row's way and
+//   where its bounds were set; its contacts, in order, as
 //                   edges (2 contact + side)
 //   pool            of each slot its flags, and if it is alive the contact; free slots, in order
-//   near contacts   in order: each contact and all its fields
-//   lanes           of each colour and kind: how many, and of each its contact and all its fields
+//   near contacts   in order, then those parked: each contact and all its fields
+//   lanes           of each colour, then of those parked, and each kind: how many, and of each its
+//   contact and all its fields
 //
 // What follows from these is not written: neighbours in lists, rows of lanes, colours taken.
 #pragma once
@@ -28,7 +29,8 @@ class World::Impl::ContactState {
 
  private:
   struct OfBody {
-    bool rested = false, by_impacts = false;
+    bool rested = false, by_impacts = false, asleep = false;
+    double rest_time = 0.0;
     float way[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
   };
@@ -36,7 +38,7 @@ class World::Impl::ContactState {
   void read_contact(Reader& in, Contact& contact);
   void read_pool(Reader& in);
   void read_edges(Reader& in, std::uint32_t body);
-  void read_near(Reader& in);
+  void read_near(Reader& in, solve::NearList& near, bool parked);
   static void read_fields(Reader& in, std::span<solve::Field> fields, int lane);
   template <int P>
   void read_lanes(Reader& in, int colour);
@@ -45,7 +47,7 @@ class World::Impl::ContactState {
   std::vector<OfBody> bodies_;
   std::vector<Contact> pool_;
   std::vector<std::uint32_t> free_;
-  solve::NearList near_;
+  solve::NearList near_, parked_near_;
   std::uint32_t points_in_lanes_ = 0;
   std::vector<std::uint8_t> seen_;  // of each contact: 1, 2: the sides found; 4: near or in a lane
   solve::ContactGraph graph_;
@@ -63,7 +65,8 @@ void World::Impl::write_contacts(Sink& sink) const {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const solve::BodyRow& row = i + 1 < body_rows.size() ? body_rows[i + 1] : kNoRow;
-    sink.word((body.rested ? 1u : 0u) | (body.by_impacts ? 2u : 0u));
+    sink.word((body.rested ? 1u : 0u) | (body.by_impacts ? 2u : 0u) | (body.asleep ? 4u : 0u));
+    put(sink, body.rest_time);
     for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
   }
   sink.word(contact_pool.size());
@@ -101,10 +104,12 @@ void World::Impl::write_contacts(Sink& sink) const {
       put_two(sink, fields[f].lane[lane], f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
     }
   };
-  sink.word(near_list.size());
-  for (std::uint32_t i = 0; i < near_list.size(); ++i) {
-    sink.word(near_list.block(i).contact.lane[near_list.lane(i)]);
-    write_fields(solve::fields_of(near_list.block(i)), near_list.lane(i));
+  for (const solve::NearList* list : {&near_list, &parked_near}) {
+    sink.word(list->size());
+    for (std::uint32_t i = 0; i < list->size(); ++i) {
+      sink.word(list->block(i).contact.lane[solve::NearList::lane(i)]);
+      write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
+    }
   }
   const auto write_lanes = [&](const auto& colour, int index) {
     sink.word(colour.lanes);
@@ -115,7 +120,7 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(block), lane);
     }
   };
-  for (int c = 0; c < solve::kColours; ++c) {
+  for (int c = 0; c <= solve::kParked; ++c) {
     write_lanes(graph.of<1>(c), c);
     write_lanes(graph.of<4>(c), c);
   }

@@ -194,7 +194,7 @@ void World::Impl::set_clearance(const Contact& c, double clearance) {
 
 void World::Impl::unset_near(std::uint32_t index) {
   const std::uint32_t place = contact_pool[index].near_index;
-  const std::uint32_t moved = near_list.remove(place);
+  const std::uint32_t moved = (contact_pool[index].parked ? parked_near : near_list).remove(place);
   if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
 }
 
@@ -233,19 +233,25 @@ void World::Impl::mark_found_stale(const Blocks& blocks) {
   }
 }
 
-// In the order of their slots.
+// In the order of their slots; then those that these have woken.
 void World::Impl::look_at_stale_contacts(double dt) {
-  std::sort(stale_contacts.begin(), stale_contacts.end());
-  looked_at_contacts.swap(stale_contacts);
-  stale_contacts.clear();
-  std::uint32_t last = kNone;
-  for (const std::uint32_t index : looked_at_contacts) {
-    const Contact& c = contact_pool[index];
-    if (index == last || !c.alive || !c.stale) continue;
-    last = index;
-    if (!is_by_impacts(c)) look_at(index, dt);
-    if (c.sensor || is_by_impacts(c)) mark_stale(index);  // again in the next step
+  look_again.clear();
+  while (!stale_contacts.empty()) {
+    std::sort(stale_contacts.begin(), stale_contacts.end());
+    looked_at_contacts.swap(stale_contacts);
+    stale_contacts.clear();
+    std::uint32_t last = kNone;
+    for (const std::uint32_t index : looked_at_contacts) {
+      Contact& c = contact_pool[index];
+      if (index == last || !c.alive || !c.stale || c.parked) continue;
+      last = index;
+      if (!is_by_impacts(c)) look_at(index, dt);
+      if (!c.sensor && !is_by_impacts(c)) continue;
+      c.stale = true;
+      look_again.push_back(index);  // in the next step
+    }
   }
+  stale_contacts.swap(look_again);
 }
 
 // The narrow phase, for one.
@@ -293,7 +299,7 @@ void World::Impl::take_out_of_lane(std::uint32_t index) {
   const std::uint32_t moved = graph.remove(c.place, end_of(a), end_of(b));
   if (moved != solve::kNoContact) contact_pool[moved].place = c.place;
   c.place = {};
-  points_in_lanes -= c.count;
+  if (!c.parked) points_in_lanes -= c.count;
   c.count = 0;
   --bodies[a].lanes;
   --bodies[b].lanes;
@@ -303,6 +309,8 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   Contact& c = contact_pool[index];
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const auto end_a = end_of(a.body), end_b = end_of(b.body);
+  wake(a.body);
+  wake(b.body);
   Held impulses;
   if (c.place.points == 0) {
     unset_near(index);

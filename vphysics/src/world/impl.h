@@ -33,6 +33,7 @@ struct alignas(64) Body {
   bool by_impacts = false;  // in this step: it is connected to a link (islands.cpp)
   // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
   // colliders; else ask its articulation.
+  bool asleep = false;
   bool posed = false;       // the colliders' poses and bounds are those of T
   bool bounded = false;     // so are `bounds`
   std::uint32_t lanes = 0;  // of the solver that hold it
@@ -48,7 +49,9 @@ struct alignas(64) Body {
   Vec3 centre;                    // of mass, body frame
   Sym3 inverse_central, central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
+  double rest_time = 0.0;  // since it was last faster than desc.sleep_speed [s]
 
+  std::uint32_t island = 0;  // the last that it was found in (sleep.cpp)
   double mass = 0.0;
   se3 prescribed;         // kinematic: body frame
   collide::Bounds local;  // of its bounded colliders, body frame
@@ -146,7 +149,8 @@ struct World::Impl {
   collide::PairFinder finder;
   std::vector<Contact> contact_pool;
   std::vector<std::uint32_t> free_contacts;
-  solve::NearList near_list;  // those that have no points
+  solve::NearList near_list;    // those that have no points
+  solve::NearList parked_near;  // and those of them that are of bodies asleep
   // Those marked as stale, in no order, and with others that are not any more.
   std::vector<std::uint32_t> stale_contacts;
   std::uint32_t points_in_lanes = 0;
@@ -166,7 +170,10 @@ struct World::Impl {
 
   // --- scratch of a step; kept for its capacity
   std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint32_t> looked_at_contacts, body_stack;
+  std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
+  std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
+  std::uint32_t islands_found = 0;
+  double dt_now = 0.0;  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
@@ -246,6 +253,7 @@ struct World::Impl {
   BodyPlace place_of(std::uint32_t body) const;
   BodyPlace place_within_step(std::uint32_t body) const;
   bool keeps_apart(std::uint32_t a, std::uint32_t b) const;
+  bool is_active(const BodyJoint& joint) const;
   void link_joint(std::uint32_t joint);
   void remove_joint(std::uint32_t joint);
   void begin_joints(double h);
@@ -280,6 +288,19 @@ struct World::Impl {
   bool is_by_impacts(const Contact& contact) const;
   solve::ContactGraph::End end_of(std::uint32_t body) const;
   bool joins_sub_steps(const Body& body) const;
+
+  // sleep.cpp
+  void watch(std::uint32_t body, double dt);
+  void send_to_sleep();
+  bool find_resting_island(std::uint32_t body);
+  bool may_sleep(const Body& body) const;
+  bool is_still(const Body& body) const;
+  void wake(std::uint32_t body);
+  void wake_neighbours(std::uint32_t body);
+  void park(std::uint32_t contact);
+  void unpark(std::uint32_t contact);
+  template <class F>
+  void for_partners(std::uint32_t body, const F& f) const;
 
   // sub_steps.cpp
   void run_sub_steps(double dt);

@@ -22,6 +22,7 @@ void World::Impl::find_link_islands() {
     if (body.by_impacts || body.is_link || body.motion != Motion::dynamic) return;
     if (body.first_joint != kNone) return;  // joints are solved in sub-steps
     body.by_impacts = true;
+    wake(index);
     body_stack.push_back(index);
   };
   for (Body& body : bodies) body.by_impacts = false;

@@ -96,6 +96,8 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   joint.start[1] = impl_->bodies[joint.b].T;
   joint.turned[0] = first_turn(joint.law);
   impl_->link_joint(index);
+  impl_->wake(joint.a);
+  impl_->wake(joint.b);
   impl_->mark_contacts_stale(joint.a);
   Structure structure(impl_->structure);
   structure.add(0x500u + index);
@@ -107,6 +109,9 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
 
 Expected<void> World::destroy_joint(JointId id) {
   if (!impl_->find(id)) return stale("joint");
+  const BodyJoint& joint = impl_->joints[id.index - 1];
+  impl_->wake(joint.a);
+  impl_->wake(joint.b);
   impl_->remove_joint(id.index - 1);
   Structure(impl_->structure).add(0x600u + id.index);
   return {};
@@ -170,6 +175,8 @@ Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
   if (!joint) return stale("joint");
   if (joint->main < 0 || joint->law.form != JointLaw::Form::axes)
     return refuse("set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
+  impl_->wake(joint->a);
+  impl_->wake(joint->b);
   return drive_slot(*joint, joint->main, drive);
 }
 
@@ -180,6 +187,8 @@ Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& dr
   if (joint->law.form != JointLaw::Form::axes || axis > JointAxis::turn_z ||
       (joint->law.cone && swings))
     return refuse("set_drive: the joint has no drive of this axis");
+  impl_->wake(joint->a);
+  impl_->wake(joint->b);
   return drive_slot(*joint, static_cast<int>(axis), drive);
 }
 
@@ -192,9 +201,14 @@ JointForce World::joint_force(JointId id) const {
 
 // --- within a step ---------------------------------------------------------------------------
 
+// What is asleep keeps its impulses.
+bool World::Impl::is_active(const BodyJoint& joint) const {
+  return joint.alive && !(is_still(bodies[joint.a]) && is_still(bodies[joint.b]));
+}
+
 void World::Impl::begin_joints(double h) {
   for (BodyJoint& joint : joints) {
-    if (!joint.alive) continue;
+    if (!is_active(joint)) continue;
     joint.force = joint.torque = {};
     if (joint.laid_out_for == h) continue;
     lay_out(joint, h);
@@ -227,7 +241,7 @@ void World::Impl::refresh_joints(double) {
     if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
   }
   for (BodyJoint& joint : joints) {
-    if (!joint.alive) continue;
+    if (!is_active(joint)) continue;
     evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
     solve::prepare(joint.block, body_rows.data());
   }
@@ -235,17 +249,17 @@ void World::Impl::refresh_joints(double) {
 
 void World::Impl::warm_start_joints() {
   for (BodyJoint& joint : joints) {
-    if (joint.alive) solve::warm_start(joint.block, body_rows.data());
+    if (is_active(joint)) solve::warm_start(joint.block, body_rows.data());
   }
 }
 void World::Impl::solve_joints(double h) {
   for (BodyJoint& joint : joints) {
-    if (joint.alive) solve::solve(joint.block, body_rows.data(), h);
+    if (is_active(joint)) solve::solve(joint.block, body_rows.data(), h);
   }
 }
 void World::Impl::relax_joints(double h) {
   for (BodyJoint& joint : joints) {
-    if (!joint.alive) continue;
+    if (!is_active(joint)) continue;
     solve::relax(joint.block, body_rows.data(), h);
     const BodyPlace& b = joint_places[joint.b];
     const bool user = joint.law.form == JointLaw::Form::user;
@@ -260,6 +274,7 @@ void World::Impl::relax_joints(double h) {
 }
 void World::Impl::end_joints(double dt) {
   for (BodyJoint& joint : joints) {
+    if (!is_active(joint)) continue;
     joint.force *= 1.0 / dt;
     joint.torque *= 1.0 / dt;
   }

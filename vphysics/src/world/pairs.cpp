@@ -131,6 +131,8 @@ void World::Impl::find_discrete_pairs(double h) {
     if (!of_impacts) continue;  // of the sub-stepped solver
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
+    wake(pair.a);
+    wake(pair.b);
     pose_colliders(pair.a);
     pose_colliders(pair.b);
     const double margin =
@@ -167,6 +169,7 @@ collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const
 
 // Pairs of a continuous body's colliders with those of another body that can meet within h.
 void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
+  wake(other);
   const Body &a = bodies[index], &b = bodies[other];
   const collide::Motion &ma = motions[index], &mb = motions[other];
   pose_colliders(index);

@@ -35,9 +35,12 @@ void World::Impl::begin_step() {
   records.reserve(room);
   next_records.reserve(room);
   contact_pool.reserve(room);
-  for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts}) list->reserve(room);
+  for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts, &look_again})
+    list->reserve(room);
   near_list.reserve(room);
   body_stack.reserve(n);
+  woken.reserve(n);
+  drowsy.reserve(n);
   list_bodies();
   if (!movers.empty()) graph.reserve(movers.size());
   new_pairs.reserve(room);
@@ -191,7 +194,7 @@ void World::Impl::advance_all(double dt) {
 void World::Impl::advance(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!body.alive || body.is_link || body.motion == Motion::fixed || held[i]) continue;
+    if (!body.alive || body.is_link || is_still(body) || held[i]) continue;
     advance_body(bodies[i], motions[i], h);
     if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
   }
@@ -259,8 +262,11 @@ bool World::Impl::has_impact_stage() const {
 }
 
 void World::Impl::run(double dt) {
+  dt_now = dt;
   load_rows(dt);
   find_contacts(dt);
+  list_bodies();  // some may have been woken
+  counters.awake = static_cast<std::uint32_t>(movers.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {
     advance_all(dt);
@@ -304,6 +310,11 @@ void World::Impl::run(double dt) {
 }
 
 void World::Impl::finish_step() {
+  if (desc.sleep_after > 0.0) {
+    for (const std::uint32_t i : movers) watch(i, dt_now);
+    send_to_sleep();
+  }
+  dt_now = 0.0;
   std::erase_if(next_records, [](const PairRecord& r) {
     bool loaded = r.touching;
     for (std::uint32_t i = 0; i < r.count; ++i) loaded |= r.points[i].normal_impulse > 0.0;

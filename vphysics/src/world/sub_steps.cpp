@@ -36,11 +36,10 @@ void World::Impl::run_sub_steps(double dt) {
   const solve::Passes& pass = solve::passes();
   const solve::Soft soft{static_cast<float>(kPush) / h, static_cast<float>(1.0 - kLoss),
                          static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h};
-  const auto count = static_cast<std::uint32_t>(bodies.size());
   const auto threshold = static_cast<float>(desc.restitution_threshold);
   begin_joints(h);
   for (int k = 0; k < n; ++k) {
-    pass.accelerate(body_rows.data() + 1, count, h);
+    pass.accelerate(body_rows.data(), movers.data(), movers.size(), h);
     for (int round = 0; round < kStrikes; ++round) {
       bool again = false;
       for_runs([&](const auto& p, const auto& run, auto&) {
@@ -54,7 +53,7 @@ void World::Impl::run_sub_steps(double dt) {
       solve_joints(h);
       for_runs([&](const auto& p, const auto& run, auto&) { p.solve(run, soft); });
     }
-    pass.move(body_rows.data() + 1, count, h);
+    pass.move(body_rows.data(), movers.data(), movers.size(), h);
     refresh_joints(h);
     relax_joints(h);
     if (k == n - 1) find_news();

@@ -112,6 +112,8 @@ void World::Impl::release_collider(std::uint32_t index) {
     return true;
   });
   Collider& collider = colliders[index];
+  wake(collider.body);
+  wake_neighbours(collider.body);
   std::uint32_t next = kNone;
   for (std::uint32_t e = bodies[collider.body].first_edge; e != kNone; e = next) {
     Contact& c = contact_pool[e / 2];
@@ -199,6 +201,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->least_size = std::min(body->least_size, c.size);
   }
   impl_->lists_are_stale = true;
+  impl_->wake(c.body);
   impl_->mark_contacts_stale(c.body);  // its reach may have grown
   impl_->add_proxy(index);
   Structure structure(impl_->structure);
@@ -255,8 +258,10 @@ Expected<void> World::set_velocity(BodyId id, const se3& V) {
   if (!in_range(V)) return refuse("set_velocity: every entry must be finite and at most 1e9");
   if (body->motion == Motion::kinematic) {
     body->prescribed = V;
+    if (!(V == se3{})) impl_->wake_neighbours(id.index - 1);
     return {};
   }
+  impl_->wake(id.index - 1);
   body->w = body->T.rotate(V.w);
   body->v = body->T.rotate(V.v + cross(V.w, body->centre));
   return {};
@@ -275,6 +280,7 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
     impl_->follow(art);
     return {};
   }
+  impl_->wake(id.index - 1);
   const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
   body->v += (1.0 / body->mass) * impulse;
   body->w += rotated(body->T.rotation(), body->inverse_central) * moment;

@@ -1,0 +1,280 @@
+// What rests falls asleep, costs nothing, and wakes when it must.
+#include <gtest/gtest.h>
+
+#include "joints_rig.h"
+
+namespace vp::test {
+namespace {
+
+WorldDesc sleepy() {
+  WorldDesc desc;
+  desc.sleep_after = 0.5;
+  return desc;
+}
+constexpr double kHalf = 0.1;  // of the boxes' edges [m]
+
+std::vector<BodyId> add_tower(World& world, int height, const Vec3& at = {}) {
+  std::vector<BodyId> tower;
+  for (int i = 0; i < height; ++i) {
+    Part box{.shape = Box{{kHalf, kHalf, kHalf}}, .material = {}};
+    box.pose = SE3(at + Vec3{0, 0, (2 * i + 1) * kHalf});
+    tower.push_back(add_dynamic(world, box));
+  }
+  return tower;
+}
+bool all_asleep(const World& world, const std::vector<BodyId>& bodies) {
+  return std::all_of(bodies.begin(), bodies.end(),
+                     [&](BodyId body) { return world.is_asleep(body); });
+}
+bool none_asleep(const World& world, const std::vector<BodyId>& bodies) {
+  return std::none_of(bodies.begin(), bodies.end(),
+                      [&](BodyId body) { return world.is_asleep(body); });
+}
+
+// A tower on the ground, asleep.
+struct Sleepers {
+  World world{sleepy()};
+  BodyId ground = add_ground(world, {});
+  std::vector<BodyId> tower = add_tower(world, 5);
+
+  Sleepers() {
+    run(world, 1.0);
+    EXPECT_TRUE(all_asleep(world, tower));
+  }
+};
+
+TEST(Sleep, IsOffUnlessItIsAskedFor) {
+  World world;
+  add_ground(world, {});
+  const auto tower = add_tower(world, 3);
+  run(world, 2.0);
+  EXPECT_TRUE(none_asleep(world, tower));
+  EXPECT_EQ(world.counters().awake, 3u);
+}
+
+TEST(Sleep, ComesAfterTheTimeThatItIsAskedFor) {
+  World world(sleepy());
+  add_ground(world, {});
+  const auto tower = add_tower(world, 3);
+  run(world, 0.49);
+  EXPECT_TRUE(none_asleep(world, tower));
+  run(world, 0.2);
+  EXPECT_TRUE(all_asleep(world, tower));
+}
+
+TEST(Sleep, MovesNothingAndLooksAtNothing) {
+  Sleepers s;
+  std::vector<SE3> poses;
+  for (const BodyId body : s.tower) poses.push_back(s.world.pose(body));
+  for (int i = 0; i < 100; ++i) {
+    must(s.world.step(0.001));
+    ASSERT_EQ(s.world.counters().awake, 0u);
+    ASSERT_EQ(s.world.counters().contacts, 0u);
+    ASSERT_EQ(s.world.counters().looked_at, 0u);
+    ASSERT_TRUE(s.world.contact_events().empty());
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(s.world.pose(s.tower[i]), poses[i]);
+    EXPECT_EQ(s.world.velocity(s.tower[i]), se3{});
+  }
+}
+
+TEST(Sleep, GoesOnWhereItStopped) {
+  Sleepers s;
+  const SE3 top = s.world.pose(s.tower.back());
+  must(s.world.wake(s.tower.front()));
+  EXPECT_TRUE(none_asleep(s.world, s.tower));
+  double fastest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    must(s.world.step(0.001));
+    fastest = std::max(fastest, norm(s.world.velocity(s.tower.back()).v));
+    ASSERT_TRUE(s.world.contact_events().empty());  // they have touched all the while
+  }
+  // With its load it does not even twitch: 0.02 mm/s; from nothing it would sink.
+  EXPECT_LT(fastest, 1e-4);
+  EXPECT_LT(norm(s.world.pose(s.tower.back()).position() - top.position()), 1e-6);
+}
+
+TEST(Sleep, EndsForAllThatHangTogetherAndForNoOther) {
+  World world(sleepy());
+  add_ground(world, {});
+  const auto near = add_tower(world, 4), far = add_tower(world, 4, {5, 0, 0});
+  run(world, 1.0);
+  ASSERT_TRUE(all_asleep(world, near) && all_asleep(world, far));
+  Part ball{.shape = Sphere{0.05}, .material = {}};
+  ball.pose = SE3(Vec3{-0.5, 0, 0.3});
+  ball.velocity = {{}, {4, 0, 0}};
+  add_dynamic(world, ball);
+  int steps = 0;
+  while (all_asleep(world, near) && ++steps < 1000) must(world.step(0.001));
+  // 0.35 m at 4 m/s.
+  EXPECT_NEAR(steps, 88, 4);
+  EXPECT_TRUE(none_asleep(world, near));
+  EXPECT_TRUE(all_asleep(world, far));
+  run(world, 0.1);
+  EXPECT_GT(world.pose(near[1]).position().x, 1e-3);  // the ball has pushed it
+}
+
+TEST(Sleep, EndsByTheCallsThatChangeABody) {
+  const auto wakes = [](const char* what, const auto& call) {
+    Sleepers s;
+    call(s);
+    EXPECT_TRUE(none_asleep(s.world, s.tower)) << what;
+    run(s.world, 0.05);
+  };
+  wakes("set_pose", [](Sleepers& s) { must(s.world.set_pose(s.tower[4], SE3(Vec3{0, 0, 2}))); });
+  wakes("set_velocity", [](Sleepers& s) {
+    must(s.world.set_velocity(s.tower[0], {{}, {0.1, 0, 0}}));
+  });
+  wakes("apply_impulse", [](Sleepers& s) {
+    must(s.world.apply_impulse(s.tower[2], {1, 0, 0}, {0, 0, 0.5}));
+  });
+  wakes("add_collider", [](Sleepers& s) {
+    ColliderDesc more;
+    more.shape = Sphere{0.15};
+    must(s.world.add_collider(s.tower[2], more));
+  });
+  wakes("set_pose of what carries them", [](Sleepers& s) {
+    must(s.world.set_pose(s.ground, SE3(Vec3{0, 0, -0.5})));
+  });
+  wakes("create_joint", [](Sleepers& s) {
+    join(s.world, s.ground, s.tower[1], BallSocket{}, SE3(Vec3{0, 0, 0.3}));
+  });
+}
+
+TEST(Sleep, EndsWhenWhatCarriesThemIsDestroyed) {
+  Sleepers s;
+  must(s.world.destroy_body(s.tower[0]));
+  s.tower.erase(s.tower.begin());
+  EXPECT_TRUE(none_asleep(s.world, s.tower));
+  const double z = s.world.pose(s.tower[0]).position().z;
+  run(s.world, 0.1);
+  EXPECT_NEAR(z - s.world.pose(s.tower[0]).position().z, 0.5 * 9.81 * 0.01, 2e-3);
+}
+
+TEST(Sleep, WaitsForWhatIsMovedUnderIt) {
+  World world(sleepy());
+  BodyDesc floor;
+  floor.motion = Motion::kinematic;
+  const BodyId belt = must(world.create_body(floor));
+  ColliderDesc slab;
+  slab.shape = Box{{50, 1, 0.1}};
+  slab.T_body_shape = SE3(Vec3{0, 0, -0.1});
+  must(world.add_collider(belt, slab));
+  const auto tower = add_tower(world, 2);
+  must(world.set_velocity(belt, {{}, {0.001, 0, 0}}));
+  run(world, 2.0);
+  EXPECT_TRUE(none_asleep(world, tower));
+  must(world.set_velocity(belt, {}));
+  run(world, 1.0);
+  EXPECT_TRUE(all_asleep(world, tower));
+  must(world.set_velocity(belt, {{}, {0.2, 0, 0}}));
+  EXPECT_TRUE(none_asleep(world, tower));
+  const double x = world.pose(tower[0]).position().x;
+  run(world, 1.0);
+  EXPECT_NEAR(world.pose(tower[0]).position().x - x, 0.2, 0.01);
+}
+
+TEST(Sleep, IsForWhatJointsHoldToo) {
+  World world(sleepy());
+  const BodyId anchor = add_anchor(world);
+  const Inertia bar = solid_inertia(Box{{0.05, 0.05, 0.2}}, 1000);
+  const BodyId a = add_mass(world, bar, SE3(Vec3{0, 0, -0.2}));
+  const BodyId b = add_mass(world, bar, SE3(Vec3{0, 0, -0.6}));
+  join(world, anchor, a, BallSocket{}, SE3{});
+  Hinge hinge;
+  hinge.drive = {.position = 0.0, .stiffness = 100, .damping = 10, .max_force = 50};
+  const JointId motor = join(world, a, b, hinge, SE3(kAlongY, {0, 0, -0.4}));
+  run(world, 1.0);
+  ASSERT_TRUE(all_asleep(world, {a, b}));
+  const JointForce carried = world.joint_force(motor);
+  EXPECT_NEAR(carried.force.z, 9.81 * bar.mass(), 0.01 * 9.81 * bar.mass());
+  run(world, 0.1);
+  EXPECT_EQ(world.joint_force(motor).force, carried.force);
+  hinge.drive.position = 0.5;
+  must(world.set_drive(motor, hinge.drive));
+  EXPECT_TRUE(none_asleep(world, {a, b}));
+  run(world, 0.3);
+  EXPECT_GT(std::fabs(world.joint_coordinate(motor)), 0.1);
+}
+
+TEST(Sleep, EndsBeforeASweptBallArrives) {
+  Sleepers s;
+  Part ball{.shape = Sphere{0.05}, .material = {}};
+  ball.pose = SE3(Vec3{-2, 0, 0.3});
+  ball.velocity = {{}, {25, 0, 0}};
+  ball.continuous = true;
+  add_dynamic(s.world, ball);
+  run(s.world, 0.2);
+  EXPECT_TRUE(none_asleep(s.world, s.tower));
+  EXPECT_GT(s.world.pose(s.tower[1]).position().x, 0.01);
+}
+
+TEST(Sleep, LeavesSensorsAsTheyAre) {
+  World world(sleepy());
+  add_ground(world, {});
+  const auto tower = add_tower(world, 1);
+  BodyDesc zone;
+  zone.motion = Motion::fixed;
+  const BodyId where = must(world.create_body(zone));
+  ColliderDesc gate;
+  gate.shape = Sphere{0.3};
+  gate.sensor = true;
+  must(world.add_collider(where, gate));
+  run(world, 1.0);
+  ASSERT_TRUE(all_asleep(world, tower));
+  must(world.step(0.001));
+  EXPECT_TRUE(world.contact_events().empty());
+  must(world.set_pose(tower[0], SE3(Vec3{3, 0, kHalf})));
+  must(world.step(0.001));
+  const auto events = world.contact_events();
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const ContactEvent& e) {
+    return e.kind == ContactEvent::Kind::end && e.sensor;
+  }));
+}
+
+// Restored among the sleepers, the same bits.
+TEST(Sleep, IsPartOfTheState) {
+  const auto make = [] {
+    World world(sleepy());
+    add_ground(world, {});
+    add_tower(world, 4);
+    add_tower(world, 3, {3, 0, 0});
+    Part ball{.shape = Sphere{0.1}, .material = {}};
+    ball.pose = SE3(Vec3{0.02, 0.01, 8});
+    add_dynamic(world, ball);
+    return world;
+  };
+  World a = make(), b = make();
+  run(a, 1.1);  // the ball is about to hit those that sleep
+  EXPECT_EQ(a.counters().awake, 1u);
+  std::vector<std::byte> bytes;
+  a.snapshot(bytes);
+  must(b.restore(bytes));
+  EXPECT_EQ(b.state_hash(), a.state_hash());
+  std::uint32_t most = 0;
+  for (int i = 0; i < 3000; ++i) {
+    must(a.step(0.001));
+    must(b.step(0.001));
+    ASSERT_EQ(a.state_hash(), b.state_hash()) << "step " << i;
+    most = std::max(most, a.counters().awake);
+  }
+  EXPECT_EQ(most, 5u);     // with the tower that it hit
+  must(b.restore(bytes));  // back into a sleep that it had left
+  run(b, 0.5);
+  World c = make();
+  run(c, 1.6);
+  EXPECT_EQ(b.state_hash(), c.state_hash());
+}
+
+TEST(Sleep, RefusesBodiesThatAreGone) {
+  Sleepers s;
+  const BodyId gone = s.tower[4];
+  must(s.world.destroy_body(gone));
+  const auto woken = s.world.wake(gone);
+  ASSERT_FALSE(woken.has_value());
+  EXPECT_EQ(woken.error().code, Errc::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vp::test
