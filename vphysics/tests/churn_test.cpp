@@ -1,0 +1,204 @@
+// Worlds in which bodies, colliders and joints come and go at random between steps. Whatever is
+// done, numbers stay finite, the snapshot is restored to the same bits, and nothing is read that is
+// gone: the sanitizers look on.
+#include <gtest/gtest.h>
+
+#include "random.h"
+#include "rig.h"
+
+namespace vp::test {
+namespace {
+
+// More of them in Release (CMakeLists.txt) than under the sanitizers.
+#ifdef NDEBUG
+constexpr int kSequences = 10000;
+#else
+constexpr int kSequences = 1500;
+#endif
+constexpr int kCalls = 24;
+
+// What the steps of all sequences met.
+struct Seen {
+  std::size_t contacts = 0, joints = 0, asleep = 0;
+};
+
+class Churn {
+ public:
+  inline static Seen seen;
+
+  explicit Churn(std::uint64_t seed) : random_(seed), world_(desc(random_)) {
+    if (pick(3) != 0) add_ground(world_, material());
+  }
+
+  void call() {
+    switch (pick(14)) {
+      case 0:
+      case 1:
+      case 2:
+        return create();
+      case 3:
+        return destroy();
+      case 4:
+        if (const BodyId body = any(); world_.contains(body)) (void)add_collider(body);
+        return;
+      case 5:
+        if (const BodyId body = any(); world_.contains(body))
+          (void)world_.set_pose(body, SE3(random_.rotation(), place()));
+        return;
+      case 6:
+        (void)world_.set_velocity(any(), {random_.in_cube(20.0), random_.in_cube(8.0)});
+        return;
+      case 7:
+        (void)world_.apply_impulse(any(), random_.in_cube(2.0), random_.in_cube(0.5));
+        return;
+      case 8:
+        return join();
+      case 9:
+        if (!joints_.empty()) (void)world_.destroy_joint(joints_[pick(joints_.size())]);
+        return;
+      case 10:
+        return save_and_restore();
+      case 11:
+        (void)world_.wake(any());
+        return;
+      default:
+        return step();
+    }
+  }
+
+  void expect_sane() const {
+    for (const BodyId body : bodies_) {
+      if (!world_.contains(body)) continue;
+      const Vec3 x = world_.pose(body).position(), v = world_.velocity(body).v;
+      ASSERT_LT(norm(x) + norm(v), 1e6);
+    }
+  }
+
+ private:
+  static WorldDesc desc(Random& random) {
+    WorldDesc d;
+    d.sleep_after = random.word() % 2 == 0 ? 0.03 : 0.0;
+    d.sleep_speed = 0.5;
+    return d;
+  }
+  std::size_t pick(std::size_t n) { return static_cast<std::size_t>(random_.word() % n); }
+  Vec3 place() { return random_.in_cube(0.5) + Vec3{0, 0, 0.5}; }
+  BodyId any() { return bodies_.empty() ? BodyId{} : bodies_[pick(bodies_.size())]; }
+  Material material() {
+    Material m;
+    m.friction = random_.uniform(0.0, 1.0);
+    m.restitution = pick(2) == 0 ? 0.0 : random_.uniform(0.0, 0.9);
+    m.rolling_friction = pick(4) == 0 ? 0.01 : 0.0;
+    return m;
+  }
+  Shape shape() {
+    const double r = random_.uniform(0.05, 0.2);
+    switch (pick(5)) {
+      case 0:
+        return Box{{r, random_.uniform(0.05, 0.2), random_.uniform(0.05, 0.2)}};
+      case 1:
+        return Capsule{r, random_.uniform(0.05, 0.2)};
+      case 2:
+        return Cylinder{r, random_.uniform(0.05, 0.2)};
+      default:
+        return Sphere{r};
+    }
+  }
+  bool add_collider(BodyId body) {
+    ColliderDesc c;
+    c.shape = shape();
+    c.material = material();
+    c.sensor = pick(6) == 0;
+    c.T_body_shape = SE3(random_.rotation(), random_.in_cube(0.1));
+    return world_.add_collider(body, c).has_value();
+  }
+  void create() {
+    BodyDesc d;
+    const std::size_t kind = pick(8);
+    d.motion = kind == 0 ? Motion::fixed : kind == 1 ? Motion::kinematic : Motion::dynamic;
+    d.T_world_body = SE3(random_.rotation(), place());
+    d.inertia = solid_inertia(Sphere{0.15}, 1000.0);
+    d.continuous = kind == 2;
+    if (d.motion != Motion::fixed) d.velocity = {random_.in_cube(5.0), random_.in_cube(3.0)};
+    const auto body = world_.create_body(d);
+    ASSERT_TRUE(body.has_value());
+    bodies_.push_back(*body);
+    for (std::size_t i = pick(3); i > 0; --i) (void)add_collider(*body);
+  }
+  void destroy() {
+    if (bodies_.empty()) return;
+    const std::size_t i = pick(bodies_.size());
+    (void)world_.destroy_body(bodies_[i]);
+    if (pick(2) == 0) bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  void join() {
+    JointDesc d;
+    switch (pick(4)) {
+      case 0:
+        d.kind = BallSocket{};
+        break;
+      case 1:
+        d.kind = Hinge{-0.5, 0.5, {.velocity = 1.0, .damping = 1.0, .max_force = 1.0}};
+        break;
+      case 2:
+        d.kind = Distance{0.1, 0.4};
+        break;
+      default:
+        d.kind = Weld{};
+    }
+    d.T_a_joint = SE3(random_.in_cube(0.2));
+    d.T_b_joint = SE3(random_.in_cube(0.2));
+    d.collide = pick(2) == 0;
+    if (const auto joint = world_.create_joint(any(), any(), d)) joints_.push_back(*joint);
+  }
+  void step() { step(pick(2) == 0 ? 0.001 : random_.uniform(1e-4, 0.02)); }
+  void step(double dt) {
+    const auto status = world_.step(dt);
+    ASSERT_TRUE(status.has_value());
+    ASSERT_FALSE(status->non_finite);
+    seen.contacts += world_.counters().contacts;
+    seen.joints += joints_.size();
+    for (const BodyId body : bodies_)
+      seen.asleep += world_.contains(body) && world_.is_asleep(body);
+  }
+  // Back to the snapshot after a step: the same step has the same end.
+  void save_and_restore() {
+    bytes_.clear();
+    world_.snapshot(bytes_);
+    const std::uint64_t hash = world_.state_hash();
+    step(0.002);
+    const std::uint64_t after = world_.state_hash();
+    ASSERT_TRUE(world_.restore(bytes_).has_value());
+    ASSERT_EQ(world_.state_hash(), hash);
+    step(0.002);
+    ASSERT_EQ(world_.state_hash(), after);
+  }
+
+  Random random_;
+  World world_;
+  std::vector<BodyId> bodies_;
+  std::vector<JointId> joints_;
+  std::vector<std::byte> bytes_;
+};
+
+TEST(Churn, OfBodiesCollidersAndJointsLeavesTheWorldSane) {
+  for (int i = 0; i < kSequences; ++i) {
+    SCOPED_TRACE(i);
+    Churn churn(static_cast<std::uint64_t>(i));
+    for (int k = 0; k < kCalls; ++k) {
+      churn.call();
+      if (HasFatalFailure()) return;
+    }
+    churn.expect_sane();
+    if (HasFatalFailure()) return;
+  }
+  const auto& [contacts, joints, asleep] = Churn::seen;
+  std::printf("steps saw %zu contact points, %zu joints, %zu bodies asleep\n", contacts, joints,
+              asleep);
+  EXPECT_GT(contacts, 10u * kSequences);
+  EXPECT_GT(joints, std::size_t{kSequences});
+  EXPECT_GT(asleep, std::size_t{kSequences} / 2);
+}
+
+}  // namespace
+}  // namespace vp::test
