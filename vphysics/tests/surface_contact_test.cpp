@@ -48,7 +48,7 @@ Found find(const Shape& a, const SE3& T_a, const Shape& b, const SE3& T_b, doubl
   Found found;
   ManifoldScratch scratch;
   collide::PairCache cache;
-  find_manifolds(collide::make_geometry(a), T_a, collide::make_geometry(b), T_b, margin, cache,
+  find_manifolds(collide::make_geometry(a), T_a, collide::make_geometry(b), T_b, margin, cache, {},
                  scratch, found.manifolds);
   return found;
 }

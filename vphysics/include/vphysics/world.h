@@ -103,6 +103,7 @@ struct StepCounters {
   std::uint32_t impacts = 0;    // times of impact found
   std::uint32_t looked_at = 0;  // pairs given to the narrow phase
   std::uint32_t awake = 0;      // bodies that move, those asleep left out; links are not counted
+  std::uint32_t triangles = 0;  // of meshes and height fields, that it looked at
 };
 
 struct RayHit {
@@ -129,6 +130,10 @@ class World {
   // links.
   Expected<void> destroy_body(BodyId body);
   Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
+  // Mass, centre of mass and inertia of a dynamic body from its colliders' shapes and densities.
+  // Sensors count for nothing; what two shapes both fill counts twice. The velocity stays that of
+  // the body's origin. Refused: links, bodies that are not dynamic or have no collider with a mass.
+  Expected<void> set_mass_from_colliders(BodyId body);
   // With every joint at zero, or at the stop next to it, at rest. Refused with Errc::singular: a
   // joint that moves no inertia.
   Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
@@ -140,8 +145,9 @@ class World {
 
   // --- state ------------------------------------------------------------------------------------
   bool contains(BodyId body) const;
-  SE3 pose(BodyId body) const;      // T_world_body; precondition: contains(body)
-  se3 velocity(BodyId body) const;  // body frame; precondition: contains(body)
+  SE3 pose(BodyId body) const;         // T_world_body; precondition: contains(body)
+  se3 velocity(BodyId body) const;     // body frame; precondition: contains(body)
+  Inertia inertia(BodyId body) const;  // about its origin, 0 if not dynamic; precondition: the same
   Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);

@@ -5,6 +5,8 @@
 
 #include "collide/compound_data.h"
 #include "collide/gjk.h"
+#include "collide/height_data.h"
+#include "collide/mesh_data.h"
 #include "collide/mixed_name.h"
 #include "collide/surface_manifolds.h"
 
@@ -18,8 +20,9 @@ void to_world(const SE3& T, Manifold& m) {
 
 class Finder {
  public:
-  Finder(double margin, ManifoldScratch& scratch, std::vector<SubManifold>& out)
-      : margin_(margin), scratch_(scratch), out_(out) {}
+  Finder(double margin, std::span<const KnownPart> known, ManifoldScratch& scratch,
+         std::vector<SubManifold>& out)
+      : margin_(margin), known_(known), scratch_(scratch), out_(out) {}
 
   // a has no parts that are compounds; neither has b.
   void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
@@ -30,7 +33,10 @@ class Finder {
       return;
     }
     SubManifold found;
+    found.sub_a = sub_a_;
+    found.sub_b = sub_b_;
     find_manifold(a, T_a, b, T_b, margin_, cache, found.manifold);
+    found.cache = cache;
     if (found.manifold.count > 0) out_.push_back(found);
   }
 
@@ -49,13 +55,14 @@ class Finder {
       const std::size_t first = out_.size();
       const SE3 T = T_of * compound.parts[i].T_compound_part;
       const Geometry& part = compound.geometries[i];
-      PairCache fresh;
+      (swapped ? sub_b_ : sub_a_) = i;
+      PairCache cache = known_cache();
       if (other.kind == Kind::compound) {
         find_of_parts(other, T_other, part, T, !swapped);
       } else if (swapped) {
-        find(other, T_other, part, T, fresh);
+        find(other, T_other, part, T, cache);
       } else {
-        find(part, T, other, T_other, fresh);
+        find(part, T, other, T_other, cache);
       }
       for (std::size_t m = first; m < out_.size(); ++m) {
         (swapped ? out_[m].sub_b : out_[m].sub_a) = i;
@@ -69,6 +76,12 @@ class Finder {
   }
 
  private:
+  PairCache known_cache() const {
+    const auto at = std::find_if(known_.begin(), known_.end(), [this](const KnownPart& k) {
+      return k.sub_a == sub_a_ && k.sub_b == sub_b_;
+    });
+    return at == known_.end() ? PairCache{} : at->cache;
+  }
   void find_on_surface(const Geometry& surface, const SE3& T_surface, const Geometry& shape,
                        const SE3& T_shape, bool surface_is_b) {
     const std::size_t first = out_.size();
@@ -83,16 +96,18 @@ class Finder {
   }
 
   double margin_;
+  std::span<const KnownPart> known_;
   ManifoldScratch& scratch_;
   std::vector<SubManifold>& out_;
+  std::uint32_t sub_a_ = 0, sub_b_ = 0;  // of the compounds' parts that are looked at
 };
 
 }  // namespace
 
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                    double margin, PairCache& cache, ManifoldScratch& scratch,
-                    std::vector<SubManifold>& manifolds) {
-  Finder finder(margin, scratch, manifolds);
+                    double margin, PairCache& cache, std::span<const KnownPart> known,
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
+  Finder finder(margin, known, scratch, manifolds);
   if (a.kind == Kind::compound) {
     finder.find_of_parts(a, T_a, b, T_b, false);
   } else if (b.kind == Kind::compound) {
@@ -100,6 +115,17 @@ void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const 
   } else {
     finder.find(a, T_a, b, T_b, cache);
   }
+}
+
+Kind kind_of_part(const Geometry& g, std::uint32_t sub) {
+  if (is_surface(g)) return Kind::triangle;
+  return g.kind == Kind::compound ? g.compound->geometries[sub].kind : g.kind;
+}
+
+std::uint32_t number_of_parts(const Geometry& g) {
+  if (g.kind == Kind::mesh) return static_cast<std::uint32_t>(g.mesh->triangles.size());
+  if (g.kind == Kind::height_field) return 2 * (g.field->columns - 1) * (g.field->rows - 1);
+  return g.kind == Kind::compound ? static_cast<std::uint32_t>(g.compound->parts.size()) : 1;
 }
 
 }  // namespace vp::collide

@@ -1,6 +1,7 @@
 // Manifolds of any two shapes: one of two convex ones, any number where one is made of parts.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "collide/manifold.h"
@@ -13,6 +14,13 @@ namespace vp::collide {
 struct SubManifold {
   Manifold manifold;
   std::uint32_t sub_a = 0, sub_b = 0;
+  PairCache cache;  // of parts that are both convex and no triangles
+};
+
+// What such a call has left for the next one about the same pair.
+struct KnownPart {
+  std::uint32_t sub_a, sub_b;
+  PairCache cache;
 };
 
 // Memory of find_manifolds, kept by whoever calls it. Between calls there is nothing in it.
@@ -27,6 +35,7 @@ struct ManifoldScratch {
   static constexpr std::uint32_t kNoTriangle = ~0u;
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
+  std::uint32_t looked_at = 0;  // triangles; counted up, for whoever wants to know
 };
 
 // More normals than that are never told apart of a surface and one convex shape.
@@ -35,10 +44,19 @@ inline constexpr std::size_t kMostClusters = 12;
 // Appends the manifolds with points of a separation of at most margin, in an order that depends on
 // the shapes and poses alone. Those of triangles that lie in one plane, as far as 2 degrees allow,
 // are one. Features have names that no two manifolds of the pair share unless by chance, one in
-// 2^32. cache is used where both are convex, and else left alone. Two surfaces, or a surface and a
-// half-space, have none.
+// 2^32. cache is used where both are convex, known, in any order, where they have parts. Two
+// surfaces, or a surface and a half-space, have none.
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                    double margin, PairCache& cache, ManifoldScratch& scratch,
-                    std::vector<SubManifold>& manifolds);
+                    double margin, PairCache& cache, std::span<const KnownPart> known,
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds);
+
+// Whether a pair has a manifold for each part, and not one.
+inline bool has_parts(const Geometry& a, const Geometry& b) {
+  return a.kind >= Kind::mesh || b.kind >= Kind::mesh;
+}
+// The kind of what touches: of a compound's part, or a triangle.
+Kind kind_of_part(const Geometry& geometry, std::uint32_t sub);
+// What any sub-shape's number is below.
+std::uint32_t number_of_parts(const Geometry& geometry);
 
 }  // namespace vp::collide

@@ -53,11 +53,8 @@ Bounds Surface::unscaled(const Bounds& b) const {
 }
 
 void Surface::append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const {
-  const Bounds own = unscaled(box);
-  const auto append = [&](std::uint32_t id) { ids.push_back(id); };
-  if (field_ != nullptr) return for_cells(own, append);
   const auto first = static_cast<std::ptrdiff_t>(ids.size());
-  mesh_->tree.overlapping(rounded_outwards(own), append);
+  overlapping(box, [&](std::uint32_t id) { ids.push_back(id); });
   std::sort(ids.begin() + first, ids.end());
 }
 

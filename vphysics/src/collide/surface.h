@@ -32,6 +32,9 @@ class Surface {
   SurfaceTriangle triangle(std::uint32_t id) const;
   // Appends the triangles whose bounds overlap the box, ascending.
   void append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const;
+  // found(triangle) for the same, in an order that depends on surface and box alone.
+  template <class F>
+  void overlapping(const Bounds& box, const F& found) const;
   // The surface around a vertex lies below the plane through it across d, a unit vector; so to the
   // rounding that allowed stands for.
   bool lies_below(std::uint32_t vertex, const Vec3& d) const;
@@ -56,6 +59,12 @@ class Surface {
   const HeightData* field_ = nullptr;
   Vec3 scale_;
 };
+
+template <class F>
+void Surface::overlapping(const Bounds& box, const F& found) const {
+  if (field_ != nullptr) return for_cells(unscaled(box), found);
+  mesh_->tree.overlapping(rounded_outwards(unscaled(box)), found);
+}
 
 // Of the field, unscaled.
 template <class F>

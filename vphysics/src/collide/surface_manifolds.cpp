@@ -41,6 +41,7 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
   scratch.contacts.clear();
   scratch.points.clear();
   surface.append_overlapping(grown(bounds_of(shape, T), margin), scratch.triangles);
+  scratch.looked_at += static_cast<std::uint32_t>(scratch.triangles.size());
   const Vec3 middle = T * core_middle(shape);
   for (const std::uint32_t id : scratch.triangles) {
     SurfaceTriangle t = surface.triangle(id);

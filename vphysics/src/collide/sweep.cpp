@@ -15,8 +15,12 @@
 // (advancement); the second-order bound is derived here.
 #include "collide/sweep.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "collide/compound_data.h"
+#include "collide/triangle_contact.h"
 
 namespace vp::collide {
 namespace {
@@ -61,6 +65,89 @@ double safe_step(double f, double df, double A) {
   return A > 0.0 ? (df + root) / A : std::numeric_limits<double>::infinity();
 }
 
+// The first time at which distance(centre in the shape's frame) has come down to target and radius;
+// distance is a convex function, as signed_distance.
+template <class F>
+double first_time(const SweepQuery& q, double A, double target, const F& distance) {
+  double t = 0.0;
+  for (int i = 0; i < kMaxAdvances; ++i) {
+    const Local c = local_at(q, t);
+    const SignedDistance d = distance(c.centre);
+    const double f = d.distance - q.radius - target;
+    if (f <= q.tolerance) return t;
+    t += safe_step(f, dot(d.normal, c.velocity), A);
+    if (!(t < q.duration)) return -1.0;
+  }
+  return t;  // not there yet, but safe: the caller advances to t and asks again
+}
+
+double earlier(double a, double b) {
+  return a < 0.0 || b < 0.0 ? std::max(a, b) : std::min(a, b);
+}
+
+// Of all places of the sphere, in the shape's frame: its centre leaves the chord by no more than
+// A h^2 / 8.
+Bounds bounds_of_sweep(const SweepQuery& q, double A, double target) {
+  const Vec3 from = local_at(q, 0.0).centre, to = local_at(q, q.duration).centre;
+  const double around = q.radius + std::max(target, 0.0) + q.tolerance;
+  return grown(merged({from, from}, {to, to}), around + 0.125 * A * q.duration * q.duration);
+}
+
+double time_to_parts(const SweepQuery& q, double A, double target) {
+  const CompoundData& compound = *q.shape->compound;
+  double first = -1.0;
+  const auto look_at = [&](std::uint32_t i) {
+    SweepQuery part = q;
+    part.shape = &compound.geometries[i];
+    part.T_shape = q.T_shape * compound.parts[i].T_compound_part;
+    first = earlier(first, time_of_impact(part, target));
+  };
+  compound.tree.overlapping(rounded_outwards(bounds_of_sweep(q, A, target)), look_at);
+  return first;
+}
+
+SignedDistance distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 ab = b - a;
+  const Vec3 way = p - a - std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab;
+  const double d = norm(way);
+  return {d, d > 0.0 ? (1.0 / d) * way : Vec3{0, 0, 1}};
+}
+
+// A triangle's face is met when its plane is, an edge that can be felt when its segment is, if that
+// is then what can be felt of the triangle. What that leaves out, neighbours have, who are met no
+// later.
+double time_to_triangle(const SweepQuery& q, double A, double target, const Surface& surface,
+                        const SurfaceTriangle& t) {
+  const auto felt = [&](double time) {
+    if (time < 0.0) return time;
+    const double distance = felt_distance(surface, t, local_at(q, time).centre);
+    return distance - q.radius - target <= 1.01 * q.tolerance ? time : -1.0;
+  };
+  double first = felt(first_time(q, A, target, [&](const Vec3& p) {
+    return SignedDistance{dot(t.normal, p - t.p[0]), t.normal};
+  }));
+  for (int e = 0; e < 3; ++e) {
+    if (!is_felt(t, e)) continue;
+    const double time = first_time(q, A, target, [&](const Vec3& p) {
+      return distance_to_segment(t.p[e], t.p[(e + 1) % 3], p);
+    });
+    first = earlier(first, felt(time));
+  }
+  return first;
+}
+
+double time_to_surface(const SweepQuery& q, double A, double target) {
+  const Surface surface = surface_of(*q.shape);
+  const Vec3 from = local_at(q, 0.0).centre;
+  double first = -1.0;
+  surface.overlapping(bounds_of_sweep(q, A, target), [&](std::uint32_t id) {
+    SurfaceTriangle t = surface.triangle(id);
+    if (!face_towards(t, from, surface.two_sided())) return;
+    first = earlier(first, time_to_triangle(q, A, target, surface, t));
+  });
+  return first;
+}
+
 }  // namespace
 
 double separation_at(const SweepQuery& query, double time) {
@@ -69,16 +156,9 @@ double separation_at(const SweepQuery& query, double time) {
 
 double time_of_impact(const SweepQuery& q, double target) {
   const double A = acceleration_bound(q);
-  double t = 0.0;
-  for (int i = 0; i < kMaxAdvances; ++i) {
-    const Local c = local_at(q, t);
-    const SignedDistance d = signed_distance(*q.shape, c.centre);
-    const double f = d.distance - q.radius - target;
-    if (f <= q.tolerance) return t;
-    t += safe_step(f, dot(d.normal, c.velocity), A);
-    if (!(t < q.duration)) return -1.0;
-  }
-  return t;  // not there yet, but safe: the caller advances to t and asks again
+  if (is_surface(*q.shape)) return time_to_surface(q, A, target);
+  if (q.shape->kind == Kind::compound) return time_to_parts(q, A, target);
+  return first_time(q, A, target, [&](const Vec3& p) { return signed_distance(*q.shape, p); });
 }
 
 }  // namespace vp::collide

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "collide/bounds.h"
 #include "collide/convex_contact.h"
 #include "collide/epa.h"
 #include "collide/mixed_name.h"
@@ -32,22 +33,36 @@ std::uint32_t part_name(const SurfaceTriangle& t, const TrianglePart& part, std:
                     feature);
 }
 
-void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre,
-                    double radius, double margin, TriangleContact& contact,
-                    std::vector<ManifoldPoint>& points) {
+// What of a triangle is nearest to a sphere's centre.
+struct NearSphere {
+  Vec3 point, normal;
+  double distance;
+  TrianglePart part;
+};
+NearSphere near_sphere(const SurfaceTriangle& t, const Vec3& centre) {
   const NearestOnTriangle nearest = nearest_on_triangle(t.p, centre);
   const Vec3 way = centre - nearest.point;
-  const double distance = norm(way);
-  if (distance - radius > margin) return;
-  const double height = dot(t.normal, way);
+  const double distance = norm(way), height = dot(t.normal, way);
   const double beside = norm(way - height * t.normal);
   const bool on_face = nearest.part.kind == TrianglePart::face || distance < kNoDirection ||
                        beside <= kBeside * norm(t.p[1] - t.p[0]);
-  contact.part = on_face ? TrianglePart{} : nearest.part;
-  contact.normal = on_face ? t.normal : (1.0 / distance) * way;
-  if (!on_face && !may_touch_along(surface, t, nearest.part, contact.normal)) return;
-  contact.gap = (on_face ? height : distance) - radius;
-  points.push_back({nearest.point + 0.5 * contact.gap * contact.normal, contact.gap,
+  if (on_face) return {nearest.point, t.normal, height, {}};
+  return {nearest.point, (1.0 / distance) * way, distance, nearest.part};
+}
+
+void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre,
+                    double radius, double margin, TriangleContact& contact,
+                    std::vector<ManifoldPoint>& points) {
+  const NearSphere near = near_sphere(t, centre);
+  if (near.distance - radius > margin) return;
+  contact.part = near.part;
+  contact.normal = near.normal;
+  if (near.part.kind != TrianglePart::face &&
+      !may_touch_along(surface, t, near.part, near.normal)) {
+    return;
+  }
+  contact.gap = near.distance - radius;
+  points.push_back({near.point + 0.5 * contact.gap * contact.normal, contact.gap,
                     part_name(t, contact.part, 0)});
 }
 
@@ -191,6 +206,13 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
   contact.count = points.size() - contact.first_point;
   contact.felt_part = felt_part(t, contact.part);
   return contact;
+}
+
+double felt_distance(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre) {
+  const NearSphere near = near_sphere(t, centre);
+  const bool felt =
+      near.part.kind == TrianglePart::face || may_touch_along(surface, t, near.part, near.normal);
+  return felt ? near.distance : kFar;
 }
 
 bool overlaps_triangle(const SurfaceTriangle& t, const Geometry& shape, const SE3& T) {

@@ -33,6 +33,10 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
                                  const Geometry& shape, const SE3& T_surface_shape, double margin,
                                  std::vector<ManifoldPoint>& points);
 
+// Distance from a sphere's centre to what of the triangle it would touch; kFar if what is nearest
+// cannot be felt from there. Precondition: the triangle faces the centre.
+double felt_distance(const Surface& surface, const SurfaceTriangle& triangle, const Vec3& centre);
+
 // Whether the shape, there, has a point in common with the triangle, more than touching.
 bool overlaps_triangle(const SurfaceTriangle& triangle, const Geometry& shape,
                        const SE3& T_surface_shape);

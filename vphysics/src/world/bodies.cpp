@@ -230,12 +230,17 @@ bool World::Impl::advance_by_row(std::uint32_t index) {
 // What its lanes hold is no good to start from.
 void World::Impl::forget_contacts(std::uint32_t body) {
   std::fill_n(body_rows[body + 1].way, 6, 0.0f);
-  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
-    if (contact_pool[e / 2].place.points > 0) {
+  std::uint32_t next = kNone;
+  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = next) {
+    const Contact& c = contact_pool[e / 2];
+    next = c.next[e % 2];
+    mark_stale(e / 2);
+    if (c.is_part()) {
+      forget_part(e / 2);
+    } else if (c.place.points > 0) {
       take_out_of_lane(e / 2);
       set_near(e / 2, 0.0);
     }
-    mark_stale(e / 2);
   }
 }
 

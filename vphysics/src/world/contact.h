@@ -3,6 +3,10 @@
 // The narrow phase looks at it only when the two may have moved by more than a little against each
 // other since it last did (find_contacts.cpp). What it finds lives in a lane of the solver's
 // blocks.
+//
+// Of a pair in which a mesh, a height field or a compound takes part, a contact stands for the
+// whole: it is always among those without points. For each manifold it has another contact, a part,
+// which is in a lane (part_contacts.cpp).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +17,8 @@
 namespace vp {
 
 struct Contact {
+  static constexpr std::uint32_t kNoContact = 0xffffffffu;
+
   std::uint64_t key = 0;       // serials of both
   std::uint32_t a = 0, b = 0;  // colliders, in order of creation
   // Neighbours in the lists of their bodies: side 0 in that of a's, 1 in that of b's. An edge is
@@ -27,6 +33,13 @@ struct Contact {
   bool stale = true;        // must be looked at in the next step, wherever the two are
   solve::Place place;
   collide::PairCache cache;  // of the narrow phase
+
+  bool has_parts = false;                 // it is the whole
+  std::uint32_t first_part = kNoContact;  // of them, in the order of the narrow phase
+  // Of a part: the whole, the next one, and which parts of the shapes touch.
+  std::uint32_t whole = kNoContact, next_part = kNoContact;
+  std::uint32_t sub_a = 0, sub_b = 0;
+  bool is_part() const { return whole != kNoContact; }
 
   // Points, if it has any.
   std::uint8_t count = 0;

@@ -33,7 +33,9 @@ void World::Impl::ContactState::read(Reader& in) {
     read_lanes<1>(in, c);
     read_lanes<4>(in, c);
   }
-  for (std::size_t i = 0; i < pool_.size(); ++i) in.check(seen_[i] == (pool_[i].alive ? 7 : 8));
+  for (std::size_t i = 0; i < pool_.size(); ++i) {
+    in.check((seen_[i] & 15u) == (pool_[i].alive ? 7u : 8u));
+  }
 }
 
 void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
@@ -57,18 +59,41 @@ void World::Impl::ContactState::read_pool(Reader& in) {
   for (Contact& c : pool_) {
     if (!in.ok()) return;
     const std::uint64_t flags = in.word();
-    in.check(flags <= kAll && ((flags & kAlive) != 0 || flags == 0));
+    const std::uint64_t kinds = flags & (kHasParts | kIsPart);
+    in.check(flags <= kAll && ((flags & kAlive) != 0 || flags == 0) &&
+             kinds != (kHasParts | kIsPart));
     c.alive = (flags & kAlive) != 0;
     c.sensor = (flags & kSensor) != 0;
     c.touching = (flags & kTouching) != 0;
     c.stale = (flags & kStale) != 0;
     c.of_link = (flags & kOfLink) != 0;
     c.at_impacts = (flags & kAtImpacts) != 0;
-    if (c.alive && in.ok()) read_contact(in, c);
+    c.has_parts = (flags & kHasParts) != 0;
+    if (c.alive && in.ok()) read_contact(in, c, (flags & kIsPart) != 0);
+  }
+  check_parts(in);
+}
+
+// Each part is in the chain of its whole, once.
+void World::Impl::ContactState::check_parts(Reader& in) {
+  for (std::uint32_t i = 0; i < pool_.size() && in.ok(); ++i) {
+    const Contact& whole = pool_[i];
+    if (!whole.alive || !whole.has_parts) continue;
+    for (std::uint32_t p = whole.first_part; p != kNone && in.ok(); p = pool_[p].next_part) {
+      in.check(p < pool_.size());
+      if (!in.ok()) return;
+      const Contact& part = pool_[p];
+      in.check(part.alive && part.whole == i && part.key == whole.key && seen_[p] == 0 &&
+               !whole.sensor && !whole.of_link && !whole.at_impacts);
+      seen_[p] = 16;
+    }
+  }
+  for (std::size_t i = 0; i < pool_.size(); ++i) {
+    in.check((seen_[i] & 16u) != 0 || !pool_[i].alive || !pool_[i].is_part());
   }
 }
 
-void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
+void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   const std::vector<Collider>& all = world_.colliders;
   c.key = in.word();
   const Reader::Two both = in.two();
@@ -89,8 +114,20 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c) {
   c.cache.feature = static_cast<std::uint8_t>(z.low);
   c.cache.i = static_cast<std::uint16_t>(ij.high);
   c.cache.j = static_cast<std::uint16_t>(ij.low);
+  in.check((c.has_parts || is_part) == has_parts(a.geometry, b.geometry));
+  in.check(!(is_part && c.stale));
+  if (c.has_parts) c.first_part = in.two().high;
+  if (is_part) {
+    const Reader::Two chain = in.two(), subs = in.two();
+    c.whole = chain.high;
+    c.next_part = chain.low;
+    c.sub_a = subs.high;
+    c.sub_b = subs.low;
+    in.check(c.whole < pool_.size() && c.sub_a < number_of_parts(a.geometry) &&
+             c.sub_b < number_of_parts(b.geometry));
+  }
   const std::uint64_t count = in.word();
-  in.check(count <= collide::kMaxPoints);
+  in.check(count <= collide::kMaxPoints && (count == 0 || !c.has_parts) && (count > 0 || !is_part));
   if (!in.ok()) return;
   const Body &body_a = world_.bodies[a.body], &body_b = world_.bodies[b.body];
   in.check(c.of_link == (body_a.is_link || body_b.is_link) && !body_a.continuous &&
@@ -115,6 +152,7 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
     const auto side = static_cast<std::uint8_t>(1u << (e % 2));
     const bool own = c.alive && world_.colliders[e % 2 == 0 ? c.a : c.b].body == body;
     in.check(own && (seen_[e / 2] & side) == 0);
+    in.check(!c.is_part() || (seen_[c.whole] & side) == 0);  // behind a whole come no parts of it
     if (!in.ok()) return;
     seen_[e / 2] = static_cast<std::uint8_t>(seen_[e / 2] | side);
     c.previous[e % 2] = previous;
@@ -130,7 +168,7 @@ void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, boo
     const std::uint32_t index = in.index(pool_.size());
     if (!in.ok()) return;
     Contact& c = pool_[index];
-    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);
+    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
     c.near_index = near.add(index, world_.end_of(world_.colliders[c.a].body).row,

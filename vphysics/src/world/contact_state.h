@@ -4,7 +4,8 @@
 //   of each body    rested, by impacts, asleep; for how long it has been at rest; its row's way and
 //   where its bounds were set; its contacts, in order, as
 //                   edges (2 contact + side)
-//   pool            of each slot its flags, and if it is alive the contact; free slots, in order
+//   pool            of each slot its flags, and if it is alive the contact, with the chain of its
+//                   parts; free slots, in order
 //   near contacts   in order, then those parked: each contact and all its fields
 //   lanes           of each colour, then of those parked, and each kind: how many, and of each its
 //   contact and all its fields
@@ -35,8 +36,9 @@ class World::Impl::ContactState {
     std::uint32_t first_edge = kNone, lanes = 0;
   };
   void read_body(Reader& in, OfBody& body);
-  void read_contact(Reader& in, Contact& contact);
+  void read_contact(Reader& in, Contact& contact, bool is_part);
   void read_pool(Reader& in);
+  void check_parts(Reader& in);
   void read_edges(Reader& in, std::uint32_t body);
   void read_near(Reader& in, solve::NearList& near, bool parked);
   static void read_fields(Reader& in, std::span<solve::Field> fields, int lane);
@@ -49,13 +51,15 @@ class World::Impl::ContactState {
   std::vector<std::uint32_t> free_;
   solve::NearList near_, parked_near_;
   std::uint32_t points_in_lanes_ = 0;
-  std::vector<std::uint8_t> seen_;  // of each contact: 1, 2: the sides found; 4: near or in a lane
+  // Of each contact what was found: 1, 2: its sides; 4: near or in a lane; 8: free; 16: of the
+  // parts of its whole.
+  std::vector<std::uint8_t> seen_;
   solve::ContactGraph graph_;
 };
 
 namespace contact_flags {
 inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kStale = 8, kOfLink = 16,
-                               kAtImpacts = 32, kAll = 63;
+                               kAtImpacts = 32, kHasParts = 64, kIsPart = 128, kAll = 255;
 }
 
 template <class Sink>
@@ -74,7 +78,8 @@ void World::Impl::write_contacts(Sink& sink) const {
     using namespace contact_flags;
     const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
                                 (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
-                                (c.of_link ? kOfLink : 0) | (c.at_impacts ? kAtImpacts : 0);
+                                (c.of_link ? kOfLink : 0) | (c.at_impacts ? kAtImpacts : 0) |
+                                (c.has_parts ? kHasParts : 0) | (c.is_part() ? kIsPart : 0);
     sink.word(c.alive ? flags : 0);
     if (!c.alive) continue;
     sink.word(c.key);
@@ -82,6 +87,11 @@ void World::Impl::write_contacts(Sink& sink) const {
     put_two(sink, c.cache.normal[0], c.cache.normal[1]);
     put_two(sink, std::bit_cast<std::uint32_t>(c.cache.normal[2]), std::uint32_t{c.cache.feature});
     put_two(sink, std::uint32_t{c.cache.i}, std::uint32_t{c.cache.j});
+    if (c.has_parts) put_two(sink, c.first_part, 0u);
+    if (c.is_part()) {
+      put_two(sink, c.whole, c.next_part);
+      put_two(sink, c.sub_a, c.sub_b);
+    }
     sink.word(c.count);
     for (int i = 0; i < c.count; ++i) {
       sink.word(c.feature[i]);

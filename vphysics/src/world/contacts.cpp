@@ -1,6 +1,7 @@
 // From pairs to constraints, and from solved constraints to events and what is remembered.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "world/impl.h"
 #include "world/validate.h"
@@ -8,26 +9,46 @@
 namespace vp {
 namespace {
 
-const PairRecord* lookup(const std::vector<PairRecord>& sorted, std::uint64_t key) {
+// Of all manifolds of the pair.
+std::span<const PairRecord> records_of(const std::vector<PairRecord>& sorted, std::uint64_t key) {
   const auto it = std::lower_bound(sorted.begin(), sorted.end(), key,
                                    [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
-  return it != sorted.end() && it->key == key ? &*it : nullptr;
+  auto end = it;
+  while (end != sorted.end() && end->key == key) ++end;
+  return {it, end};
+}
+bool touches(std::span<const PairRecord> of_pair) {
+  return !of_pair.empty() && of_pair[0].touching;
 }
 
 // The old point of the same features; or, since features change names when edges pass over one
 // another, the nearest old point within reach.
-const PairPoint* point_of(const PairRecord& record, const collide::ManifoldPoint& p, double reach) {
+const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::ManifoldPoint& p,
+                          double reach) {
   const PairPoint* nearest = nullptr;
   double least = reach * reach;
-  for (std::uint32_t i = 0; i < record.count; ++i) {
-    if (record.points[i].feature == p.feature) return &record.points[i];
-    const Vec3 d = record.points[i].position - p.position;
-    if (dot(d, d) < least) {
-      least = dot(d, d);
-      nearest = &record.points[i];
+  for (const PairRecord& record : of_pair) {
+    for (std::uint32_t i = 0; i < record.count; ++i) {
+      if (record.points[i].feature == p.feature) return &record.points[i];
+      const Vec3 d = record.points[i].position - p.position;
+      if (dot(d, d) < least) {
+        least = dot(d, d);
+        nearest = &record.points[i];
+      }
     }
   }
   return nearest;
+}
+// A ball's, of the manifold of the same number.
+Vec3 rolling_of(std::span<const PairRecord> of_pair, std::uint32_t part) {
+  for (const PairRecord& record : of_pair) {
+    if (record.part == part) return record.rolling;
+  }
+  return {};
+}
+
+bool of_one_pair(const solve::ContactConstraint& a, const solve::ContactConstraint& b) {
+  return a.collider_a == b.collider_a && a.collider_b == b.collider_b;
 }
 
 // A load that is carried is no approach in the impacts that follow.
@@ -41,23 +62,36 @@ constexpr double kSamePoint = 20.0;
 
 }  // namespace
 
-// This step's record of the pair; on first sight it takes over from the last step whether the two
-// were touching.
-PairRecord& World::Impl::record_of(const ColliderPair& pair) {
+// This step's record of the pair's manifold of that number.
+PairRecord& World::Impl::record_of(const ColliderPair& pair, std::uint32_t part) {
   auto it = std::lower_bound(next_records.begin(), next_records.end(), pair.key,
-                             [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
-  if (it == next_records.end() || it->key != pair.key) {
+                             [part](const PairRecord& r, std::uint64_t k) {
+                               return r.key < k || (r.key == k && r.part < part);
+                             });
+  if (it == next_records.end() || it->key != pair.key || it->part != part) {
     PairRecord record;
     record.key = pair.key;
     record.a = pair.a;
     record.b = pair.b;
+    record.part = part;
     it = next_records.insert(it, record);
   }
   return *it;
 }
 
-void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold& m, bool swept,
-                              bool warm, std::vector<solve::ContactConstraint>& out) {
+// Valid until the next call.
+std::span<const collide::SubManifold> World::Impl::manifolds_of(const ColliderPair& pair,
+                                                                double margin) {
+  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
+  manifolds.clear();
+  collide::PairCache cache;
+  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, manifold_scratch, manifolds);
+  return manifolds;
+}
+
+void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold& m,
+                              std::uint32_t part, bool swept, bool warm,
+                              std::vector<solve::ContactConstraint>& out) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
   solve::ContactConstraint& c = out.emplace_back();
   c.a = a.body;
@@ -72,15 +106,14 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
   c.swept = swept;
   c.count = m.count;
   set_normal(c, m.normal);
-  const PairRecord* last = warm ? lookup(records, pair.key) : nullptr;
-  c.rolling_impulse = last ? last->rolling : Vec3{};
+  const auto last = warm ? records_of(records, pair.key) : std::span<const PairRecord>{};
+  c.rolling_impulse = rolling_of(last, part);
   for (int i = 0; i < m.count; ++i) {
     solve::ContactPoint& p = c.points[i];
     p.position = m.points[i].position;
     p.separation = m.points[i].separation;
     p.feature = m.points[i].feature;
-    const PairPoint* old =
-        last ? point_of(*last, m.points[i], kSamePoint * desc.contact_slop) : nullptr;
+    const PairPoint* old = point_of(last, m.points[i], kSamePoint * desc.contact_slop);
     p.normal_impulse = old ? old->normal_impulse : 0.0;
     p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
     p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
@@ -89,27 +122,27 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
 
 void World::Impl::find_discrete_contacts(double h) {
   discrete_contacts.clear();
-  collide::Manifold m;
   for (const ColliderPair& pair : discrete_pairs) {
-    const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-    const bool sensor = a.sensor || b.sensor;
-    find_manifold(a.geometry, a.T, b.geometry, b.T, sensor ? 0.0 : discrete_margin(pair, h), m);
-    if (m.count == 0) continue;
-    if (sensor) {
-      report_sensor(pair, m.points[0].position, m.normal, 0.0);
-    } else {
-      add_contact(pair, m, false, true, discrete_contacts);
+    const bool sensor = colliders[pair.a].sensor || colliders[pair.b].sensor;
+    std::uint32_t part = 0;
+    for (const auto& found : manifolds_of(pair, sensor ? 0.0 : discrete_margin(pair, h))) {
+      const collide::Manifold& m = found.manifold;
+      if (sensor) {
+        report_sensor(pair, m.points[0].position, m.normal, 0.0);
+        break;
+      }
+      add_contact(pair, m, part++, false, true, discrete_contacts);
     }
   }
 }
 
 void World::Impl::find_swept_contacts(bool warm) {
-  collide::Manifold m;
   for (const SweptPair& swept : swept_pairs) {
     if (swept.sensor || swept.separation > desc.contact_slop) continue;
-    const Collider &a = colliders[swept.pair.a], &b = colliders[swept.pair.b];
-    find_manifold(a.geometry, a.T, b.geometry, b.T, desc.contact_slop, m);
-    if (m.count > 0) add_contact(swept.pair, m, true, warm, contacts);
+    std::uint32_t part = 0;
+    for (const auto& found : manifolds_of(swept.pair, desc.contact_slop)) {
+      add_contact(swept.pair, found.manifold, part++, true, warm, contacts);
+    }
   }
 }
 
@@ -168,36 +201,39 @@ void World::Impl::add_event(const ContactEvent& event) {
   events.insert(place, event);
 }
 
+// A pair's manifolds follow one another; together they make its events, at the deepest point.
 void World::Impl::report_contacts(double time) {
-  for (const solve::ContactConstraint& c : contacts) {
+  for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     double impulse = 0.0, approach = 0.0, nearest = collide::kFar;
-    Vec3 point;
+    Vec3 point, normal;
     bool hits = false;
-    for (int i = 0; i < c.count; ++i) {
-      const solve::ContactPoint& p = c.points[i];
-      impulse += p.normal_impulse;
-      if (p.normal_impulse > 0.0) {
-        approach = std::max(approach, p.approach);
-        hits |= p.hits;
+    for (; end < contacts.size() && of_one_pair(contacts[first], contacts[end]); ++end) {
+      const solve::ContactConstraint& c = contacts[end];
+      for (int i = 0; i < c.count; ++i) {
+        const solve::ContactPoint& p = c.points[i];
+        impulse += p.normal_impulse;
+        if (p.normal_impulse > 0.0) {
+          approach = std::max(approach, p.approach);
+          hits |= p.hits;
+        }
+        if (p.separation < nearest) nearest = p.separation, point = p.position, normal = c.normal;
       }
-      if (p.separation < nearest) nearest = p.separation, point = p.position;
     }
     if (impulse <= 0.0 && nearest > desc.contact_slop) continue;
+    const solve::ContactConstraint& c = contacts[first];
     const ColliderPair pair = make_pair(colliders, c.collider_a, c.collider_b);
     PairRecord& record = record_of(pair);
-    const PairRecord* last = lookup(records, pair.key);
-    const bool known = record.touching || (last && last->touching);
+    const bool known = record.touching || touches(records_of(records, pair.key));
     record.touching = true;
-    if (!known) emit(ContactEvent::Kind::begin, pair, point, c.normal, approach, impulse, time);
-    if (hits) emit(ContactEvent::Kind::hit, pair, point, c.normal, approach, impulse, time);
+    if (!known) emit(ContactEvent::Kind::begin, pair, point, normal, approach, impulse, time);
+    if (hits) emit(ContactEvent::Kind::hit, pair, point, normal, approach, impulse, time);
   }
 }
 
 void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal,
                                 double time) {
   PairRecord& record = record_of(pair);
-  const PairRecord* last = lookup(records, pair.key);
-  const bool known = record.touching || (last && last->touching);
+  const bool known = record.touching || touches(records_of(records, pair.key));
   record.touching = true;
   if (!known) emit(ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
 }
@@ -216,8 +252,11 @@ void World::Impl::report_swept_sensors(double h, double time) {
 
 // What carries a resting load at the start of the step is the best guess for the next one.
 void World::Impl::remember_impulses() {
-  for (const solve::ContactConstraint& c : contacts) {
-    PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b));
+  std::uint32_t part = 0;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const solve::ContactConstraint& c = contacts[k];
+    part = k > 0 && of_one_pair(contacts[k - 1], c) ? part + 1 : 0;
+    PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b), part);
     record.count = static_cast<std::uint32_t>(c.count);
     // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
     record.rolling = in_range(c.rolling_impulse) ? c.rolling_impulse : Vec3{};
@@ -261,8 +300,7 @@ void World::Impl::report_ends_of_destroyed() {
 void World::Impl::report_ends() {
   for (PairRecord& last : records) {
     if (!last.touching) continue;
-    const PairRecord* now = lookup(next_records, last.key);
-    if (now && now->touching) continue;
+    if (touches(records_of(next_records, last.key))) continue;
     last.touching = false;
     emit(ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0, 0.0);
   }

@@ -28,9 +28,9 @@ Vec3 at(const solve::Field3& f, int lane) {
 }
 
 // A ball touches anything convex at one point.
-int points_of(const Collider& a, const Collider& b) {
-  const bool ball =
-      a.geometry.kind == collide::Kind::sphere || b.geometry.kind == collide::Kind::sphere;
+int points_of(const Contact& c, const Collider& a, const Collider& b) {
+  const bool ball = kind_of_part(a.geometry, c.sub_a) == collide::Kind::sphere ||
+                    kind_of_part(b.geometry, c.sub_b) == collide::Kind::sphere;
   return ball ? 1 : collide::kMaxPoints;
 }
 
@@ -106,8 +106,8 @@ void World::Impl::drop_parted_contacts() {
     std::uint32_t next = kNone;
     for (std::uint32_t e = bodies[colliders[collider].body].first_edge; e != kNone; e = next) {
       const Contact& c = contact_pool[e / 2];
-      next = c.next[e % 2];
-      if (c.a != collider && c.b != collider) continue;
+      next = c.next[e % 2];  // behind a whole come no parts of it
+      if (c.is_part() || (c.a != collider && c.b != collider)) continue;
       const std::uint32_t pa = colliders[c.a].proxy, pb = colliders[c.b].proxy;
       if (finder.should_pair(pa, pb)) continue;
       finder.remove_pair(pa, pb);
@@ -123,6 +123,20 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   const bool sensor = a.sensor || b.sensor;
   const bool pushes = body_a.motion == Motion::dynamic || body_b.motion == Motion::dynamic;
   if (!should_meet(a, b) || !(pushes || sensor)) return;
+  Contact c;
+  c.key = pair.key;
+  c.a = pair.a;
+  c.b = pair.b;
+  c.sensor = sensor;
+  c.of_link = body_a.is_link || body_b.is_link;
+  c.has_parts = has_parts(a.geometry, b.geometry);
+  const std::uint32_t index = new_contact(c);
+  mark_stale(index);
+  set_near(index, 0.0);
+}
+
+// In a slot of the pool and in its bodies' lists.
+std::uint32_t World::Impl::new_contact(const Contact& contact) {
   std::uint32_t index = static_cast<std::uint32_t>(contact_pool.size());
   if (free_contacts.empty()) {
     contact_pool.emplace_back();
@@ -131,16 +145,10 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
     free_contacts.pop_back();
   }
   Contact& c = contact_pool[index];
-  c = {};
+  c = contact;
   c.alive = true;
-  mark_stale(index);
-  c.key = pair.key;
-  c.a = pair.a;
-  c.b = pair.b;
-  c.sensor = sensor;
-  c.of_link = body_a.is_link || body_b.is_link;
   for (const int side : {0, 1}) {
-    Body& body = bodies[side == 0 ? a.body : b.body];
+    Body& body = bodies[colliders[side == 0 ? c.a : c.b].body];
     const std::uint32_t edge = 2 * index + static_cast<std::uint32_t>(side);
     c.next[side] = body.first_edge;
     c.previous[side] = kNone;
@@ -148,12 +156,13 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
       contact_pool[body.first_edge / 2].previous[body.first_edge % 2] = edge;
     body.first_edge = edge;
   }
-  set_near(index, 0.0);
+  return index;
 }
 
 void World::Impl::remove_contact(std::uint32_t index) {
   Contact& c = contact_pool[index];
-  if (c.touching) report_touch(index, false);
+  if (c.touching && !c.is_part()) report_touch(index, false);
+  if (c.has_parts) remove_parts(index);
   if (c.place.points > 0) {
     take_out_of_lane(index);
   } else {
@@ -198,7 +207,9 @@ void World::Impl::unset_near(std::uint32_t index) {
   if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
 }
 
+// Of a part, the whole.
 void World::Impl::mark_stale(std::uint32_t contact) {
+  if (contact_pool[contact].is_part()) contact = contact_pool[contact].whole;
   contact_pool[contact].stale = true;
   stale_contacts.push_back(contact);
 }
@@ -242,10 +253,11 @@ void World::Impl::look_at_stale_contacts(double dt) {
     stale_contacts.clear();
     std::uint32_t last = kNone;
     for (const std::uint32_t index : looked_at_contacts) {
-      Contact& c = contact_pool[index];
-      if (index == last || !c.alive || !c.stale || c.parked) continue;
+      const Contact& before = contact_pool[index];
+      if (index == last || !before.alive || !before.stale || before.parked) continue;
       last = index;
-      if (!is_by_impacts(c)) look_at(index, dt);
+      if (!is_by_impacts(before)) look_at(index, dt);
+      Contact& c = contact_pool[index];  // the pool may have grown
       if (!c.sensor && !is_by_impacts(c)) continue;
       c.stale = true;
       look_again.push_back(index);  // in the next step
@@ -272,9 +284,11 @@ void World::Impl::look_at(std::uint32_t index, double dt) {
   if (keeps_apart(a.body, b.body)) {
     m.count = 0;
     clearance = kNeverMeets;
+    if (c.has_parts) remove_parts(index);
   } else {
-    find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
     ++counters.looked_at;
+    if (c.has_parts) return find_parts(index, margin);
+    find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
   }
   if (c.sensor) {
     if ((m.count > 0) != c.touching) report_touch(index, m.count > 0);
@@ -313,8 +327,8 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   wake(b.body);
   Held impulses;
   if (c.place.points == 0) {
-    unset_near(index);
-    c.place = graph.add(index, end_a, end_b, points_of(a, b));
+    if (!c.is_part()) unset_near(index);
+    c.place = graph.add(index, end_a, end_b, points_of(c, a, b));
     ++bodies[a.body].lanes;
     ++bodies[b.body].lanes;
   } else {

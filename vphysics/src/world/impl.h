@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "collide/bounds.h"
 #include "collide/broad_phase.h"
+#include "collide/manifolds.h"
 #include "collide/pair_finder.h"
 #include "collide/sweep.h"
 #include "solve/contact_graph.h"
@@ -86,7 +88,10 @@ struct Collider {
   CollisionFilter filter;
   std::uint64_t user_data = 0;
   std::uint32_t proxy = kNone;  // in the broad phase
-  double size = 0.0;            // half of its least extent [m]; 0: a half-space
+  // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
+  // half-spaces, meshes and height fields.
+  double size = 0.0;
+  double density = 0.0;  // [kg/m^3]
   // Follows from the body's pose; refreshed by the step (Body::posed).
   SE3 T;
   collide::Bounds bounds;
@@ -103,8 +108,9 @@ struct PairPoint {
 struct PairRecord {
   std::uint64_t key = 0;  // serials of both
   std::uint32_t a = 0, b = 0;
+  std::uint32_t part = 0;  // number of the manifold, of pairs with several
   std::uint32_t count = 0;
-  bool touching = false;
+  bool touching = false;  // the pair: only of part 0
   Vec3 rolling;
   PairPoint points[collide::kMaxPoints]{};
 };
@@ -129,6 +135,13 @@ struct SweptPair {
   double separation;
 };
 
+// Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
+struct PartNews {
+  std::uint32_t whole;
+  double closing, impulse;
+  Vec3 point, normal;
+};
+
 struct Velocity {
   Vec3 w, v;  // world frame
   bool operator==(const Velocity&) const = default;
@@ -143,7 +156,7 @@ struct World::Impl {
   std::vector<std::uint32_t> free_bodies, free_colliders, free_joints;
   std::uint32_t next_serial = 1;
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
-  std::vector<PairRecord> records;  // sorted by key
+  std::vector<PairRecord> records;  // sorted by key and part
   std::vector<DestroyedPair> destroyed_pairs;
 
   collide::PairFinder finder;
@@ -194,6 +207,11 @@ struct World::Impl {
   std::vector<double> link_rows;
   std::vector<PairRecord> next_records;
   std::vector<SE3> start_poses;
+  collide::ManifoldScratch manifold_scratch;
+  std::vector<collide::SubManifold> manifolds;
+  std::vector<collide::KnownPart> known_parts;
+  std::vector<std::uint32_t> old_parts, claimed_parts;
+  std::vector<PartNews> part_news;
 
   // world.cpp
   Body* find(BodyId id);
@@ -267,6 +285,7 @@ struct World::Impl {
   // find_contacts.cpp
   void find_contacts(double dt);
   void find_new_contacts();
+  std::uint32_t new_contact(const Contact& contact);
   void find_stale_contacts(double dt);
   void drop_parted_contacts();
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
@@ -302,6 +321,12 @@ struct World::Impl {
   template <class F>
   void for_partners(std::uint32_t body, const F& f) const;
 
+  // part_contacts.cpp
+  void find_parts(std::uint32_t whole, double margin);
+  std::uint32_t claim_part(const collide::SubManifold& found);
+  void remove_parts(std::uint32_t whole);
+  void forget_part(std::uint32_t part);
+
   // sub_steps.cpp
   void run_sub_steps(double dt);
   template <class F>
@@ -313,6 +338,8 @@ struct World::Impl {
   template <int P>
   void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded);
   void report_touch(std::uint32_t contact, bool loaded);
+  void report_news_of_parts();
+  bool touches_in_parts(const Contact& whole) const;
 
   // pairs.cpp
   void refresh_bounds(double h);
@@ -323,11 +350,13 @@ struct World::Impl {
   void add_swept_pairs(std::uint32_t sphere, std::uint32_t other_body, double h);
   collide::SweepQuery sweep_query(const SweptPair& pair, double h) const;
   double discrete_margin(const ColliderPair& pair, double h) const;
+  double swept_separation(const Collider& ball, const Collider& other, double margin);
 
   // contacts.cpp
-  PairRecord& record_of(const ColliderPair& pair);
-  void add_contact(const ColliderPair& pair, const collide::Manifold& manifold, bool swept,
-                   bool warm, std::vector<solve::ContactConstraint>& out);
+  PairRecord& record_of(const ColliderPair& pair, std::uint32_t part = 0);
+  std::span<const collide::SubManifold> manifolds_of(const ColliderPair& pair, double margin);
+  void add_contact(const ColliderPair& pair, const collide::Manifold& manifold, std::uint32_t part,
+                   bool swept, bool warm, std::vector<solve::ContactConstraint>& out);
   void find_discrete_contacts(double h);
   void find_swept_contacts(bool warm);
   void solve_contacts(double h, double dt, bool first);
@@ -353,6 +382,10 @@ struct World::Impl {
   void write(Sink& sink) const;
 };
 
+// Distance from the body's reference point to the farthest point of its local bounds.
+double reach_of(const Body& body);
+// Of a dynamic body; its velocities are not those of the new centre of mass.
+void set_mass(Body& body, const Inertia& inertia);
 // The rotation R after a small turn, a vector of the outer frame.
 Mat3 turned(const Mat3& R, const Vec3& turn);
 // Orders a pair by creation.

@@ -44,7 +44,7 @@ void World::Impl::find_link_islands() {
   }
   for (std::uint32_t i = 0; i < contact_pool.size(); ++i) {
     const Contact& c = contact_pool[i];
-    if (!c.alive || c.of_link || is_by_impacts(c) == c.at_impacts) continue;
+    if (!c.alive || c.of_link || c.is_part() || is_by_impacts(c) == c.at_impacts) continue;
     c.at_impacts ? take_from_impacts(i) : give_to_impacts(i);
   }
 }
@@ -53,6 +53,7 @@ void World::Impl::find_link_islands() {
 void World::Impl::give_to_impacts(std::uint32_t index) {
   Contact& c = contact_pool[index];
   c.at_impacts = true;
+  if (c.has_parts) remove_parts(index);
   if (c.place.points > 0) {
     take_out_of_lane(index);
     set_near(index, 0.0);
@@ -77,9 +78,9 @@ void World::Impl::take_from_impacts(std::uint32_t index) {
   const auto place =
       std::lower_bound(records.begin(), records.end(), c.key,
                        [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
-  if (place == records.end() || place->key != c.key) return;
-  c.touching = place->touching;
-  records.erase(place);
+  auto end = place;
+  for (; end != records.end() && end->key == c.key; ++end) c.touching |= end->touching;
+  records.erase(place, end);
 }
 
 }  // namespace vp

@@ -167,6 +167,26 @@ collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const
           0.05 * desc.contact_slop};
 }
 
+// Of shapes with parts it is known only as far as they touch: what is farther apart is as far as
+// the margin.
+double World::Impl::swept_separation(const Collider& ball, const Collider& other, double margin) {
+  if (!has_parts(ball.geometry, other.geometry)) {
+    const Vec3 local = inverse_times(other.T, ball.T.position());
+    return signed_distance(other.geometry, local).distance - ball.geometry.radius;
+  }
+  double least = margin;
+  manifolds.clear();
+  collide::PairCache cache;
+  find_manifolds(ball.geometry, ball.T, other.geometry, other.T, desc.contact_slop, cache, {},
+                 manifold_scratch, manifolds);
+  for (const collide::SubManifold& found : manifolds) {
+    for (int k = 0; k < found.manifold.count; ++k) {
+      least = std::min(least, found.manifold.points[k].separation);
+    }
+  }
+  return least;
+}
+
 // Pairs of a continuous body's colliders with those of another body that can meet within h.
 void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
   wake(other);
@@ -187,8 +207,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
       const Collider& cb = colliders[j];
       if (!overlap(near, cb.bounds) || !should_meet(ball, cb)) continue;
       if (b.continuous && other < index && cb.geometry.kind == collide::Kind::sphere) continue;
-      const Vec3 local = inverse_times(cb.T, ball.T.position());
-      const double separation = signed_distance(cb.geometry, local).distance - ball.geometry.radius;
+      const double separation = swept_separation(ball, cb, margin);
       if (separation > margin) continue;
       const ColliderPair pair = make_pair(colliders, i, j);
       swept_pairs.push_back({pair, pair.a == i, ball.sensor || cb.sensor, separation});

@@ -4,7 +4,7 @@
 //   records, destroyed pairs
 //   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
 //   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
-//   records:        key, a | b, count | touching, rolling, 4 points
+//   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
 //   joints:         turns; of a gear its bodies' first poses; of each axis its drive (5) and
 //                   impulses (2)
@@ -12,6 +12,7 @@
 //   digest of all words before
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "world/contact_state.h"
 
@@ -45,7 +46,7 @@ template <class Sink>
 void put(Sink& sink, const PairRecord& r) {
   sink.word(r.key);
   sink.word((std::uint64_t{r.a} << 32) | r.b);
-  sink.word((std::uint64_t{r.count} << 32) | (r.touching ? 1u : 0u));
+  sink.word((std::uint64_t{r.count} << 32) | (std::uint64_t{r.part} << 1) | (r.touching ? 1u : 0u));
   put(sink, r.rolling);
   for (const PairPoint& p : r.points) {
     sink.word(p.feature);
@@ -111,11 +112,14 @@ void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
   r.b = static_cast<std::uint32_t>(both);
   r.count = static_cast<std::uint32_t>(flags >> 32);
   r.touching = (flags & 1u) != 0;
-  in.check((flags & 0xfffffffeu) == 0 && r.count <= collide::kMaxPoints);
+  r.part = static_cast<std::uint32_t>(flags) >> 1;
+  in.check(r.count <= collide::kMaxPoints && !(r.touching && r.part > 0));
   const bool exist = r.a < colliders.size() && r.b < colliders.size() && r.a != r.b &&
                      colliders[r.a].alive && colliders[r.b].alive;
   in.check(exist && make_pair(colliders, r.a, r.b).key == r.key &&
            colliders[r.a].serial < colliders[r.b].serial);
+  if (!in.ok()) return;
+  in.check(r.part == 0 || has_parts(colliders[r.a].geometry, colliders[r.b].geometry));
   r.rolling = in.vector();
   for (PairPoint& p : r.points) {
     const std::uint64_t feature = in.word();
@@ -311,7 +315,8 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   for (const Articulation& art : impl_->articulations) articulations.push_back(read(in, art));
   for (std::size_t i = 0; i < records.size() && in.ok(); ++i) {
     read(in, impl_->colliders, records[i]);
-    in.check(i == 0 || records[i - 1].key < records[i].key);
+    const auto place = [&](std::size_t k) { return std::pair(records[k].key, records[k].part); };
+    in.check(i == 0 || place(i - 1) < place(i));
   }
   for (std::size_t i = 0; i < destroyed_pairs.size() && in.ok(); ++i) {
     read(in, impl_->colliders, destroyed_pairs[i]);

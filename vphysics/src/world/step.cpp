@@ -27,6 +27,7 @@ void World::Impl::begin_step() {
   const std::size_t n = bodies.size();
   status = {};
   counters = {};
+  manifold_scratch.looked_at = 0;
   events.clear();
   next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
@@ -293,8 +294,11 @@ void World::Impl::run(double dt) {
     refresh_motions(h);
     refresh_bounds(h);
     find_swept_pairs(h);
-    if (solves >= desc.max_impacts_per_step && next_impact(h) >= 0.0) hold_what_meets(h);
     double t = next_impact(h);
+    if (t >= 0.0 && solves >= desc.max_impacts_per_step) {
+      hold_what_meets(h);
+      t = -1.0;
+    }
     const bool last = t < 0.0;
     if (last) t = h;
     report_swept_sensors(t, time);
@@ -310,6 +314,7 @@ void World::Impl::run(double dt) {
 }
 
 void World::Impl::finish_step() {
+  counters.triangles = manifold_scratch.looked_at;
   if (desc.sleep_after > 0.0) {
     for (const std::uint32_t i : movers) watch(i, dt_now);
     send_to_sleep();

@@ -1,4 +1,5 @@
 // Events of the contacts of the sub-stepped solver, and what of their impulses is worth telling.
+#include <algorithm>
 #include <bit>
 
 #include "world/impl.h"
@@ -54,6 +55,49 @@ void World::Impl::report_news() {
       }
     }
   });
+  report_news_of_parts();
+}
+
+// One event for the whole: the impulses of the parts that have news add up, the largest tells
+// where.
+void World::Impl::report_news_of_parts() {
+  std::stable_sort(part_news.begin(), part_news.end(),
+                   [](const PartNews& a, const PartNews& b) { return a.whole < b.whole; });
+  for (std::size_t k = 0; k < part_news.size();) {
+    PartNews sum = part_news[k];
+    double most = sum.impulse;
+    for (++k; k < part_news.size() && part_news[k].whole == sum.whole; ++k) {
+      const PartNews& other = part_news[k];
+      if (other.impulse > most) {
+        most = other.impulse;
+        sum.point = other.point;
+        sum.normal = other.normal;
+      }
+      sum.impulse += other.impulse;
+      sum.closing = std::max(sum.closing, other.closing);
+    }
+    Contact& whole = contact_pool[sum.whole];
+    const bool touches = touches_in_parts(whole);
+    if (!touches) {
+      if (whole.touching) report_touch(sum.whole, false);
+      continue;
+    }
+    const ColliderPair pair{whole.key, whole.a, whole.b};
+    const auto tell = [&](ContactEvent::Kind kind) {
+      emit(kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
+    };
+    if (!whole.touching) tell(ContactEvent::Kind::begin);
+    whole.touching = true;
+    if (sum.closing > 0.0) tell(ContactEvent::Kind::hit);
+  }
+  part_news.clear();
+}
+
+bool World::Impl::touches_in_parts(const Contact& whole) const {
+  for (std::uint32_t p = whole.first_part; p != kNone; p = contact_pool[p].next_part) {
+    if (contact_pool[p].touching) return true;
+  }
+  return false;
 }
 
 template <int P>
@@ -64,6 +108,12 @@ void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool load
   const double impulse = impulse_of(block, lane, sub_steps_taken);
   block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
   block.touches.lane[lane] = loaded ? 1 : 0;
+  if (c.is_part()) {
+    c.touching = loaded;
+    part_news.push_back(
+        {c.whole, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
+    return;
+  }
   if (!loaded) {
     if (c.touching) report_touch(index, false);
     return;

@@ -30,15 +30,6 @@ bool in_range(const Sym3& A) {
   return vp::in_range(Vec3{A.xx, A.yy, A.zz}) && vp::in_range(Vec3{A.xy, A.yz, A.zx});
 }
 
-std::optional<std::string> problem_with(const Inertia& J) {
-  if (!positive(J.mass()))
-    return "inertia: the mass must be positive; set a mass or use solid_inertia";
-  if (!vp::in_range(J.first_moment()) || !in_range(J.rotational())) {
-    return std::string("inertia: every entry") + kRange;
-  }
-  return std::nullopt;
-}
-
 std::optional<std::string> problem_with_shape(const Shape& shape) {
   if (const auto* s = std::get_if<Sphere>(&shape)) {
     if (!positive(s->radius)) return "sphere: the radius must be positive and finite";
@@ -103,8 +94,16 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
     return "damping must be zero or more";
   }
   if (desc.motion != Motion::dynamic) return std::nullopt;
-  if (auto problem = problem_with(desc.inertia)) return problem;
-  if (!positive_definite(desc.inertia.central())) {
+  return problem_with(desc.inertia);
+}
+
+std::optional<std::string> problem_with(const Inertia& J) {
+  if (!positive(J.mass()))
+    return "inertia: the mass must be positive; set a mass or use solid_inertia";
+  if (!in_range(J.first_moment()) || !in_range(J.rotational())) {
+    return std::string("inertia: every entry") + kRange;
+  }
+  if (!positive_definite(J.central())) {
     return "inertia: the rotational part about the centre of mass must be positive definite; is it "
            "given about the body's origin?";
   }

@@ -31,6 +31,7 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q);
 
 // The sentence to return, or nothing when all is well.
 std::optional<std::string> problem_with(const BodyDesc& desc);
+std::optional<std::string> problem_with(const Inertia& inertia);
 std::optional<std::string> problem_with(const ColliderDesc& desc);
 std::optional<std::string> problem_with(const ArticulationDesc& desc);
 // With other coordinates and velocities.

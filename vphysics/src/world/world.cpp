@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collide/compound_data.h"
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/refuse.h"
@@ -14,19 +15,19 @@
 namespace vp {
 namespace {
 
-bool isotropic(const Sym3& I) {
-  const double tolerance = 1e-12 * I.xx;
-  const auto zero = [&](double x) { return std::fabs(x) <= tolerance; };
-  return zero(I.xx - I.yy) && zero(I.xx - I.zz) && zero(I.xy) && zero(I.yz) && zero(I.zx);
-}
-
-// Distance from the body's reference point to the farthest point of its local bounds.
-double reach_of(const Body& body) {
-  const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
-  const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
-  return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
-                   std::max(std::fabs(lower.y), std::fabs(upper.y)),
-                   std::max(std::fabs(lower.z), std::fabs(upper.z))});
+// As Collider::size says.
+double size_of(const collide::Geometry& g) {
+  if (collide::is_surface(g)) return 0.0;
+  if (g.kind == collide::Kind::compound) {
+    double least = collide::kFar;
+    for (const collide::Geometry& part : g.compound->geometries) {
+      least = std::min(least, size_of(part));
+    }
+    return least;
+  }
+  const collide::Bounds own = bounds_of(g, SE3{});
+  const Vec3 extents = own.upper - own.lower;
+  return 0.5 * std::min({extents.x, extents.y, extents.z});
 }
 
 }  // namespace
@@ -83,12 +84,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   body.user_data = desc.user_data;
   body.T = SE3(orthonormalized(desc.T_world_body.rotation()), desc.T_world_body.position());
   if (desc.motion == Motion::dynamic) {
-    body.mass = desc.inertia.mass();
-    body.inverse_mass = 1.0 / body.mass;
-    body.centre = desc.inertia.centre_of_mass();
-    body.central = desc.inertia.central();
-    body.inverse_central = inverse(body.central);
-    body.isotropic = isotropic(body.central);
+    set_mass(body, desc.inertia);
     body.linear_damping = desc.linear_damping;
     body.angular_damping = desc.angular_damping;
   }
@@ -117,8 +113,8 @@ void World::Impl::release_collider(std::uint32_t index) {
   std::uint32_t next = kNone;
   for (std::uint32_t e = bodies[collider.body].first_edge; e != kNone; e = next) {
     Contact& c = contact_pool[e / 2];
-    next = c.next[e % 2];
-    if (c.a != index && c.b != index) continue;
+    next = c.next[e % 2];  // behind a whole come no parts of it
+    if (c.is_part() || (c.a != index && c.b != index)) continue;
     if (c.touching) {
       destroyed_pairs.push_back(
           {collider_id(colliders, c.a), collider_id(colliders, c.b), c.sensor});
@@ -154,12 +150,12 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   Body* body = impl_->find(body_handle);
   if (!body) return stale("body");
   if (auto problem = problem_with(desc)) return refuse("add_collider: " + *problem);
-  if (std::holds_alternative<TriangleMesh>(desc.shape) ||
-      std::holds_alternative<HeightField>(desc.shape) ||
-      std::holds_alternative<Compound>(desc.shape)) {
+  const bool surface = std::holds_alternative<TriangleMesh>(desc.shape) ||
+                       std::holds_alternative<HeightField>(desc.shape);
+  if (surface && body->motion == Motion::dynamic) {
     return refuse(Errc::unsupported,
-                  "add_collider: meshes, height fields and compounds are not simulated yet; give "
-                  "the body convex shapes");
+                  "add_collider: meshes and height fields are the skin of what nothing pushes; "
+                  "give a dynamic body or a link a compound of convex hulls");
   }
   const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
   if (half_space && (body->motion != Motion::fixed)) {
@@ -179,6 +175,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   c.geometry = collide::make_geometry(c.shape);
   c.T_body_shape = SE3(orthonormalized(desc.T_body_shape.rotation()), desc.T_body_shape.position());
   c.material = desc.material;
+  c.density = desc.density;
   c.surface_velocity = desc.surface_velocity;
   c.filter = desc.filter;
   c.user_data = desc.user_data;
@@ -194,9 +191,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->unbounded = true;
   } else {
     body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
-    const collide::Bounds own = bounds_of(c.geometry, SE3{});
-    const Vec3 extents = own.upper - own.lower;
-    c.size = 0.5 * std::min({extents.x, extents.y, extents.z});
+    c.size = size_of(c.geometry);
     body->reach = reach_of(*body);
     body->least_size = std::min(body->least_size, c.size);
   }

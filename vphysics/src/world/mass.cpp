@@ -1,0 +1,83 @@
+// Masses of bodies.
+#include <algorithm>
+#include <cmath>
+
+#include "vphysics/assert.h"
+#include "world/impl.h"
+#include "world/refuse.h"
+#include "world/structure.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+bool isotropic(const Sym3& I) {
+  const double tolerance = 1e-12 * I.xx;
+  const auto zero = [&](double x) { return std::fabs(x) <= tolerance; };
+  return zero(I.xx - I.yy) && zero(I.xx - I.zz) && zero(I.xy) && zero(I.yz) && zero(I.zx);
+}
+
+}  // namespace
+
+double reach_of(const Body& body) {
+  const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
+  const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
+  return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
+                   std::max(std::fabs(lower.y), std::fabs(upper.y)),
+                   std::max(std::fabs(lower.z), std::fabs(upper.z))});
+}
+
+void set_mass(Body& body, const Inertia& inertia) {
+  body.mass = inertia.mass();
+  body.inverse_mass = 1.0 / body.mass;
+  body.centre = inertia.centre_of_mass();
+  body.central = inertia.central();
+  body.inverse_central = inverse(body.central);
+  body.isotropic = isotropic(body.central);
+}
+
+Expected<void> World::set_mass_from_colliders(BodyId id) {
+  Body* body = impl_->find(id);
+  if (!body) return stale("body");
+  if (body->is_link) {
+    return refuse("set_mass_from_colliders: a link has its model's mass");
+  }
+  if (body->motion != Motion::dynamic) {
+    return refuse("set_mass_from_colliders: the body is not dynamic, so it needs no mass");
+  }
+  Inertia sum;
+  for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
+    const Collider& collider = impl_->colliders[c];
+    if (collider.sensor) continue;
+    sum = sum + solid_inertia(collider.shape, collider.density).InvXform(collider.T_body_shape);
+  }
+  if (sum.mass() == 0.0) {
+    return refuse(
+        "set_mass_from_colliders: the body has no collider with a volume but sensors; add "
+        "one first");
+  }
+  if (auto problem = problem_with(sum)) return refuse("set_mass_from_colliders: " + *problem);
+  impl_->wake(id.index - 1);
+  const se3 V = velocity(id);
+  set_mass(*body, sum);
+  body->reach = reach_of(*body);
+  body->w = body->T.rotate(V.w);
+  body->v = body->T.rotate(V.v + cross(V.w, body->centre));
+  impl_->mark_contacts_stale(id.index - 1);
+  Structure structure(impl_->structure);
+  structure.add(0x700u + id.index);
+  structure.add(sum);
+  return {};
+}
+
+Inertia World::inertia(BodyId id) const {
+  const Body* body = impl_->find(id);
+  VP_ASSERT(body && "inertia: the body does not exist (any more)");
+  if (!body || body->motion != Motion::dynamic) return {};
+  if (body->is_link) {
+    return impl_->articulations[body->articulation].model().link(body->link).inertia;
+  }
+  return Inertia(body->mass, {}, body->central).about(-body->centre);
+}
+
+}  // namespace vp

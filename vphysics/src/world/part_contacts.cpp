@@ -1,0 +1,138 @@
+// Contacts of pairs that touch in several places: where one is a mesh, a height field or a
+// compound.
+//
+// The narrow phase looks at such a pair as a whole, when any part of it or the bodies themselves
+// have moved by more than a little. Each manifold it finds goes on in the lane of that old part to
+// which it is most like, so that impulses are kept and colours do not change.
+#include <algorithm>
+#include <utility>
+
+#include "world/impl.h"
+
+namespace vp {
+namespace {
+
+// The normal of a manifold may have turned so far (cosine) to be the same as the last time.
+constexpr double kSameNormal = 0.9;
+
+template <int P>
+Vec3 normal_in(const solve::ContactBlock<P>& block, int lane) {
+  const solve::Field3& n = block.normal;
+  return {static_cast<double>(n.x.lane[lane]), static_cast<double>(n.y.lane[lane]),
+          static_cast<double>(n.z.lane[lane])};
+}
+
+// The deepest point first: it is the one that a lane for a single point takes.
+void put_deepest_first(collide::Manifold& m) {
+  const auto deeper = [](const auto& p, const auto& q) { return p.separation < q.separation; };
+  std::swap(m.points[0], *std::min_element(m.points, m.points + m.count, deeper));
+}
+
+}  // namespace
+
+// Precondition: margin is that within which the narrow phase finds points.
+void World::Impl::find_parts(std::uint32_t index, double margin) {
+  const Collider &a = colliders[contact_pool[index].a], &b = colliders[contact_pool[index].b];
+  const std::uint32_t first = contact_pool[index].first_part;
+  if (first != kNone && contact_pool[first].parked) {
+    wake(a.body);
+    wake(b.body);
+  }
+  known_parts.clear();
+  old_parts.clear();
+  for (std::uint32_t p = first; p != kNone; p = contact_pool[p].next_part) {
+    const Contact& part = contact_pool[p];
+    known_parts.push_back({part.sub_a, part.sub_b, part.cache});
+    old_parts.push_back(p);
+  }
+  manifolds.clear();
+  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, contact_pool[index].cache, known_parts,
+                 manifold_scratch, manifolds);
+  if (contact_pool[index].sensor) {
+    const bool touches = !manifolds.empty();
+    if (touches != contact_pool[index].touching) report_touch(index, touches);
+    return;
+  }
+  set_clearance(contact_pool[index], margin - desc.contact_slop);
+  claimed_parts.clear();
+  for (const collide::SubManifold& found : manifolds) claimed_parts.push_back(claim_part(found));
+  for (const std::uint32_t p : old_parts) {
+    if (p != kNone) remove_contact(p);
+  }
+  std::uint32_t last = kNone;
+  for (std::size_t k = 0; k < manifolds.size(); ++k) {
+    collide::SubManifold& found = manifolds[k];
+    std::uint32_t p = claimed_parts[k];
+    if (p == kNone) {
+      Contact part;
+      part.key = contact_pool[index].key;
+      part.a = contact_pool[index].a;
+      part.b = contact_pool[index].b;
+      part.whole = index;
+      part.stale = false;
+      part.sub_a = found.sub_a;
+      part.sub_b = found.sub_b;
+      p = new_contact(part);
+    }
+    Contact& part = contact_pool[p];
+    part.sub_a = found.sub_a;
+    part.sub_b = found.sub_b;
+    part.cache = found.cache;
+    part.next_part = kNone;
+    (last == kNone ? contact_pool[index].first_part : contact_pool[last].next_part) = p;
+    last = p;
+    put_deepest_first(found.manifold);
+    put_in_lane(p, found.manifold);
+  }
+  if (last == kNone) contact_pool[index].first_part = kNone;
+  const Contact& whole = contact_pool[index];
+  if (whole.touching && !touches_in_parts(whole)) part_news.push_back({index, 0.0, 0.0, {}, {}});
+}
+
+// Of the old parts that are left: that of the same compound's parts with the same triangle, else
+// that with the normal most alike; or none.
+std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
+  std::uint32_t* best = nullptr;
+  double most = kSameNormal;
+  for (std::uint32_t& p : old_parts) {
+    if (p == kNone) continue;
+    const Contact& part = contact_pool[p];
+    const auto on_surface = [&](std::uint32_t collider) {
+      return is_surface(colliders[collider].geometry);
+    };
+    const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
+    if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
+    const int lane = graph.lane(part.place);
+    const Vec3 normal = part.place.points == 1 ? normal_in(graph.block<1>(part.place), lane)
+                                               : normal_in(graph.block<4>(part.place), lane);
+    const double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
+    if (alike <= most) continue;
+    most = alike;
+    best = &p;
+  }
+  if (!best) return kNone;
+  const std::uint32_t claimed = *best;
+  *best = kNone;
+  return claimed;
+}
+
+void World::Impl::remove_parts(std::uint32_t index) {
+  std::uint32_t next = kNone;
+  for (std::uint32_t p = contact_pool[index].first_part; p != kNone; p = next) {
+    next = contact_pool[p].next_part;
+    remove_contact(p);
+  }
+  contact_pool[index].first_part = kNone;
+}
+
+// One of several: the whole has to be looked at anew.
+void World::Impl::forget_part(std::uint32_t index) {
+  Contact& whole = contact_pool[contact_pool[index].whole];
+  mark_stale(index);
+  std::uint32_t* link = &whole.first_part;
+  while (*link != index) link = &contact_pool[*link].next_part;
+  *link = contact_pool[index].next_part;
+  remove_contact(index);
+}
+
+}  // namespace vp

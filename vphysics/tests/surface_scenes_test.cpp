@@ -1,0 +1,121 @@
+// Seconds of bodies on hills: in Release alone.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rig.h"
+#include "surfaces.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+double hill(double x, double y) {
+  return 0.4 * std::sin(0.9 * x) + 0.3 * std::sin(1.3 * y + 0.5) +
+         0.1 * std::sin(3.1 * x + 2.3 * y);
+}
+constexpr std::uint32_t kSamples = 81;
+constexpr double kSpacing = 0.125;
+HeightField hilly_field() {
+  std::vector<double> heights;
+  for (std::uint32_t j = 0; j < kSamples; ++j) {
+    for (std::uint32_t i = 0; i < kSamples; ++i)
+      heights.push_back(hill(kSpacing * i, kSpacing * j));
+  }
+  return HeightField::of({kSamples, kSamples, kSpacing, kSpacing, heights, {}}).value();
+}
+TriangleMesh hilly_mesh() {
+  Random random(72);
+  MeshPoints m = random_plane(random, 60, 10.0);
+  for (Vec3& v : m.vertices) v.z = hill(v.x, v.y);
+  return m.made();
+}
+
+struct Rider {
+  Shape shape;
+  bool continuous;
+};
+const Rider kRiders[] = {{Box{{0.3, 0.2, 0.1}}, false},
+                         {Cylinder{0.2, 0.1}, false},
+                         {Sphere{0.1}, false},
+                         {Sphere{0.1}, true}};
+
+// The energy of what slides over hills without friction, and of what rolls over them, does not
+// grow: no edge gives a kick.
+TEST(SurfaceWorld, HillsGiveNoEnergy) {
+  const Shape grounds[] = {hilly_field(), hilly_mesh()};
+  double most = 0.0, least = 0.0;
+  for (const Shape& ground : grounds) {
+    for (const Rider& rider : kRiders) {
+      for (const double friction : {0.0, 0.6}) {
+        World world;
+        const Material material{friction, 0.0, 0.0};
+        add_fixed(world, ground, material);
+        Part part{.shape = rider.shape, .material = material, .continuous = rider.continuous};
+        part.pose = SE3(Vec3{5.0, 4.7, hill(5.0, 4.7) + 0.3});
+        const BodyId body = add_dynamic(world, part);
+        const Inertia J = solid_inertia(rider.shape, 1000.0);
+        const auto energy = [&] {
+          const se3 V = world.velocity(body);
+          return 0.5 * (V * (J * V)) + J.mass() * kGravity * world.pose(body).position().z;
+        };
+        double lowest = energy();
+        const double start = lowest, scale = J.mass() * kGravity;
+        for (int i = 0; i < 1500; ++i) {
+          must(world.step(0.001));
+          const double now = energy();
+          most = std::max(most, (now - lowest) / scale);  // as a height
+          lowest = std::min(lowest, now);
+        }
+        least = std::min(least, (lowest - start) / scale);
+      }
+    }
+  }
+  EXPECT_LT(most, 2e-3) << most;  // m
+  EXPECT_LT(least, -0.1);         // they moved
+}
+
+// Fifty bodies of every kind, poured on hills with walls around: none falls through.
+TEST(SurfaceWorld, APileOfFiftyMixedBodiesStaysAboveAHeightField) {
+  Random random(73);
+  World world;
+  add_fixed(world, hilly_field(), {});
+  const double side = kSpacing * (kSamples - 1);
+  for (const double at : {0.0, side}) {
+    add_fixed(world, Box{{0.1, side, 3}}, {}, SE3(Vec3{at, 0.5 * side, 0}));
+    add_fixed(world, Box{{side, 0.1, 3}}, {}, SE3(Vec3{0.5 * side, at, 0}));
+  }
+  std::vector<Vec3> points;
+  for (int i = 0; i < 20; ++i) points.push_back(0.3 * random.direction());
+  const CompoundPart bars[] = {{Box{{0.3, 0.08, 0.08}}, SE3(Vec3{0, 0, 0})},
+                               {Box{{0.08, 0.3, 0.08}}, SE3(Vec3{0, 0.2, 0})},
+                               {Sphere{0.12}, SE3(Vec3{0.2, 0, 0.15})}};
+  const Shape shapes[] = {Box{{0.2, 0.15, 0.1}},     Sphere{0.2},    Capsule{0.12, 0.15},
+                          Cylinder{0.15, 0.2},       Cone{0.2, 0.2}, ConvexHull::of(points).value(),
+                          Compound::of(bars).value()};
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 50; ++i) {
+    const SE3 T(random.rotation(), Vec3{random.uniform(3, 7), random.uniform(3, 7), 1.5 + 0.2 * i});
+    Part part{.shape = shapes[i % 7], .pose = T};
+    bodies.push_back(add_dynamic(world, part));
+  }
+  double lowest = 1.0, fastest = 0.0;
+  for (int i = 0; i < 5 * 240; ++i) {
+    ASSERT_FALSE(must(world.step(1.0 / 240)).non_finite);
+    fastest = 0.0;
+    for (const BodyId body : bodies) {
+      const SE3 T = world.pose(body);
+      const Vec3 centre = T * world.inertia(body).centre_of_mass();
+      lowest = std::min(lowest, centre.z - hill(centre.x, centre.y));
+      fastest = std::max(fastest, norm(world.velocity(body).v));
+    }
+  }
+  // A centre of mass is never nearer to the ground than half of the thinnest body, but for chords.
+  EXPECT_GT(lowest, 0.04) << lowest;
+  EXPECT_LT(fastest, 3.0);
+}
+
+}  // namespace
+}  // namespace vp::test
