@@ -20,6 +20,7 @@ build  libfmt-dev            formatted text of the reports
 build  libexpected-dev       tl::expected, how errors are returned
 build  liburdfdom-dev        robots' descriptions, URDF: the engine's optional part that reads them
 build  libtinyxml2-dev       XML of these, with the lines of what is wrong
+build  libtbb-dev            oneTBB: steps of the engine by several threads, its optional part
 build  nlohmann-json3-dev    JSON, the calibration file
 build  libglfw3-dev          the window, its keys, mice and gamepads
 build  libgles-dev           OpenGL ES headers

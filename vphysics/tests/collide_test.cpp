@@ -20,7 +20,7 @@ constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
 
 TEST(SignedDistance, AgreesWithTheSampledSeparation) {
   Random random(31);
-  const Geometry point{Kind::sphere, 0.0, {}, nullptr};
+  const Geometry point{Kind::sphere, 0.0, {}, {}};
   for (const Kind kind : kBounded) {
     for (int i = 0; i < 60; ++i) {
       const Solid solid = random_solid(random, kind);
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::pair{Kind::capsule, Kind::box}, std::pair{Kind::box, Kind::box}));
 
 TEST(Manifold, OfABoxOnABoxHasFourCornersAtTheRightPlace) {
-  const Geometry a{Kind::box, 0, {1, 1, 1}, nullptr}, b{Kind::box, 0, {0.5, 0.5, 0.5}, nullptr};
+  const Geometry a{Kind::box, 0, {1, 1, 1}, {}}, b{Kind::box, 0, {0.5, 0.5, 0.5}, {}};
   collide::Manifold m;
   find_manifold(a, SE3{}, b, SE3(Exp(Vec3{0, 0, 0.3}), {0.1, 0, 1.49}), 0.0, m);
   ASSERT_EQ(m.count, 4);
@@ -118,7 +118,7 @@ TEST(Manifold, OfABoxOnAHalfSpaceHasTheLowestCorners) {
   Random random(33);
   for (int i = 0; i < 500; ++i) {
     const Solid solid = random_solid(random, Kind::box);
-    const Geometry box = solid.geometry, ground{Kind::half_space, 0, {}, nullptr};
+    const Geometry box = solid.geometry, ground{Kind::half_space, 0, {}, {}};
     const SE3 T = random.pose(0.6);
     collide::Manifold m;
     find_manifold(box, T, ground, SE3{}, 0.0, m);
@@ -185,7 +185,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
 }
 
 TEST(Sweep, GrazingTakesNoMoreThanItsAdvances) {
-  const Geometry box{Kind::box, 0, {1, 1, 1}, nullptr};
+  const Geometry box{Kind::box, 0, {1, 1, 1}, {}};
   // Past the face at 1 micrometre, and into it by 1 micrometre.
   for (const double offset : {1e-6, -1e-6}) {
     const collide::SweepQuery q{

@@ -21,6 +21,7 @@
 #include "vphysics/debug_draw.h"
 #include "vphysics/error.h"
 #include "vphysics/ids.h"
+#include "vphysics/jobs.h"
 #include "vphysics/lie.h"
 #include "vphysics/multibody/model.h"
 #include "vphysics/shapes.h"
@@ -187,6 +188,8 @@ class World {
   JointForce joint_force(JointId joint) const;
 
   // --- time -------------------------------------------------------------------------------------
+  // Who helps with the steps to come; null: nobody. The results are the same bits.
+  void set_jobs(std::shared_ptr<Jobs> jobs);
   // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.
   Expected<StepStatus> step(double dt);
   // Of the last step, in order of time; none after restore().

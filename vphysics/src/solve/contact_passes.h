@@ -33,7 +33,8 @@ class LanesOf {
   using S = Sym3T<F>;
   using Block = ContactBlock<P>;
 
-  LanesOf(Block& block, int at, BodyRow* rows) : block_(block), at_(at), rows_(rows) {}
+  LanesOf(Block& block, int at, const typename ContactPasses<P>::Run& run)
+      : block_(block), at_(at), rows_(run.rows), shares_rows_(run.shares_rows) {}
 
   F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
   V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
@@ -55,8 +56,8 @@ class LanesOf {
   void scatter_velocities() const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
-    lanes::scatter8<W>([this](int i) { return row_a(i).velocity; }, a);
-    lanes::scatter8<W>([this](int i) { return row_b(i).velocity; }, b);
+    scatter([this](int i) -> BodyRow& { return row_a(i); }, &BodyRow::velocity, a);
+    scatter([this](int i) -> BodyRow& { return row_b(i); }, &BodyRow::velocity, b);
   }
   void gather_ways() {
     F r[8];
@@ -71,8 +72,8 @@ class LanesOf {
     const F zero(0.0f);
     const F a[8] = {x_a.x, x_a.y, x_a.z, turn_a.x, turn_a.y, turn_a.z, zero, zero};
     const F b[8] = {x_b.x, x_b.y, x_b.z, turn_b.x, turn_b.y, turn_b.z, zero, zero};
-    lanes::scatter8<W>([this](int i) { return row_a(i).way; }, a);
-    lanes::scatter8<W>([this](int i) { return row_b(i).way; }, b);
+    scatter([this](int i) -> BodyRow& { return row_a(i); }, &BodyRow::way, a);
+    scatter([this](int i) -> BodyRow& { return row_b(i); }, &BodyRow::way, b);
   }
   // Accelerations by the forces matter to bounces alone.
   void gather_accelerations(V& a, V& b) const {
@@ -105,6 +106,17 @@ class LanesOf {
  private:
   BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
   BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
+  // What nothing pushes keeps its row, which several lanes, and workers, may read.
+  template <class Row>
+  void scatter(const Row& row, float (BodyRow::*part)[8], const F* values) const {
+    const auto place = [&](int i) { return row(i).*part; };
+    if (shares_rows_) {
+      lanes::scatter8<W>(place, values,
+                         [&](int i) { return row(i).velocity[kInverseMass] > 0.0f; });
+    } else {
+      lanes::scatter8<W>(place, values, [](int) { return true; });
+    }
+  }
   static const float* first_line(const BodyRow& row) {
     return reinterpret_cast<const float*>(&row);
   }
@@ -119,6 +131,7 @@ class LanesOf {
   Block& block_;
   int at_;
   BodyRow* rows_;
+  bool shares_rows_;
   F mass_a_, mass_b_;
   S inertia_a_, inertia_b_;
 };

@@ -93,22 +93,25 @@ void gather8(const Row& p, Lanes<W>* out) {
     }
   }
 }
-template <int W, class Row>
-void scatter8(const Row& p, const Lanes<W>* in) {
+// Those rows of which keep(i) is true.
+template <int W, class Row, class Keep>
+void scatter8(const Row& p, const Lanes<W>* in, const Keep& keep) {
   if constexpr (W == 16) {
     RawT<16> r[8];
     for (int i = 0; i < 8; ++i) r[i] = in[i].lanes;
     transpose<16, 8>(r);
     for (int i = 0; i < 8; ++i) {
-      store<8>(p(i), half<0>(r[i], std::make_index_sequence<8>()));
-      store<8>(p(i + 8), half<8>(r[i], std::make_index_sequence<8>()));
+      if (keep(i)) store<8>(p(i), half<0>(r[i], std::make_index_sequence<8>()));
+      if (keep(i + 8)) store<8>(p(i + 8), half<8>(r[i], std::make_index_sequence<8>()));
     }
   } else {
     for (int c = 0; c < 8; c += W) {
       RawT<W> r[W];
       for (int i = 0; i < W; ++i) r[i] = in[c + i].lanes;
       transpose<W, W>(r);
-      for (int i = 0; i < W; ++i) store<W>(p(i) + c, r[i]);
+      for (int i = 0; i < W; ++i) {
+        if (keep(i)) store<W>(p(i) + c, r[i]);
+      }
     }
   }
 }

@@ -32,6 +32,7 @@ struct ContactPasses {
   struct Run {
     Blocks blocks;
     std::uint32_t lanes, stride;
+    bool shares_rows;  // with bodies that nothing pushes; those keep their rows
     BodyRow* rows;
   };
   bool (*strike)(const Run& run, float h, float threshold);  // true: something bounced

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "world/impl.h"
+#include "world/parallel.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -119,7 +120,8 @@ void World::Impl::list_bodies() {
   }
 }
 
-void World::Impl::load_row(std::uint32_t index, double dt) {
+// True if its way has become so long that it must be started anew.
+bool World::Impl::load_row(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   solve::BodyRow& row = body_rows[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
@@ -129,7 +131,8 @@ void World::Impl::load_row(std::uint32_t index, double dt) {
   row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
   row.way[solve::kCarried] = 0.0f;
-  float* way = row.way;
+  const float* way = row.way;
+  bool far = false;
   if (!pushed) {
     std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
     std::fill_n(row.inertia, 6, 0.0f);
@@ -140,25 +143,38 @@ void World::Impl::load_row(std::uint32_t index, double dt) {
     for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
     put(row.rate, desc.gravity);
     put(row.rate + 3, body.isotropic ? Vec3{} : gyroscopic_acceleration(body, dt));
-    const bool far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
-    if (far) {
-      std::fill_n(way, 6, 0.0f);
-      std::fill_n(body.bounded_at, 6, 1e9f);
-      mark_contacts_stale(index);
-    }
+    far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
   }
   std::copy_n(way, 6, start_ways[index].begin());
+  return far;
+}
+
+void World::Impl::start_way_anew(std::uint32_t index) {
+  std::fill_n(body_rows[index + 1].way, 6, 0.0f);
+  std::fill_n(start_ways[index].begin(), 6, 0.0f);
+  std::fill_n(bodies[index].bounded_at, 6, 1e9f);
+  mark_contacts_stale(index);
 }
 
 void World::Impl::load_rows(double dt) {
-  for (const std::uint32_t i : movers) {
-    Body& body = bodies[i];
-    if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
-    load_row(i, dt);
-    if (body.first_collider == kNone) continue;
-    const bool by_rows = joins_sub_steps(body);
-    if (by_rows && stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt))) continue;
-    update_bounds(i, dt, by_rows);
+  constexpr std::uint8_t kFar = 1, kLeaves = 2;
+  mover_news.resize(movers.size());
+  in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = movers[k];
+      Body& body = bodies[i];
+      if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
+      const bool far = load_row(i, dt);
+      const bool stays = joins_sub_steps(body) &&
+                         stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
+      mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (far || !stays ? kLeaves : 0));
+    }
+  });
+  for (std::size_t k = 0; k < movers.size(); ++k) {
+    if (mover_news[k] == 0) continue;
+    const std::uint32_t i = movers[k];
+    if ((mover_news[k] & kFar) != 0) start_way_anew(i);
+    if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
   for (const std::uint32_t i : link_bodies) update_bounds(i, dt, false);
 }

@@ -20,7 +20,8 @@ namespace {
 // by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
-constexpr double kNeverMeets = 1e30;  // a clearance [m]
+constexpr double kNeverMeets = 1e30;    // a clearance [m]
+constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
 Vec3 at(const solve::Field3& f, int lane) {
   return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
@@ -222,26 +223,32 @@ void World::Impl::mark_contacts_stale(std::uint32_t body) {
 
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
-  for_runs([&](const auto& pass, const auto& run, auto& blocks) {
-    const std::size_t count = blocks.size();
-    lane_bits.resize(std::max(lane_bits.size(), count));
-    pass.find_moved(run, step, static_cast<float>(kTurn), lane_bits.data());
-    mark_found_stale(blocks);
+  (void)blocks_in_use();
+  for_parts([&](const auto& pass, const auto& part, std::size_t first) {
+    pass.find_moved(part, step, static_cast<float>(kTurn), lane_bits.data() + first);
+  });
+  std::size_t next = 0;
+  for_runs([&](const auto&, const auto&, const auto& blocks) {
+    for (const auto& block : blocks) mark_stale_lanes(block.contact, lane_bits[next++]);
   });
   const std::span<solve::NearBlock> blocks = near_list.blocks();
   lane_bits.resize(std::max(lane_bits.size(), blocks.size()));
-  solve::passes().find_closer(blocks.data(), blocks.size(), body_rows.data(), step,
-                              lane_bits.data());
-  mark_found_stale(blocks);
+  in_parallel(blocks.size(), kBodyGrain / solve::kLanes, [&](std::size_t begin, std::size_t end) {
+    solve::passes().find_closer(blocks.data() + begin, end - begin, body_rows.data(), step,
+                                lane_bits.data() + begin);
+  });
+  for (std::size_t b = 0; b < blocks.size(); ++b) mark_stale_lanes(blocks[b].contact, lane_bits[b]);
 }
 
-template <class Blocks>
-void World::Impl::mark_found_stale(const Blocks& blocks) {
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (std::uint32_t bits = lane_bits[b]; bits != 0; bits &= bits - 1) {
-      mark_stale(blocks[b].contact.lane[std::countr_zero(bits)]);
-    }
-  }
+void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits) {
+  for (; bits != 0; bits &= bits - 1) mark_stale(of.lane[std::countr_zero(bits)]);
+}
+
+void World::Impl::want_posed(std::uint32_t index) {
+  Body& body = bodies[index];
+  if (body.posed || body.wanted) return;
+  body.wanted = true;
+  to_pose.push_back(index);
 }
 
 // In the order of their slots; then those that these have woken.
@@ -251,59 +258,81 @@ void World::Impl::look_at_stale_contacts(double dt) {
     std::sort(stale_contacts.begin(), stale_contacts.end());
     looked_at_contacts.swap(stale_contacts);
     stale_contacts.clear();
+    looked.clear();
+    to_pose.clear();
     std::uint32_t last = kNone;
     for (const std::uint32_t index : looked_at_contacts) {
-      const Contact& before = contact_pool[index];
-      if (index == last || !before.alive || !before.stale || before.parked) continue;
+      const Contact& c = contact_pool[index];
+      if (index == last || !c.alive || !c.stale || c.parked) continue;
       last = index;
-      if (!is_by_impacts(before)) look_at(index, dt);
-      Contact& c = contact_pool[index];  // the pool may have grown
-      if (!c.sensor && !is_by_impacts(c)) continue;
-      c.stale = true;
-      look_again.push_back(index);  // in the next step
+      if (is_by_impacts(c)) {
+        look_again.push_back(index);  // in the next step
+        continue;
+      }
+      looked.push_back({index, {}, 0.0, 0.0});
+      for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
     }
+    in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) pose_colliders(to_pose[k]);
+    });
+    in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
+    });
+    for (const Looked& found : looked) take_over(found);
   }
   stale_contacts.swap(look_again);
 }
 
-// The narrow phase, for one.
-void World::Impl::look_at(std::uint32_t index, double dt) {
-  Contact& c = contact_pool[index];
+// The narrow phase, for one. What has parts is looked at when it is taken over.
+void World::Impl::look_at(Looked& found, double dt) {
+  Contact& c = contact_pool[found.contact];
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
-  pose_colliders(a.body);
-  pose_colliders(b.body);
   const double leeway = kSlide * smaller_size(a, b);
   const double speed =
       norm(body_b.v - body_a.v) + norm(body_a.w) * body_a.reach + norm(body_b.w) * body_b.reach;
   // The ball at the centre of its body feels no turning.
-  const double margin = c.sensor ? 0.0 : desc.contact_slop + leeway + speed * dt;
-  collide::Manifold m;
-  c.stale = false;
-  double clearance = margin - desc.contact_slop;
+  found.margin = c.sensor ? 0.0 : desc.contact_slop + leeway + speed * dt;
+  found.clearance = found.margin - desc.contact_slop;
+  found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {
-    m.count = 0;
-    clearance = kNeverMeets;
-    if (c.has_parts) remove_parts(index);
-  } else {
-    ++counters.looked_at;
-    if (c.has_parts) return find_parts(index, margin);
-    find_manifold(a.geometry, a.T, b.geometry, b.T, margin, c.cache, m);
+    found.clearance = kNeverMeets;
+  } else if (!c.has_parts) {
+    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
   }
+}
+
+void World::Impl::take_over(const Looked& found) {
+  const std::uint32_t index = found.contact;
+  const bool apart = found.clearance >= kNeverMeets;
+  contact_pool[index].stale = false;
+  if (!apart) ++counters.looked_at;
+  if (contact_pool[index].has_parts) {
+    if (apart) {
+      remove_parts(index);
+    } else {
+      find_parts(index, found.margin);
+    }
+  } else if (contact_pool[index].sensor) {
+    const bool meets = found.manifold.count > 0;
+    if (meets != contact_pool[index].touching) report_touch(index, meets);
+  } else if (found.manifold.count > 0) {
+    put_in_lane(index, found.manifold);
+    return;
+  }
+  Contact& c = contact_pool[index];  // the pool may have grown
   if (c.sensor) {
-    if ((m.count > 0) != c.touching) report_touch(index, m.count > 0);
+    c.stale = true;
+    look_again.push_back(index);  // in the next step
     return;
   }
-  if (m.count > 0) {
-    put_in_lane(index, m);
-    return;
-  }
+  if (c.has_parts && !apart) return;
   if (c.touching) report_touch(index, false);
   if (c.place.points > 0) {
     take_out_of_lane(index);
-    set_near(index, clearance);
+    set_near(index, found.clearance);
   } else {
-    set_clearance(c, clearance);
+    set_clearance(c, found.clearance);
   }
 }
 

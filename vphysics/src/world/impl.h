@@ -15,6 +15,7 @@
 #include "solve/contact_lane.h"
 #include "solve/contact_solver.h"
 #include "solve/passes.h"
+#include "vphysics/jobs.h"
 #include "vphysics/world.h"
 #include "world/articulation.h"
 #include "world/contact.h"
@@ -36,6 +37,7 @@ struct alignas(64) Body {
   // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
   // colliders; else ask its articulation.
   bool asleep = false;
+  bool wanted = false;      // its colliders' poses are about to be computed
   bool posed = false;       // the colliders' poses and bounds are those of T
   bool bounded = false;     // so are `bounds`
   std::uint32_t lanes = 0;  // of the solver that hold it
@@ -147,8 +149,16 @@ struct Velocity {
   bool operator==(const Velocity&) const = default;
 };
 
+// What the narrow phase has found of a contact.
+struct Looked {
+  std::uint32_t contact;
+  collide::Manifold manifold;
+  double margin, clearance;  // within which it was looked for; free of contact for so far [m]
+};
+
 struct World::Impl {
   WorldDesc desc;
+  std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
   std::vector<Articulation> articulations;
@@ -188,6 +198,9 @@ struct World::Impl {
   std::uint32_t islands_found = 0;
   double dt_now = 0.0;  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
+  std::vector<std::uint8_t> mover_news;  // of each mover: it needs more than its own row
+  std::vector<Looked> looked;
+  std::vector<std::uint32_t> to_pose;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
   std::vector<BodyPlace> joint_places;
@@ -258,7 +271,8 @@ struct World::Impl {
   // bodies.cpp
   void list_bodies();
   void load_rows(double dt);
-  void load_row(std::uint32_t body, double dt);
+  bool load_row(std::uint32_t body, double dt);
+  void start_way_anew(std::uint32_t body);
   Velocity settle(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
@@ -290,14 +304,15 @@ struct World::Impl {
   void drop_parted_contacts();
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void remove_contact(std::uint32_t contact);
-  void look_at(std::uint32_t contact, double dt);
+  void look_at(Looked& looked, double dt);
+  void take_over(const Looked& looked);
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
   void take_out_of_lane(std::uint32_t contact);
   void set_near(std::uint32_t contact, double clearance);
   void set_clearance(const Contact& contact, double clearance);
   void unset_near(std::uint32_t contact);
-  template <class Blocks>
-  void mark_found_stale(const Blocks& blocks);
+  void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
+  void want_posed(std::uint32_t body);
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);
@@ -331,6 +346,11 @@ struct World::Impl {
   void run_sub_steps(double dt);
   template <class F>
   void for_runs(const F& f);
+  template <class F>
+  void for_parts(const F& f);
+  template <class F>
+  void in_parallel(std::size_t count, std::size_t grain, const F& f) const;
+  std::size_t blocks_in_use();
 
   // touches.cpp
   void find_news();

@@ -3,12 +3,18 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/parallel.h"
 #include "world/refuse.h"
 #include "world/slots.h"
 #include "world/structure.h"
 #include "world/validate.h"
 
 namespace vp {
+namespace {
+
+constexpr std::size_t kJointGrain = 16;  // some microseconds
+
+}  // namespace
 
 const BodyJoint* World::Impl::find(JointId id) const {
   if (id.index == 0 || id.index > joints.size()) return nullptr;
@@ -240,11 +246,14 @@ void World::Impl::refresh_joints(double) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
   }
-  for (BodyJoint& joint : joints) {
-    if (!is_active(joint)) continue;
-    evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
-    solve::prepare(joint.block, body_rows.data());
-  }
+  in_parallel(joints.size(), kJointGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      BodyJoint& joint = joints[k];
+      if (!is_active(joint)) continue;
+      evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
+      solve::prepare(joint.block, body_rows.data());
+    }
+  });
 }
 
 void World::Impl::warm_start_joints() {

@@ -73,6 +73,7 @@ const collide::Bounds& World::Impl::bounds_at_pose(std::uint32_t index) {
 
 void World::Impl::pose_colliders(std::uint32_t index) {
   Body& body = bodies[index];
+  body.wanted = false;
   if (body.posed) return;
   body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "world/impl.h"
+#include "world/parallel.h"
 
 namespace vp {
 
@@ -15,13 +16,33 @@ void World::Impl::for_runs(const F& f) {
     const bool last = index == solve::kLastColour;
     f(passes,
       Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes},
-          body_rows.data()},
+          index >= solve::kFirstFixedColour, body_rows.data()},
       colour.blocks);
   };
   for (int c = 0; c < solve::kColours; ++c) {
     one_run(pass.one, graph.of<1>(c), c);
     one_run(pass.four, graph.of<4>(c), c);
   }
+}
+
+// f(passes, part of a run, number of its first block among all), one colour after the other; the
+// parts of a colour side by side. Contacts of the last colour have no parts: they share bodies.
+template <class F>
+void World::Impl::for_parts(const F& f) {
+  constexpr std::size_t kGrain = 8;  // blocks: some microseconds
+  std::size_t first = 0;
+  for_runs([&](const auto& passes, const auto& run, const auto& blocks) {
+    const std::size_t grain = run.stride == 1 ? blocks.size() : kGrain;
+    in_parallel(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
+      auto part = run;
+      part.blocks += begin;
+      const auto skipped = static_cast<std::uint32_t>(begin) * run.stride;
+      part.lanes =
+          std::min(run.lanes - skipped, static_cast<std::uint32_t>(end - begin) * run.stride);
+      f(passes, part, first + begin);
+    });
+    first += blocks.size();
+  });
 }
 
 }  // namespace vp

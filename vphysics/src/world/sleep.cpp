@@ -140,7 +140,7 @@ void World::Impl::wake(std::uint32_t seed) {
   reach(seed);
   for (std::size_t i = 0; i < woken.size(); ++i) for_partners(woken[i], reach);
   for (const std::uint32_t i : woken) {
-    if (dt_now > 0.0) load_row(i, dt_now);
+    if (dt_now > 0.0 && load_row(i, dt_now)) start_way_anew(i);
     for (std::uint32_t e = bodies[i].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
       unpark(e / 2);
     }

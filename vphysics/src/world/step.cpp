@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "world/impl.h"
+#include "world/parallel.h"
 #include "world/refuse.h"
 #include "world/validate.h"
 
@@ -181,12 +182,19 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
 
 // Where nothing is left to be met: to the end of the step in one go.
 void World::Impl::advance_all(double dt) {
-  for (const std::uint32_t i : movers) {
+  in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Body& body = bodies[movers[k]];
+      const bool led = body.motion == Motion::dynamic && body.by_rows();
+      mover_news[k] = led && advance_by_row(movers[k]) ? 0 : 1;
+    }
+  });
+  for (std::size_t k = 0; k < movers.size(); ++k) {
+    if (mover_news[k] == 0) continue;
+    const std::uint32_t i = movers[k];
     Body& body = bodies[i];
-    const bool pushed = body.motion == Motion::dynamic;
-    if (pushed && body.by_rows() && advance_by_row(i)) continue;
     const SE3 start = body.T;
-    const Velocity more = pushed ? settle(i, dt) : Velocity{};
+    const Velocity more = body.motion == Motion::dynamic ? settle(i, dt) : Velocity{};
     advance_body(body, motion_of(body, more, dt), dt);
     (void)stop_if_out_of_range(i, start);
   }
@@ -267,6 +275,7 @@ void World::Impl::run(double dt) {
   load_rows(dt);
   find_contacts(dt);
   list_bodies();  // some may have been woken
+  mover_news.resize(movers.size());
   counters.awake = static_cast<std::uint32_t>(movers.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {

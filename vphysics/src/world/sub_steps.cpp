@@ -30,6 +30,14 @@ int sub_steps_of(const WorldDesc& desc, double dt) {
 
 }  // namespace
 
+// Of all colours; a word of lane_bits for each.
+std::size_t World::Impl::blocks_in_use() {
+  std::size_t count = 0;
+  for_runs([&](const auto&, const auto&, const auto& blocks) { count += blocks.size(); });
+  lane_bits.resize(std::max(lane_bits.size(), count));
+  return count;
+}
+
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_of(desc, dt);
   const float h = static_cast<float>(dt / n);
@@ -39,25 +47,32 @@ void World::Impl::run_sub_steps(double dt) {
   const auto threshold = static_cast<float>(desc.restitution_threshold);
   begin_joints(h);
   for (int k = 0; k < n; ++k) {
-    pass.accelerate(body_rows.data(), movers.data(), movers.size(), h);
+    in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+      pass.accelerate(body_rows.data(), movers.data() + begin, end - begin, h);
+    });
     for (int round = 0; round < kStrikes; ++round) {
-      bool again = false;
-      for_runs([&](const auto& p, const auto& run, auto&) {
-        again = p.strike(run, h, threshold) || again;
+      const std::size_t blocks = blocks_in_use();
+      std::fill_n(lane_bits.begin(), blocks, 0u);
+      for_parts([&](const auto& p, const auto& part, std::size_t first) {
+        lane_bits[first] = p.strike(part, h, threshold) ? 1u : 0u;
       });
+      const bool again = std::find(lane_bits.begin(), lane_bits.begin() + blocks, 1u) !=
+                         lane_bits.begin() + blocks;
       if (!again) break;
     }
     warm_start_joints();
-    for_runs([&](const auto& p, const auto& run, auto&) { p.warm_start(run); });
+    for_parts([](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
     for (int round = 0; round < kRounds; ++round) {
       solve_joints(h);
-      for_runs([&](const auto& p, const auto& run, auto&) { p.solve(run, soft); });
+      for_parts([&](const auto& p, const auto& part, std::size_t) { p.solve(part, soft); });
     }
-    pass.move(body_rows.data(), movers.data(), movers.size(), h);
+    in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+      pass.move(body_rows.data(), movers.data() + begin, end - begin, h);
+    });
     refresh_joints(h);
     relax_joints(h);
     if (k == n - 1) find_news();
-    for_runs([&](const auto& p, const auto& run, auto&) { p.relax(run, soft); });
+    for_parts([&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft); });
   }
   end_joints(dt);
   sub_steps_taken = n;

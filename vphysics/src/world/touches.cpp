@@ -35,11 +35,9 @@ void World::Impl::report_touch(std::uint32_t index, bool loaded) {
 // Before the last relaxing: what pushes two apart that overlap is a load, though nothing of it is
 // left in the velocities.
 void World::Impl::find_news() {
-  std::size_t count = 0;
-  for_runs([&](const auto& pass, const auto& run, auto& blocks) {
-    lane_bits.resize(std::max(lane_bits.size(), count + blocks.size()));
-    pass.find_news(run, lane_bits.data() + count);
-    count += blocks.size();
+  (void)blocks_in_use();
+  for_parts([&](const auto& pass, const auto& part, std::size_t first) {
+    pass.find_news(part, lane_bits.data() + first);
   });
 }
 

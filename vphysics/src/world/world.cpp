@@ -282,6 +282,10 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   return {};
 }
 
+void World::set_jobs(std::shared_ptr<Jobs> jobs) {
+  impl_->jobs = std::move(jobs);
+}
+
 std::span<const ContactEvent> World::contact_events() const {
   return impl_->events;
 }

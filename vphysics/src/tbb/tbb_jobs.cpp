@@ -1,0 +1,35 @@
+#include "vphysics/tbb_jobs.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace vp {
+namespace {
+
+class TbbJobs final : public Jobs {
+ public:
+  explicit TbbJobs(int workers)
+      : arena_(workers > 0 ? workers : oneapi::tbb::task_arena::automatic) {}
+
+  void run(std::size_t count, std::size_t grain, const Task& task) override {
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    const std::size_t parts = (count + grain - 1) / grain;
+    arena_.execute([&] {
+      oneapi::tbb::parallel_for(Range(0, parts), [&](const Range& r) {
+        task(r.begin() * grain, std::min(count, r.end() * grain));
+      });
+    });
+  }
+
+ private:
+  oneapi::tbb::task_arena arena_;
+};
+
+}  // namespace
+
+std::shared_ptr<Jobs> make_tbb_jobs(int workers) {
+  return std::make_shared<TbbJobs>(workers);
+}
+
+}  // namespace vp

@@ -1,0 +1,156 @@
+// Who helps with a step, and how many, does not matter: the same bits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <barrier>
+#include <thread>
+
+#include "joints_rig.h"
+#include "vphysics/jobs.h"
+#ifdef VP_TEST_TBB
+#include "vphysics/tbb_jobs.h"
+#endif
+
+namespace vp::test {
+namespace {
+
+// One grain after the other, the last first.
+class Backwards final : public Jobs {
+ public:
+  int parts = 0;
+
+  void run(std::size_t count, std::size_t grain, const Task& task) override {
+    for (std::size_t i = (count + grain - 1) / grain; i-- > 0;) {
+      task(i * grain, std::min(count, (i + 1) * grain));
+      ++parts;
+    }
+  }
+};
+
+// As many threads as it is told, each taking the next grain that is left.
+class Threads final : public Jobs {
+ public:
+  explicit Threads(int count) : begin_(count), end_(count) {
+    for (int i = 1; i < count; ++i) {
+      others_.emplace_back([this] {
+        for (;;) {
+          begin_.arrive_and_wait();
+          if (!task_) return;
+          take_parts();
+          end_.arrive_and_wait();
+        }
+      });
+    }
+  }
+  ~Threads() override {
+    task_ = nullptr;
+    begin_.arrive_and_wait();
+    for (std::thread& other : others_) other.join();
+  }
+
+  void run(std::size_t count, std::size_t grain, const Task& task) override {
+    next_ = 0;
+    count_ = count;
+    grain_ = grain;
+    task_ = &task;
+    begin_.arrive_and_wait();
+    take_parts();
+    end_.arrive_and_wait();
+  }
+
+ private:
+  void take_parts() {
+    for (std::size_t i = next_.fetch_add(grain_); i < count_; i = next_.fetch_add(grain_))
+      (*task_)(i, std::min(count_, i + grain_));
+  }
+
+  std::barrier<> begin_, end_;
+  std::atomic<std::size_t> next_{0};
+  std::size_t count_ = 0, grain_ = 1;
+  const Task* task_ = nullptr;
+  std::vector<std::thread> others_;
+};
+
+// Enough of everything that each loop is shared: boxes and balls that fall on one another and on a
+// belt, chains, and a corner that falls asleep.
+World busy_world() {
+  WorldDesc desc;
+  desc.sleep_after = 0.05;
+  World world(desc);
+  add_ground(world, {.restitution = 0.2});
+  BodyDesc belt;
+  belt.motion = Motion::kinematic;
+  belt.velocity = {{0, 0, 0.1}, {0.3, 0, 0}};
+  const BodyId moving = must(world.create_body(belt));
+  ColliderDesc slab;
+  slab.shape = Box{{3, 3, 0.05}};
+  must(world.add_collider(moving, slab));
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      Part part{.material = {.restitution = j % 5 == 0 ? 0.5 : 0.0}};
+      if ((i + j) % 4 == 0)
+        part.shape = Sphere{0.1};
+      else
+        part.shape = Box{{0.1, 0.1, 0.1}};
+      part.pose = SE3(Vec3{0.25 * (i - 20), 0.25 * (j - 20), 0.16 + 0.001 * ((7 * i + j) % 9)});
+      const BodyId low = add_dynamic(world, part);
+      part.pose = SE3(part.pose.position() + Vec3{0.01, 0.02, 0.24});
+      const BodyId high = add_dynamic(world, part);
+      if (i % 8 == 0) join(world, low, high, BallSocket{}, SE3(part.pose.position()));
+    }
+  }
+  return world;
+}
+
+// The hashes of every tenth step.
+std::vector<std::uint64_t> hashes_with(std::shared_ptr<Jobs> jobs) {
+  World world = busy_world();
+  world.set_jobs(std::move(jobs));
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < 60; ++i) {
+    must(world.step(1.0 / 240));
+    if (i % 10 == 9) hashes.push_back(world.state_hash());
+  }
+  EXPECT_GT(world.counters().contacts, 4000u);
+  return hashes;
+}
+
+class Workers : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { alone_ = hashes_with(nullptr); }
+  static std::vector<std::uint64_t> alone_;
+};
+std::vector<std::uint64_t> Workers::alone_;
+
+TEST_F(Workers, MayTakeThePartsInAnyOrder) {
+  const auto jobs = std::make_shared<Backwards>();
+  EXPECT_EQ(hashes_with(jobs), alone_);
+  EXPECT_GT(jobs->parts, 10000);  // the loops were shared indeed
+}
+TEST_F(Workers, MayBeTwoThreads) {
+  EXPECT_EQ(hashes_with(std::make_shared<Threads>(2)), alone_);
+}
+TEST_F(Workers, MayBeFiveThreads) {
+  EXPECT_EQ(hashes_with(std::make_shared<Threads>(5)), alone_);
+}
+#ifdef VP_TEST_TBB
+TEST_F(Workers, MayBeThoseOfOneTbb) {
+  for (const int workers : {1, 2, 4}) {
+    SCOPED_TRACE(workers);
+    EXPECT_EQ(hashes_with(make_tbb_jobs(workers)), alone_);
+  }
+}
+#endif
+// In the midst of a run.
+TEST_F(Workers, MayComeAndGo) {
+  World world = busy_world();
+  for (int i = 0; i < 30; ++i) {
+    world.set_jobs(i % 2 == 0 ? std::make_shared<Backwards>() : nullptr);
+    must(world.step(1.0 / 240));
+  }
+  EXPECT_EQ(world.state_hash(), alone_[2]);
+}
+
+}  // namespace
+}  // namespace vp::test
