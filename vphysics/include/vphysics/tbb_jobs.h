@@ -7,8 +7,8 @@
 
 namespace vp {
 
-// workers: how many threads at most take part, the caller's included; 0: as many as the machine has.
-// The object may serve any number of worlds, one after another.
+// workers: how many threads at most take part, the caller's included; 0: as many as the machine
+// has. The object may serve any number of worlds, one after another.
 std::shared_ptr<Jobs> make_tbb_jobs(int workers = 0);
 
 }  // namespace vp
