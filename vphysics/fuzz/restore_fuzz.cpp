@@ -23,6 +23,20 @@ vp::World make_world() {
   ball.continuous = true;
   collider.shape = Sphere{0.1};
   (void)world.add_collider(world.create_body(ball).value(), collider);
+  // A stool on a mesh, and the ball on both.
+  const Vec3 corners[] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const TriangleMesh::Triangle triangles[] = {{0, 1, 2}, {0, 2, 3}};
+  BodyDesc mesh = fixed;
+  collider.shape = TriangleMesh::of(corners, triangles).value();
+  (void)world.add_collider(world.create_body(mesh).value(), collider);
+  const CompoundPart parts[] = {{Box{{0.2, 0.2, 0.02}}, SE3(Vec3{0, 0, 0.3})},
+                                {Box{{0.02, 0.02, 0.15}}, SE3(Vec3{0.15, 0, 0.14})},
+                                {Sphere{0.1}, SE3(Vec3{-0.1, 0, 0.1})}};
+  BodyDesc stool;
+  stool.T_world_body = SE3(Vec3{0.3, 0, -0.001});
+  collider.shape = Compound::of(parts).value();
+  stool.inertia = solid_inertia(collider.shape, 100.0);
+  (void)world.add_collider(world.create_body(stool).value(), collider);
   // A floating link and one that hangs on it.
   ModelBuilder builder;
   LinkSpec link;

@@ -11,8 +11,8 @@
 namespace vp::test {
 namespace {
 
-constexpr double kG = 9.81;
-constexpr double kSteps[] = {1.0 / 60, 1.0 / 240, 0.001};
+constexpr double kFall = 9.81;
+constexpr double kStepTimes[] = {1.0 / 60, 1.0 / 240, 0.001};
 
 TriangleMesh flat_mesh(std::uint32_t cells = 80, double size = 16.0) {
   Random random(71);
@@ -22,36 +22,36 @@ HeightField flat_field() {
   const std::vector<double> heights(81 * 81, 0.0);
   return HeightField::of({81, 81, 0.2, 0.2, heights, {}}).value();
 }
-struct Slider {
+struct Glider {
   const char* name;
   Shape shape;
   double height;
   bool continuous, rolls;
 };
-const Slider kSliders[] = {{"box", Box{{0.3, 0.2, 0.1}}, 0.1, false, false},
+const Glider kGliders[] = {{"box", Box{{0.3, 0.2, 0.1}}, 0.1, false, false},
                            {"cylinder", Cylinder{0.2, 0.1}, 0.1, false, false},
                            {"ball", Sphere{0.1}, 0.1, false, true},
                            {"swept ball", Sphere{0.1}, 0.1, true, true}};
 
-struct Slid {
+struct Glided {
   double speed_off = 0.0, sideways = 0.0, height_off = 0.0;  // worst
   int begins = 0, others = 0, impacts = 0;
 };
 
 // Over 7 m of triangles of 0.2 m at 5 m/s, against the closed form: v, or v - mu g t.
-Slid slide(const Shape& ground, const Slider& slider, double dt, double friction) {
+Glided glide(const Shape& ground, const Glider& glider, double dt, double friction) {
   World world;
   const Material material{friction, 0.0, 0.0};
   add_fixed(world, ground, material);
   const Vec3 way{0.8, 0.6, 0.0}, velocity = 5.0 * way;
-  const bool rolls = slider.rolls && friction > 0.0;
-  const Vec3 spin = rolls ? (1.0 / slider.height) * cross(Vec3{0, 0, 1}, velocity) : Vec3{};
-  Part part{.shape = slider.shape, .material = material, .continuous = slider.continuous};
+  const bool rolls = glider.rolls && friction > 0.0;
+  const Vec3 spin = rolls ? (1.0 / glider.height) * cross(Vec3{0, 0, 1}, velocity) : Vec3{};
+  Part part{.shape = glider.shape, .material = material, .continuous = glider.continuous};
   const SE3 turn = SE3(Exp(Vec3{0, 0, 0.3}), {});
-  part.pose = SE3(turn.rotation(), Vec3{2.03, 2.01, slider.height});
+  part.pose = SE3(turn.rotation(), Vec3{2.03, 2.01, glider.height});
   part.velocity = {turn.unrotate(spin), turn.unrotate(velocity)};
   const BodyId body = add_dynamic(world, part);
-  Slid slid;
+  Glided slid;
   for (double t = dt; t < 1.4; t += dt) {
     must(world.step(dt));
     slid.impacts += static_cast<int>(world.counters().impacts);
@@ -60,10 +60,10 @@ Slid slide(const Shape& ground, const Slider& slider, double dt, double friction
     }
     const SE3 T = world.pose(body);
     const Vec3 v = T.rotate(world.velocity(body).v);
-    const double expected = rolls ? 5.0 : 5.0 - friction * kG * t;
+    const double expected = rolls ? 5.0 : 5.0 - friction * kFall * t;
     slid.speed_off = std::max(slid.speed_off, std::fabs(dot(v, way) - expected));
     slid.sideways = std::max(slid.sideways, std::fabs(cross(way, v).z));
-    slid.height_off = std::max(slid.height_off, std::fabs(T.position().z - slider.height));
+    slid.height_off = std::max(slid.height_off, std::fabs(T.position().z - glider.height));
   }
   return slid;
 }
@@ -72,21 +72,22 @@ Slid slide(const Shape& ground, const Slider& slider, double dt, double friction
 TEST(SurfaceWorld, WhatSlidesOrRollsOverAPlaneOfTrianglesFeelsNothingButFriction) {
   const Shape grounds[] = {flat_mesh(), flat_field()};
   for (const Shape& ground : grounds) {
-    for (const Slider& slider : kSliders) {
-      for (const double dt : kSteps) {
+    for (const Glider& glider : kGliders) {
+      for (const double dt : kStepTimes) {
         const auto place = [&] {
-          return std::string(slider.name) + (&ground == grounds ? ", mesh, " : ", field, ") +
+          return std::string(glider.name) + (&ground == grounds ? ", mesh, " : ", field, ") +
                  std::to_string(dt);
         };
-        const Slid smooth = slide(ground, slider, dt, 0.0), rough = slide(ground, slider, dt, 0.3);
+        const Glided smooth = glide(ground, glider, dt, 0.0),
+                     rough = glide(ground, glider, dt, 0.3);
         // Measured: 3e-14 without friction.
         EXPECT_LT(smooth.speed_off, 1e-12) << place();
         EXPECT_LT(smooth.sideways, 1e-12) << place();
         // Measured: sliding 7e-3 at 1/60 s, where the load is still settling in the first step;
         // rolling 2.3e-4 at 1/60 s.
-        EXPECT_LT(rough.speed_off, slider.rolls ? 3e-4 : 0.5 * dt + 1.5e-3) << place();
+        EXPECT_LT(rough.speed_off, glider.rolls ? 3e-4 : 0.5 * dt + 1.5e-3) << place();
         EXPECT_LT(rough.sideways, 1e-4) << place();  // 3.6e-5
-        for (const Slid& slid : {smooth, rough}) {
+        for (const Glided& slid : {smooth, rough}) {
           EXPECT_LT(slid.height_off, 6e-5) << place();  // 4.9e-5 at 1/60 s: what carries it
           EXPECT_EQ(slid.begins, 1) << place();
           EXPECT_EQ(slid.others, 0) << place();
@@ -278,7 +279,7 @@ TEST(SurfaceWorld, EventsAreOfThePairOfCollidersHoweverManyPlacesTouch) {
     EXPECT_EQ(events[1].kind, ContactEvent::Kind::hit);
     EXPECT_EQ(events.size(), 2u) << continuous;
     // It fell by 0.1 m, at 45 degrees to each face: each takes half of the momentum along it.
-    const double speed = std::sqrt(2 * kG * 0.1), mass = world.inertia(ball).mass();
+    const double speed = std::sqrt(2 * kFall * 0.1), mass = world.inertia(ball).mass();
     EXPECT_NEAR(events[1].approach_speed, speed / std::sqrt(2.0), 0.02) << continuous;
     // The sub-stepped solver tells the load of its last sub-step, not the sum.
     if (continuous) {

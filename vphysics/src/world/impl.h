@@ -139,7 +139,7 @@ struct SweptPair {
 
 // Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
 struct PartNews {
-  std::uint32_t whole;
+  std::uint32_t whole, part;
   double closing, impulse;
   Vec3 point, normal;
 };

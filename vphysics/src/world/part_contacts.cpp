@@ -86,7 +86,8 @@ void World::Impl::find_parts(std::uint32_t index, double margin) {
   }
   if (last == kNone) contact_pool[index].first_part = kNone;
   const Contact& whole = contact_pool[index];
-  if (whole.touching && !touches_in_parts(whole)) part_news.push_back({index, 0.0, 0.0, {}, {}});
+  if (whole.touching && !touches_in_parts(whole))
+    part_news.push_back({index, kNone, 0.0, 0.0, {}, {}});
 }
 
 // Of the old parts that are left: that of the same compound's parts with the same triangle, else

@@ -59,8 +59,9 @@ void World::Impl::report_news() {
 // One event for the whole: the impulses of the parts that have news add up, the largest tells
 // where.
 void World::Impl::report_news_of_parts() {
-  std::stable_sort(part_news.begin(), part_news.end(),
-                   [](const PartNews& a, const PartNews& b) { return a.whole < b.whole; });
+  std::sort(part_news.begin(), part_news.end(), [](const PartNews& a, const PartNews& b) {
+    return a.whole != b.whole ? a.whole < b.whole : a.part < b.part;
+  });
   for (std::size_t k = 0; k < part_news.size();) {
     PartNews sum = part_news[k];
     double most = sum.impulse;
@@ -109,7 +110,7 @@ void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool load
   if (c.is_part()) {
     c.touching = loaded;
     part_news.push_back(
-        {c.whole, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
+        {c.whole, index, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
     return;
   }
   if (!loaded) {
