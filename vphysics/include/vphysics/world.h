@@ -116,6 +116,8 @@ struct RayHit {
   Vec3 normal;      // unit, out of the collider, world frame
 };
 
+class Recorder;
+
 class World {
  public:
   explicit World(const WorldDesc& desc = {});
@@ -221,7 +223,14 @@ class World {
   Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;  // of the same bytes as snapshot()
 
+  // --- recording --------------------------------------------------------------------------------
+  // From now on the recorder notes every call that changes the world, of this object or of the one
+  // it is moved to; nullptr ends the recording. vphysics/recording.h. Refused: a recorder that has
+  // been used, settings with numbers that no simulation has.
+  Expected<void> record(std::shared_ptr<Recorder> recorder);
+
  private:
+  friend class Replay;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

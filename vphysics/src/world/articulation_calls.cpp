@@ -3,6 +3,7 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/recorded_call.h"
 #include "world/refuse.h"
 #include "world/slots.h"
 #include "world/structure.h"
@@ -42,6 +43,11 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   structure.add(desc);
   impl_->follow(art);
   impl_->articulations.push_back(std::move(art));
+  if (impl_->recorder) {
+    calls::CreateArticulation call;
+    for (int l = 0; l < desc.model.links(); ++l) call.links.push_back(desc.model.link(l));
+    impl_->log({std::move(call)});
+  }
   return ArticulationId{number + 1, 1};
 }
 
@@ -76,6 +82,9 @@ Expected<void> World::set_joint_states(ArticulationId id, std::span<const double
   std::copy(v.begin(), v.end(), art->v.begin());
   art->refresh();
   impl_->follow(*art);
+  if (impl_->recorder) {
+    impl_->log({calls::SetJointStates{id, {q.begin(), q.end()}, {v.begin(), v.end()}}});
+  }
   return {};
 }
 
@@ -124,6 +133,10 @@ Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, doub
   art->v[static_cast<std::size_t>(i)] = velocity;
   art->refresh();
   impl_->follow(*art);
+  if (impl_->recorder) {
+    impl_->log({calls::SetJointState{id, static_cast<std::uint32_t>(link),
+                                     static_cast<std::uint32_t>(dof), position, velocity}});
+  }
   return {};
 }
 
@@ -140,6 +153,10 @@ Expected<void> World::set_drive(ArticulationId id, int link, int dof, const Join
         "stiffness to 0, the damping drives its velocity");
   }
   joint.drive = drive;
+  if (impl_->recorder) {
+    impl_->log({calls::SetLinkDrive{id, static_cast<std::uint32_t>(link),
+                                    static_cast<std::uint32_t>(dof), drive}});
+  }
   return {};
 }
 

@@ -156,6 +156,8 @@ struct Looked {
   double margin, clearance;  // within which it was looked for; free of contact for so far [m]
 };
 
+struct RecordedCall;
+
 struct World::Impl {
   WorldDesc desc;
   std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
@@ -185,6 +187,8 @@ struct World::Impl {
   std::vector<std::uint32_t> movers, link_bodies;
   bool some_are_continuous = false;
   bool lists_are_stale = true;
+
+  std::shared_ptr<Recorder> recorder;  // or null
 
   // --- of the last step
   std::vector<ContactEvent> events;
@@ -226,6 +230,9 @@ struct World::Impl {
   std::vector<std::uint32_t> old_parts, claimed_parts;
   std::vector<PartNews> part_news;
 
+  // recorder.cpp; precondition: there is a recorder.
+  void log(const RecordedCall& call);
+
   // world.cpp
   Body* find(BodyId id);
   const Body* find(BodyId id) const;
@@ -234,6 +241,7 @@ struct World::Impl {
   Vec3 reference_point(const Body& body) const;
   void place(Body& body, const Vec3& reference, const Mat3& R);
   void release_collider(std::uint32_t index);
+  void give_velocity(std::uint32_t body, const se3& V);
 
   // articulations.cpp
   void reserve_link_rows();

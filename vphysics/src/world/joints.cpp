@@ -4,6 +4,7 @@
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/parallel.h"
+#include "world/recorded_call.h"
 #include "world/refuse.h"
 #include "world/slots.h"
 #include "world/structure.h"
@@ -110,6 +111,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   structure.add(a_id.index);
   structure.add(b_id.index);
   structure.add(desc);
+  if (impl_->recorder) impl_->log({calls::CreateJoint{a_id, b_id, desc}});
   return JointId{index + 1, joint.generation};
 }
 
@@ -120,6 +122,7 @@ Expected<void> World::destroy_joint(JointId id) {
   impl_->wake(joint.b);
   impl_->remove_joint(id.index - 1);
   Structure(impl_->structure).add(0x600u + id.index);
+  if (impl_->recorder) impl_->log({calls::DestroyJoint{id}});
   return {};
 }
 
@@ -181,9 +184,12 @@ Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
   if (!joint) return stale("joint");
   if (joint->main < 0 || joint->law.form != JointLaw::Form::axes)
     return refuse("set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
+  const auto driven = drive_slot(*joint, joint->main, drive);
+  if (!driven) return driven;
   impl_->wake(joint->a);
   impl_->wake(joint->b);
-  return drive_slot(*joint, joint->main, drive);
+  if (impl_->recorder) impl_->log({calls::SetJointDrive{id, drive}});
+  return driven;
 }
 
 Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& drive) {
@@ -193,9 +199,12 @@ Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& dr
   if (joint->law.form != JointLaw::Form::axes || axis > JointAxis::turn_z ||
       (joint->law.cone && swings))
     return refuse("set_drive: the joint has no drive of this axis");
+  const auto driven = drive_slot(*joint, static_cast<int>(axis), drive);
+  if (!driven) return driven;
   impl_->wake(joint->a);
   impl_->wake(joint->b);
-  return drive_slot(*joint, static_cast<int>(axis), drive);
+  if (impl_->recorder) impl_->log({calls::SetAxisDrive{id, axis, drive}});
+  return driven;
 }
 
 JointForce World::joint_force(JointId id) const {

@@ -7,6 +7,7 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/recorded_call.h"
 #include "world/refuse.h"
 
 namespace vp {
@@ -169,6 +170,7 @@ bool World::is_asleep(BodyId id) const {
 Expected<void> World::wake(BodyId id) {
   if (!impl_->find(id)) return stale("body");
   impl_->wake(id.index - 1);
+  if (impl_->recorder) impl_->log({calls::Wake{id}});
   return {};
 }
 

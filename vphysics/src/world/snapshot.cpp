@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "world/contact_state.h"
+#include "world/recorded_call.h"
 
 namespace vp {
 namespace {
@@ -348,6 +349,7 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   impl_->events.clear();
   impl_->counters = {};
   impl_->sub_steps_taken = 0;
+  if (impl_->recorder) impl_->log({calls::Restore{{bytes.begin(), bytes.end()}}});
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vphysics/recording.h"
 #include "world/impl.h"
 #include "world/parallel.h"
 #include "world/refuse.h"
@@ -21,6 +22,7 @@ Expected<StepStatus> World::step(double dt) {
   impl_->begin_step();
   impl_->run(dt);
   impl_->finish_step();
+  if (impl_->recorder) impl_->recorder->add_step(*this, dt);
   return impl_->status;
 }
 

@@ -43,6 +43,9 @@ class Structure {
     add(static_cast<std::uint64_t>(desc.velocity_iterations));
     add(static_cast<std::uint64_t>(desc.sub_steps));
     add(static_cast<std::uint64_t>(desc.max_impacts_per_step));
+    const WorldDesc usual;
+    add_unless(usual.sleep_after, 'a', desc.sleep_after);
+    add_unless(usual.sleep_speed, 'z', desc.sleep_speed);
   }
   void add(const BodyDesc& desc) {
     add(static_cast<std::uint64_t>(desc.motion));

@@ -6,7 +6,9 @@
 
 #include "collide/compound_data.h"
 #include "vphysics/assert.h"
+#include "vphysics/recording.h"
 #include "world/impl.h"
+#include "world/recorded_call.h"
 #include "world/refuse.h"
 #include "world/slots.h"
 #include "world/structure.h"
@@ -52,9 +54,15 @@ World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   impl_->body_rows.resize(1);
   Structure(impl_->structure).add(desc);
 }
-World::~World() = default;
+World::~World() {
+  if (impl_) (void)record(nullptr);
+}
 World::World(World&&) noexcept = default;
-World& World::operator=(World&&) noexcept = default;
+World& World::operator=(World&& other) noexcept {
+  World gone(std::move(*this));
+  impl_ = std::move(other.impl_);
+  return *this;
+}
 
 const Body* World::Impl::find(BodyId id) const {
   if (id.index == 0 || id.index > bodies.size()) return nullptr;
@@ -94,7 +102,8 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   structure.add(desc);
   const BodyId id = body_id(impl_->bodies, index);
   impl_->lists_are_stale = true;
-  if (desc.motion != Motion::fixed) (void)set_velocity(id, desc.velocity);
+  if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
+  if (impl_->recorder) impl_->log({calls::CreateBody{desc}});
   return id;
 }
 
@@ -143,6 +152,7 @@ Expected<void> World::destroy_body(BodyId id) {
   impl_->lists_are_stale = true;
   impl_->free_bodies.push_back(id.index - 1);
   Structure(impl_->structure).add(0x200u + id.index);
+  if (impl_->recorder) impl_->log({calls::DestroyBody{id}});
   return {};
 }
 
@@ -203,6 +213,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   structure.add(0x300u + index);
   structure.add(body_handle.index);
   structure.add(desc);
+  if (impl_->recorder) impl_->log({calls::AddCollider{body_handle, desc}});
   return collider_id(impl_->colliders, index);
 }
 
@@ -241,6 +252,7 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   body->T = SE3(orthonormalized(T.rotation()), T.position());
   body->moved();
   impl_->jumped(id.index - 1);
+  if (impl_->recorder) impl_->log({calls::SetPose{id, T}});
   return {};
 }
 
@@ -251,15 +263,21 @@ Expected<void> World::set_velocity(BodyId id, const se3& V) {
     return refuse("set_velocity: a link is moved by its joint; use set_joint_state");
   if (body->motion == Motion::fixed) return refuse("set_velocity: the body is fixed");
   if (!in_range(V)) return refuse("set_velocity: every entry must be finite and at most 1e9");
-  if (body->motion == Motion::kinematic) {
-    body->prescribed = V;
-    if (!(V == se3{})) impl_->wake_neighbours(id.index - 1);
-    return {};
-  }
-  impl_->wake(id.index - 1);
-  body->w = body->T.rotate(V.w);
-  body->v = body->T.rotate(V.v + cross(V.w, body->centre));
+  impl_->give_velocity(id.index - 1, V);
+  if (impl_->recorder) impl_->log({calls::SetVelocity{id, V}});
   return {};
+}
+
+void World::Impl::give_velocity(std::uint32_t index, const se3& V) {
+  Body& body = bodies[index];
+  if (body.motion == Motion::kinematic) {
+    body.prescribed = V;
+    if (!(V == se3{})) wake_neighbours(index);
+    return;
+  }
+  wake(index);
+  body.w = body.T.rotate(V.w);
+  body.v = body.T.rotate(V.v + cross(V.w, body.centre));
 }
 
 Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
@@ -269,6 +287,7 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   if (!in_range(impulse) || !in_range(point)) {
     return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
   }
+  if (impl_->recorder) impl_->log({calls::ApplyImpulse{id, impulse, point}});
   if (body->is_link) {
     Articulation& art = impl_->articulations[body->articulation];
     art.apply_impulse(body->link, impulse, point);

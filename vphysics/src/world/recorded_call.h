@@ -1,0 +1,86 @@
+// The calls that change a world, as data: noted by a recorder, made again by a replay. Their order
+// in the list is their code in a recording: new ones go to its end.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "vphysics/world.h"
+
+namespace vp {
+namespace calls {
+
+struct CreateBody {
+  BodyDesc desc;
+};
+struct DestroyBody {
+  BodyId body;
+};
+struct AddCollider {
+  BodyId body;
+  ColliderDesc desc;
+};
+struct CreateArticulation {
+  std::vector<LinkSpec> links;
+};
+struct CreateJoint {
+  BodyId a, b;
+  JointDesc desc;
+};
+struct DestroyJoint {
+  JointId joint;
+};
+struct SetPose {
+  BodyId body;
+  SE3 T_world_body;
+};
+struct SetVelocity {
+  BodyId body;
+  se3 velocity;
+};
+struct ApplyImpulse {
+  BodyId body;
+  Vec3 impulse, point;
+};
+struct SetJointStates {
+  ArticulationId articulation;
+  std::vector<double> coordinates, velocities;
+};
+struct SetJointState {
+  ArticulationId articulation;
+  std::uint32_t link = 0, dof = 0;
+  double position = 0.0, velocity = 0.0;
+};
+struct SetLinkDrive {
+  ArticulationId articulation;
+  std::uint32_t link = 0, dof = 0;
+  JointDrive drive;
+};
+struct SetJointDrive {
+  JointId joint;
+  JointDrive drive;
+};
+struct SetAxisDrive {
+  JointId joint;
+  JointAxis axis = JointAxis::x;
+  JointDrive drive;
+};
+struct Restore {
+  std::vector<std::byte> snapshot;
+};
+struct Wake {
+  BodyId body;
+};
+
+}  // namespace calls
+
+struct RecordedCall {
+  using What = std::variant<calls::CreateBody, calls::DestroyBody, calls::AddCollider,
+                            calls::CreateArticulation, calls::CreateJoint, calls::DestroyJoint,
+                            calls::SetPose, calls::SetVelocity, calls::ApplyImpulse,
+                            calls::SetJointStates, calls::SetJointState, calls::SetLinkDrive,
+                            calls::SetJointDrive, calls::SetAxisDrive, calls::Restore, calls::Wake>;
+  What what;
+};
+
+}  // namespace vp

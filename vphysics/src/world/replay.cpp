@@ -1,0 +1,233 @@
+// Making recorded calls again. The bytes may be a stranger's: each frame is read whole and checked
+// before any of it is done, and what it asks for goes through the world's public calls, which
+// refuse what they cannot have.
+#include <utility>
+
+#include "vphysics/recording.h"
+#include "world/impl.h"
+#include "world/recording_io.h"
+#include "world/recording_limits.h"
+#include "world/refuse.h"
+
+namespace vp {
+namespace {
+
+tl::unexpected<Error> bad(std::string message) {
+  return refuse(Errc::bad_data, std::move(message));
+}
+
+std::uint32_t word_at(std::span<const std::byte> bytes) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data(), sizeof word);
+  return word;
+}
+
+Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links) {
+  ModelBuilder builder;
+  for (const LinkSpec& link : links) {
+    if (const auto added = builder.add(link); !added) return tl::make_unexpected(added.error());
+  }
+  auto model = builder.build();
+  if (!model) return tl::make_unexpected(model.error());
+  return ArticulationDesc{std::move(*model)};
+}
+
+// Does a call; what it returns is of no interest unless it is refused.
+class Doer {
+ public:
+  explicit Doer(World& world) : world_(world) {}
+  Expected<void> operator()(const calls::CreateBody& c) { return only(world_.create_body(c.desc)); }
+  Expected<void> operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
+  Expected<void> operator()(const calls::AddCollider& c) {
+    return only(world_.add_collider(c.body, c.desc));
+  }
+  Expected<void> operator()(const calls::CreateArticulation& c) {
+    const auto desc = articulation_of(c.links);
+    if (!desc) return tl::make_unexpected(desc.error());
+    return only(world_.create_articulation(*desc));
+  }
+  Expected<void> operator()(const calls::CreateJoint& c) {
+    return only(world_.create_joint(c.a, c.b, c.desc));
+  }
+  Expected<void> operator()(const calls::DestroyJoint& c) { return world_.destroy_joint(c.joint); }
+  Expected<void> operator()(const calls::SetPose& c) {
+    return world_.set_pose(c.body, c.T_world_body);
+  }
+  Expected<void> operator()(const calls::SetVelocity& c) {
+    return world_.set_velocity(c.body, c.velocity);
+  }
+  Expected<void> operator()(const calls::ApplyImpulse& c) {
+    return world_.apply_impulse(c.body, c.impulse, c.point);
+  }
+  Expected<void> operator()(const calls::SetJointStates& c) {
+    return world_.set_joint_states(c.articulation, c.coordinates, c.velocities);
+  }
+  Expected<void> operator()(const calls::SetJointState& c) {
+    return world_.set_joint_state(c.articulation, static_cast<int>(c.link), static_cast<int>(c.dof),
+                                  c.position, c.velocity);
+  }
+  Expected<void> operator()(const calls::SetLinkDrive& c) {
+    return world_.set_drive(c.articulation, static_cast<int>(c.link), static_cast<int>(c.dof),
+                            c.drive);
+  }
+  Expected<void> operator()(const calls::SetJointDrive& c) {
+    return world_.set_drive(c.joint, c.drive);
+  }
+  Expected<void> operator()(const calls::SetAxisDrive& c) {
+    return world_.set_drive(c.joint, c.axis, c.drive);
+  }
+  Expected<void> operator()(const calls::Restore& c) { return world_.restore(c.snapshot); }
+  Expected<void> operator()(const calls::Wake& c) { return world_.wake(c.body); }
+
+ private:
+  template <class T>
+  static Expected<void> only(const Expected<T>& result) {
+    if (!result) return tl::make_unexpected(result.error());
+    return {};
+  }
+
+  World& world_;
+};
+
+}  // namespace
+
+// A frame's items, read and not yet done.
+class Replay::Frame {
+ public:
+  struct Built {
+    RecordedCall call;
+    std::uint64_t structure = 0;
+  };
+  std::vector<Built> calls;
+  bool steps = false, hashed = false, ends = false;
+  double dt = 0.0;
+  std::uint64_t hash = 0, last_step = 0;
+
+  // False: no frame that a recorder wrote. A step or the end is a frame's last item.
+  bool read(std::span<const std::byte> bytes, const RecordedParts& parts, double last_dt) {
+    recording::Reader in(bytes, parts);
+    while (in.ok() && !in.at_end()) {
+      if (steps || ends) return false;
+      const auto code = std::to_integer<std::uint8_t>(bytes[bytes.size() - in.left()]);
+      if (code < recording::kStep) {
+        Built& item = calls.emplace_back();
+        in(item.call.what);
+        if (in.ok() && recording::builds(item.call)) in(item.structure);
+        continue;
+      }
+      in.byte();
+      ends = code == recording::kEnd;
+      steps = !ends;
+      if (ends) in(last_step);
+      if (ends) continue;
+      in.check(code <= (recording::kStep | recording::kNewDt | recording::kHash));
+      hashed = (code & recording::kHash) != 0;
+      dt = last_dt;
+      if ((code & recording::kNewDt) != 0) in(dt);
+      if (hashed) in(hash);
+    }
+    return in.ok();
+  }
+};
+
+Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts,
+                              std::optional<World> built) {
+  recording::Reader in(bytes, parts);
+  std::uint64_t magic = 0, format = 0, structure = 0;
+  WorldDesc desc;
+  bool later = false;
+  std::vector<std::byte> snapshot;
+  in(magic, format);
+  if (!in.ok() || magic != recording::kMagic) {
+    return bad("replay: these bytes are no recording; hand in all that a Recorder wrote");
+  }
+  if (format != recording::kFormat) {
+    return bad("replay: a recording of another version; replay it with the engine that wrote it");
+  }
+  in(desc, structure, later, snapshot);
+  const std::size_t header = bytes.size() - in.left();
+  if (!in.ok() || in.left() < sizeof(std::uint32_t) ||
+      word_at(std::span(bytes).subspan(header)) !=
+          recording::check_of(std::span(bytes).first(header)) ||
+      recording::problem_with(desc)) {
+    return bad("replay: the recording's beginning is damaged or cut short");
+  }
+  if (later && !built) {
+    return refuse(
+        "replay: the recording began with a world that had been built; hand in one made by the "
+        "same calls");
+  }
+  if (!later && built) {
+    return refuse("replay: the recording makes its world itself; hand in none");
+  }
+  if (later) {
+    if (const auto restored = built->restore(snapshot); !restored) {
+      return tl::make_unexpected(restored.error());
+    }
+  }
+  Replay replay(std::move(bytes), std::move(parts), built ? std::move(*built) : World(desc));
+  replay.at_ = header + sizeof(std::uint32_t);
+  return replay;
+}
+
+Expected<ReplayState> Replay::step() {
+  if (error_) return tl::make_unexpected(*error_);
+  const std::size_t before = steps_;
+  while (steps_ == before && !ended_) {
+    constexpr std::size_t kWord = sizeof(std::uint32_t);
+    const auto left = std::span<const std::byte>(bytes_).subspan(at_);
+    if (left.size() < 2 * kWord) return ReplayState::cut_short;
+    const std::uint32_t length = word_at(left);
+    if (length > left.size() - 2 * kWord) return ReplayState::cut_short;
+    if (word_at(left.subspan(kWord + length)) != recording::check_of(left.first(kWord + length))) {
+      return stop({Errc::bad_data, "the recording's bytes are damaged"});
+    }
+    at_ += 2 * kWord + length;
+    if (const auto played = play(left.subspan(kWord, length)); !played) {
+      return stop(played.error());
+    }
+  }
+  if (ended_) return ReplayState::end;
+  return first_difference_ ? ReplayState::differs : ReplayState::same;
+}
+
+tl::unexpected<Error> Replay::stop(Error error) {
+  error_ =
+      Error{Errc::bad_data, "replay, after step " + std::to_string(steps_) + ": " + error.message};
+  return tl::make_unexpected(*error_);
+}
+
+Expected<void> Replay::play(std::span<const std::byte> bytes) {
+  Frame frame;
+  if (!frame.read(bytes, parts_, dt_)) {
+    return bad("a value is out of range, or a part is missing; hand in the recorder's parts");
+  }
+  for (const Frame::Built& item : frame.calls) {
+    if (const auto made = make(item.call, item.structure); !made) return made;
+  }
+  if (frame.ends && frame.last_step != steps_) return bad("steps are missing from the recording");
+  ended_ = frame.ends;
+  return frame.steps ? make_step(frame.dt, frame.hashed ? &frame.hash : nullptr) : Expected<void>{};
+}
+
+Expected<void> Replay::make(const RecordedCall& call, std::uint64_t structure) {
+  if (const auto made = std::visit(Doer(world_), call.what); !made) {
+    return bad("a recorded call is refused: " + made.error().message);
+  }
+  if (recording::builds(call) && structure != world_.impl_->structure) {
+    return bad("what is built is not what was recorded; hand in the same parts in the same order");
+  }
+  return {};
+}
+
+Expected<void> Replay::make_step(double dt, const std::uint64_t* hash) {
+  if (const auto stepped = world_.step(dt); !stepped) {
+    return bad("a recorded step is refused: " + stepped.error().message);
+  }
+  dt_ = dt;
+  ++steps_;
+  if (hash && *hash != world_.state_hash() && !first_difference_) first_difference_ = steps_;
+  return {};
+}
+
+}  // namespace vp
