@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -88,6 +89,9 @@ TEST(Scalar, ArcTangentAgreesWithLongDoubleInEveryQuadrant) {
   EXPECT_EQ(arc_tangent(0.0, -1.0), kPi);
   EXPECT_EQ(arc_tangent(1.0, 0.0), 0.5 * kPi);
   EXPECT_EQ(arc_tangent(-1.0, 0.0), -0.5 * kPi);
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(arc_tangent(kNoNumber, 1.0)));
+  EXPECT_TRUE(std::isnan(arc_tangent(1.0, kNoNumber)));
 }
 
 // Angles at which a branch or the conditioning changes: both sides of each switching point, tiny

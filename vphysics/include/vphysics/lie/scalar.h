@@ -131,9 +131,10 @@ inline constexpr double kAtanTable[9] = {0.0,
                                          0.78539816339744828};
 
 // 0 <= x <= 1. atan x = atan c + atan((x - c) / (1 + x c)), c the nearest eighth, so that the
-// argument of the series is at most 1/16 and the first term left out below 6e-20.
+// argument of the series is at most 1/16 and the first term left out below 6e-20. Of what is no
+// number it is none.
 inline double atan_unit(double x) {
-  const int k = static_cast<int>(std::floor(x * 8.0 + 0.5));
+  const int k = x <= 1.0 ? static_cast<int>(std::floor(x * 8.0 + 0.5)) : 0;
   const double c = k * 0.125;
   const double t = (x - c) / (1.0 + x * c);
   const double z = t * t;
