@@ -86,10 +86,11 @@ enum class ReplayState : std::uint8_t {
 
 class Replay {
  public:
-  // Refused with Errc::bad_data: bytes that do not begin as a recording of this version; with
-  // Errc::invalid_argument: no world handed in where one is needed, or one where none is.
-  static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts = {},
-                               std::optional<World> built = std::nullopt);
+  // Of a recording that began with an empty world. Refused with Errc::bad_data: bytes that do not
+  // begin as a recording of this version; with Errc::invalid_argument: one that began later.
+  static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts = {});
+  // Of one that began later, with a world made by the same calls. Refused alike.
+  static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts, World built);
 
   // The calls up to the next step, and that step. It may go on after a difference. Refused with
   // Errc::bad_data, and from then on for good: damaged bytes, of which nothing is done; a call that
@@ -106,6 +107,7 @@ class Replay {
  private:
   Replay(std::vector<std::byte> bytes, RecordedParts parts, World world)
       : bytes_(std::move(bytes)), parts_(std::move(parts)), world_(std::move(world)) {}
+  static Expected<Replay> begin(std::vector<std::byte> bytes, RecordedParts parts, World* built);
   class Frame;
   Expected<void> play(std::span<const std::byte> frame);
   Expected<void> make(const RecordedCall& call, std::uint64_t structure);

@@ -130,8 +130,14 @@ class Replay::Frame {
   }
 };
 
-Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts,
-                              std::optional<World> built) {
+Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts) {
+  return begin(std::move(bytes), std::move(parts), nullptr);
+}
+Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts, World built) {
+  return begin(std::move(bytes), std::move(parts), &built);
+}
+
+Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts, World* built) {
   recording::Reader in(bytes, parts);
   std::uint64_t magic = 0, format = 0, structure = 0;
   WorldDesc desc;
@@ -172,7 +178,7 @@ Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts,
 
 Expected<ReplayState> Replay::step() {
   if (error_) return tl::make_unexpected(*error_);
-  const std::size_t before = steps_;
+  const std::uint64_t before = steps_;
   while (steps_ == before && !ended_) {
     constexpr std::size_t kWord = sizeof(std::uint32_t);
     const auto left = std::span<const std::byte>(bytes_).subspan(at_);
