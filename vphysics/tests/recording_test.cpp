@@ -110,6 +110,8 @@ std::vector<Change> changes() {
          desc.shape = Sphere{0.3};
          must(y.world.add_collider(y.boxes[5], desc));
        }},
+      {"set_mass_from_colliders",
+       [](Yard& y) { must(y.world.set_mass_from_colliders(y.boxes[5])); }},
       {"create_articulation",
        [](Yard& y) { must(y.world.create_articulation(rod_desc(-2.0, 0.5))); }},
       {"create_joint",

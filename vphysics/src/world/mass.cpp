@@ -4,6 +4,7 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/recorded_call.h"
 #include "world/refuse.h"
 #include "world/structure.h"
 #include "world/validate.h"
@@ -67,6 +68,7 @@ Expected<void> World::set_mass_from_colliders(BodyId id) {
   Structure structure(impl_->structure);
   structure.add(0x700u + id.index);
   structure.add(sum);
+  if (impl_->recorder) impl_->log({calls::SetMassFromColliders{id}});
   return {};
 }
 

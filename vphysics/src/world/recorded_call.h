@@ -71,15 +71,19 @@ struct Restore {
 struct Wake {
   BodyId body;
 };
+struct SetMassFromColliders {
+  BodyId body;
+};
 
 }  // namespace calls
 
 struct RecordedCall {
-  using What = std::variant<calls::CreateBody, calls::DestroyBody, calls::AddCollider,
-                            calls::CreateArticulation, calls::CreateJoint, calls::DestroyJoint,
-                            calls::SetPose, calls::SetVelocity, calls::ApplyImpulse,
-                            calls::SetJointStates, calls::SetJointState, calls::SetLinkDrive,
-                            calls::SetJointDrive, calls::SetAxisDrive, calls::Restore, calls::Wake>;
+  using What =
+      std::variant<calls::CreateBody, calls::DestroyBody, calls::AddCollider,
+                   calls::CreateArticulation, calls::CreateJoint, calls::DestroyJoint,
+                   calls::SetPose, calls::SetVelocity, calls::ApplyImpulse, calls::SetJointStates,
+                   calls::SetJointState, calls::SetLinkDrive, calls::SetJointDrive,
+                   calls::SetAxisDrive, calls::Restore, calls::Wake, calls::SetMassFromColliders>;
   What what;
 };
 

@@ -468,6 +468,10 @@ template <class Io>
 void fields(Io& io, Field<Io, calls::Wake> c) {
   io(c.body);
 }
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetMassFromColliders> c) {
+  io(c.body);
+}
 
 template <class T>
 void Writer::one(const T& x) {

@@ -11,7 +11,8 @@ namespace vp::recording {
 
 // Those that change the structure of the world; its digest follows them.
 inline bool builds(const RecordedCall& call) {
-  return call.what.index() <= RecordedCall::What(calls::DestroyJoint{}).index();
+  return call.what.index() <= RecordedCall::What(calls::DestroyJoint{}).index() ||
+         std::holds_alternative<calls::SetMassFromColliders>(call.what);
 }
 
 // Each is far beyond what anybody simulates with, and bounds the time that a stranger's step takes.

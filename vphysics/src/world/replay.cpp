@@ -78,6 +78,9 @@ class Doer {
   }
   Expected<void> operator()(const calls::Restore& c) { return world_.restore(c.snapshot); }
   Expected<void> operator()(const calls::Wake& c) { return world_.wake(c.body); }
+  Expected<void> operator()(const calls::SetMassFromColliders& c) {
+    return world_.set_mass_from_colliders(c.body);
+  }
 
  private:
   template <class T>
