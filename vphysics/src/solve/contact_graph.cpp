@@ -81,6 +81,7 @@ std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& 
 template <int P>
 void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
   ColourBlocks<P>& colour = of<P>(place.colour);
+  if (place.colour < kColours) in_use_ |= 1ull << place.colour;
   place.index = colour.lanes++;
   const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
   const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
@@ -108,6 +109,9 @@ std::uint32_t ContactGraph::remove_lane(const Place& place) {
   }
   clear_lane(from, lane(last));
   if (place.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
+  if (place.colour < kColours && of<1>(place.colour).lanes + of<4>(place.colour).lanes == 0) {
+    in_use_ &= ~(1ull << place.colour);
+  }
   return moved;
 }
 

@@ -88,6 +88,8 @@ class ContactGraph {
   static int lane(const Place& place) {
     return ColourBlocks<1>::lane_of(place.index, place.colour);
   }
+  // A bit for each colour that has lanes of either kind.
+  std::uint64_t colours_in_use() const { return in_use_; }
   template <int P>
   ColourBlocks<P>& of(int colour) {
     if constexpr (P == 1)
@@ -115,6 +117,7 @@ class ContactGraph {
 
   std::array<ColourBlocks<1>, kColours + 1> ones_;
   std::array<ColourBlocks<4>, kColours + 1> fours_;
+  std::uint64_t in_use_ = 0;
   std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
 };
 

@@ -107,7 +107,7 @@ void World::Impl::list_bodies() {
   lists_are_stale = false;
   movers.clear();
   link_bodies.clear();
-  some_are_continuous = false;
+  some_are_continuous = some_are_not = false;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive) continue;
@@ -115,7 +115,7 @@ void World::Impl::list_bodies() {
       if (body.first_collider != kNone) link_bodies.push_back(i);
     } else if (body.motion != Motion::fixed && !body.asleep) {
       movers.push_back(i);
-      some_are_continuous |= body.continuous;
+      (body.continuous ? some_are_continuous : some_are_not) = true;
     }
   }
 }

@@ -185,7 +185,7 @@ struct World::Impl {
   // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
   // or colliders come or go.
   std::vector<std::uint32_t> movers, link_bodies;
-  bool some_are_continuous = false;
+  bool some_are_continuous = false, some_are_not = false;  // of the movers
   bool lists_are_stale = true;
 
   std::shared_ptr<Recorder> recorder;  // or null

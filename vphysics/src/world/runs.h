@@ -1,6 +1,8 @@
 // The contacts of all colours, in the order of solving.
 #pragma once
 
+#include <bit>
+
 #include "world/impl.h"
 #include "world/parallel.h"
 
@@ -19,7 +21,8 @@ void World::Impl::for_runs(const F& f) {
           index >= solve::kFirstFixedColour, body_rows.data()},
       colour.blocks);
   };
-  for (int c = 0; c < solve::kColours; ++c) {
+  for (std::uint64_t left = graph.colours_in_use(); left != 0; left &= left - 1) {
+    const int c = std::countr_zero(left);
     one_run(pass.one, graph.of<1>(c), c);
     one_run(pass.four, graph.of<4>(c), c);
   }

@@ -274,9 +274,11 @@ bool World::Impl::has_impact_stage() const {
 
 void World::Impl::run(double dt) {
   dt_now = dt;
-  load_rows(dt);
-  find_contacts(dt);
-  list_bodies();  // some may have been woken
+  if (some_are_not) {  // swept bodies and links meet in the stage of impacts alone
+    load_rows(dt);
+    find_contacts(dt);
+    list_bodies();  // some may have been woken
+  }
   mover_news.resize(movers.size());
   counters.awake = static_cast<std::uint32_t>(movers.size());
   run_sub_steps(dt);

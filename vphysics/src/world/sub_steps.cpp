@@ -41,6 +41,8 @@ std::size_t World::Impl::blocks_in_use() {
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_of(desc, dt);
   const float h = static_cast<float>(dt / n);
+  sub_steps_taken = n;
+  if (!some_are_not) return;
   const solve::Passes& pass = solve::passes();
   const solve::Soft soft{static_cast<float>(kPush) / h, static_cast<float>(1.0 - kLoss),
                          static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h};
@@ -75,7 +77,6 @@ void World::Impl::run_sub_steps(double dt) {
     for_parts([&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft); });
   }
   end_joints(dt);
-  sub_steps_taken = n;
   report_news();
 }
 
