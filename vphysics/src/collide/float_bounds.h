@@ -26,18 +26,10 @@ inline Lanes4 all_lanes(float x) {
   return Lanes4{x, x, x, x};
 }
 inline Lanes4 lesser(Lanes4 a, Lanes4 b) {
-#ifdef __SSE2__
-  return static_cast<Lanes4>(_mm_min_ps(a, b));
-#else
   return a < b ? a : b;
-#endif
 }
 inline Lanes4 greater(Lanes4 a, Lanes4 b) {
-#ifdef __SSE2__
-  return static_cast<Lanes4>(_mm_max_ps(a, b));
-#else
   return a > b ? a : b;
-#endif
 }
 // Bit i: lane i of an outcome of comparisons.
 inline unsigned bits_of(Mask4 m) {

@@ -173,7 +173,8 @@ void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, boo
     c.parked = parked;
     c.near_index = near.add(index, world_.end_of(world_.colliders[c.a].body).row,
                             world_.end_of(world_.colliders[c.b].body).row);
-    read_fields(in, solve::fields_of(near.block(c.near_index)), near.lane(c.near_index));
+    read_fields(in, solve::fields_of(near.block(c.near_index)),
+                solve::NearList::lane(c.near_index));
   }
 }
 
@@ -201,7 +202,7 @@ void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
     if (!in.ok()) return;
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
-    const int lane = graph_.lane(c.place);
+    const int lane = solve::ContactGraph::lane(c.place);
     graph_.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
     read_fields(in, solve::fields_of(graph_.block<P>(c.place)), lane);
     c.parked = colour == solve::kParked;

@@ -361,8 +361,9 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
     ++bodies[a.body].lanes;
     ++bodies[b.body].lanes;
   } else {
-    impulses = c.place.points == 1 ? held_in(graph.block<1>(c.place), graph.lane(c.place))
-                                   : held_in(graph.block<4>(c.place), graph.lane(c.place));
+    impulses = c.place.points == 1
+                   ? held_in(graph.block<1>(c.place), solve::ContactGraph::lane(c.place))
+                   : held_in(graph.block<4>(c.place), solve::ContactGraph::lane(c.place));
   }
   solve::NewContact n{};
   n.normal = m.normal;
@@ -394,11 +395,11 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   }
   const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
   if (ball) {
-    write_lane(graph.block<1>(c.place), graph.lane(c.place), n, row_a, row_b);
-    graph.block<1>(c.place).touches.lane[graph.lane(c.place)] = c.touching ? 1 : 0;
+    write_lane(graph.block<1>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
+    graph.block<1>(c.place).touches.lane[solve::ContactGraph::lane(c.place)] = c.touching ? 1 : 0;
   } else {
-    write_lane(graph.block<4>(c.place), graph.lane(c.place), n, row_a, row_b);
-    graph.block<4>(c.place).touches.lane[graph.lane(c.place)] = c.touching ? 1 : 0;
+    write_lane(graph.block<4>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
+    graph.block<4>(c.place).touches.lane[solve::ContactGraph::lane(c.place)] = c.touching ? 1 : 0;
   }
 }
 

@@ -103,7 +103,7 @@ std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
     };
     const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
     if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
-    const int lane = graph.lane(part.place);
+    const int lane = solve::ContactGraph::lane(part.place);
     const Vec3 normal = part.place.points == 1 ? normal_in(graph.block<1>(part.place), lane)
                                                : normal_in(graph.block<4>(part.place), lane);
     const double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
