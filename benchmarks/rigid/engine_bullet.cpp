@@ -120,6 +120,7 @@ class Bullet final : public Engine {
 }  // namespace
 
 MadeEngine make_engine(const scenes::Scene& scene, double dt) {
+  if (scenes::has_terrain(scene)) return tl::make_unexpected("this comparison gives it no terrain");
   for (const scenes::Body& body : scene.bodies) {
     if (body.parts.size() != 1 || body.motion == scenes::Motion::kinematic) {
       return tl::make_unexpected(

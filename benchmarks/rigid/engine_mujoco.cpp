@@ -257,6 +257,7 @@ class Mujoco final : public Engine {
 }  // namespace
 
 MadeEngine make_engine(const scenes::Scene& scene, double dt) {
+  if (scenes::has_terrain(scene)) return tl::make_unexpected("this comparison gives it no terrain");
   if (scene.bodies.size() > kMostBodies) {
     return tl::make_unexpected("a step of so many bodies takes it minutes");
   }

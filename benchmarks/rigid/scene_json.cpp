@@ -30,6 +30,7 @@ json shape(const scenes::Shape& shape) {
   if (const auto* c = std::get_if<scenes::Capsule>(&shape)) {
     return {{"kind", "capsule"}, {"radius", c->radius}, {"half_length", c->half_length}};
   }
+  if (std::holds_alternative<scenes::Terrain>(shape)) return {{"kind", "terrain"}};
   return {{"kind", "ground"}};
 }
 

@@ -87,6 +87,23 @@ double ground_penetration(const SE3& ground, const Core& core) {
   return core.radius + extent(core, up) - dot(up, core.pose.position() - ground.position());
 }
 
+double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& core) {
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3& h = core.half;
+    const Vec3 p =
+        inverse_times(T, core.pose * Vec3{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y,
+                                          corner & 4 ? h.z : -h.z});
+    const Terrain::Below below = terrain.below(p.x, p.y);
+    deepest = std::max(deepest, core.radius - below.normal.z * (p.z - below.height));
+  }
+  return deepest;
+}
+
+bool is_ground(const Shape& shape) {
+  return std::holds_alternative<Ground>(shape) || std::holds_alternative<Terrain>(shape);
+}
+
 // A part of a body in the world, with its bounds.
 struct Placed {
   const Shape* shape;
@@ -100,7 +117,7 @@ Placed place(const Scene& scene, std::span<const SE3> poses, int body, const Par
   Placed out{&part.shape, poses[body] * part.T_body_shape,
              body,        scene.bodies[body].motion == Motion::dynamic,
              {},          {}};
-  if (std::holds_alternative<Ground>(part.shape)) return out;
+  if (is_ground(part.shape)) return out;
   const Core core = core_of(part.shape, out.pose);
   const Vec3 reach = {core.radius + extent(core, {1, 0, 0}), core.radius + extent(core, {0, 1, 0}),
                       core.radius + extent(core, {0, 0, 1})};
@@ -110,9 +127,7 @@ Placed place(const Scene& scene, std::span<const SE3> poses, int body, const Par
 }
 
 bool bounds_meet(const Placed& a, const Placed& b) {
-  if (std::holds_alternative<Ground>(*a.shape) || std::holds_alternative<Ground>(*b.shape)) {
-    return true;
-  }
+  if (is_ground(*a.shape) || is_ground(*b.shape)) return true;
   return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
          b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
@@ -189,6 +204,10 @@ double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const S
     return ground_penetration(T_world_a, core_of(b, T_world_b));
   if (std::holds_alternative<Ground>(b))
     return ground_penetration(T_world_b, core_of(a, T_world_a));
+  if (const auto* terrain = std::get_if<Terrain>(&a))
+    return terrain_penetration(*terrain, T_world_a, core_of(b, T_world_b));
+  if (const auto* terrain = std::get_if<Terrain>(&b))
+    return terrain_penetration(*terrain, T_world_b, core_of(a, T_world_a));
   const Core ca = core_of(a, T_world_a), cb = core_of(b, T_world_b);
   const double radii = ca.radius + cb.radius;
   if (ca.round() || cb.round()) {

@@ -26,6 +26,15 @@ vp::Shape engine_shape(const Shape& shape) {
   if (const auto* s = std::get_if<Sphere>(&shape)) return vp::Sphere{s->radius};
   if (const auto* b = std::get_if<Box>(&shape)) return vp::Box{b->half_extents};
   if (const auto* c = std::get_if<Capsule>(&shape)) return vp::Capsule{c->radius, c->half_length};
+  if (const auto* t = std::get_if<Terrain>(&shape)) {
+    const vp::HeightGrid grid{static_cast<std::uint32_t>(t->columns),
+                              static_cast<std::uint32_t>(t->rows),
+                              t->spacing,
+                              t->spacing,
+                              *t->heights,
+                              {}};
+    if (auto field = vp::HeightField::of(grid)) return *std::move(field);
+  }
   return vp::HalfSpace{};
 }
 
@@ -56,16 +65,35 @@ vp::Expected<void> SceneWorld::add_body(std::size_t index) {
   const auto id = world_.create_body(desc);
   if (!id) return tl::make_unexpected(id.error());
   bodies_.push_back(*id);
+  if (body.as_one) return add_compound(index);
   for (const Part& part : body.parts) {
-    vp::ColliderDesc collider;
-    collider.shape = engine_shape(part.shape);
-    collider.T_body_shape = part.T_body_shape;
-    collider.material = engine_material(part.material);
-    collider.user_data = index;
-    if (const auto added = world_.add_collider(*id, collider); !added) {
-      return tl::make_unexpected(added.error());
-    }
+    const auto added =
+        add_collider(index, engine_shape(part.shape), part.T_body_shape, part.material);
+    if (!added) return added;
   }
+  return {};
+}
+
+vp::Expected<void> SceneWorld::add_compound(std::size_t index) {
+  const Body& body = scene_.bodies[index];
+  std::vector<vp::CompoundPart> parts;
+  for (const Part& part : body.parts) {
+    parts.push_back({engine_shape(part.shape), part.T_body_shape});
+  }
+  auto compound = vp::Compound::of(parts);
+  if (!compound) return tl::make_unexpected(compound.error());
+  return add_collider(index, *std::move(compound), SE3{}, body.parts[0].material);
+}
+
+vp::Expected<void> SceneWorld::add_collider(std::size_t index, const vp::Shape& shape,
+                                            const SE3& T_body_shape, const Material& material) {
+  vp::ColliderDesc collider;
+  collider.shape = shape;
+  collider.T_body_shape = T_body_shape;
+  collider.material = engine_material(material);
+  collider.user_data = index;
+  const auto added = world_.add_collider(bodies_[index], collider);
+  if (!added) return tl::make_unexpected(added.error());
   return {};
 }
 

@@ -104,6 +104,8 @@ TEST(Catalogue, HasTheBodiesThatTheNamesSay) {
       {"cards", {6 + 4 + 2 + 2 + 1, 0}},
       {"dominoes", {60, 0}},
       {"cradle", {5, 5}},
+      {"hills", {60, 0}},
+      {"furniture", {75, 0}},
       {"heap1000", {1000, 0}},
       {"heap1", {1, 0}}};
   for (const auto& [name, expected] : kBodiesAndJoints) {

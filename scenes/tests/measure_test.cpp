@@ -35,10 +35,18 @@ TEST(Penetration, IsWhatASketchSays) {
   const double tilt = std::acos(1.0 / kRoot3);
   const SE3 on_corner = turned(Vec3{-tilt / kRoot2, tilt / kRoot2, 0}, {0, 0, 0});
   const SE3 up(on_corner.rotation(), {0, 0, 0.85});
+  std::vector<double> rises;  // by 45 degrees along x
+  for (int k = 0; k < 25; ++k) rises.push_back(k % 5);
+  const Terrain slope{5, 5, 1.0, std::make_shared<const std::vector<double>>(rises)};
   const Case kCases[] = {
       {"box on ground", Ground{}, SE3{}, kCube, at(3, 4, 0.49), 0.01},
       {"box over ground", Ground{}, SE3{}, kCube, at(3, 4, 0.51), -0.01},
       {"box corner in ground", Ground{}, SE3{}, kCube, up, 0.5 * kRoot3 - 0.85},
+      {"box on a slope of terrain", slope, SE3{}, kCube,
+       turned({0, -0.25 * vp::kPi, 0}, {2, 2, 2 + 0.5 * std::sqrt(2.0) - 0.01}),
+       0.01 / std::sqrt(2.0)},
+      {"sphere in terrain", slope, at(0, 0, 1), Sphere{0.5}, at(2, 2, 3 + 0.3 * std::sqrt(2.0)),
+       0.2},
       {"sphere in ground", Sphere{0.5}, at(0, 0, 0.4), Ground{}, SE3{}, 0.1},
       {"capsule standing in ground", Capsule{0.3, 0.3}, at(0, 0, 0.5), Ground{}, SE3{}, 0.1},
       {"ground that slopes", Ground{}, turned({0, 0.25 * vp::kPi, 0}, {}), Sphere{0.5},

@@ -139,6 +139,25 @@ TEST(Phenomena, WhatIsToStandStands) {
   }
 }
 
+// What is let loose on hills and poured as compounds stays on them and in the pit, at rest in the
+// end.
+TEST(Phenomena, HillsAndPitsHoldWhatIsLetLooseInThem) {
+  for (const char* name : {"hills", "furniture"}) {
+    SceneWorld world = world_of(name);
+    run(world, world.scene().seconds);
+    const Standing standing = measure(world.scene(), world.poses());
+    EXPECT_EQ(standing.in_place, standing.of) << name;
+    EXPECT_LT(standing.penetration, 0.005) << name;
+    double fastest = 0.0;
+    for (const vp::BodyId body : world.bodies()) {
+      fastest = std::max(fastest, norm(world.world().velocity(body).v));
+    }
+    EXPECT_LT(fastest, 0.5) << name;
+    std::printf("%s after %g s: penetration %.3f mm, fastest %.3f m/s\n", name,
+                world.scene().seconds, 1e3 * standing.penetration, fastest);
+  }
+}
+
 // Each domino passes it on: they fall in their order, all of them, each at nearly the time of the
 // one before after the first few.
 TEST(Phenomena, ADominoRunRunsToItsEnd) {

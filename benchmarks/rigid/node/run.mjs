@@ -82,6 +82,9 @@ async function main() {
   const scene = JSON.parse(readFileSync(sceneFile, 'utf8'));
   const unusual = scene.bodies.some((b) => b.parts.length !== 1 || b.motion === 'kinematic');
   if (unusual) return say('cannot', 'this comparison gives it bodies of one shape that it moves itself');
+  if (scene.bodies.some((b) => b.parts.some((part) => part.shape.kind === 'terrain'))) {
+    return say('cannot', 'this comparison gives it no terrain');
+  }
   const { make } = await import(`./${engineName}.mjs`);
   const engine = await make(scene, 1 / Number(hz));
   say('ready', engine.settings);

@@ -108,12 +108,22 @@ glm::vec3 SceneView::seen(const vp::Vec3& world) const {
   return narrow(world - origin_);
 }
 
-std::vector<Instance>& SceneView::instances_of(const vp::ConvexHull& hull) {
-  for (Hull& known : hulls_) {
-    if (known.hull.data() == hull.data()) return known.instances;
+// Null: it is no such shape.
+template <class T>
+std::vector<Instance>* SceneView::instances_of(const vp::Shape& shape,
+                                               ShapeMesh (*mesh)(const T&)) {
+  const T* own = std::get_if<T>(&shape);
+  if (own == nullptr) return nullptr;
+  for (Built& known : built_) {
+    const T* other = std::get_if<T>(&known.shape);
+    if (other == nullptr || other->data() != own->data()) continue;
+    if constexpr (requires { own->scale(); }) {
+      if (!(other->scale() == own->scale())) continue;
+    }
+    return &known.instances;
   }
-  hulls_.push_back({hull, InstancedMesh(hull_mesh(hull)), {}});
-  return hulls_.back().instances;
+  built_.push_back({shape, InstancedMesh(mesh(*own)), {}});
+  return &built_.back().instances;
 }
 
 void SceneView::add(const vp::Shape& shape, const vp::SE3& T, const glm::vec4& colour) {
@@ -130,9 +140,12 @@ void SceneView::add(const vp::Shape& shape, const vp::SE3& T, const glm::vec4& c
   instance.colour = colour;
   if (const auto kind = kind_of(shape)) {
     instances_[static_cast<std::size_t>(*kind)].push_back(instance);
-  } else if (const auto* hull = std::get_if<vp::ConvexHull>(&shape)) {
-    instances_of(*hull).push_back(instance);
+    return;
   }
+  std::vector<Instance>* of_shape = instances_of<vp::ConvexHull>(shape, hull_mesh);
+  if (!of_shape) of_shape = instances_of<vp::TriangleMesh>(shape, surface_mesh);
+  if (!of_shape) of_shape = instances_of<vp::HeightField>(shape, surface_mesh);
+  if (of_shape) of_shape->push_back(instance);
 }
 
 // Walls between the eye and what moves become ghosts, without a shadow; so do, for the shadow,
@@ -140,7 +153,7 @@ void SceneView::add(const vp::Shape& shape, const vp::SE3& T, const glm::vec4& c
 void SceneView::gather(const Simulation& simulation, const OrbitCamera& camera,
                        const ViewOptions& options) {
   for (auto& list : instances_) list.clear();
-  for (Hull& hull : hulls_) hull.instances.clear();
+  for (Built& built : built_) built.instances.clear();
   ghosts_.clear();
   grounds_.clear();
   const std::span<const Piece> pieces = simulation.pieces();
@@ -172,7 +185,7 @@ void SceneView::gather(const Simulation& simulation, const OrbitCamera& camera,
 void SceneView::upload() {
   for (std::size_t kind = 0; kind < meshes_.size(); ++kind)
     meshes_[kind].set_instances(instances_[kind]);
-  for (Hull& hull : hulls_) hull.mesh.set_instances(hull.instances);
+  for (Built& built : built_) built.mesh.set_instances(built.instances);
   ghost_mesh_.set_instances(ghosts_);
 }
 
@@ -182,9 +195,9 @@ void SceneView::draw_bodies(int& calls) const {
     meshes_[kind].draw();
     ++calls;
   }
-  for (const Hull& hull : hulls_) {
-    if (hull.instances.empty()) continue;
-    hull.mesh.draw();
+  for (const Built& built : built_) {
+    if (built.instances.empty()) continue;
+    built.mesh.draw();
     ++calls;
   }
 }
@@ -235,7 +248,7 @@ void SceneView::draw_shadow(const OrbitCamera& camera, bool wanted) {
     }
   };
   for (const auto& list : instances_) cast(list);
-  for (const Hull& hull : hulls_) cast(hull.instances);
+  for (const Built& built : built_) cast(built.instances);
   const ShadowFit fit = fit_shadow(casters, kShadowAround * static_cast<float>(camera.distance()));
   shadow_matrix_ = kTextureFromClip * fit.matrix;
   shadow_texel_ = fit.width / static_cast<float>(shadow_.size());

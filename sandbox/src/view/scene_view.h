@@ -38,8 +38,9 @@ class SceneView {
   int draw_calls() const { return draw_calls_; }
 
  private:
-  struct Hull {
-    vp::ConvexHull hull;
+  // A shape with a mesh of its own: a hull, a mesh or a height field.
+  struct Built {
+    vp::Shape shape;
     InstancedMesh mesh;
     std::vector<Instance> instances;
   };
@@ -48,7 +49,8 @@ class SceneView {
   std::string build_programs();
   void gather(const Simulation& simulation, const OrbitCamera& camera, const ViewOptions& options);
   void add(const vp::Shape& shape, const vp::SE3& T_world_shape, const glm::vec4& colour);
-  std::vector<Instance>& instances_of(const vp::ConvexHull& hull);
+  template <class T>
+  std::vector<Instance>* instances_of(const vp::Shape& shape, ShapeMesh (*mesh)(const T&));
   void upload();
   void draw_bodies(int& calls) const;
   void draw_shadow(const OrbitCamera& camera, bool wanted);
@@ -69,7 +71,7 @@ class SceneView {
   draw::GlBuffer square_corners_;
   std::array<InstancedMesh, kShapeKinds> meshes_;
   std::array<std::vector<Instance>, kShapeKinds> instances_;
-  std::vector<Hull> hulls_;
+  std::vector<Built> built_;
   InstancedMesh ghost_mesh_;
   std::vector<Instance> ghosts_;
   std::vector<vp::SE3> grounds_;  // half-spaces

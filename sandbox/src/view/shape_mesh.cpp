@@ -186,6 +186,52 @@ ShapeMesh hull_mesh(const vp::ConvexHull& hull) {
   return b.mesh;
 }
 
+namespace {
+
+// Flat: each triangle has corners of its own. Without area it is left out.
+void add_flat(Builder& b, const vp::Vec3& p, const vp::Vec3& q, const vp::Vec3& r) {
+  const vp::Vec3 across = cross(q - p, r - p);
+  const double size = norm(across);
+  if (!(size > 0.0)) return;
+  const vp::Vec3 n = (1.0 / size) * across;
+  const glm::vec3 normal{narrow(n.x), narrow(n.y), narrow(n.z)};
+  std::uint32_t corner[3];
+  int k = 0;
+  for (const vp::Vec3* v : {&p, &q, &r}) {
+    corner[k++] = b.vertex({narrow(v->x), narrow(v->y), narrow(v->z)}, normal);
+  }
+  b.triangle(corner[0], corner[1], corner[2]);
+}
+
+}  // namespace
+
+ShapeMesh surface_mesh(const vp::TriangleMesh& mesh) {
+  Builder b;
+  const vp::Vec3& s = mesh.scale();
+  const auto at = [&](std::uint32_t v) {
+    const vp::Vec3& p = mesh.vertices()[v];
+    return vp::Vec3{s.x * p.x, s.y * p.y, s.z * p.z};
+  };
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    add_flat(b, at(i), at(j), at(k));
+    if (mesh.two_sided()) add_flat(b, at(i), at(k), at(j));
+  }
+  return b.mesh;
+}
+
+ShapeMesh surface_mesh(const vp::HeightField& field) {
+  Builder b;
+  for (std::uint32_t j = 0; j + 1 < field.rows(); ++j) {
+    for (std::uint32_t i = 0; i + 1 < field.columns(); ++i) {
+      if (field.is_hole(i, j)) continue;
+      const vp::Vec3 low = field.sample(i, j), high = field.sample(i + 1, j + 1);
+      add_flat(b, low, field.sample(i + 1, j), high);
+      add_flat(b, low, high, field.sample(i, j + 1));
+    }
+  }
+  return b.mesh;
+}
+
 glm::vec4 stretch_of(const vp::Shape& shape) {
   return std::visit(Stretch{}, shape);
 }

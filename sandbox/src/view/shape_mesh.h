@@ -29,8 +29,12 @@ inline constexpr int kShapeKinds = 5;
 // detail: 1 for a close look; less where triangles are dear.
 ShapeMesh shape_mesh(ShapeKind kind, float detail);
 ShapeMesh hull_mesh(const vp::ConvexHull& hull);  // of one hull; stretched by 1, not round
+// The same of triangles; of a two-sided mesh both sides.
+ShapeMesh surface_mesh(const vp::TriangleMesh& mesh);
+ShapeMesh surface_mesh(const vp::HeightField& field);
 
-// xyz: stretch of the core; w: round [m]. The bounds are the shape's own. Of hulls: 1 and 0.
+// xyz: stretch of the core; w: round [m]. The bounds are the shape's own. Of hulls and
+// surfaces: 1 and 0.
 glm::vec4 stretch_of(const vp::Shape& shape);
 
 }  // namespace sandbox

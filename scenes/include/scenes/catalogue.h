@@ -59,4 +59,10 @@ Scene ramp();
 Scene bounce();
 Scene conveyor();
 
+// --- shapes of many parts ------------------------------------------------------------------------
+// Spheres, capsules and boxes let loose on the slopes of a bowl with hills in it.
+Scene hills(int count);
+// Tables, jacks and dumbbells, each one compound, poured into a pit.
+Scene furniture(int along, int layers);
+
 }  // namespace scenes

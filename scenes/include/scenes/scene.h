@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,8 +31,22 @@ struct Capsule {
 };
 // The half-space z <= 0 of its own frame; of fixed bodies only.
 struct Ground {};
+// Ground by its height over a grid: sample (i, j) at (i spacing, j spacing, height), each cell cut
+// along the diagonal from (i, j) to (i + 1, j + 1), solid below; of fixed bodies only.
+struct Terrain {
+  int columns = 2, rows = 2;                           // of samples, along x and y
+  double spacing = 1.0;                                // [m]
+  std::shared_ptr<const std::vector<double>> heights;  // of sample (i, j) at [j columns + i] [m]
 
-using Shape = std::variant<Sphere, Box, Capsule, Ground>;
+  struct Below {
+    double height;  // of the ground under a point [m]
+    Vec3 normal;    // unit, upwards
+  };
+  // Under (x, y) of its frame, or under the nearest point that has ground.
+  Below below(double x, double y) const;
+};
+
+using Shape = std::variant<Sphere, Box, Capsule, Ground, Terrain>;
 
 struct Material {
   double friction = 0.6;          // of a pair of two such surfaces
@@ -54,6 +69,8 @@ struct Body {
   Vec3 velocity, spin;  // of the origin, world frame [m/s], [rad/s]
   std::vector<Part> parts;
   bool fast = false;  // small and fast: an engine that can sweep bodies sweeps it
+  // An engine that has compounds takes the parts, which are of one material, as one shape.
+  bool as_one = false;
 };
 
 // Holds two bodies together; these two do not meet. Its frame is given in both bodies.
@@ -97,13 +114,16 @@ struct Scene {
   InPlace in_place;
 };
 
+// Whether any body has such a shape; what knows no height fields cannot have the scene.
+bool has_terrain(const Scene& scene);
+
 // Of the parts together; precondition: the body is dynamic.
 struct Mass {
   double mass;   // [kg]
   Vec3 moments;  // about the origin, along the body's axes [kg m^2]
 };
 Mass mass_of(const Body& body);
-// About its own centre; of Ground: zero.
+// About its own centre; of Ground and Terrain: zero.
 Mass mass_of(const Shape& shape, double density);
 
 }  // namespace scenes

@@ -9,7 +9,7 @@
 
 namespace scenes {
 
-// As the engine has it.
+// As the engine has it. Precondition: a terrain is one that the engine can have.
 vp::Shape engine_shape(const Shape& shape);
 
 class SceneWorld {
@@ -33,6 +33,9 @@ class SceneWorld {
   SceneWorld(Scene scene, const vp::WorldDesc& settings)
       : scene_(std::move(scene)), world_(settings) {}
   vp::Expected<void> add_body(std::size_t index);
+  vp::Expected<void> add_compound(std::size_t index);
+  vp::Expected<void> add_collider(std::size_t index, const vp::Shape& shape,
+                                  const SE3& T_body_shape, const Material& material);
   vp::Expected<void> add_joint(const Joint& joint);
   vp::Expected<void> launch(const Launch& launch);
 
