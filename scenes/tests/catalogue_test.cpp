@@ -215,6 +215,7 @@ TEST(Catalogue, MakesTheSameBitsEverywhere) {
       {"bounce", 0x68dd743a955178c3u},     {"conveyor", 0xea51b6f5319dacb6u},
       {"plumb", 0x72539b38b9b4fc49u},      {"catenary", 0x8a074c04254ca5d3u},
       {"touchstone", 0xa6aded3e74344f4cu}, {"touchstone-joined", 0x8590d694d0d643b9u},
+      {"hills", 0x870a7bae0fc3217du},      {"furniture", 0xb0abe4e879d882b8u},
   };
   for (const Entry& entry : catalogue()) {
     const auto golden = kGolden.find(std::string(entry.name));
