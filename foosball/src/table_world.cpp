@@ -283,7 +283,8 @@ bool TableWorld::free_for_ball(const Vec3& position) const {
   constexpr double kAir = 0.001;
   found_.clear();
   // Walls and corners are kept away from by whoever chooses the place; the field is always touched.
-  world_.overlap_sphere(position, table_.ball_radius + kAir, found_, {kBallCategory, kManCategory});
+  must(world_.overlapping(vp::Sphere{table_.ball_radius + kAir}, SE3(position), found_,
+                          {.collision = {kBallCategory, kManCategory}}));
   return found_.empty();
 }
 

@@ -48,6 +48,49 @@ void operator delete(void* p, std::size_t) noexcept {
 namespace vp::test {
 namespace {
 
+// Rays, casts, overlaps and the nearest, in a world that moves on between them.
+TEST(Queries, AllocateNothingOnceWarm) {
+  World world;
+  add_ground(world, {});
+  Random random(11);
+  for (int i = 0; i < 60; ++i) {
+    Part part;
+    part.shape = i % 2 ? Shape{Box{{0.2, 0.3, 0.1}}} : Shape{Cylinder{0.2, 0.3}};
+    part.pose = SE3(random.rotation(), random.in_cube(2.0) + Vec3{0, 0, 3});
+    add_dynamic(world, part);
+  }
+  std::vector<RayHit> rays;
+  std::vector<ShapeHit> casts;
+  std::vector<ColliderId> touched;
+  const Shape shape = Capsule{0.3, 0.4};
+  std::size_t found = 0;
+  const auto ask = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      const Vec3 from = random.in_cube(3.0);
+      rays.clear(), casts.clear(), touched.clear();
+      must(world.ray_cast_all(from, {0, 0, -1}, 9, rays));
+      must(world.shape_cast_all(shape, SE3(from), {{0, 0, -4}, {1, 0, 0}}, casts));
+      must(world.overlapping(shape, SE3(from), touched));
+      found += rays.size() + casts.size() + touched.size();
+      found += must(world.ray_cast(from, {1, 2, 0}, 9)).has_value() ? 1 : 0;
+      found += must(world.shape_cast(shape, SE3(from), {{1, 2, 0}, {}})).has_value() ? 1 : 0;
+      found += must(world.nearest(shape, SE3(from), 5)).has_value() ? 1 : 0;
+    }
+  };
+  rays.reserve(100), casts.reserve(100), touched.reserve(100);
+  for (int i = 0; i < 100; ++i) must(world.step(0.002));
+  ask(300);
+  long allocated = 0;
+  for (int i = 0; i < 20; ++i) {
+    must(world.step(0.002));
+    const long before = g_allocations;
+    ask(10);
+    allocated += g_allocations - before;
+  }
+  EXPECT_EQ(allocated, 0);
+  EXPECT_GT(found, 1000u);
+}
+
 TEST(Step, AllocatesNothingOnceWarm) {
   World world;
   const Material m{0.4, 0.6, 0.0};
@@ -240,7 +283,7 @@ TEST(PairFinder, AllocatesNothingOnceWarm) {
   found.reserve(100000);
   words.words.reserve(100000);
   inside.reserve(400);
-  scratch.queue.reserve(500);
+  scratch.reserve(500);
   long during = 0;
   for (int k = 0; k < 400; ++k) {
     const long before = g_allocations;

@@ -132,7 +132,7 @@ TEST(DebugDraw, WiresLieOnTheSurfaceAndReachAsFarAsTheShape) {
     }
     for (const Line& line : kept.lines) {
       const Vec3 p = line.from, out = (1.0 / norm(p)) * p;
-      const auto hit = world.ray_cast(p + 5.0 * out, -out, 10.0);
+      const auto hit = must(world.ray_cast(p + 5.0 * out, -out, 10.0));
       ASSERT_TRUE(hit) << known.name;
       EXPECT_NEAR(hit->distance, 5.0, 1e-6) << known.name;
       EXPECT_EQ(line.mark, DebugMark::fixed_shape);

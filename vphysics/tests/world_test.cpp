@@ -360,39 +360,6 @@ TEST(Filter, LetsPassWhatIsNotInTheMask) {
   EXPECT_NEAR(world.pose(ball).position().x, 0.5, 1e-9);
 }
 
-TEST(RayCast, FindsTheNearestSurface) {
-  World world;
-  add_fixed(world, Box{{1, 1, 1}}, {}, SE3(Vec3{5, 0, 0}));
-  const BodyId near = add_fixed(world, Sphere{1}, {}, SE3(Vec3{3, 0, 0}));
-  const auto hit = world.ray_cast({0, 0, 0}, {2, 0, 0}, 10.0);
-  ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit->distance, 2.0, 1e-8);
-  EXPECT_EQ(hit->body, near);
-  EXPECT_NEAR(hit->normal.x, -1.0, 1e-9);
-  EXPECT_NEAR(hit->point.x, 2.0, 1e-8);
-  EXPECT_NEAR(world.sphere_cast({0, 0, 0}, 0.5, {1, 0, 0}, 10.0)->distance, 1.5, 1e-8);
-  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, 1.9));
-  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {-1, 0, 0}, 10));
-  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {0, 0, 0}, 10));
-  EXPECT_FALSE(world.ray_cast({kNaN, 0, 0}, {1, 0, 0}, 10));
-  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, kInf));
-  EXPECT_FALSE(world.ray_cast({0, 0, 0}, {1, 0, 0}, 10, {1, 0}));
-}
-
-TEST(OverlapSphere, FindsInOrderOfCreation) {
-  World world;
-  const BodyId gone = add_fixed(world, Sphere{1}, {});
-  add_fixed(world, Sphere{1}, {}, SE3(Vec3{1, 0, 0}));
-  must(world.destroy_body(gone));
-  add_fixed(world, Sphere{1}, {}, SE3(Vec3{-1, 0, 0}));  // takes the free slot, but is younger
-  add_fixed(world, Sphere{1}, {}, SE3(Vec3{9, 0, 0}));
-  std::vector<ColliderId> found;
-  world.overlap_sphere({0, 0, 0}, 0.5, found);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].index, 2u);
-  EXPECT_EQ(found[1].index, 1u);
-}
-
 TEST(ImpactLimit, HoldsWhatWouldMeetAndSaysSo) {
   WorldDesc desc;
   desc.max_impacts_per_step = 0;

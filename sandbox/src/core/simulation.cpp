@@ -130,7 +130,8 @@ vp::Expected<void> Simulation::advance(double frame, double speed, double budget
 
 bool Simulation::grab(const Ray& ray) {
   grip_.reset();
-  const auto hit = world().ray_cast(ray.origin, ray.direction, kReach);
+  const auto cast = world().ray_cast(ray.origin, ray.direction, kReach);
+  const auto hit = cast ? *cast : std::nullopt;
   if (!hit || hit->user_data >= pieces_.size()) return false;
   const Piece& piece = pieces_[hit->user_data];
   if (piece.motion != scenes::Motion::dynamic) return false;

@@ -24,6 +24,7 @@
 #include "vphysics/jobs.h"
 #include "vphysics/lie.h"
 #include "vphysics/multibody/model.h"
+#include "vphysics/query.h"
 #include "vphysics/shapes.h"
 #include "vphysics/world_joints.h"
 
@@ -105,15 +106,6 @@ struct StepCounters {
   std::uint32_t looked_at = 0;  // pairs given to the narrow phase
   std::uint32_t awake = 0;      // bodies that move, those asleep left out; links are not counted
   std::uint32_t triangles = 0;  // of meshes and height fields, that it looked at
-};
-
-struct RayHit {
-  ColliderId collider;
-  BodyId body;
-  std::uint64_t user_data;
-  double distance;  // along the unit direction [m]
-  Vec3 point;       // on the collider's surface, world frame [m]
-  Vec3 normal;      // unit, out of the collider, world frame
 };
 
 class Recorder;
@@ -199,14 +191,38 @@ class World {
   const StepCounters& counters() const;  // of the last step
 
   // --- queries ----------------------------------------------------------------------------------
-  std::optional<RayHit> ray_cast(const Vec3& origin, const Vec3& direction, double max_distance,
-                                 CollisionFilter filter = {}) const;
-  // A sphere of the radius moved along the ray; distance is the travel of its centre.
-  std::optional<RayHit> sphere_cast(const Vec3& origin, double radius, const Vec3& direction,
-                                    double max_distance, CollisionFilter filter = {}) const;
-  // Colliders that a sphere meets, in order of creation, appended to found.
-  void overlap_sphere(const Vec3& centre, double radius, std::vector<ColliderId>& found,
-                      CollisionFilter filter = {}) const;
+  // Against every shape, through trees of bounds, at the poses of now. Nothing is changed, not even
+  // the hash; no heap allocation once warm. Of what is equally far the older collider comes first.
+  // Meshes and height fields are where their triangles are, without an inside; one-sided triangles
+  // let rays and casts pass from behind. Refused: numbers that are not finite or beyond 1e9,
+  // directions of zero, negative distances, shapes that are not proper; with Errc::unsupported
+  // half-spaces, meshes and height fields as the shape that is asked about.
+
+  // The first collider along a ray of max_distance [m]; the direction is of any length but zero.
+  Expected<std::optional<RayHit>> ray_cast(const Vec3& origin, const Vec3& direction,
+                                           double max_distance,
+                                           const QueryFilter& filter = {}) const;
+  // Each collider where the ray enters it first, in order of distance, appended to hits.
+  Expected<void> ray_cast_all(const Vec3& origin, const Vec3& direction, double max_distance,
+                              std::vector<RayHit>& hits, const QueryFilter& filter = {}) const;
+  // The first collider that a shape meets on its way.
+  Expected<std::optional<ShapeHit>> shape_cast(const Shape& shape, const SE3& T_world_shape,
+                                               const CastMotion& motion,
+                                               const QueryFilter& filter = {}) const;
+  // Each collider where the shape, were the others not there, would meet it first, in order of
+  // fraction, appended to hits.
+  Expected<void> shape_cast_all(const Shape& shape, const SE3& T_world_shape,
+                                const CastMotion& motion, std::vector<ShapeHit>& hits,
+                                const QueryFilter& filter = {}) const;
+  // Colliders that the shape touches, in order of creation, appended to found.
+  Expected<void> overlapping(const Shape& shape, const SE3& T_world_shape,
+                             std::vector<ColliderId>& found, const QueryFilter& filter = {}) const;
+  // The collider that is nearest, or in which the shape is deepest, no farther than max_distance.
+  Expected<std::optional<NearestHit>> nearest(const Shape& shape, const SE3& T_world_shape,
+                                              double max_distance,
+                                              const QueryFilter& filter = {}) const;
+  Expected<std::optional<NearestHit>> nearest(const Vec3& point, double max_distance,
+                                              const QueryFilter& filter = {}) const;
 
   // Tells draw what the options ask for; a callback must not change the world. Refused: sizes that
   // are not in (0, 1e6].

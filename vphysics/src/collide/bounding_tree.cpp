@@ -221,4 +221,15 @@ bool LaneSweep::meets(const FloatBounds& bounds, double limit, float& entry) con
   return true;
 }
 
+float distance_between(const Bounds& box, const FloatBounds& other, const Vec3& scale) {
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = static_cast<double>(other.lower[axis]) - box.upper[axis],
+                 above = box.lower[axis] - static_cast<double>(other.upper[axis]);
+    const double apart = scale[axis] * std::max({0.0, below, above});
+    square += apart * apart;
+  }
+  return std::max(0.0f, rounded_down(std::sqrt(square)));
+}
+
 }  // namespace vp::collide

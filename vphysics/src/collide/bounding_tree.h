@@ -37,13 +37,34 @@ struct Sweep {
   Vec3 displacement;
 };
 
-// Memory of casts, kept by whoever casts.
-struct CastScratch {
+// Memory of casts, kept by whoever casts: a heap of nodes and items by the fraction at which they
+// are entered, or their distance. A node comes before an item of the same one, since it may hold an
+// item with a lower number.
+class CastScratch {
+ public:
   struct Entry {
     float fraction;
     std::uint32_t child;
   };
-  std::vector<Entry> queue;
+  void reserve(std::size_t n) { queue_.reserve(n); }
+  void clear() { queue_.clear(); }
+  bool empty() const { return queue_.empty(); }
+  void push(const Entry& entry) {
+    queue_.push_back(entry);
+    std::push_heap(queue_.begin(), queue_.end(), is_later);
+  }
+  Entry pop() {
+    const Entry first = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end(), is_later);
+    queue_.pop_back();
+    return first;
+  }
+
+ private:
+  static bool is_later(const Entry& a, const Entry& b) {
+    return a.fraction > b.fraction || (a.fraction == b.fraction && a.child > b.child);
+  }
+  std::vector<Entry> queue_;
 };
 
 class BoundingTree {
@@ -86,6 +107,13 @@ class BoundingTree {
   // the new limit: the same to go on, less to look no farther, negative to stop.
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
+
+  // near(item, distance) in order of distance, then of items, for all whose bounds are no farther
+  // from the box than `limit` [m]; distance is no more than theirs, by float's rounding. What near
+  // returns is the new limit, as of cast(). scale: each axis counts as that much longer.
+  template <class F>
+  void nearest(const Bounds& box, const Vec3& scale, double limit, CastScratch& scratch,
+               const F& near) const;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -147,6 +175,9 @@ class LaneSweep {
   float add_to_lower_[3], add_to_upper_[3];  // Minkowski sum with the box, reflected
   float inverse_[3];                         // 0: the sweep does not go along this axis
 };
+
+// Never above the distance of the two.
+float distance_between(const Bounds& box, const FloatBounds& other, const Vec3& scale);
 
 template <class F>
 void BoundingTree::overlapping_below(std::uint32_t node, const SpreadBounds& box,
@@ -231,24 +262,15 @@ void BoundingTree::overlapping_pairs(const BoundingTree& other, const F& found) 
   if (size_ > 0 && other.size_ > 0) overlapping_pairs_below(other, 0, found);
 }
 
-// A heap of nodes and items by entry: a node comes before an item of the same fraction, since it
-// may hold one with a lower number.
 template <class F>
 void BoundingTree::cast(const Sweep& sweep, double limit, CastScratch& scratch,
                         const F& hit) const {
-  using Entry = CastScratch::Entry;
-  const auto later = [](const Entry& a, const Entry& b) {
-    return a.fraction > b.fraction || (a.fraction == b.fraction && a.child > b.child);
-  };
-  std::vector<Entry>& queue = scratch.queue;
-  queue.clear();
+  scratch.clear();
   if (size_ == 0 || !(limit >= 0.0)) return;
   const LaneSweep lanes(sweep);
-  queue.push_back({0.0f, 0});
-  while (!queue.empty()) {
-    const Entry next = queue.front();
-    std::pop_heap(queue.begin(), queue.end(), later);
-    queue.pop_back();
+  scratch.push({0.0f, 0});
+  while (!scratch.empty()) {
+    const CastScratch::Entry next = scratch.pop();
     const float farthest = LaneSweep::beyond(limit);
     if (next.fraction > farthest) return;
     if (next.child & kLeaf) {
@@ -259,8 +281,29 @@ void BoundingTree::cast(const Sweep& sweep, double limit, CastScratch& scratch,
     const Node& n = nodes_[next.child];
     float entry[8];
     for_each_bit(lanes.meets(n.bounds, farthest, entry) & n.used, [&](unsigned i) {
-      queue.push_back({entry[i], n.child[i]});
-      std::push_heap(queue.begin(), queue.end(), later);
+      scratch.push({entry[i], n.child[i]});
+    });
+  }
+}
+
+template <class F>
+void BoundingTree::nearest(const Bounds& box, const Vec3& scale, double limit, CastScratch& scratch,
+                           const F& near) const {
+  scratch.clear();
+  if (size_ == 0 || !(limit >= 0.0)) return;
+  scratch.push({0.0f, 0});
+  while (!scratch.empty()) {
+    const CastScratch::Entry next = scratch.pop();
+    if (static_cast<double>(next.fraction) > limit) return;
+    if (next.child & kLeaf) {
+      limit = near(next.child & ~kLeaf, next.fraction);
+      if (limit < 0.0) return;
+      continue;
+    }
+    const Node& n = nodes_[next.child];
+    for_each_bit(n.used, [&](unsigned i) {
+      const float distance = distance_between(box, n.bounds.lane(i), scale);
+      if (static_cast<double>(distance) <= limit) scratch.push({distance, n.child[i]});
     });
   }
 }

@@ -89,6 +89,9 @@ class PairFinder {
   // among the fixed, then among the moving ones.
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
+  // near(proxy, distance) as BoundingTree::nearest has it, in the order of cast().
+  template <class F>
+  void nearest(const Bounds& box, double limit, CastScratch& scratch, const F& near) const;
 
   // Snapshot: words to a sink with word(std::uint64_t).
   template <class Sink>
@@ -194,6 +197,23 @@ void PairFinder::cast(const Sweep& sweep, double limit, CastScratch& scratch, co
   }
   for (const BoundingTree& tree : trees_) {
     tree.cast(sweep, limit, scratch, carried);
+    if (limit < 0.0) return;
+  }
+}
+
+template <class F>
+void PairFinder::nearest(const Bounds& box, double limit, CastScratch& scratch,
+                         const F& near) const {
+  const Vec3 scale{1.0, 1.0, 1.0};
+  const auto carried = [&](std::uint32_t proxy, float distance) {
+    return limit = near(proxy, distance);
+  };
+  for (const std::uint32_t proxy : unbounded_) {
+    const float distance = distance_between(box, bounds_[proxy], scale);
+    if (static_cast<double>(distance) <= limit && carried(proxy, distance) < 0.0) return;
+  }
+  for (const BoundingTree& tree : trees_) {
+    tree.nearest(box, scale, limit, scratch, carried);
     if (limit < 0.0) return;
   }
 }

@@ -45,6 +45,11 @@ class Surface {
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
 
+  // near(triangle) for those whose bounds are no farther from the box than limit [m]; what it
+  // returns is the new limit, no more than the old one.
+  template <class F>
+  void nearest(const Bounds& box, double limit, CastScratch& scratch, const F& near) const;
+
  private:
   Vec3 scaled(const Vec3& p) const { return {scale_.x * p.x, scale_.y * p.y, scale_.z * p.z}; }
   Bounds unscaled(const Bounds& b) const;
@@ -54,6 +59,8 @@ class Surface {
   void for_cells(const Bounds& box, const F& found) const;
   template <class F>
   void cast_field(const Sweep& sweep, double limit, const F& hit) const;
+  template <class F>
+  void nearest_of_field(const Bounds& box, double limit, const F& near) const;
 
   const MeshData* mesh_ = nullptr;
   const HeightData* field_ = nullptr;
@@ -149,6 +156,30 @@ void Surface::cast(const Sweep& sweep, double limit, CastScratch& scratch, const
   } else if (limit >= 0.0) {
     cast_field(own, limit, hit);
   }
+}
+
+// Of all cells within a distance, of twice that, and so on: a cell may be told several times.
+template <class F>
+void Surface::nearest_of_field(const Bounds& box, double limit, const F& near) const {
+  const HeightData& f = *field_;
+  const Bounds all = bounds();
+  double reach = std::max(f.spacing_x * scale_.x, f.spacing_y * scale_.y);
+  for (;;) {
+    const Bounds within = grown(box, std::min(reach, limit));
+    for_cells(unscaled(within), [&](std::uint32_t id) { limit = near(id); });
+    const auto covers = [&](int i) {
+      return within.lower[i] <= all.lower[i] && within.upper[i] >= all.upper[i];
+    };
+    if (reach >= limit || (covers(0) && covers(1) && covers(2))) return;
+    reach *= 2.0;
+  }
+}
+
+template <class F>
+void Surface::nearest(const Bounds& box, double limit, CastScratch& scratch, const F& near) const {
+  if (field_ != nullptr) return nearest_of_field(box, limit, near);
+  mesh_->tree.nearest(unscaled(box), scale_, limit, scratch,
+                      [&](std::uint32_t id, float) { return near(id); });
 }
 
 }  // namespace vp::collide

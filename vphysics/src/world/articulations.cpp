@@ -15,6 +15,7 @@ constexpr std::size_t kRowsOfDof = 5;
 
 // Links are bodies for all that collides; their pose and velocity are copies.
 void World::Impl::follow(const Articulation& art) {
+  ready_for_queries = false;
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
     if (body.first_collider == kNone) continue;

@@ -262,6 +262,7 @@ void World::Impl::forget_contacts(std::uint32_t body) {
 
 // Put elsewhere by the user.
 void World::Impl::jumped(std::uint32_t index) {
+  ready_for_queries = false;
   Body& body = bodies[index];
   wake(index);
   wake_neighbours(index);
@@ -275,6 +276,7 @@ void World::Impl::jumped(std::uint32_t index) {
 }
 
 void World::Impl::add_proxy(std::uint32_t index) {
+  ready_for_queries = false;
   Collider& collider = colliders[index];
   Body& body = bodies[collider.body];
   pose_colliders(collider.body);

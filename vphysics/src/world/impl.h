@@ -10,6 +10,7 @@
 #include "collide/broad_phase.h"
 #include "collide/manifolds.h"
 #include "collide/pair_finder.h"
+#include "collide/shape_query.h"
 #include "collide/sweep.h"
 #include "solve/contact_graph.h"
 #include "solve/contact_lane.h"
@@ -90,6 +91,7 @@ struct Collider {
   CollisionFilter filter;
   std::uint64_t user_data = 0;
   std::uint32_t proxy = kNone;  // in the broad phase
+  bool stray = false;           // out of its proxy's bounds: find_strays()
   // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
   // half-spaces, meshes and height fields.
   double size = 0.0;
@@ -194,6 +196,12 @@ struct World::Impl {
   std::vector<ContactEvent> events;
   StepCounters counters;
   int sub_steps_taken = 0;
+
+  // --- of queries
+  bool ready_for_queries = false;     // nothing has moved since find_strays()
+  std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
+  collide::CastScratch world_cast;
+  collide::PartsScratch parts_scratch;
 
   // --- scratch of a step; kept for its capacity
   std::vector<collide::ProxyPair> new_pairs;
@@ -401,6 +409,21 @@ struct World::Impl {
   void add_event(const ContactEvent& event);
 
   class Drawing;  // debug_draw.cpp
+
+  // queries.cpp
+  void find_strays();
+  bool is_asked_for(const Collider& collider, const QueryFilter& filter) const;
+  QueryHit hit_of(const Collider& collider, std::uint32_t part) const;
+  template <class F>
+  void for_swept(const collide::Sweep& sweep, const QueryFilter& filter, const F& meet);
+  template <class F>
+  void for_ray_hits(const Vec3& origin, const Vec3& unit, double limit, const QueryFilter& filter,
+                    const F& hit);
+  template <class F>
+  void for_cast_hits(const collide::MovingShape& moving, const QueryFilter& filter, const F& hit);
+  std::optional<NearestHit> nearest(const collide::Geometry& shape, const SE3& T, double limit,
+                                    const QueryFilter& filter);
+  bool is_younger(const QueryHit& hit, const QueryHit& other) const;
 
   // snapshot.cpp, contact_state.h
   class ContactState;

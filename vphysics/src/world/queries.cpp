@@ -1,85 +1,349 @@
-// Rays, sphere casts and overlaps, against every collider in turn.
+// Rays, casts, overlaps and the nearest, through the broad phase's trees.
+//
+// Between steps a collider may have left the bounds that its proxy has there, which only a step may
+// change since they are state. Such strays are looked through one by one: few are, since a step
+// gives what moves bounds that hold for the next.
+//
+// Of each collider the answer is found exactly and depends on nothing else; the trees only leave
+// out what cannot be part of it. So it is the same whatever shape the trees have, as after
+// restore().
 #include <algorithm>
 #include <cmath>
 
+#include "collide/ray.h"
 #include "world/impl.h"
+#include "world/refuse.h"
 #include "world/validate.h"
 
 namespace vp {
 namespace {
 
-bool passes(const Collider& c, const CollisionFilter& filter) {
-  return c.alive && !c.sensor && (c.filter.category & filter.mask) &&
-         (filter.category & c.filter.mask);
+bool holds(const collide::Bounds& outer, const collide::Bounds& inner) {
+  for (int i = 0; i < 3; ++i) {
+    if (inner.lower[i] < outer.lower[i] || inner.upper[i] > outer.upper[i]) return false;
+  }
+  return true;
+}
+
+// As near as this a cast shape touches [m, and share of the sizes].
+constexpr double kTouch = 1e-9, kTouchShare = 1e-12;
+constexpr double kFullTurn = 6.2832;
+
+std::optional<Error> problem_with_ray(const char* call, const Vec3& origin, const Vec3& direction,
+                                      double distance) {
+  const std::string name(call);
+  if (!in_range(origin))
+    return Error{Errc::invalid_argument, name + ": the origin must be finite and within 1e9 m"};
+  if (!in_range(direction) || !(norm(direction) > 0.0)) {
+    return Error{Errc::invalid_argument,
+                 name + ": the direction must be finite, within 1e9 and not zero"};
+  }
+  if (!in_range(distance) || distance < 0.0) {
+    return Error{Errc::invalid_argument,
+                 name + ": max_distance must be zero or more and at most 1e9 m"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> problem_with_query(const char* call, const Shape& shape, const SE3& T) {
+  const std::string name(call);
+  if (auto problem = problem_with_shape(shape)) {
+    return Error{Errc::invalid_argument, name + ": " + *problem};
+  }
+  const bool is_endless = std::holds_alternative<HalfSpace>(shape);
+  if (is_endless || std::holds_alternative<TriangleMesh>(shape) ||
+      std::holds_alternative<HeightField>(shape)) {
+    return Error{Errc::unsupported,
+                 name + ": the shape must be convex and bounded, or a compound of such shapes"};
+  }
+  if (!is_pose(T)) {
+    return Error{Errc::invalid_argument,
+                 name + ": T_world_shape must be a finite rotation and position"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> problem_with_cast(const char* call, const Shape& shape, const SE3& T,
+                                       const CastMotion& motion) {
+  if (auto problem = problem_with_query(call, shape, T)) return problem;
+  if (!in_range(motion.translation)) {
+    return Error{Errc::invalid_argument,
+                 std::string(call) + ": the translation must be finite and within 1e9 m"};
+  }
+  if (!in_range(motion.turn) || norm(motion.turn) > kFullTurn) {
+    return Error{Errc::invalid_argument,
+                 std::string(call) +
+                     ": the turn must be finite and no more than one; cast again "
+                     "from where the first one ends"};
+  }
+  return std::nullopt;
+}
+
+SE3 proper(const SE3& T) {
+  return {orthonormalized(T.rotation()), T.position()};
+}
+
+collide::MovingShape moving(const collide::Geometry& shape, const SE3& T, const CastMotion& m) {
+  return {&shape, T, {T.position(), m.translation, m.turn}};
+}
+
+// Of all that a shape passes within the time 1.
+collide::Sweep sweep_of(const collide::MovingShape& m) {
+  const collide::Bounds start = bounds_of(*m.shape, m.T);
+  const Vec3 far{std::max(start.upper.x - m.motion.x.x, m.motion.x.x - start.lower.x),
+                 std::max(start.upper.y - m.motion.x.y, m.motion.x.y - start.lower.y),
+                 std::max(start.upper.z - m.motion.x.z, m.motion.x.z - start.lower.z)};
+  const double grow = std::min(norm(m.motion.w), 2.0) * norm(far);
+  return {grown(start, kTouch + grow), m.motion.v};
 }
 
 }  // namespace
 
-std::optional<RayHit> World::ray_cast(const Vec3& origin, const Vec3& direction,
-                                      double max_distance, CollisionFilter filter) const {
-  return sphere_cast(origin, 0.0, direction, max_distance, filter);
-}
+// --- candidates ----------------------------------------------------------------------------------
 
-// A sphere that moves at unit speed: its time of impact is its travel.
-std::optional<RayHit> World::sphere_cast(const Vec3& origin, double radius, const Vec3& direction,
-                                         double max_distance, CollisionFilter filter) const {
-  const double length = norm(direction);
-  if (!in_range(origin) || !in_range(direction) || !(length > 0.0) || !in_range(radius) ||
-      radius < 0.0 || !in_range(max_distance) || max_distance < 0.0) {
-    return std::nullopt;
-  }
-  const Vec3 unit = (1.0 / length) * direction;
-  std::optional<RayHit> nearest;
-  std::uint32_t nearest_serial = 0;
-  for (std::uint32_t i = 0; i < impl_->colliders.size(); ++i) {
-    const Collider& c = impl_->colliders[i];
-    if (!passes(c, filter)) continue;
-    const Body& body = impl_->bodies[c.body];
-    constexpr double kTolerance = 1e-9;
-    collide::SweepQuery query{origin,
-                              radius,
-                              {origin, unit, {}},
-                              &c.geometry,
-                              body.T * c.T_body_shape,
-                              {body.T.position(), {}, {}},
-                              max_distance,
-                              kTolerance};
-    const double t = separation_at(query, 0.0) <= kTolerance ? 0.0 : time_of_impact(query, 0.0);
-    if (t < 0.0) continue;
-    const bool nearer =
-        !nearest || t < nearest->distance || (t == nearest->distance && c.serial < nearest_serial);
-    if (!nearer) continue;
-    const Vec3 centre = origin + t * unit;
-    const collide::SignedDistance d =
-        signed_distance(c.geometry, inverse_times(query.T_shape, centre));
-    const Vec3 normal = query.T_shape.rotate(d.normal);
-    nearest = RayHit{collider_id(impl_->colliders, i),
-                     body_id(impl_->bodies, c.body),
-                     c.user_data,
-                     t,
-                     centre - d.distance * normal,
-                     normal};
-    nearest_serial = c.serial;
-  }
-  return nearest;
-}
-
-void World::overlap_sphere(const Vec3& centre, double radius, std::vector<ColliderId>& found,
-                           CollisionFilter filter) const {
-  if (!in_range(centre) || !in_range(radius) || radius < 0.0) return;
-  const std::size_t first = found.size();
-  for (std::uint32_t i = 0; i < impl_->colliders.size(); ++i) {
-    const Collider& c = impl_->colliders[i];
-    if (!passes(c, filter)) continue;
-    const SE3 T = impl_->bodies[c.body].T * c.T_body_shape;
-    if (signed_distance(c.geometry, inverse_times(T, centre)).distance <= radius) {
-      found.push_back(collider_id(impl_->colliders, i));
+void World::Impl::find_strays() {
+  if (ready_for_queries) return;
+  ready_for_queries = true;
+  strays.clear();
+  strays.reserve(colliders.size());
+  world_cast.reserve(2 * colliders.size() + 16);  // items and nodes
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].alive || bodies[b].first_collider == kNone) continue;
+    pose_colliders(b);
+    for (std::uint32_t i = bodies[b].first_collider; i != kNone; i = colliders[i].next) {
+      Collider& c = colliders[i];
+      c.stray = !holds(finder.enlarged_bounds(c.proxy), c.bounds);
+      if (c.stray) strays.push_back(i);
     }
   }
-  std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
-            [&](ColliderId a, ColliderId b) {
-              return impl_->colliders[a.index - 1].serial < impl_->colliders[b.index - 1].serial;
-            });
+  finder.refresh();
+}
+
+bool World::Impl::is_asked_for(const Collider& c, const QueryFilter& filter) const {
+  const bool met = (c.filter.category & filter.collision.mask) != 0 &&
+                   (filter.collision.category & c.filter.mask) != 0;
+  if (!met || (c.sensor && !filter.sensors)) return false;
+  const BodyId body = body_id(bodies, c.body);
+  if (std::find(filter.ignored.begin(), filter.ignored.end(), body) != filter.ignored.end()) {
+    return false;
+  }
+  const auto index = static_cast<std::uint32_t>(&c - colliders.data());
+  return !filter.accepts || filter.accepts(collider_id(colliders, index), body, c.user_data);
+}
+
+QueryHit World::Impl::hit_of(const Collider& c, std::uint32_t part) const {
+  const auto index = static_cast<std::uint32_t>(&c - colliders.data());
+  return {collider_id(colliders, index), body_id(bodies, c.body), c.user_data, part};
+}
+
+bool World::Impl::is_younger(const QueryHit& hit, const QueryHit& other) const {
+  return colliders[hit.collider.index - 1].serial > colliders[other.collider.index - 1].serial;
+}
+
+// meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
+template <class F>
+void World::Impl::for_swept(const collide::Sweep& sweep, const QueryFilter& filter, const F& meet) {
+  find_strays();
+  double limit = 1.0;
+  const collide::LaneSweep lanes(sweep);
+  for (const std::uint32_t i : strays) {
+    float entry = 0.0f;
+    const Collider& c = colliders[i];
+    if (lanes.meets(rounded_outwards(c.bounds), limit, entry) && is_asked_for(c, filter)) {
+      limit = meet(c);
+    }
+  }
+  finder.cast(sweep, limit, world_cast, [&](std::uint32_t proxy, float) {
+    const Collider& c = colliders[finder.user(proxy)];
+    if (!c.stray && is_asked_for(c, filter)) limit = meet(c);
+    return limit;
+  });
+}
+
+// --- rays ----------------------------------------------------------------------------------------
+
+// hit(RayHit) for each collider; it returns the distance up to which to go on.
+template <class F>
+void World::Impl::for_ray_hits(const Vec3& origin, const Vec3& unit, double limit,
+                               const QueryFilter& filter, const F& hit) {
+  const double whole = limit;
+  for_swept({{origin, origin}, limit * unit}, filter, [&](const Collider& c) {
+    const collide::Ray ray{inverse_times(c.T, origin), c.T.unrotate(unit)};
+    collide::RayEntry entry{};
+    if (cast_ray(c.geometry, ray, whole, parts_scratch.cast, entry)) {
+      limit = hit(RayHit{hit_of(c, entry.part), entry.distance, origin + entry.distance * unit,
+                         c.T.rotate(entry.normal)});
+    }
+    return whole > 0.0 ? limit / whole : 1.0;
+  });
+}
+
+Expected<std::optional<RayHit>> World::ray_cast(const Vec3& origin, const Vec3& direction,
+                                                double max_distance,
+                                                const QueryFilter& filter) const {
+  if (auto problem = problem_with_ray("ray_cast", origin, direction, max_distance)) {
+    return tl::make_unexpected(*problem);
+  }
+  std::optional<RayHit> first;
+  impl_->for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance, filter,
+                      [&](const RayHit& hit) {
+                        if (!first || hit.distance < first->distance ||
+                            (hit.distance == first->distance && impl_->is_younger(*first, hit))) {
+                          first = hit;
+                        }
+                        return first->distance;
+                      });
+  return first;
+}
+
+Expected<void> World::ray_cast_all(const Vec3& origin, const Vec3& direction, double max_distance,
+                                   std::vector<RayHit>& hits, const QueryFilter& filter) const {
+  if (auto problem = problem_with_ray("ray_cast_all", origin, direction, max_distance)) {
+    return tl::make_unexpected(*problem);
+  }
+  const auto begin = static_cast<std::ptrdiff_t>(hits.size());
+  impl_->for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance, filter,
+                      [&](const RayHit& hit) {
+                        hits.push_back(hit);
+                        return max_distance;
+                      });
+  std::sort(hits.begin() + begin, hits.end(), [&](const RayHit& a, const RayHit& b) {
+    return a.distance < b.distance || (a.distance == b.distance && impl_->is_younger(b, a));
+  });
+  return {};
+}
+
+// --- casts ---------------------------------------------------------------------------------------
+
+// hit(ShapeHit) for each collider; it returns the fraction up to which to go on.
+template <class F>
+void World::Impl::for_cast_hits(const collide::MovingShape& shape, const QueryFilter& filter,
+                                const F& hit) {
+  double limit = 1.0;
+  for_swept(sweep_of(shape), filter, [&](const Collider& c) {
+    const double sizes =
+        core_reach(*shape.shape) + (is_convex_body(c.geometry) ? core_reach(c.geometry) : 0.0);
+    const collide::ImpactQuery query{
+        shape, {&c.geometry, c.T, {c.T.position(), {}, {}}}, 1.0, kTouch + kTouchShare * sizes};
+    collide::PartsImpact impact{};
+    if (first_impact(query, 0.0, parts_scratch, impact)) {
+      limit = hit(ShapeHit{hit_of(c, impact.part_b), impact.time, impact.points.distance,
+                           impact.points.on_b, -impact.points.normal});
+    }
+    return limit;
+  });
+}
+
+Expected<std::optional<ShapeHit>> World::shape_cast(const Shape& shape, const SE3& T,
+                                                    const CastMotion& motion,
+                                                    const QueryFilter& filter) const {
+  if (auto problem = problem_with_cast("shape_cast", shape, T, motion)) {
+    return tl::make_unexpected(*problem);
+  }
+  std::optional<ShapeHit> first;
+  const collide::Geometry geometry = collide::make_geometry(shape);
+  impl_->for_cast_hits(moving(geometry, proper(T), motion), filter, [&](const ShapeHit& hit) {
+    if (!first || hit.fraction < first->fraction ||
+        (hit.fraction == first->fraction && impl_->is_younger(*first, hit))) {
+      first = hit;
+    }
+    return first->fraction;
+  });
+  return first;
+}
+
+Expected<void> World::shape_cast_all(const Shape& shape, const SE3& T, const CastMotion& motion,
+                                     std::vector<ShapeHit>& hits, const QueryFilter& filter) const {
+  if (auto problem = problem_with_cast("shape_cast_all", shape, T, motion)) {
+    return tl::make_unexpected(*problem);
+  }
+  const auto begin = static_cast<std::ptrdiff_t>(hits.size());
+  const collide::Geometry geometry = collide::make_geometry(shape);
+  impl_->for_cast_hits(moving(geometry, proper(T), motion), filter, [&](const ShapeHit& hit) {
+    hits.push_back(hit);
+    return 1.0;
+  });
+  std::sort(hits.begin() + begin, hits.end(), [&](const ShapeHit& a, const ShapeHit& b) {
+    return a.fraction < b.fraction || (a.fraction == b.fraction && impl_->is_younger(b, a));
+  });
+  return {};
+}
+
+// --- what touches, what is near ------------------------------------------------------------------
+
+Expected<void> World::overlapping(const Shape& shape, const SE3& T_world_shape,
+                                  std::vector<ColliderId>& found, const QueryFilter& filter) const {
+  if (auto problem = problem_with_query("overlapping", shape, T_world_shape)) {
+    return tl::make_unexpected(*problem);
+  }
+  const auto begin = static_cast<std::ptrdiff_t>(found.size());
+  const collide::Geometry geometry = collide::make_geometry(shape);
+  const SE3 T = proper(T_world_shape);
+  impl_->for_swept({bounds_of(geometry, T), {}}, filter, [&](const Collider& c) {
+    if (parts_touch(geometry, T, c.geometry, c.T, impl_->parts_scratch)) {
+      found.push_back(impl_->hit_of(c, 0).collider);
+    }
+    return 1.0;
+  });
+  std::sort(found.begin() + begin, found.end(), [&](ColliderId a, ColliderId b) {
+    return impl_->colliders[a.index - 1].serial < impl_->colliders[b.index - 1].serial;
+  });
+  return {};
+}
+
+std::optional<NearestHit> World::Impl::nearest(const collide::Geometry& shape, const SE3& T,
+                                               double limit, const QueryFilter& filter) {
+  find_strays();
+  std::optional<NearestHit> best;
+  const auto consider = [&](const Collider& c) {
+    collide::NearestParts found;
+    if (!is_asked_for(c, filter) ||
+        !nearest_parts(shape, T, c.geometry, c.T, limit, parts_scratch, found)) {
+      return;
+    }
+    const collide::ClosestPoints& p = found.points;
+    const NearestHit hit{hit_of(c, found.part_b), p.distance, p.on_a, p.on_b, -p.normal};
+    if (best && (hit.distance > best->distance ||
+                 (hit.distance == best->distance && !is_younger(*best, hit)))) {
+      return;
+    }
+    best = hit;
+    limit = std::min(limit, std::max(0.0, hit.distance));
+  };
+  const collide::Bounds box = bounds_of(shape, T);
+  for (const std::uint32_t i : strays) {
+    const collide::FloatBounds around = rounded_outwards(colliders[i].bounds);
+    if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) <= limit) {
+      consider(colliders[i]);
+    }
+  }
+  finder.nearest(box, limit, world_cast, [&](std::uint32_t proxy, float) {
+    const Collider& c = colliders[finder.user(proxy)];
+    if (!c.stray) consider(c);
+    return limit;
+  });
+  return best;
+}
+
+Expected<std::optional<NearestHit>> World::nearest(const Shape& shape, const SE3& T,
+                                                   double max_distance,
+                                                   const QueryFilter& filter) const {
+  if (auto problem = problem_with_query("nearest", shape, T)) {
+    return tl::make_unexpected(*problem);
+  }
+  if (!in_range(max_distance) || max_distance < 0.0) {
+    return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
+  }
+  return impl_->nearest(collide::make_geometry(shape), proper(T), max_distance, filter);
+}
+
+Expected<std::optional<NearestHit>> World::nearest(const Vec3& point, double max_distance,
+                                                   const QueryFilter& filter) const {
+  if (!in_range(point)) return refuse("nearest: the point must be finite and within 1e9 m");
+  if (!in_range(max_distance) || max_distance < 0.0) {
+    return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
+  }
+  return impl_->nearest({}, SE3(point), max_distance, filter);  // a sphere of no radius
 }
 
 }  // namespace vp

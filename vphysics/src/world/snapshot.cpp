@@ -344,6 +344,7 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     if (joint.alive) adopt(joint, joint_states[next_joint++]);
   }
   contact_state.adopt();
+  impl_->ready_for_queries = false;
   impl_->records.swap(records);
   impl_->destroyed_pairs.swap(destroyed_pairs);
   impl_->events.clear();

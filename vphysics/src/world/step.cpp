@@ -27,6 +27,7 @@ Expected<StepStatus> World::step(double dt) {
 }
 
 void World::Impl::begin_step() {
+  ready_for_queries = false;
   const std::size_t n = bodies.size();
   status = {};
   counters = {};

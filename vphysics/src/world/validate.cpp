@@ -30,6 +30,8 @@ bool in_range(const Sym3& A) {
   return vp::in_range(Vec3{A.xx, A.yy, A.zz}) && vp::in_range(Vec3{A.xy, A.yz, A.zx});
 }
 
+}  // namespace
+
 std::optional<std::string> problem_with_shape(const Shape& shape) {
   if (const auto* s = std::get_if<Sphere>(&shape)) {
     if (!positive(s->radius)) return "sphere: the radius must be positive and finite";
@@ -58,8 +60,6 @@ std::optional<std::string> problem_with_shape(const Shape& shape) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 bool is_pose(const SE3& T) {
   constexpr double kTolerance = 1e-6;

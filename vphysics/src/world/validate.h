@@ -33,6 +33,7 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q);
 std::optional<std::string> problem_with(const BodyDesc& desc);
 std::optional<std::string> problem_with(const Inertia& inertia);
 std::optional<std::string> problem_with(const ColliderDesc& desc);
+std::optional<std::string> problem_with_shape(const Shape& shape);
 std::optional<std::string> problem_with(const ArticulationDesc& desc);
 // With other coordinates and velocities.
 std::optional<std::string> problem_with(const Articulation& articulation, std::span<const double> q,

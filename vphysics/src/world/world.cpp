@@ -133,6 +133,7 @@ void World::Impl::release_collider(std::uint32_t index) {
     remove_contact(e / 2);
   }
   finder.remove(collider.proxy);
+  ready_for_queries = false;
   collider.alive = false;
   colliders[index].shape = HalfSpace{};
   free_colliders.push_back(index);

@@ -1,0 +1,204 @@
+// Conservative advancement of second order, for shapes that turn.
+//
+// A separating direction n bounds the separation from below by the gap g between the projections on
+// it. Let n turn at a rate O that is nought or that of one of the bodies, so that a face's normal
+// stays one. A point r of a body, from the point about which that turns at w, then changes its
+// projection as
+//     d/ds   n . r = r . (n x (w - O)),
+//     d^2/ds^2     = r . (w x m - (w - O) x (O x n)),      m = (w - O) x n,
+// which is no more than |w - O| (|w| + |O x n|) |r|, or |w| |w x n| |r| if O = 0; and the way D
+// from the one turning point to the other, which changes at v,
+//     d/ds   n . D = n . v + D . (O x n),     |d^2/ds^2| <= |O x n| (|O| |D| + 2 |v|).
+// With A the sum of these bounds over the bodies and D, and h the support functions of the bodies
+// from their turning points,
+//     g(s) >= n . D + s (n . v + D . (O x n)) - h_b(-n - s n x (w_b - O)) - h_a(n + s n x (w_a -
+//     O))
+//             - A s^2 / 2.
+// The right side is concave, so that whatever lies before a place where it is above the target is
+// as well. It is found by support functions alone; GJK gives the next n. Where the direction is the
+// right one, the error is of second order in s: a rod at 150 rad/s needs a handful of steps.
+//
+// Sources: Mirtich, Impulse-based Dynamic Simulation, 1996, section 2.3 (advancement); Zhang, Lee,
+// Kim, Interactive continuous collision detection for non-convex polyhedra, 2006 (along
+// directions); the bound of second order is derived here.
+#include "collide/time_of_impact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collide/distance.h"
+
+namespace vp::collide {
+namespace {
+
+constexpr int kMostAdvances = 200;
+// Of the tolerance: where steps aim at, and how much less will do.
+constexpr double kAim = 0.5, kSlack = 0.25;
+
+bool is_turning(const Vec3& w) {
+  return w.x != 0.0 || w.y != 0.0 || w.z != 0.0;
+}
+
+// Seen from where the first shape was at time 0, so that shapes far from the origin lose nothing.
+MovingShape shifted(const MovingShape& m, const Vec3& origin) {
+  MovingShape s{m.shape, SE3(m.T.rotation(), m.T.position() - origin), m.motion};
+  s.motion.x = m.motion.x - origin;
+  // What does not turn may as well do so about its middle, from which it reaches least far.
+  if (!is_turning(m.motion.w)) s.motion.x = s.T * core_middle(*m.shape);
+  return s;
+}
+
+// A shape at some time, from the point about which it turns.
+struct TurningShape {
+  const Geometry* shape;
+  Mat3 R;
+  Vec3 arm;  // to its frame's origin
+  Vec3 w;
+  double rate, reach;
+  mutable int hint = 0;
+
+  TurningShape(const MovingShape& m, double time)
+      : shape(m.shape),
+        R(m.T.rotation()),
+        arm(m.T.position() - m.motion.x),
+        w(m.motion.w),
+        rate(norm(w)) {
+    if (is_turning(w)) {
+      const Mat3 turn = Exp(time * w).matrix();
+      R = turn * R;
+      arm = turn * arm;
+    }
+    reach = norm(arm + R * core_middle(*shape)) + core_reach(*shape);
+  }
+  Vec3 support(const Vec3& d) const {
+    return arm + R * core_support(*shape, transposed_times(R, d), hint);
+  }
+};
+
+struct Pair {
+  TurningShape a, b;
+  Vec3 D, v;  // from a's turning point to b's, and its change
+  double radii;
+
+  Pair(const ImpactQuery& q, double t)
+      : a(q.a, t),
+        b(q.b, t),
+        D((q.b.motion.x - q.a.motion.x) + t * (q.b.motion.v - q.a.motion.v)),
+        v(q.b.motion.v - q.a.motion.v),
+        radii(core_radius(*q.a.shape) + core_radius(*q.b.shape)) {}
+};
+
+// What is above the gap's lower bound, along n turning at a rate.
+class GapBound {
+ public:
+  GapBound(const Pair& pair, const Vec3& n, const Vec3& rate, double horizon)
+      : pair_(pair),
+        n_(n),
+        turn_a_(cross(n, pair.a.w - rate)),
+        turn_b_(cross(n, pair.b.w - rate)),
+        gap_(dot(n, pair.D) - pair.radii),
+        slope_(dot(n, pair.v) + dot(pair.D, cross(rate, n))) {
+    const double turning = norm(cross(rate, n)), speed = norm(pair.v);
+    const auto bend = [&](const TurningShape& s) {
+      const double across = is_turning(rate) ? norm(s.w - rate) : norm(cross(s.w, n));
+      return across * (s.rate + turning) * s.reach;
+    };
+    bend_ = bend(pair.a) + bend(pair.b) +
+            turning * (norm(rate) * (norm(pair.D) + speed * horizon) + 2.0 * speed);
+  }
+
+  struct Value {
+    double gap, slope;
+  };
+  Value at(double s) const {
+    const Vec3 towards_b = n_ + s * turn_a_, towards_a = -n_ - s * turn_b_;
+    const Vec3 on_a = pair_.a.support(towards_b), on_b = pair_.b.support(towards_a);
+    return {gap_ + s * (slope_ - 0.5 * bend_ * s) - dot(on_b, towards_a) - dot(on_a, towards_b),
+            slope_ - bend_ * s + dot(on_b, turn_b_) - dot(on_a, turn_a_)};
+  }
+  // A time not above the horizon up to which the gap stays above goal - slack. Preconditions: now
+  // it is above goal.
+  double safe_time(double goal, double slack, double horizon) const;
+
+ private:
+  const Pair& pair_;
+  Vec3 n_, turn_a_, turn_b_;
+  double gap_, slope_, bend_;
+};
+
+double GapBound::safe_time(double goal, double slack, double horizon) const {
+  double left = 0.0;
+  Value at_left = at(0.0);
+  // The parabola of the bodies' foremost points of now lies above the bound: where it comes down to
+  // the goal is an end, and the answer as long as these stay foremost.
+  const double f = at_left.gap - goal, b = at_left.slope;
+  if (!(f > 0.0)) return 0.0;  // GJK's rounding
+  const double root = std::sqrt(b * b + 2.0 * bend_ * f);
+  const double down = b < 0.0 ? 2.0 * f / (root - b) : bend_ > 0.0 ? (b + root) / bend_ : horizon;
+  double right = std::min(down, horizon);
+  Value at_right = at(right);
+  constexpr int kRounds = 12;
+  constexpr double kNear = 0.02;  // share of the step
+  for (int round = 0; round < kRounds; ++round) {
+    if (at_right.gap >= goal - slack) return right;
+    if (right - left <= kNear * right) break;
+    // A concave function lies above its chord and below its tangent.
+    const double chord =
+        left + (right - left) * (at_left.gap - goal) / (at_left.gap - at_right.gap);
+    left = std::clamp(chord, left, right);
+    at_left = at(left);
+    if (at_right.slope < 0.0) {
+      right = std::clamp(right - (at_right.gap - goal) / at_right.slope, left, right);
+      at_right = at(right);
+    }
+  }
+  return left;
+}
+
+double longest_step(const Pair& pair, const Vec3& n, double goal, double slack, double horizon) {
+  double step = 0.0;
+  const auto turn_with = [&](const Vec3& rate) {
+    step = std::max(step, GapBound(pair, n, rate, horizon).safe_time(goal, slack, horizon));
+  };
+  // A half-space has no support but along its normal.
+  if (pair.a.shape->kind == Kind::half_space) {
+    turn_with(pair.a.w);
+  } else if (pair.b.shape->kind == Kind::half_space) {
+    turn_with(pair.b.w);
+  } else {
+    turn_with({});
+    if (is_turning(pair.a.w)) turn_with(pair.a.w);
+    if (is_turning(pair.b.w) && pair.b.w != pair.a.w) turn_with(pair.b.w);
+  }
+  return step;
+}
+
+}  // namespace
+
+SE3 pose_at(const MovingShape& m, double time) {
+  const Vec3 arm = m.T.position() - m.motion.x, x = m.motion.x + time * m.motion.v;
+  if (!is_turning(m.motion.w)) return {m.T.rotation(), x + arm};
+  const Mat3 turn = Exp(time * m.motion.w).matrix();
+  return {turn * m.T.rotation(), x + turn * arm};
+}
+
+double time_of_impact(const ImpactQuery& query, double target, PairCache& cache, double latest) {
+  const Vec3 origin = query.a.T.position();
+  const ImpactQuery q{shifted(query.a, origin), shifted(query.b, origin), query.duration,
+                      query.tolerance};
+  const double goal = target + kAim * q.tolerance, slack = kSlack * q.tolerance;
+  double t = 0.0;
+  for (int i = 0; i < kMostAdvances; ++i) {
+    const ClosestPoints near =
+        closest_points(*q.a.shape, pose_at(q.a, t), *q.b.shape, pose_at(q.b, t), cache);
+    if (near.distance <= target + q.tolerance) return t;
+    const Pair pair(q, t);
+    const double step = longest_step(pair, near.normal, goal, slack, q.duration - t);
+    if (step == 0.0) return t;
+    t += step;
+    if (!(t < q.duration) || t > latest) return -1.0;
+  }
+  return t;  // not there yet, but safe: who advances to t may ask again
+}
+
+}  // namespace vp::collide
