@@ -178,7 +178,7 @@ class Look:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--unity', default='build/clang-debug', help='a unity build, configured')
-    parser.add_argument('--build', default='build/clang', help='a build of all sources, each alone')
+    parser.add_argument('--build', default='build/clang', help='a build of all sources, tests each alone')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 120),
                         help='seconds after which no further test that did not change is begun')

@@ -141,7 +141,7 @@ TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   const Shape table = Compound::of(parts).value();
   std::vector<BodyId> bodies;
   for (int i = 0; i < 8; ++i) {
-    const SE3 pose(random.rotation(), Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 0.5 + i});
+    const SE3 pose{random.rotation(), Vec3{random.uniform(-1, 1), random.uniform(-1, 1), 0.5 + i}};
     bodies.push_back(add_dynamic(
         world, {.shape = i % 2 ? table : Shape(Sphere{0.1}), .pose = pose, .continuous = i == 2}));
   }
@@ -149,7 +149,7 @@ TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   for (int i = 0; i < 6000; ++i) {
     if (i % 500 == 0) {
       for (const BodyId body : bodies) {
-        must(world.set_pose(body, SE3(random.rotation(), random.in_cube(1.0) + Vec3{0, 0, 1.5})));
+        must(world.set_pose(body, SE3{random.rotation(), random.in_cube(1.0) + Vec3{0, 0, 1.5}}));
         must(world.set_velocity(body, {random.in_cube(3.0), random.in_cube(2.0)}));
       }
     }

@@ -36,6 +36,14 @@ struct ManifoldScratch {
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
   std::uint32_t looked_at = 0;  // triangles; counted up, for whoever wants to know
+
+  // For more than one shape meets of a surface that is not far finer than the shape is big, so that
+  // a step with more of it than any before takes nothing from the heap.
+  void make_room() {
+    triangles.reserve(512);
+    contacts.reserve(128);
+    points.reserve(256);
+  }
 };
 
 // More normals than that are never told apart of a surface and one convex shape.

@@ -221,6 +221,7 @@ SubManifold Cluster::reduced() const {
 void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T, double margin,
                      ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
   const double size = core_reach(shape) + core_radius(shape);
+  scratch.make_room();
   find_contacts(surface, shape, T, margin, scratch);
   if (scratch.contacts.size() > 1) {
     Pruning(surface, shape, T, size, scratch).prune();
