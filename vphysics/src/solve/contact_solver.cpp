@@ -41,6 +41,7 @@ constexpr std::size_t kMostRounds = 8;
 constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
+constexpr double kFastestPush = 3.0;  // of sub-steps [m/s]
 
 // Of what is no link; links as they were before the solve.
 Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactPoint& p) {
@@ -132,6 +133,13 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
   p.bounces = false;
 }
 
+// What is apart may close its gap; what is deep is pushed out, in sub-steps.
+double target_of(const StepContext& s, const ContactPoint& p) {
+  const double deep = std::max(0.0, -p.separation - s.slop);
+  return std::min(s.push_rate * deep, kFastestPush) -
+         std::max(0.0, p.separation - s.slop) / s.duration;
+}
+
 void prepare(const StepContext& s, ContactConstraint& c) {
   const SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
   c.rolling_mass = c.rolling > 0.0 ? rolling_mass(a, b, c) : 0.0;
@@ -144,7 +152,7 @@ void prepare(const StepContext& s, ContactConstraint& c) {
     p.normal_mass = k > 1e-12 ? 1.0 / k : 0.0;
     prepare_tangents(a, b, c, p, row_of(i, kTangent));
     prepare_approach(s, a, b, c, p);
-    p.target = -std::max(0.0, p.separation - s.slop) / s.duration;
+    p.target = target_of(s, p);
     p.push = 0.0;
   }
 }
@@ -172,8 +180,8 @@ void warm_start(const StepContext& s) {
 void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
                     int row) {
   const Vec3 u = relative_velocity(a, b, p);
-  const double u0 = dot(c.tangent[0], u) + through_links(c, row);
-  const double u1 = dot(c.tangent[1], u) + through_links(c, row + 1);
+  const double u0 = dot(c.tangent[0], u) + through_links(c, row) - c.surface_speed[0];
+  const double u1 = dot(c.tangent[1], u) + through_links(c, row + 1) - c.surface_speed[1];
   double p0 = p.tangent_impulse[0] - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
   double p1 = p.tangent_impulse[1] - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
   const double most = c.friction * p.normal_impulse;
@@ -323,6 +331,17 @@ void correct_positions(const StepContext& s) {
   }
 }
 
+// The velocity of the body's point there, with what the solve has given it through its joints.
+Vec3 velocity_at(const SolverBody& body, const Vec3& arm, const ContactConstraint& c,
+                 const LinkSide& side, double sign, int point) {
+  Vec3 v = body.v + cross(body.w, arm);
+  const Vec3* directions[] = {&c.normal, &c.tangent[0], &c.tangent[1]};
+  for (int k = 0; k < kRowsOfPoint; ++k) {
+    v += (sign * along(side, row_of(point, k), side.velocity)) * *directions[k];
+  }
+  return v;
+}
+
 }  // namespace
 
 void set_normal(ContactConstraint& c, const Vec3& n) {
@@ -340,6 +359,52 @@ void solve(const StepContext& s) {
   iterate(s);
   if (set_bounce_targets(s)) iterate(s);
   correct_positions(s);
+}
+
+void begin_sub_step(const StepContext& s) {
+  prepare_link_rows(s);
+  for (ContactConstraint& c : s.contacts) prepare(s, c);
+  warm_start(s);
+  settle_untouched(s);
+}
+
+void solve_sub_step(const StepContext& s) {
+  iterate(s);
+  if (set_bounce_targets(s)) iterate(s);
+}
+
+void advance_contacts(const StepContext& s, double h) {
+  for (ContactConstraint& c : s.contacts) {
+    for (int i = 0; i < c.count; ++i) {
+      ContactPoint& p = c.points[i];
+      const Vec3 a = velocity_at(s.bodies[c.a], p.arm_a, c, c.side_a, -1.0, i);
+      const Vec3 b = velocity_at(s.bodies[c.b], p.arm_b, c, c.side_b, 1.0, i);
+      p.separation += h * dot(c.normal, b - a);
+      p.position += (0.5 * h) * (a + b);
+    }
+  }
+}
+
+void relax_sub_step(const StepContext& s) {
+  for (ContactConstraint& c : s.contacts) {
+    for (int i = 0; i < c.count; ++i) {
+      ContactPoint& p = c.points[i];
+      if (!p.bounces) p.target = std::min(p.target, 0.0);
+    }
+  }
+  iterate(s);
+}
+
+void note_sub_step(std::span<ContactConstraint> contacts) {
+  for (ContactConstraint& c : contacts) {
+    for (int i = 0; i < c.count; ++i) {
+      ContactPoint& p = c.points[i];
+      if (p.normal_impulse <= 0.0) continue;
+      p.step_impulse += p.normal_impulse;
+      p.step_approach = std::max(p.step_approach, p.approach);
+      p.step_hits = p.step_hits || p.hits;
+    }
+  }
 }
 
 }  // namespace vp::solve

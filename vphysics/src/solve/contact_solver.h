@@ -47,6 +47,9 @@ struct ContactPoint {
   double normal_impulse;
   double tangent_impulse[2];
   double push;  // of the position correction
+  // Of a step with sub-steps, over those: impulse, approach and whether it hit (note_sub_step).
+  double step_impulse = 0.0, step_approach = 0.0;
+  bool step_hits = false;
 };
 
 struct ContactConstraint {
@@ -54,6 +57,7 @@ struct ContactConstraint {
   std::uint32_t collider_a, collider_b;
   Vec3 normal, tangent[2];
   double friction, restitution, rolling;
+  double surface_speed[2];  // wanted relative velocity along the tangents [m/s]
   double rolling_mass;
   Vec3 rolling_impulse;
   int count;
@@ -73,11 +77,24 @@ struct StepContext {
   double slop;
   double restitution_threshold;
   int iterations;
+  double push_rate =
+      0.0;  // of a sub-step: share of a penetration that is pushed out, per time [1/s]
 };
 
 // Sets the unit normal and two tangents to it.
 void set_normal(ContactConstraint& contact, const Vec3& normal);
 
+// All of an instant.
 void solve(const StepContext& context);
+
+// The same in sub-steps, where others change the bodies' velocities between rounds, and where a
+// penetration is pushed out by velocities that relax() takes back once they have moved everything:
+// begin, solve as often as there are rounds, advance, relax, note_sub_step.
+void begin_sub_step(const StepContext& context);
+void solve_sub_step(const StepContext& context);
+// The contacts after h at the velocities of now.
+void advance_contacts(const StepContext& context, double h);
+void relax_sub_step(const StepContext& context);
+void note_sub_step(std::span<ContactConstraint> contacts);
 
 }  // namespace vp::solve

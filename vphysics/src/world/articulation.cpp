@@ -48,7 +48,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   v.resize(n);
   dofs.resize(n);
   for (std::vector<double>* scratch :
-       {&damping_, &rate_, &change_, &force_, &zero_, &velocity_, &shift_}) {
+       {&damping_, &moving_, &drift_, &rate_, &change_, &force_, &zero_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
   whole_.resize(floating_.size());
@@ -213,6 +213,12 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
 }
 
 void Articulation::advance(double h) {
+  if (sub_stepped) {
+    for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * (v[i] + drift_[i]);
+    integrate<double>(model_, q, rate_, q);
+    refresh();
+    return;
+  }
   if (constant_) {  // a coordinate for each velocity; and it keeps its twists
     for (std::size_t i = 0; i < v.size(); ++i) q[i] += h * v[i];
     place_on_lines();
@@ -247,6 +253,32 @@ void Articulation::advance_floating(double h) {
     floating_[i].shift(model_, centre - floating_[i].whole(model_, data_).centre, q);
     floating_[i].set_momentum(model_, data_, from, v);
   }
+}
+
+void Articulation::mark_moving() {
+  change_ = velocity_;
+  factor_.to_velocities(change_);
+  for (std::size_t i = 0; i < v.size(); ++i) moving_[i] = v[i] + change_[i];
+}
+
+void Articulation::advance_sub_step(double h) {
+  for (std::size_t i = 0; i < v.size(); ++i) change_[i] = v[i] - moving_[i];
+  velocity_ = change_;  // advance() has its own use for the rest
+  v = moving_;
+  sub_stepped = false;
+  advance(h);
+  sub_stepped = true;
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += velocity_[i];
+  refresh();
+}
+
+void Articulation::end_sub_steps(double dt) {
+  difference<double>(model_, start_q_, q, rate_);
+  for (std::size_t i = 0; i < v.size(); ++i) drift_[i] = rate_[i] / dt - v[i];
+  q = start_q_;
+  refresh();
+  update_factor();
+  factor_.twists(drift_);
 }
 
 solve::SolverArticulation Articulation::begin_solve() {

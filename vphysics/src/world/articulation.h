@@ -61,6 +61,16 @@ class Articulation {
   Change end_solve();
   void apply_impulse(int link, const Vec3& impulse, const Vec3& point);  // world frame
 
+  // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
+  bool sub_stepped = false;  // in this step
+  // With what the solver has done so far it will move; end_solve() may change its velocities yet.
+  void mark_moving();
+  void advance_sub_step(double h);
+  // Back to where the step began; advance() will take it where it was, v is that of the end. Until
+  // it is refreshed it tells what a link's mean velocity over the step has more than that.
+  void end_sub_steps(double dt);
+  se3 drift_of(int link, const Vec3& point) const { return factor_.twist_at(link, point); }
+
   bool in_range() const;
   // Where it was when the step began, at rest.
   void mark_start() { start_q_ = q; }
@@ -101,6 +111,7 @@ class Articulation {
   bool regular_ = false;
 
   // Scratch.
+  std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
   std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, velocity_, shift_;
   std::vector<WholeTree> whole_;
   std::vector<double> fall_;  // the acceleration of a constant one

@@ -51,6 +51,7 @@ void World::Impl::reserve_link_rows() {
 
 void World::Impl::integrate_articulations(double dt) {
   for (Articulation& art : articulations) {
+    if (art.sub_stepped) continue;  // its forces have been felt
     art.mark_start();
     bool changed = false;
     if (!art.integrate_forces(dt, changed)) {
@@ -139,11 +140,15 @@ class JointRows {
 
 }  // namespace
 
-// Motors, springs and friction are felt once a step, impacts are over too soon for them.
-void World::Impl::add_joint_rows(double h, double dt, bool first) {
+// Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
+// for them.
+void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
   joint_rows.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
+    if (of == JointRowsOf::sub_step && !art.sub_stepped) continue;
+    const bool first =
+        of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
       JointRows rows(joint_rows, a, i, art);
       if (first) {

@@ -98,8 +98,7 @@ Mat3 turned(const Mat3& R, const Vec3& t) {
 
 // Whether it takes part in the sub-stepped solver.
 bool World::Impl::joins_sub_steps(const Body& body) const {
-  return body.alive && !body.is_link && !body.continuous && !body.by_impacts &&
-         body.motion != Motion::fixed;
+  return body.alive && !body.is_link && !body.continuous && body.motion != Motion::fixed;
 }
 
 void World::Impl::list_bodies() {

@@ -26,11 +26,10 @@ struct Contact {
   std::uint32_t next[2] = {}, previous[2] = {};
   bool alive = false;
   bool sensor = false;
-  bool of_link = false;  // one of the two is of a link: looked at in the stage of impacts
+  bool of_link = false;  // one of the two is of a link: never in a lane (link_contacts.cpp)
   bool touching = false;
-  bool parked = false;      // of bodies that are asleep
-  bool at_impacts = false;  // solved there in the last step
-  bool stale = true;        // must be looked at in the next step, wherever the two are
+  bool parked = false;  // of bodies that are asleep
+  bool stale = true;    // must be looked at in the next step, wherever the two are
   solve::Place place;
   collide::PairCache cache;  // of the narrow phase
 

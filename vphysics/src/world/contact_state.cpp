@@ -40,10 +40,9 @@ void World::Impl::ContactState::read(Reader& in) {
 
 void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
   const std::uint64_t flags = in.word();
-  in.check(flags <= 7);
+  in.check(flags <= 3);
   body.rested = (flags & 1u) != 0;
-  body.by_impacts = (flags & 2u) != 0;
-  body.asleep = (flags & 4u) != 0;
+  body.asleep = (flags & 2u) != 0;
   body.rest_time = in.bounded();
   for (int k = 0; k < 6; ++k) {
     const Reader::TwoFloats both = in.two_floats();
@@ -67,7 +66,6 @@ void World::Impl::ContactState::read_pool(Reader& in) {
     c.touching = (flags & kTouching) != 0;
     c.stale = (flags & kStale) != 0;
     c.of_link = (flags & kOfLink) != 0;
-    c.at_impacts = (flags & kAtImpacts) != 0;
     c.has_parts = (flags & kHasParts) != 0;
     if (c.alive && in.ok()) read_contact(in, c, (flags & kIsPart) != 0);
   }
@@ -84,7 +82,7 @@ void World::Impl::ContactState::check_parts(Reader& in) {
       if (!in.ok()) return;
       const Contact& part = pool_[p];
       in.check(part.alive && part.whole == i && part.key == whole.key && seen_[p] == 0 &&
-               !whole.sensor && !whole.of_link && !whole.at_impacts);
+               !whole.sensor && !whole.of_link);
       seen_[p] = 16;
     }
   }
@@ -217,7 +215,6 @@ void World::Impl::ContactState::adopt() {
     Body& body = world_.bodies[i];
     const OfBody& from = bodies_[i];
     body.rested = from.rested;
-    body.by_impacts = from.by_impacts;
     body.asleep = from.asleep;
     body.rest_time = from.rest_time;
     if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);

@@ -30,7 +30,7 @@ class World::Impl::ContactState {
 
  private:
   struct OfBody {
-    bool rested = false, by_impacts = false, asleep = false;
+    bool rested = false, asleep = false;
     double rest_time = 0.0;
     float way[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
@@ -59,7 +59,7 @@ class World::Impl::ContactState {
 
 namespace contact_flags {
 inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kStale = 8, kOfLink = 16,
-                               kAtImpacts = 32, kHasParts = 64, kIsPart = 128, kAll = 255;
+                               kHasParts = 32, kIsPart = 64, kAll = 127;
 }
 
 template <class Sink>
@@ -69,7 +69,7 @@ void World::Impl::write_contacts(Sink& sink) const {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const solve::BodyRow& row = i + 1 < body_rows.size() ? body_rows[i + 1] : kNoRow;
-    sink.word((body.rested ? 1u : 0u) | (body.by_impacts ? 2u : 0u) | (body.asleep ? 4u : 0u));
+    sink.word((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
     put(sink, body.rest_time);
     for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
   }
@@ -78,8 +78,8 @@ void World::Impl::write_contacts(Sink& sink) const {
     using namespace contact_flags;
     const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
                                 (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
-                                (c.of_link ? kOfLink : 0) | (c.at_impacts ? kAtImpacts : 0) |
-                                (c.has_parts ? kHasParts : 0) | (c.is_part() ? kIsPart : 0);
+                                (c.of_link ? kOfLink : 0) | (c.has_parts ? kHasParts : 0) |
+                                (c.is_part() ? kIsPart : 0);
     sink.word(c.alive ? flags : 0);
     if (!c.alive) continue;
     sink.word(c.key);

@@ -106,6 +106,8 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
   c.swept = swept;
   c.count = m.count;
   set_normal(c, m.normal);
+  const Vec3 surface = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
+  for (int k = 0; k < 2; ++k) c.surface_speed[k] = dot(surface, c.tangent[k]);
   const auto last = warm ? records_of(records, pair.key) : std::span<const PairRecord>{};
   c.rolling_impulse = rolling_of(last, part);
   for (int i = 0; i < m.count; ++i) {
@@ -165,7 +167,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
   contacts.assign(discrete_contacts.begin(), discrete_contacts.end());
   find_swept_contacts(first);
-  add_joint_rows(h, dt, first);
+  add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
   if (contacts.empty() && joint_rows.empty()) return;
   refresh_solver_bodies();
   begin_solve_articulations();
@@ -202,13 +204,13 @@ void World::Impl::add_event(const ContactEvent& event) {
 }
 
 // A pair's manifolds follow one another; together they make its events, at the deepest point.
-void World::Impl::report_contacts(double time) {
-  for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
+void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solved, double time) {
+  for (std::size_t first = 0, end = 0; first < solved.size(); first = end) {
     double impulse = 0.0, approach = 0.0, nearest = collide::kFar;
     Vec3 point, normal;
     bool hits = false;
-    for (; end < contacts.size() && of_one_pair(contacts[first], contacts[end]); ++end) {
-      const solve::ContactConstraint& c = contacts[end];
+    for (; end < solved.size() && of_one_pair(solved[first], solved[end]); ++end) {
+      const solve::ContactConstraint& c = solved[end];
       for (int i = 0; i < c.count; ++i) {
         const solve::ContactPoint& p = c.points[i];
         impulse += p.normal_impulse;
@@ -220,7 +222,7 @@ void World::Impl::report_contacts(double time) {
       }
     }
     if (impulse <= 0.0 && nearest > desc.contact_slop) continue;
-    const solve::ContactConstraint& c = contacts[first];
+    const solve::ContactConstraint& c = solved[first];
     const ColliderPair pair = make_pair(colliders, c.collider_a, c.collider_b);
     PairRecord& record = record_of(pair);
     const bool known = record.touching || touches(records_of(records, pair.key));
@@ -251,22 +253,23 @@ void World::Impl::report_swept_sensors(double h, double time) {
 }
 
 // What carries a resting load at the start of the step is the best guess for the next one.
-void World::Impl::remember_impulses() {
+void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> solved,
+                                    double scale) {
   std::uint32_t part = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const solve::ContactConstraint& c = contacts[k];
-    part = k > 0 && of_one_pair(contacts[k - 1], c) ? part + 1 : 0;
+  for (std::size_t k = 0; k < solved.size(); ++k) {
+    const solve::ContactConstraint& c = solved[k];
+    part = k > 0 && of_one_pair(solved[k - 1], c) ? part + 1 : 0;
     PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b), part);
     record.count = static_cast<std::uint32_t>(c.count);
     // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
-    record.rolling = in_range(c.rolling_impulse) ? c.rolling_impulse : Vec3{};
+    record.rolling = in_range(c.rolling_impulse) ? scale * c.rolling_impulse : Vec3{};
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};
       if (p.bounces) continue;  // a bounce carries nothing on
-      record.points[i].normal_impulse = p.normal_impulse;
+      record.points[i].normal_impulse = scale * p.normal_impulse;
       record.points[i].friction =
-          p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1];
+          scale * (p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]);
       PairPoint& kept = record.points[i];
       if (!in_range(kept.normal_impulse) || !in_range(kept.friction) || !in_range(kept.position)) {
         kept = {p.feature, 0.0, {}, {}};

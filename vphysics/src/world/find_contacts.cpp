@@ -87,7 +87,7 @@ solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
 void World::Impl::find_contacts(double dt) {
   find_new_contacts();
   drop_parted_contacts();
-  find_link_islands();
+  find_bodies_on_links();
   find_stale_contacts(dt);
   look_at_stale_contacts(dt);
 }
@@ -132,8 +132,8 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.of_link = body_a.is_link || body_b.is_link;
   c.has_parts = has_parts(a.geometry, b.geometry);
   const std::uint32_t index = new_contact(c);
-  mark_stale(index);
-  set_near(index, 0.0);
+  if (!c.of_link) mark_stale(index);
+  set_near(index, c.of_link ? kNeverMeets : 0.0);
 }
 
 // In a slot of the pool and in its bodies' lists.
@@ -265,10 +265,7 @@ void World::Impl::look_at_stale_contacts(double dt) {
       const Contact& c = contact_pool[index];
       if (index == last || !c.alive || !c.stale || c.parked) continue;
       last = index;
-      if (is_by_impacts(c)) {
-        look_again.push_back(index);  // in the next step
-        continue;
-      }
+      if (c.of_link) continue;  // link_contacts.cpp looks at it
       looked.push_back({index, {}, 0.0, 0.0});
       for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
     }

@@ -33,8 +33,8 @@ struct alignas(64) Body {
   bool continuous = false;
   bool isotropic = false;  // rotational inertia the same about every axis: no gyroscopic term
   Motion motion = Motion::fixed;
-  bool rested = false;      // something carried it in the last step
-  bool by_impacts = false;  // in this step: it is connected to a link (islands.cpp)
+  bool rested = false;   // something carried it in the last step
+  bool on_link = false;  // in this step: near a link, its row leads it (link_contacts.cpp)
   // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
   // colliders; else ask its articulation.
   bool asleep = false;
@@ -72,7 +72,7 @@ struct alignas(64) Body {
   std::uint64_t user_data = 0;
 
   // Its row of the solver tells how it goes; else it falls freely.
-  bool by_rows() const { return lanes > 0 || first_joint != kNone; }
+  bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
   void moved() { posed = bounded = false; }
 };
 
@@ -160,6 +160,11 @@ struct Looked {
 
 struct RecordedCall;
 
+// Share of a penetration that a sub-step pushes out.
+inline constexpr double kPush = 0.1;
+
+enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
+
 struct World::Impl {
   WorldDesc desc;
   std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
@@ -227,6 +232,8 @@ struct World::Impl {
   std::vector<ColliderPair> discrete_pairs;
   std::vector<SweptPair> swept_pairs;
   std::vector<solve::ContactConstraint> discrete_contacts, contacts;
+  std::vector<solve::ContactConstraint> link_contacts;  // in the sub-steps
+  std::vector<std::uint32_t> bodies_on_links;
   std::vector<solve::JointRow> joint_rows;
   std::vector<solve::SolverArticulation> solver_articulations;
   std::vector<double> link_rows;
@@ -256,7 +263,7 @@ struct World::Impl {
   void follow(const Articulation& articulation);
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);
-  void add_joint_rows(double h, double dt, bool first);
+  void add_joint_rows(double h, double dt, JointRowsOf of);
   void begin_solve_articulations();
   void end_solve_articulations(bool first);
   void advance_articulations(double h);
@@ -332,12 +339,22 @@ struct World::Impl {
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);
-  void find_link_islands();
-  void give_to_impacts(std::uint32_t contact);
-  void take_from_impacts(std::uint32_t contact);
-  bool is_by_impacts(const Contact& contact) const;
   solve::ContactGraph::End end_of(std::uint32_t body) const;
   bool joins_sub_steps(const Body& body) const;
+
+  // link_contacts.cpp
+  void find_bodies_on_links();
+  bool in_sub_steps(const Body& a, const Body& b) const;
+  void find_link_contacts(double dt, int sub_steps);
+  solve::StepContext link_context(double h);
+  void begin_links(double h);
+  void solve_links(double h);
+  void move_links(double h);
+  void relax_links(double h);
+  void end_links(double dt, int sub_steps);
+  void load_solver_body(std::uint32_t body, double h);
+  void load_bodies_on_links();
+  void store_bodies_on_links();
 
   // sleep.cpp
   void watch(std::uint32_t body, double dt);
@@ -397,9 +414,9 @@ struct World::Impl {
   void find_swept_contacts(bool warm);
   void solve_contacts(double h, double dt, bool first);
   void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
-  void report_contacts(double time);
+  void report_contacts(std::span<const solve::ContactConstraint> solved, double time);
   bool has_impact_stage() const;
-  void remember_impulses();
+  void remember_impulses(std::span<const solve::ContactConstraint> solved, double scale);
   void report_ends();
   void report_ends_of_destroyed();
   void report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal, double time);

@@ -97,22 +97,26 @@ bool World::Impl::swept(const Collider& a, const Collider& b) const {
   return sweeps(a) || sweeps(b);
 }
 
-// Bounds of what may meet another body without a sweep, the others' empty; false if there are no
-// two.
+// Bounds of what may meet a link, or a sensor that a continuous body carries, the others' empty;
+// false if there are no two.
 bool World::Impl::keep_discrete_bounds() {
   std::uint32_t categories = 0, masks = 0;
+  collide::Bounds around;
   const auto takes_part = [](const Body& body) {
     return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
   };
-  for (const Body& body : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
     if (!takes_part(body)) continue;
     categories |= body.categories;
     masks |= body.masks;
+    if (body.is_link || body.continuous) around = merged(around, bounds[i]);
   }
   int meeting = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    const bool meets = takes_part(body) && (body.categories & masks) && (body.masks & categories);
+    const bool meets = takes_part(body) && (body.categories & masks) && (body.masks & categories) &&
+                       overlap(bounds[i], around);
     discrete_bounds[i] = meets ? bounds[i] : collide::Bounds{};
     meeting += meets ? 1 : 0;
   }
@@ -128,8 +132,8 @@ void World::Impl::find_discrete_pairs(double h) {
   for (const collide::IndexPair& pair : body_pairs) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
-    const bool of_impacts = continuous || a.is_link || b.is_link || a.by_impacts || b.by_impacts;
-    if (!of_impacts) continue;  // of the sub-stepped solver
+    if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
+    const bool sensors_only = in_sub_steps(a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
     wake(pair.a);
@@ -146,6 +150,7 @@ void World::Impl::find_discrete_pairs(double h) {
         const Collider& cb = colliders[j];
         if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
         if (continuous && swept(ca, cb)) continue;
+        if (sensors_only && !ca.sensor && !cb.sensor) continue;
         if (pushable_or_sensed(a, b, ca, cb)) discrete_pairs.push_back(make_pair(colliders, i, j));
       }
     }

@@ -13,7 +13,7 @@
 namespace vp {
 
 bool World::Impl::may_sleep(const Body& body) const {
-  return body.motion == Motion::dynamic && joins_sub_steps(body);
+  return body.motion == Motion::dynamic && joins_sub_steps(body) && !body.on_link;
 }
 
 bool World::Impl::is_still(const Body& body) const {

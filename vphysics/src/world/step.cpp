@@ -46,6 +46,9 @@ void World::Impl::begin_step() {
   body_stack.reserve(n);
   woken.reserve(n);
   drowsy.reserve(n);
+  for (const std::uint32_t i : bodies_on_links) bodies[i].on_link = false;
+  bodies_on_links.clear();
+  for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
   if (!movers.empty()) graph.reserve(movers.size());
   new_pairs.reserve(room);
@@ -65,6 +68,8 @@ void World::Impl::begin_impact_stage() {
   swept_pairs.reserve(room);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
+  link_contacts.reserve(room);
+  bodies_on_links.reserve(n);
   reserve_link_rows();
   drift.assign(n, {});
   bounds.resize(n);
@@ -295,6 +300,7 @@ void World::Impl::run(double dt) {
     }
   }
   double time = 0.0;
+  end_links(dt, sub_steps_taken);
   refresh_motions(dt);
   refresh_bounds(dt);
   find_discrete_pairs(dt);
@@ -303,8 +309,8 @@ void World::Impl::run(double dt) {
   for (int solves = 0;; ++solves) {
     const double h = dt - time;
     solve_contacts(h, dt, solves == 0);
-    if (solves == 0) remember_impulses();
-    report_contacts(time);
+    if (solves == 0) remember_impulses(contacts, 1.0);
+    report_contacts(contacts, time);
     refresh_motions(h);
     refresh_bounds(h);
     find_swept_pairs(h);

@@ -8,11 +8,10 @@
 namespace vp {
 namespace {
 
-// Share of a penetration that a sub-step pushes out, and of an accumulated impulse that it lets go
-// before it is solved for again. The latter damps what warm starting does to loads that have not
-// settled: without it a wall of 47 body_rows never comes to rest. Together they leave a load L, in
-// impulses of a sub-step, to sink by  h (kLoss / kPush) L / m:  0.07 mm under ten boxes at 1 ms.
-constexpr double kPush = 0.1;
+// Share of an accumulated impulse that a sub-step lets go before it is solved for again. It damps
+// what warm starting does to loads that have not settled: without it a wall of 47 bodies never
+// comes to rest. With kPush it leaves a load L, in impulses of a sub-step, to sink by  h (kLoss /
+// kPush) L / m:  0.07 mm under ten boxes at 1 ms.
 constexpr double kLoss = 0.07;
 constexpr double kFastestPush = 3.0;  // [m/s]
 // Passes of pushing in one sub-step.
@@ -48,6 +47,8 @@ void World::Impl::run_sub_steps(double dt) {
                          static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h};
   const auto threshold = static_cast<float>(desc.restitution_threshold);
   begin_joints(h);
+  const bool links = !bodies_on_links.empty();
+  if (links) find_link_contacts(dt, n);
   for (int k = 0; k < n; ++k) {
     in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
       pass.accelerate(body_rows.data(), movers.data() + begin, end - begin, h);
@@ -62,12 +63,15 @@ void World::Impl::run_sub_steps(double dt) {
                          lane_bits.begin() + blocks;
       if (!again) break;
     }
+    if (links) begin_links(h);
     warm_start_joints();
     for_parts([](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
     for (int round = 0; round < kRounds; ++round) {
       solve_joints(h);
       for_parts([&](const auto& p, const auto& part, std::size_t) { p.solve(part, soft); });
+      if (links) solve_links(h);
     }
+    if (links) move_links(h);
     in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
       pass.move(body_rows.data(), movers.data() + begin, end - begin, h);
     });
@@ -75,6 +79,7 @@ void World::Impl::run_sub_steps(double dt) {
     relax_joints(h);
     if (k == n - 1) find_news();
     for_parts([&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft); });
+    if (links) relax_links(h);
   }
   end_joints(dt);
   report_news();

@@ -1,0 +1,242 @@
+// Links and bodies that lie on one another, in the sub-steps.
+//
+// An articulation on which a body lies takes part in the sub-steps with all that it touches: in
+// each, its forces are felt, its joints' rows and its contacts are solved in rounds with the lanes
+// and the joints of bodies, and it moves. It answers through its own joints (solve/link_side.h), so
+// none comes apart under a load. Then it is put back to where the step began: the stage of impacts
+// takes it, with all else, along its mean velocities, so that what is swept meets it on its way.
+//
+// An articulation that no such body is near is left to the stage of impacts, with its contacts.
+#include <algorithm>
+
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+Vec3 vector_of(const float* f) {
+  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
+}
+void put_into(float* f, const Vec3& v) {
+  for (int i = 0; i < 3; ++i) f[i] = static_cast<float>(v[i]);
+}
+
+}  // namespace
+
+// Which bodies are near a link, and which articulations take part: those, and what these touch.
+void World::Impl::find_bodies_on_links() {
+  if (articulations.empty()) return;
+  const auto articulation_of = [this](const Body& body) {
+    return body.is_link ? &articulations[body.articulation] : nullptr;
+  };
+  const auto meets_link = [](const Contact& c) { return c.alive && c.of_link && !c.sensor; };
+  for (const Contact& c : contact_pool) {
+    if (!meets_link(c)) continue;
+    for (const auto& [mine, other] : {std::pair{c.a, c.b}, std::pair{c.b, c.a}}) {
+      Articulation* art = articulation_of(bodies[colliders[other].body]);
+      const std::uint32_t index = colliders[mine].body;
+      Body& body = bodies[index];
+      if (!art || !joins_sub_steps(body) || body.motion != Motion::dynamic) continue;
+      art->sub_stepped = true;
+      if (body.on_link) continue;
+      body.on_link = true;
+      wake(index);
+      bodies_on_links.push_back(index);
+    }
+  }
+  for (bool again = !bodies_on_links.empty(); again;) {
+    again = false;
+    for (const Contact& c : contact_pool) {
+      if (!meets_link(c)) continue;
+      Articulation* a = articulation_of(bodies[colliders[c.a].body]);
+      Articulation* b = articulation_of(bodies[colliders[c.b].body]);
+      if (!a || !b || a->sub_stepped == b->sub_stepped) continue;
+      a->sub_stepped = b->sub_stepped = again = true;
+    }
+  }
+}
+
+// Whether their contact is solved there.
+bool World::Impl::in_sub_steps(const Body& a, const Body& b) const {
+  return (a.is_link && articulations[a.articulation].sub_stepped) ||
+         (b.is_link && articulations[b.articulation].sub_stepped);
+}
+
+void World::Impl::find_link_contacts(double dt, int sub_steps) {
+  discrete_pairs.clear();
+  for (const Contact& c : contact_pool) {
+    if (!c.alive || !c.of_link || c.sensor) continue;
+    const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
+    if (in_sub_steps(a, b) && !a.continuous && !b.continuous) {
+      discrete_pairs.push_back({c.key, c.a, c.b});
+    }
+  }
+  std::sort(discrete_pairs.begin(), discrete_pairs.end(),
+            [](const ColliderPair& p, const ColliderPair& q) { return p.key < q.key; });
+  link_contacts.clear();
+  for (const ColliderPair& pair : discrete_pairs) {
+    const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
+    const Body &a = bodies[i], &b = bodies[j];
+    pose_colliders(i);
+    pose_colliders(j);
+    const double speed = norm(b.v - a.v) + norm(a.w) * a.reach + norm(b.w) * b.reach;
+    std::uint32_t part = 0;
+    for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + speed * dt)) {
+      add_contact(pair, found.manifold, part++, false, true, link_contacts);
+    }
+  }
+  // What is remembered is of a whole step.
+  const double share = 1.0 / sub_steps;
+  for (solve::ContactConstraint& c : link_contacts) {
+    c.rolling_impulse *= share;
+    for (int i = 0; i < c.count; ++i) {
+      c.points[i].normal_impulse *= share;
+      for (double& p : c.points[i].tangent_impulse) p *= share;
+    }
+  }
+  for (Articulation& art : articulations) {
+    if (art.sub_stepped) art.mark_start();
+  }
+}
+
+solve::StepContext World::Impl::link_context(double h) {
+  return {solver_bodies,
+          link_contacts,
+          joint_rows,
+          solver_articulations,
+          link_rows,
+          h,
+          h,
+          desc.contact_slop,
+          desc.restitution_threshold,
+          desc.velocity_iterations,
+          kPush / h};
+}
+
+// Their velocities as the lanes and joints have left them.
+void World::Impl::load_bodies_on_links() {
+  for (const std::uint32_t i : bodies_on_links) {
+    solver_bodies[i].v = vector_of(body_rows[i + 1].velocity);
+    solver_bodies[i].w = vector_of(body_rows[i + 1].velocity + 3);
+  }
+}
+void World::Impl::store_bodies_on_links() {
+  for (const std::uint32_t i : bodies_on_links) {
+    put_into(body_rows[i + 1].velocity, solver_bodies[i].v);
+    put_into(body_rows[i + 1].velocity + 3, solver_bodies[i].w);
+  }
+}
+
+// The forces of the sub-step, and everything as the solver wants it.
+void World::Impl::begin_links(double h) {
+  for (std::size_t a = 0; a < articulations.size(); ++a) {
+    Articulation& art = articulations[a];
+    if (!art.sub_stepped) continue;
+    for (const std::uint32_t b : art.bodies) forced[b] = {bodies[b].w, bodies[b].v};
+    bool changed = false;
+    if (!art.integrate_forces(h, changed)) {
+      status.non_finite = true;
+      art.return_to_start();
+    }
+    follow_velocities(art, false);
+    for (const std::uint32_t b : art.bodies) {
+      forced[b] = {bodies[b].w - forced[b].w, bodies[b].v - forced[b].v};
+    }
+    solver_articulations[a] = art.begin_solve();
+  }
+  add_joint_rows(h, h, JointRowsOf::sub_step);
+  for (const solve::ContactConstraint& c : link_contacts) {
+    for (const std::uint32_t i : {c.a, c.b}) load_solver_body(i, h);
+  }
+  load_bodies_on_links();
+  solve::begin_sub_step(link_context(h));
+  store_bodies_on_links();
+}
+
+// Where it is in this sub-step.
+void World::Impl::load_solver_body(std::uint32_t index, double h) {
+  const Body& body = bodies[index];
+  solve::SolverBody& s = solver_bodies[index];
+  s = {};
+  s.articulation = -1;
+  s.w = body.w;
+  s.v = body.v;
+  s.x = body.is_link || body.motion == Motion::fixed ? reference_point(body)
+                                                     : place_within_step(index).centre;
+  if (body.is_link) {
+    s.articulation = static_cast<int>(body.articulation);
+    s.link = body.link;
+    s.forced_w = forced[index].w;
+    s.forced_v = forced[index].v;
+  } else if (body.motion == Motion::dynamic) {
+    s.linear = {body.inverse_mass, body.inverse_mass, body.inverse_mass, 0, 0, 0};
+    s.angular =
+        body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
+    s.forced_v = h * desc.gravity;
+  }
+}
+
+void World::Impl::solve_links(double h) {
+  load_bodies_on_links();
+  solve::solve_sub_step(link_context(h));
+  store_bodies_on_links();
+}
+
+// The contacts go as what they join does; the articulations have yet to be relaxed.
+void World::Impl::move_links(double h) {
+  load_bodies_on_links();
+  for (Articulation& art : articulations) {
+    if (art.sub_stepped) art.mark_moving();
+  }
+  solve::advance_contacts(link_context(h), h);
+}
+
+void World::Impl::relax_links(double h) {
+  load_bodies_on_links();
+  solve::relax_sub_step(link_context(h));
+  store_bodies_on_links();
+  solve::note_sub_step(link_contacts);
+  for (const solve::ContactConstraint& c : link_contacts) {
+    if (c.points[0].normal_impulse <= 0.0) continue;
+    for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].way[solve::kCarried] = 1.0f;
+  }
+  for (solve::JointRow& row : joint_rows) {
+    if (row.remember) *row.remember = row.impulse;
+  }
+  for (Articulation& art : articulations) {
+    if (!art.sub_stepped) continue;
+    (void)art.end_solve();
+    art.advance_sub_step(h);
+    if (!stop_if_out_of_range(art)) follow(art);
+  }
+}
+
+// Events, what the next step starts from, and how the articulations have gone.
+void World::Impl::end_links(double dt, int sub_steps) {
+  if (bodies_on_links.empty()) return;
+  remember_impulses(link_contacts, sub_steps);
+  for (solve::ContactConstraint& c : link_contacts) {
+    for (int i = 0; i < c.count; ++i) {
+      solve::ContactPoint& p = c.points[i];
+      p.normal_impulse = p.step_impulse;
+      p.approach = p.step_approach;
+      p.hits = p.step_hits;
+    }
+    counters.contacts += static_cast<std::uint32_t>(c.count);
+  }
+  report_contacts(link_contacts, 0.0);
+  for (Articulation& art : articulations) {
+    if (!art.sub_stepped) continue;
+    art.end_sub_steps(dt);
+    for (const std::uint32_t b : art.bodies) {
+      const se3 more = art.drift_of(bodies[b].link, art.T_world_link(bodies[b].link).position());
+      drift[b] = {more.w, more.v};
+      forced[b] = {};
+    }
+    art.refresh();
+    follow(art);
+  }
+}
+
+}  // namespace vp

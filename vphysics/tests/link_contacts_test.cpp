@@ -1,0 +1,320 @@
+// Free bodies that lie on links, and links that lie on them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "tree_scenes.h"
+#include "vphysics/multibody/dynamics.h"
+#include "vphysics/multibody/quantities.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kRates[] = {1000.0, 240.0, 60.0};
+const Material kRough{0.6, 0.0, 0.0};
+
+LinkSpec link_of(const Joint& joint, const Shape& shape, double density) {
+  LinkSpec link;
+  link.joint = joint;
+  link.inertia = solid_inertia(shape, density);
+  return link;
+}
+
+struct Plate {
+  ArticulationId id;
+  BodyId body;
+};
+const Box kPlate{{0.5, 0.5, 0.05}};
+// A plate on one joint with the world, its top at z = 0.
+Plate add_plate(World& world, const Joint& joint, const Material& material,
+                const JointForces& forces = {}) {
+  LinkSpec link = link_of(joint, kPlate, 1000.0);
+  link.T_parent_joint = SE3(Vec3{0, 0, -kPlate.half_extents.z});
+  link.forces = {forces};
+  const ArticulationId id = must(world.create_articulation({model_of({link})}));
+  must(world.add_collider(world.link_body(id, 0), collider_of(kPlate, material)));
+  return {id, world.link_body(id, 0)};
+}
+
+std::vector<BodyId> add_stack(World& world, int count, double half, const Vec3& foot) {
+  std::vector<BodyId> stack;
+  for (int i = 0; i < count; ++i) {
+    stack.push_back(add_dynamic(world, {.shape = Box{{half, half, half}},
+                                        .material = kRough,
+                                        .pose = SE3(foot + Vec3{0, 0, half * (2 * i + 1)})}));
+  }
+  return stack;
+}
+
+// Each box stays on the one below as it was put there, while a motor lifts all of them.
+TEST(LinkContact, AStackStandsOnALift) {
+  for (const double rate : kRates) {
+    World world;
+    const Plate lift = add_plate(world, PrismaticJoint{{0, 0, 1}}, kRough);
+    must(world.set_drive(lift.id, 0, 0, {0, 0.5, 0, 1e6, 1e6}));
+    const std::vector<BodyId> stack = add_stack(world, 10, 0.1, {});
+    for (int i = 0; i < static_cast<int>(2.0 * rate); ++i) must(world.step(1.0 / rate));
+    const double top = world.pose(lift.body).position().z + kPlate.half_extents.z;
+    EXPECT_NEAR(top, 1.0, 0.02) << rate;
+    double sunk = 0.0, aside = 0.0;
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+      const Vec3 x = world.pose(stack[i]).position();
+      sunk = std::max(sunk, std::fabs(x.z - top - 0.1 * (2.0 * static_cast<double>(i) + 1.0)));
+      aside = std::max(aside, std::hypot(x.x, x.y));
+    }
+    std::printf("%g Hz: %.2g m sunk, %.2g m aside\n", rate, sunk, aside);
+    EXPECT_LT(sunk, 0.004) << rate;  // 1.2 mm at 60 Hz
+    EXPECT_LT(aside, 0.002) << rate;
+  }
+}
+
+// A free link is a box like others: dropped between two, all three lie as three boxes do.
+TEST(LinkContact, AFreeLinkInAStackIsABodyInAStack) {
+  const Box box{{0.1, 0.1, 0.1}};
+  World bodies, links;
+  std::vector<BodyId> twins[2];
+  for (World* world : {&bodies, &links}) {
+    std::vector<BodyId>& all = twins[world == &links];
+    add_ground(*world, kRough);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 at{0.02 * i, -0.01 * i, 0.1 + 0.22 * i};
+      if (world == &bodies || i != 1) {
+        all.push_back(add_dynamic(*world, {.shape = box, .material = kRough, .pose = SE3(at)}));
+        continue;
+      }
+      const Model model = model_of({link_of(FreeJoint{}, box, 1000.0)});
+      const ArticulationId id = must(world->create_articulation({model}));
+      must(world->add_collider(world->link_body(id, 0), collider_of(box, kRough)));
+      must(world->set_joint_states(id, std::vector<double>{at.x, at.y, at.z, 0, 0, 0, 1},
+                                   std::vector<double>(6)));
+      all.push_back(world->link_body(id, 0));
+    }
+  }
+  double apart = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    must(bodies.step(0.001));
+    must(links.step(0.001));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 corner{0.1, 0.1, 0.1};
+      apart = std::max(apart,
+                       norm(bodies.pose(twins[0][k]) * corner - links.pose(twins[1][k]) * corner));
+    }
+  }
+  std::printf("corners %.2g m apart at most\n", apart);
+  EXPECT_LT(apart, 0.002);
+}
+
+// Sliding begins at the angle of friction, and goes at g (sin a - mu cos a).
+TEST(LinkContact, ABoxSlidesOnATiltedLinkAsItsFrictionSays) {
+  const double mu = 0.5, critical = std::atan(mu);
+  JointForces locked;
+  locked.friction = std::numeric_limits<double>::infinity();
+  for (const double share : {0.97, 1.2}) {
+    World world;
+    const Material m{mu, 0.0, 0.0};
+    const double angle = share * critical;
+    const Plate plate = add_plate(world, RevoluteJoint{{0, 1, 0}}, m, locked);
+    must(world.set_joint_states(plate.id, std::vector<double>{angle}, std::vector<double>{0}));
+    const SE3 T = world.pose(plate.body);
+    const BodyId box =
+        add_dynamic(world, {.shape = Box{{0.04, 0.04, 0.02}},
+                            .material = m,
+                            .pose = T * SE3(Vec3{-0.4, 0, kPlate.half_extents.z + 0.02})});
+    const auto along = [&] { return inverse_times(T, world.pose(box).position()).x; };
+    for (int i = 0; i < 100; ++i) must(world.step(0.001));
+    const double x0 = along(),
+                 v0 = dot(T.rotation().cx, world.pose(box).rotate(world.velocity(box).v));
+    for (int i = 0; i < 400; ++i) must(world.step(0.001));
+    const double x = along() - x0;
+    if (share < 1.0) {
+      EXPECT_LT(std::fabs(x), 1e-3);
+      continue;
+    }
+    const double a = 9.81 * (std::sin(angle) - mu * std::cos(angle));
+    std::printf("%.4f m, %.4f by the law\n", x, v0 * 0.4 + 0.5 * a * 0.16);
+    EXPECT_NEAR(x, v0 * 0.4 + 0.5 * a * 0.16, 0.01 * 0.5 * a * 0.16);
+  }
+}
+
+// On a belt at u a box comes to u; a ball that rolls without slipping, kicked off at rest, to 2/7
+// u.
+TEST(LinkContact, ABeltOnALinkCarriesBoxesAndBalls) {
+  const double u = 0.7, mu = 0.4;
+  World world;
+  const Material m{mu, 0.0, 0.0};
+  LinkSpec link = link_of(PrismaticJoint{{0, 0, 1}}, kPlate, 1000.0);
+  link.T_parent_joint = SE3(Vec3{0, 0, -kPlate.half_extents.z});
+  const ArticulationId id = must(world.create_articulation({model_of({link})}));
+  ColliderDesc belt = collider_of(kPlate, m);
+  belt.surface_velocity = {u, 0, 0};
+  must(world.add_collider(world.link_body(id, 0), belt));
+  must(world.set_drive(id, 0, 0, {0, 0, 1e6, 1e5, 1e6}));
+  const BodyId box = add_dynamic(
+      world, {.shape = Box{{0.05, 0.05, 0.02}}, .material = m, .pose = SE3(Vec3{-0.4, 0.2, 0.02})});
+  const BodyId ball = add_ball(world, {-0.4, -0.2, kBallRadius}, {}, m);
+  const auto speed = [&](BodyId body) { return world.pose(body).rotate(world.velocity(body).v).x; };
+  for (int i = 0; i < 30; ++i) must(world.step(0.001));  // the plate has settled on its drive
+  const double before = speed(box);
+  for (int i = 0; i < 50; ++i) must(world.step(0.001));
+  EXPECT_NEAR(speed(box) - before, mu * 9.81 * 0.05, 0.01 * mu * 9.81 * 0.05);
+  for (int i = 0; i < 350; ++i) must(world.step(0.001));
+  std::printf("box %.4f, ball %.4f of %.4f m/s\n", speed(box), speed(ball), 2.0 / 7.0 * u);
+  EXPECT_NEAR(speed(box), u, 0.002 * u);
+  EXPECT_NEAR(speed(ball), 2.0 / 7.0 * u, 0.005 * u);
+}
+
+struct Momenta {
+  dse3 all;
+  double energy;
+};
+// Of a tree and of bodies, about the world's origin.
+Momenta momenta_of(const World& world, ArticulationId id, const std::vector<BodyId>& bodies,
+                   const Inertia& J) {
+  const Model& model = *world.model(id);
+  Data data(model);
+  forward_kinematics<double>(model, data, world.coordinates(id), world.velocities(id));
+  Momenta sum{momentum(model, data, Vec3{}), kinetic_energy(model, data)};
+  for (const BodyId body : bodies) {
+    const SE3 T = world.pose(body);
+    const se3 V = world.velocity(body);
+    const Vec3 p = J.mass() * T.rotate(V.v), L = T.rotate(J.rotational() * V.w);
+    sum.all.m += L + cross(T.position(), p);
+    sum.all.f += p;
+    sum.energy += 0.5 * (J.mass() * dot(V.v, V.v) + dot(V.w, J.rotational() * V.w));
+  }
+  return sum;
+}
+
+// Boxes thrown at a walker that floats: what they lose it gains, and nothing gains energy.
+TEST(LinkContact, OfThrownBoxesKeepsTheMomentumOfAll) {
+  const Box shape{{0.05, 0.05, 0.05}};
+  World world({.gravity = {}});
+  const Walker walker = add_walker(world, {0, 0, 0}, kRough);
+  for (int link = 1; link <= 8; ++link) must(world.set_drive(walker.id, link, 0, {}));
+  std::vector<BodyId> boxes;
+  for (const double x : {-0.25, 0.0, 0.2}) {
+    boxes.push_back(add_dynamic(world, {.shape = shape,
+                                        .material = kRough,
+                                        .density = 2000.0,
+                                        .pose = SE3(Vec3{x, 0.5, -0.3 + x}),
+                                        .velocity = {{2, 1, 3}, {0.3, -3, 0.5}}}));
+  }
+  const Inertia J = solid_inertia(shape, 2000.0);
+  const Momenta before = momenta_of(world, walker.id, boxes, J);
+  long hits = 0;
+  double linear = 0.0, angular = 0.0, energy = before.energy, gained = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    must(world.step(0.001));
+    hits += static_cast<long>(world.contact_events().size());
+    const Momenta now = momenta_of(world, walker.id, boxes, J);
+    linear = std::max(linear, norm(now.all.f - before.all.f));
+    angular = std::max(angular, norm(now.all.m - before.all.m));
+    gained = std::max(gained, now.energy - energy);
+    energy = std::min(energy, now.energy);
+  }
+  std::printf("%ld events; momentum %.2g of %.3g, angular %.2g of %.3g; energy +%.2g of %.3g\n",
+              hits, linear, norm(before.all.f), angular, norm(before.all.m), gained, before.energy);
+  EXPECT_GT(hits, 2);
+  EXPECT_LT(energy, 0.9 * before.energy);
+  EXPECT_LT(linear, 1e-5 * norm(before.all.f));  // bodies are single precision in sub-steps
+  EXPECT_LT(angular, 1e-3 * norm(before.all.m));
+  EXPECT_LT(gained, 1e-3 * before.energy);
+}
+
+// Four pillars of three boxes bear a walker with 30 kg on its back.
+TEST(LinkContact, AWalkerStandsOnPillarsUnderALoad) {
+  for (const double rate : kRates) {
+    World world;
+    add_ground(world, kRough);
+    std::vector<BodyId> boxes;
+    for (const double x : {-0.25, 0.25}) {
+      for (const double y : {-0.15, 0.15}) {
+        for (const BodyId box : add_stack(world, 3, 0.06, {x, y, 0})) boxes.push_back(box);
+      }
+    }
+    const double trunk = 0.36 + Walker::kHeight;
+    const Walker walker = add_walker(world, {0, 0, trunk}, kRough);
+    boxes.push_back(add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}},
+                                        .material = kRough,
+                                        .density = 30.0 / 0.008,
+                                        .pose = SE3(Vec3{0, 0, trunk + 0.08 + 0.1})}));
+    const auto run = [&](double seconds) {
+      for (int i = 0; i < static_cast<int>(seconds * rate); ++i) must(world.step(1.0 / rate));
+    };
+    run(1.0);
+    std::vector<Vec3> settled;
+    for (const BodyId box : boxes) settled.push_back(world.pose(box).position());
+    run(1.5);
+    double drift = 0.0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      drift = std::max(drift, norm(world.pose(boxes[i]).position() - settled[i]));
+    }
+    std::printf("%g Hz: %.2g m in 1.5 s; the load at %.4f\n", rate, drift, settled.back().z);
+    EXPECT_LT(drift, 0.002) << rate;
+    EXPECT_NEAR(settled.back().z, trunk + 0.18, 0.03) << rate;  // its legs give way
+  }
+}
+
+// Swept and lain on at once: balls shot at a plate 4 mm thick that bears a stack come back.
+TEST(LinkContact, NoBallPassesALinkUnderALoad) {
+  const Box sheet{{0.5, 0.5, 0.002}};
+  World world;
+  LinkSpec link = link_of(PrismaticJoint{{0, 0, 1}}, sheet, 8000.0);
+  link.T_parent_joint = SE3(Vec3{0, 0, 1.0});
+  const ArticulationId id = must(world.create_articulation({model_of({link})}));
+  const BodyId plate = world.link_body(id, 0);
+  must(world.add_collider(plate, collider_of(sheet, kRough)));
+  must(world.set_drive(id, 0, 0, {0, 0, 1e5, 2e3, 1e6}));
+  add_stack(world, 4, 0.08, {0, 0, 1.002});
+  std::vector<BodyId> balls;
+  for (int i = 0; i < 5; ++i) {
+    balls.push_back(add_ball(world, {0.2 * (i - 2), 0.3, 0.5}, {}, {0.3, 0.5, 0.0}));
+  }
+  double highest = -1.0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 100 == 0) {
+      for (std::size_t k = 0; k < balls.size(); ++k) {
+        must(world.set_pose(balls[k], SE3(Vec3{0.2 * (static_cast<double>(k) - 2), 0.3, 0.5})));
+        must(world.set_velocity(balls[k], {{}, {0, -4.0 * static_cast<double>(k % 2), 25}}));
+      }
+    }
+    must(world.step(0.001));
+    for (const BodyId ball : balls) {
+      highest = std::max(highest, world.pose(ball).position().z - world.pose(plate).position().z);
+    }
+  }
+  EXPECT_GT(highest, -0.03);  // they do reach it
+  EXPECT_LT(highest, 0.0);
+}
+
+TEST(LinkContact, StepsToTheSameBitsFromASnapshot) {
+  const auto build = [](World& world) {
+    add_ground(world, kRough);
+    const Plate lift = add_plate(world, PrismaticJoint{{0, 0, 1}}, kRough);
+    must(world.set_drive(lift.id, 0, 0, {0.3, 0, 1e5, 1e4, 1e5}));
+    add_stack(world, 4, 0.1, {});
+    add_walker(world, {0.8, 0, 0.8}, kRough);
+    add_stack(world, 2, 0.1, {0.8, 0, 0.9});
+    add_ball(world, {0.1, 0.3, 0.3}, {1, 0, 0}, kRough);
+  };
+  World straight({.sleep_after = 0.2}), rolled({.sleep_after = 0.2});
+  build(straight);
+  build(rolled);
+  std::vector<std::byte> bytes;
+  for (int i = 0; i < 250; ++i) {
+    bytes.clear();
+    rolled.snapshot(bytes);
+    must(rolled.step(0.004));
+    must(rolled.restore(bytes));
+    must(rolled.step(0.001));
+    must(straight.step(0.001));
+    ASSERT_EQ(straight.state_hash(), rolled.state_hash()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace vp::test
