@@ -22,28 +22,28 @@ std::uint64_t hash_after(Scene scene, int steps, double rate) {
 }
 
 TEST(GoldenScenes, TowersOf1120Boxes) {
-  EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 16234635315449694074u);
+  EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 1195299647323307138u);
 }
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 9622998402551161302u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 14683057714082079400u);
 }
 TEST(GoldenScenes, AWallThatIsHit) {
-  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 1055997161971966065u);
+  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 4599323537251493622u);
 }
 TEST(GoldenScenes, AHouseOfCards) {
-  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 12175770856714143517u);
+  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 876131596343790869u);
 }
 TEST(GoldenScenes, Dominoes) {
-  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 9668119985119454444u);
+  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 8722332349043279709u);
 }
 TEST(GoldenScenes, Ragdolls) {
-  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 2194393198470918351u);
+  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 554829803693614433u);
 }
 TEST(GoldenScenes, AChainUnderLoad) {
-  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 9317362003132720056u);
+  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 6669515066414768702u);
 }
 TEST(GoldenScenes, ABridgeUnderCrates) {
-  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 1240445415978790518u);
+  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 2250013561817342256u);
 }
 
 }  // namespace
