@@ -7,7 +7,7 @@
   gives a program of ours, in a command or in a table headed "option of `PROGRAM`", is in its source.
 - A code block after "<!-- source: FILE -->" is that file, letter for letter; a block in FILE may be
   marked by "// begin: NAME" and "// end: NAME" and is then asked for as FILE#NAME.
-- Each check switched off in .clang-tidy has its reason there.
+- Each check switched off in a .clang-tidy has its reason there.
 """
 import re
 import subprocess
@@ -33,9 +33,13 @@ OPTION = re.compile(r'(?<!\S)--[a-z][\w-]*')
 MADE = ('build/', 'out/')  # exist only after a run
 
 
-def documents():
-    return sorted(p for p in ROOT.rglob('*.md')
+def ours(name):
+    return sorted(p for p in ROOT.rglob(name)
                   if not any(part in ('build', 'out', '.git') for part in p.relative_to(ROOT).parts))
+
+
+def documents():
+    return ours('*.md')
 
 
 def line_of(text, position):
@@ -114,10 +118,11 @@ def faults_in(document):
 
 
 def tidy_faults():
-    text = (ROOT / '.clang-tidy').read_text()
-    for name in re.findall(r'^\s+-([a-z][\w.-]+)', text, re.M):
-        if not re.search(rf'^# {re.escape(name)}: \S', text, re.M):
-            yield f'.clang-tidy: {name} is off without a reason'
+    for path in ours('.clang-tidy'):
+        text = path.read_text()
+        for name in re.findall(r'^\s+-([a-z][\w.-]+)', text, re.M):
+            if not re.search(rf'^# {re.escape(name)}: \S', text, re.M):
+                yield f'{path.relative_to(ROOT)}: {name} is off without a reason'
 
 
 def main():

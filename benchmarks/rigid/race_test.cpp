@@ -17,6 +17,9 @@ namespace rigid {
 namespace {
 
 class Race : public testing::Test {
+ public:
+  ~Race() override { std::filesystem::remove_all(folder_); }
+
  protected:
   Race() {
     std::string name = (std::filesystem::temp_directory_path() / "rigid-race-XXXXXX").string();
@@ -28,7 +31,6 @@ class Race : public testing::Test {
     plan_.patience = 10.0;
     plan_.programs = folder_;
   }
-  ~Race() override { std::filesystem::remove_all(folder_); }
 
   void script(const std::string& name, const std::string& text) {
     const std::string path = folder_ + "/" + name;

@@ -27,7 +27,7 @@ TEST(FileDescriptor, ClosesWhatItOwnsOnceAndWhatItIsGivenInItsPlace) {
   first = std::move(second);
   EXPECT_FALSE(is_open(one));
   EXPECT_EQ(first.get(), two);
-  EXPECT_FALSE(second);
+  EXPECT_FALSE(second);  // NOLINT(bugprone-use-after-move): what is tested
   {
     const FileDescriptor third(std::move(first));
     EXPECT_TRUE(is_open(two));

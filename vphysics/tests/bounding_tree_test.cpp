@@ -12,7 +12,6 @@ namespace vp::test {
 namespace {
 
 using collide::BoundingTree;
-using collide::Bounds;
 using collide::FloatBounds;
 using collide::TreeItem;
 using Effort = BoundingTree::Effort;

@@ -13,7 +13,7 @@ struct Id {
   std::uint32_t generation = 0;  // bumped each time the slot is reused
 
   constexpr explicit operator bool() const { return index != 0; }
-  constexpr auto operator<=>(const Id&) const = default;
+  constexpr auto operator<=>(const Id&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 using BodyId = Id<struct BodyTag>;

@@ -112,7 +112,7 @@ class Replay {
   Expected<void> play(std::span<const std::byte> frame);
   Expected<void> make(const RecordedCall& call, std::uint64_t structure);
   Expected<void> make_step(double dt, const std::uint64_t* hash);
-  tl::unexpected<Error> stop(Error error);
+  tl::unexpected<Error> stop(const Error& error);
 
   std::vector<std::byte> bytes_;
   RecordedParts parts_;

@@ -94,6 +94,7 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
     std::erase_if(kept,
                   [&](auto i) { return std::find(flat.begin(), flat.end(), i) != flat.end(); });
     std::vector<collide::GridPoint> fewer;
+    fewer.reserve(kept.size());
     for (const std::uint32_t i : kept) fewer.push_back(grid[i]);
     collide::Quickhull next =
         collide::quickhull(fewer, options.max_vertices, found.tolerance, kThinnest * cells);

@@ -149,13 +149,6 @@ void set_apart(GjkResult& r, const Vec3& v, double distance) {
 
 }  // namespace
 
-CorePair::CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
-    : a(shape_a), b(shape_b), T_a_b(pose) {
-  const double reach_a = core_reach(a), reach_b = core_reach(b);
-  reach = reach_a + reach_b + norm(pose * core_middle(b) - core_middle(a));
-  size = std::min(reach_a + core_radius(a), reach_b + core_radius(b));
-}
-
 GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
   GjkResult r;
   r.state = GjkResult::State::overlaps;

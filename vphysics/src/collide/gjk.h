@@ -14,7 +14,12 @@ struct CorePair {
   double size;   // by which shapes are: that of the smaller one
   mutable int hint_a = 0, hint_b = 0;
 
-  CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose);
+  CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
+      : a(shape_a), b(shape_b), T_a_b(pose) {
+    const double reach_a = core_reach(a), reach_b = core_reach(b);
+    reach = reach_a + reach_b + norm(pose * core_middle(b) - core_middle(a));
+    size = std::min(reach_a + core_radius(a), reach_b + core_radius(b));
+  }
 
   Vec3 support_a(const Vec3& d) const { return core_support(a, d, hint_a); }
   Vec3 support_b(const Vec3& d) const { return T_a_b * core_support(b, T_a_b.unrotate(d), hint_b); }

@@ -200,7 +200,7 @@ Expected<ReplayState> Replay::step() {
   return first_difference_ ? ReplayState::differs : ReplayState::same;
 }
 
-tl::unexpected<Error> Replay::stop(Error error) {
+tl::unexpected<Error> Replay::stop(const Error& error) {
   error_ =
       Error{Errc::bad_data, "replay, after step " + std::to_string(steps_) + ": " + error.message};
   return tl::make_unexpected(*error_);
