@@ -11,8 +11,8 @@ namespace {
 using solve::JointRow6;
 
 // Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
-constexpr double kPush = 0.2;
-constexpr double kLoss = 0.05;
+constexpr double kJointPush = 0.2;
+constexpr double kJointLoss = 0.05;
 
 AxisDesc axis(AxisMotion motion, double lower = 0.0, double upper = 0.0, JointDrive drive = {}) {
   return {motion, lower, upper, drive};
@@ -75,8 +75,8 @@ void fill(JointLaw& law, const UserConstraint& user) {
 // Rate and loss of a spring of frequency f against K alone, integrated implicitly.
 void soften(JointRow6& row, double frequency, double damping_ratio, double h) {
   if (frequency == 0.0) {
-    row.rate = kPush / h;
-    row.loss = kLoss;
+    row.rate = kJointPush / h;
+    row.loss = kJointLoss;
     row.relaxes = true;
     return;
   }
