@@ -4,14 +4,16 @@
 Half of what clang-tidy costs is the headers of a source, and half of the rest the analyzer, which
 follows paths. So:
 - The libraries and programs are looked at together, as a unity build (--unity, a folder that is
-  configured so, with its generated sources) compiles them: by all checks but the analyzer, and by the
-  analyzer too where a source of theirs changed since the base (CHECK_BASE, or where this branch left
-  main). They are copied into one file each: of a file that is included the analyzer follows no path.
-- Of what a unity build compiles alone, tests and the readers of command lines, all that changed is
-  looked at, however long it takes.
+  configured so, with its generated sources) compiles them: by all checks but the analyzer, however
+  long it takes. They are copied into one file each: of a file that is included the analyzer follows
+  no path.
+- What changed since the base (CHECK_BASE, or where this branch left main) comes first, newest first,
+  and has all checks, the analyzer's too: libraries and programs, and what a unity build compiles
+  alone, tests and the readers of command lines. 240 s after the beginning (SF_TIDY_CHANGED_SECONDS)
+  no further one is begun, so that a large change takes a bounded time as well.
 - Then, newest first and until 120 s after the beginning (SF_TIDY_SECONDS), the analyzer has the other
-  libraries and programs, and all checks the other sources. How many were left out is said; --all
-  leaves out none.
+  libraries and programs, and all checks the other sources.
+How many were left out is said, of those that changed too; --all leaves out none.
 """
 import argparse
 import bisect
@@ -64,6 +66,15 @@ def not_committed():
         git('ls-files', '--others', '--exclude-standard').splitlines()
 
 
+def by_age(base):
+    """What changed since base, and every file; both newest first."""
+    new = not_committed()
+    newest = list(dict.fromkeys(new + git('log', '--name-only', '--format=').splitlines()))
+    age = {name: i for i, name in enumerate(newest)}
+    changed = new + (git('diff', '--name-only', f'{base}..HEAD').splitlines() if base else [])
+    return sorted(dict.fromkeys(changed), key=lambda name: age.get(name, len(age))), newest
+
+
 def relative(path):
     return os.path.relpath(path, ROOT)
 
@@ -114,18 +125,20 @@ def written_together(commands, folder):
 
 
 def sources_for(changed, compiled):
-    """The compiled files that show the changed ones: themselves, or for a header one that includes it."""
-    chosen = []
-    for name in changed:
+    """The compiled files that show the changed ones: themselves, or for a header one that includes it.
+    Each with the place in changed of the first that it shows, in the order of these places."""
+    chosen = {}
+    for place, name in enumerate(changed):
         if name in compiled:
-            chosen.append(name)
+            chosen.setdefault(name, place)
         elif name.endswith('.h'):
             stem = Path(name).stem
             twins = [c for c in compiled if Path(c).stem == stem]
             text = f'{stem}.h"'
             users = twins or [c for c in compiled if text in (ROOT / c).read_text(errors='replace')]
-            chosen += users[:1]
-    return list(dict.fromkeys(chosen))
+            if users:
+                chosen.setdefault(users[0], place)
+    return chosen
 
 
 def run_tidy(name, build, options=()):
@@ -148,31 +161,40 @@ def finds_faults():
 
 
 class Look:
-    """clang-tidy over files, several at a time; what it says is printed."""
+    """clang-tidy over files, several at a time, in the order asked for; what it says is printed."""
 
-    def __init__(self, jobs):
+    def __init__(self, jobs, folder, build):
         self.pool = ThreadPoolExecutor(jobs)
+        self.folder, self.build = folder, build
         self.started = time.monotonic()
-        self.faulty, self.skipped = [], []
+        self.asked, self.faulty, self.skipped = [], set(), set()
 
-    def _look(self, name, build, options=(), places=lambda said: said):
-        done = run_tidy(name, build, options)
-        if done.returncode != 0:
-            self.faulty.append(name)
-            print(places(done.stdout.strip() or done.stderr.strip()), flush=True)
-
-    def _look_until(self, until, name, *how):
-        if time.monotonic() - self.started > until:
-            self.skipped.append(name)
+    def _look(self, what, checks):
+        if isinstance(what, Together):
+            done = run_tidy(what.path, self.folder, [checks])
+            said = what.with_places(done.stdout.strip() or done.stderr.strip())
         else:
-            self._look(name, *how)
+            done = run_tidy(what, self.build)
+            said = done.stdout.strip() or done.stderr.strip()
+        if done.returncode != 0:
+            self.faulty.add(what)
+            print(said, flush=True)
 
-    def at_together(self, parts, folder, checks, until=float('inf')):
-        return [self.pool.submit(self._look_until, until, part.path, folder, [checks], part.with_places)
-                for part in parts]
+    def _look_until(self, until, what, checks, else_checks):
+        if time.monotonic() - self.started <= until:
+            self._look(what, checks)
+        else:
+            self.skipped.add(what)
+            if else_checks:
+                self._look(what, else_checks)
 
-    def at_each(self, names, build, until=float('inf')):
-        return [self.pool.submit(self._look_until, until, name, build) for name in names]
+    def at(self, what, checks=None, until=float('inf'), else_checks=None):
+        """what: sources together, by checks, or after until by else_checks if any; or one alone."""
+        self.asked.append(self.pool.submit(self._look_until, until, what, checks, else_checks))
+
+    def wait(self):
+        for one in self.asked:
+            one.result()
 
 
 def main():
@@ -181,8 +203,11 @@ def main():
     parser.add_argument('--build', default='build/clang', help='a build of all sources, tests each alone')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 120),
-                        help='seconds after which no further test that did not change is begun')
-    parser.add_argument('--all', action='store_true', help='every test, however long it takes')
+                        help='seconds after which nothing that did not change is begun')
+    parser.add_argument('--changed-budget', type=float,
+                        default=os.environ.get('SF_TIDY_CHANGED_SECONDS', 240),
+                        help='seconds after which nothing further that changed is begun')
+    parser.add_argument('--all', action='store_true', help='everything, however long it takes')
     args = parser.parse_args()
 
     if not finds_faults():
@@ -195,29 +220,39 @@ def main():
     compiled = [relative(os.path.join(c['directory'], c['file'])) for c in commands_of(args.build)]
     alone = [c for c in dict.fromkeys(compiled)
              if c not in shipped and not c.startswith(('..', 'build/'))]
+
     base = base_commit()
-    changed = not_committed() + (git('diff', '--name-only', f'{base}..HEAD').splitlines() if base else [])
-    newest = git('log', '--name-only', '--format=').split()
-    must = sources_for(changed, alone)
-    others = [c for c in dict.fromkeys(sources_for(newest, alone) + alone) if c not in must]
-    touched = set(sources_for(changed, sorted(shipped)))  # of a header, one that includes it
-    whole = [part for part in together if touched & set(part.sources)]
-    age = {name: i for i, name in reversed(list(enumerate(newest)))}
+    changed, newest = by_age(base)
+    age = {name: i for i, name in enumerate(newest)}
+    changed_alone = sources_for(changed, alone)
+    changed_shipped = sources_for(changed, sorted(shipped))
+    whole = {part: min(changed_shipped[s] for s in part.sources if s in changed_shipped)
+             for part in together if not changed_shipped.keys().isdisjoint(part.sources)}
     rest = sorted((part for part in together if part not in whole),
                   key=lambda part: min(age.get(source, len(age)) for source in part.sources))
+    others = [c for c in dict.fromkeys([*sources_for(newest, alone), *alone]) if c not in changed_alone]
 
-    look, until = Look(args.jobs), float('inf') if args.all else args.budget
-    parts = look.at_together(whole, str(folder), TOGETHER)
-    parts += look.at_together(rest, str(folder), WITHOUT_ANALYZER)
-    parts += look.at_each(must, args.build)
-    parts += look.at_together(rest, str(folder), ANALYZER, until)
-    parts += look.at_each(others, args.build, until)
-    for part in parts:
-        part.result()
+    forever = float('inf')
+    until, until_changed = (forever, forever) if args.all else (args.budget, args.changed_budget)
+    look = Look(args.jobs, str(folder), args.build)
+    ranked = {**whole, **changed_alone}
+    for what in sorted(ranked, key=ranked.get):
+        part = isinstance(what, Together)
+        look.at(what, TOGETHER, until_changed, else_checks=WITHOUT_ANALYZER if part else None)
+    for part in rest:
+        look.at(part, WITHOUT_ANALYZER)
+    for part in rest:
+        look.at(part, ANALYZER, until)
+    for name in others:
+        look.at(name, until=until)
+    look.wait()
 
-    skipped = set(look.skipped)
-    analyzed = sum(len(part.sources) for part in together if part.path not in skipped)
-    since = f' (all {len(must) + len(touched)} changed since {base[:9]})' if base else ''
+    skipped = look.skipped
+    analyzed = sum(len(part.sources) for part in together if part not in skipped)
+    left_out = len(skipped & changed_alone.keys()) + sum(
+        len(changed_shipped.keys() & part.sources) for part in skipped & whole.keys())
+    number = len(changed_alone) + len(changed_shipped)
+    since = f', of {number} changed since {base[:9]} {left_out or "none"} left out' if base else ''
     print(f'tidy: {len(shipped)} of {len(shipped)} sources of libraries and programs, {analyzed} with the '
           f'analyzer; {len(alone) - len(skipped & set(alone))} of {len(alone)} tests and command lines{since}; '
           f'{len(look.faulty)} with faults')
