@@ -268,5 +268,23 @@ TEST(SandboxThrowing, WhatCannotBeIsRefusedAndLeavesNothing) {
   must(simulation.step());
 }
 
+std::int64_t told_ns = 0;
+
+// A clock that goes on by a microsecond whenever it is read: each stage takes one.
+TEST(SandboxSimulation, TellsHowLongEachStageTakes) {
+  const auto stopped = [] { return std::int64_t{0}; };
+  const Simulation::Clocks ticking{stopped, stopped, [] { return told_ns += 1000; }};
+  auto simulation = Simulation::open("tower10", 240, ticking).value();
+  EXPECT_EQ(simulation.stage_us(vp::Stage::sub_steps), 0.0);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation.step());
+  for (const vp::Stage stage : {vp::Stage::broad_phase, vp::Stage::narrow_phase,
+                                vp::Stage::sub_steps, vp::Stage::advance}) {
+    EXPECT_DOUBLE_EQ(simulation.stage_us(stage), 1.0) << name_of(stage);
+  }
+  EXPECT_EQ(simulation.stage_us(vp::Stage::impacts), 0.0);
+  ASSERT_TRUE(simulation.reset());
+  EXPECT_EQ(simulation.stage_us(vp::Stage::sub_steps), 0.0);
+}
+
 }  // namespace
 }  // namespace sandbox

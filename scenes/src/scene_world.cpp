@@ -40,7 +40,9 @@ vp::Shape engine_shape(const Shape& shape) {
 
 vp::Expected<SceneWorld> SceneWorld::create(Scene scene, vp::WorldDesc settings) {
   settings.gravity = scene.gravity;
-  SceneWorld out(std::move(scene), settings);
+  auto world = vp::World::create(settings);
+  if (!world) return tl::make_unexpected(world.error());
+  SceneWorld out(std::move(scene), *std::move(world));
   for (std::size_t i = 0; i < out.scene_.bodies.size(); ++i) {
     if (const auto added = out.add_body(i); !added) return tl::make_unexpected(added.error());
   }

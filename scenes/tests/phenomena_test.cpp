@@ -223,5 +223,45 @@ TEST(Phenomena, RollingFrictionHoldsABallOnASlope) {
   EXPECT_EQ(rolled, 3);
 }
 
+// Of a cradle's balls the last swings as high as the first was raised, and back, while those
+// between hang still.
+TEST(Phenomena, ACradlePassesTheBlowOn) {
+  SceneWorld world = world_of("cradle");
+  const Scene& scene = world.scene();
+  std::vector<std::size_t> balls;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].motion == Motion::dynamic) balls.push_back(i);
+  }
+  ASSERT_EQ(balls.size(), 5u);
+  constexpr double kPivot = 1.4, kLength = 1.0;  // of the scene [m]
+  const auto height = [&](std::size_t ball) {
+    return world.poses()[balls[ball]].position().z - (kPivot - kLength);
+  };
+  const double raised = height(0);
+  ASSERT_NEAR(raised, kLength * (1.0 - std::cos(0.8)), 1e-9);
+  // Periods of 1.0007 * 2.09 s: swings of half as long.
+  std::vector<double> peaks;  // of the last and the first in turn
+  double between = 0.0, highest = 0.0;
+  bool last_swings = true;
+  for (int i = 0; i < 4000; ++i) {
+    ASSERT_TRUE(world.step(kDt).has_value());
+    for (const std::size_t ball : {1u, 2u, 3u}) between = std::max(between, height(ball));
+    const double now = height(last_swings ? 4 : 0), then = height(last_swings ? 0 : 4);
+    if (now > then && now > 0.01) highest = std::max(highest, now);
+    if (highest > 0.0 && now < 0.5 * highest) {
+      peaks.push_back(highest);
+      highest = 0.0;
+      last_swings = !last_swings;
+    }
+  }
+  ASSERT_GE(peaks.size(), 3u);
+  std::printf("cradle: raised %.4f m, then", raised);
+  for (const double peak : peaks) std::printf(" %.4f", peak);
+  std::printf("; those between %.5f m\n", between);
+  EXPECT_NEAR(peaks[0], raised, 0.01 * raised);
+  EXPECT_NEAR(peaks[1], raised, 0.02 * raised);
+  EXPECT_LT(between, 0.01 * raised);
+}
+
 }  // namespace
 }  // namespace scenes

@@ -26,7 +26,7 @@ constexpr double kLongestFrame = 0.1;  // [s]; what a frame is late by more is l
 // A frame may step for as long as its picture takes to draw, and at least for this [s].
 constexpr double kLeastStepping = 1.0 / 30.0;
 
-constexpr Simulation::Clocks kClocks{os::monotonic_ns, os::thread_ns};
+constexpr Simulation::Clocks kClocks{os::monotonic_ns, os::thread_ns, os::monotonic_ns};
 
 volatile std::sig_atomic_t asked_to_leave = 0;
 

@@ -112,13 +112,37 @@ void timings(const Simulation& simulation, const Meter& meter, double drawing) {
     row("median", "%.0f us", f.median);
     row("p99", "%.0f us", f.p99);
     row("bodies", "%.0f", static_cast<double>(simulation.moving()));
+    row("awake", "%.0f", counters.awake);
+    row("pairs", "%.0f", counters.pairs);
     row("contacts", "%.0f", counters.contacts);
     row("looked at", "%.0f", counters.looked_at);
+    row("recycled", "%.0f", counters.recycled);
+    row("colours", "%.0f", counters.colours);
     row("impacts", "%.0f", counters.impacts);
     row("frames", "%.0f /s", meter.rate());
     row("drawing", "%.1f ms", 1e3 * drawing);
     ImGui::EndTable();
   }
+}
+
+void stage_timings(const Simulation& simulation) {
+  if (!ImGui::CollapsingHeader("Stages of a step", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_SizingStretchProp)) return;
+  for (const vp::Stage stage : vp::kStages) {
+    if (simulation.stage_us(stage) > 0.0) {
+      row(vp::name_of(stage), "%.1f us", simulation.stage_us(stage));
+    }
+  }
+  ImGui::EndTable();
+}
+
+void limits(const vp::StepStatus& status) {
+  ImGui::PushTextWrapPos(0.0f);
+  for (const vp::Limit limit : vp::kLimits) {
+    if (reached(status, limit)) ImGui::TextColored(kBright, "%s", sentence(limit));
+  }
+  if (status.impact_limit) ImGui::TextColored(kBright, "%.3f s held", status.time_held);
+  ImGui::PopTextWrapPos();
 }
 
 void show_controls(Controls& controls, Wishes& wishes) {
@@ -212,13 +236,11 @@ void draw_panel(const Simulation& simulation, const Meter& meter, double drawing
   time_controls(simulation, meter, controls, wishes);
   ImGui::Separator();
   timings(simulation, meter, drawing);
+  stage_timings(simulation);
   ImGui::Separator();
   show_controls(controls, wishes);
   keys_help();
-  if (simulation.status().non_finite)
-    ImGui::TextColored(kBright, "a body left the range of numbers");
-  if (simulation.status().impact_limit)
-    ImGui::TextColored(kBright, "impacts left over: %.3f s held", simulation.status().time_held);
+  limits(simulation.status());
   if (!message.empty()) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored(kBright, "%s", message.c_str());

@@ -36,6 +36,15 @@ double radius_of(const vp::Inertia& inertia) {
 Simulation::Simulation(scenes::SceneWorld world, int rate, const Clocks& clocks)
     : world_(std::move(world)), rate_(rate), clocks_(clocks), times_(kTimesKept) {
   collect_pieces();
+  watch_stages();
+}
+
+void Simulation::watch_stages() {
+  if (clocks_.stages == nullptr) return;
+  stage_clock_ = std::make_shared<vp::StageClock>(clocks_.stages);
+  world_.world().observe_stages(stage_clock_);
+  stage_us_ = {};
+  stages_averaged_ = 0;
 }
 
 void Simulation::collect_pieces() {
@@ -67,6 +76,7 @@ vp::Expected<void> Simulation::reset() {
   if (!world) return tl::make_unexpected(world.error());
   world_ = std::move(*world);
   collect_pieces();
+  watch_stages();
   times_.clear();
   status_ = {};
   grip_.reset();
@@ -110,11 +120,20 @@ vp::Expected<void> Simulation::step() {
   const auto status = world_.step(dt());
   times_.add(1e-3 * static_cast<double>(clocks_.processor() - began));
   if (!status) return tl::make_unexpected(status.error());
-  status_.impact_limit = status_.impact_limit || status->impact_limit;
-  status_.non_finite = status_.non_finite || status->non_finite;
-  status_.time_held += status->time_held;
+  status_ |= *status;
   ++steps_;
+  average_stages();
   return {};
+}
+
+void Simulation::average_stages() {
+  if (!stage_clock_) return;
+  stages_averaged_ = std::min(stages_averaged_ + 1, kStagesOf);
+  for (const vp::Stage stage : vp::kStages) {
+    double& mean = stage_us_[static_cast<std::size_t>(stage)];
+    mean += (1e-3 * static_cast<double>(stage_clock_->total(stage)) - mean) / stages_averaged_;
+  }
+  stage_clock_->clear();
 }
 
 vp::Expected<void> Simulation::advance(double frame, double speed, double budget) {

@@ -1,7 +1,9 @@
 // A scene that runs: stepped at a rate, paused, slowed down, with a hand in it.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,7 +34,8 @@ class Simulation {
   // [ns]
   struct Clocks {
     std::int64_t (*real)();
-    std::int64_t (*processor)();  // what a step costs is told by it
+    std::int64_t (*processor)();         // what a step costs is told by it
+    std::int64_t (*stages)() = nullptr;  // and by this its stages; null: they are not timed
   };
 
   static constexpr int kLeastRate = 10, kMostRate = 10'000;  // [Hz]
@@ -68,6 +71,9 @@ class Simulation {
   vp::Expected<void> advance(double frame, double speed, double budget);
 
   const StepTimes& times() const { return times_; }
+  // Of a step, the mean over about the last kStagesOf [us].
+  static constexpr int kStagesOf = 100;
+  double stage_us(vp::Stage stage) const { return stage_us_[static_cast<std::size_t>(stage)]; }
   // Whatever a step since the start has had to do without.
   const vp::StepStatus& status() const { return status_; }
 
@@ -85,10 +91,15 @@ class Simulation {
 
  private:
   void collect_pieces();
+  void watch_stages();
+  void average_stages();
 
   scenes::SceneWorld world_;
   int rate_;
   Clocks clocks_;
+  std::shared_ptr<vp::StageClock> stage_clock_;
+  std::array<double, vp::kStages.size()> stage_us_{};
+  int stages_averaged_ = 0;
   std::vector<Piece> pieces_;
   Typical typical_;
   StepTimes times_;

@@ -30,8 +30,7 @@ class SceneWorld {
   std::vector<SE3> poses() const;
 
  private:
-  SceneWorld(Scene scene, const vp::WorldDesc& settings)
-      : scene_(std::move(scene)), world_(settings) {}
+  SceneWorld(Scene scene, vp::World world) : scene_(std::move(scene)), world_(std::move(world)) {}
   vp::Expected<void> add_body(std::size_t index);
   vp::Expected<void> add_compound(std::size_t index);
   vp::Expected<void> add_collider(std::size_t index, const vp::Shape& shape,

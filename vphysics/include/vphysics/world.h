@@ -26,6 +26,8 @@
 #include "vphysics/multibody/model.h"
 #include "vphysics/query.h"
 #include "vphysics/shapes.h"
+#include "vphysics/stages.h"
+#include "vphysics/step_report.h"
 #include "vphysics/world_joints.h"
 
 namespace vp {
@@ -90,28 +92,15 @@ struct ContactEvent {
   double time;            // within the step, [0, dt]
 };
 
-// Set when a step had to degrade; the step is finished all the same.
-struct StepStatus {
-  bool impact_limit = false;  // a continuous body met more impacts than max_impacts_per_step: it
-                              // and what it touches were held for the rest of the step
-  bool non_finite = false;    // a body or an articulation left the range of numbers, or a joint
-                              // moved no inertia, and it was stopped where it was
-  double time_held = 0.0;     // the part of dt lost to impact_limit [s]
-};
-
-struct StepCounters {
-  std::uint32_t pairs = 0;      // collider pairs whose bounds met
-  std::uint32_t contacts = 0;   // contact points solved, summed over the solves of the step
-  std::uint32_t impacts = 0;    // times of impact found
-  std::uint32_t looked_at = 0;  // pairs given to the narrow phase
-  std::uint32_t awake = 0;      // bodies that move, those asleep left out; links are not counted
-  std::uint32_t triangles = 0;  // of meshes and height fields, that it looked at
-};
-
 class Recorder;
 
 class World {
  public:
+  // Of settings that come from a file or a user. Refused: numbers that are not finite, negative
+  // ones, gravity or lengths beyond 1e9, no iterations or more than 1000, sub-steps beyond 1000,
+  // more than 100000 impacts a step.
+  static Expected<World> create(const WorldDesc& desc);
+  // Precondition: create() would take it.
   explicit World(const WorldDesc& desc = {});
   ~World();
   World(World&&) noexcept;
@@ -184,6 +173,9 @@ class World {
   // --- time -------------------------------------------------------------------------------------
   // Who helps with the steps to come; null: nobody. The results are the same bits.
   void set_jobs(std::shared_ptr<Jobs> jobs);
+  // Who is told of the stages of the steps to come; null: nobody, which costs nothing. The results
+  // are the same bits.
+  void observe_stages(std::shared_ptr<StageObserver> observer);
   // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.
   Expected<StepStatus> step(double dt);
   // Of the last step, in order of time; none after restore().

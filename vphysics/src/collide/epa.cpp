@@ -300,6 +300,7 @@ Penetration epa(const CorePair& pair, const Simplex& simplex, double enough) {
     Penetration found = polytope.expand(enough);
     if (found.at_least >= enough) return found;
     polish(pair, found);
+    pair.rough |= found.depth - found.at_least > kRough * pair.size;
     set_witness(pair, found);
     return found;
   }

@@ -205,8 +205,9 @@ GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
     v = nearest.v;
     v2 = n2;
   }
-  const double length = std::sqrt(v2);
-  if (gap_along(pair, (-1.0 / length) * v) > 0.0) set_apart(r, v, length);
+  const double length = std::sqrt(v2), gap = gap_along(pair, (-1.0 / length) * v);
+  pair.rough |= length - gap > kRough * pair.size;
+  if (gap > 0.0) set_apart(r, v, length);
   return r;
 }
 

@@ -5,6 +5,10 @@
 
 namespace vp::collide {
 
+// Bounds of a distance or a depth that are farther apart [share of the smaller shape's size] when a
+// search has to end are told (CorePair::rough).
+inline constexpr double kRough = 1e-3;
+
 // Two cores in the frame of a.
 struct CorePair {
   const Geometry& a;
@@ -13,6 +17,8 @@ struct CorePair {
   double reach;  // by which rounding is measured: the size of both cores and their distance
   double size;   // by which shapes are: that of the smaller one
   mutable int hint_a = 0, hint_b = 0;
+  // A search ended before its bounds had met, so far apart that it matters (kRough).
+  mutable bool rough = false;
 
   CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
       : a(shape_a), b(shape_b), T_a_b(pose) {

@@ -19,6 +19,7 @@ struct ManifoldPoint {
 struct Manifold {
   Vec3 normal;  // unit, world frame, from a to b
   int count = 0;
+  bool rough = false;  // its depth is less certain than it should be: CorePair::rough
   ManifoldPoint points[kMaxPoints];
 
   void add(const Vec3& position, double separation, std::uint32_t feature) {

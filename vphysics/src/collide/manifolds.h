@@ -35,7 +35,10 @@ struct ManifoldScratch {
   static constexpr std::uint32_t kNoTriangle = ~0u;
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
-  std::uint32_t looked_at = 0;  // triangles; counted up, for whoever wants to know
+  // For whoever wants to know: triangles, counted up; set, that there were more normals than
+  // kMostClusters, and that of a triangle CorePair::rough was set.
+  std::uint32_t looked_at = 0;
+  bool crowded = false, rough = false;
 
   // For more than one shape meets of a surface that is not far finer than the shape is big, so that
   // a step with more of it than any before takes nothing from the heap.

@@ -112,6 +112,7 @@ void collide_posed(const Posed& a, const Posed& b, double margin, PairCache& cac
   } else {
     collide_convex(pair, margin, cache, m);
   }
+  m.rough = pair.rough;
   if (m.count == 0) return;
   m.normal = a.T.rotate(m.normal);
   for (int i = 0; i < m.count; ++i) m.points[i].position = a.T * m.points[i].position;
@@ -134,6 +135,7 @@ void collide_ordered(const Posed& a, const Posed& b, double margin, PairCache& c
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                    double margin, PairCache& cache, Manifold& manifold) {
   manifold.count = 0;
+  manifold.rough = false;
   if (a.kind <= b.kind) {
     collide_ordered({a, T_a}, {b, T_b}, margin, cache, manifold);
   } else {

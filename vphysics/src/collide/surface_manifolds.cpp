@@ -47,6 +47,7 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
     SurfaceTriangle t = surface.triangle(id);
     if (!face_towards(t, middle, surface.two_sided())) continue;
     const TriangleContact found = collide_triangle(surface, t, shape, T, margin, scratch.points);
+    scratch.rough |= found.rough;
     if (found.count > 0) add_contact({found, id, 0}, scratch.contacts);
   }
 }
@@ -110,7 +111,7 @@ bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
 
 // Each contact to the first cluster with nearly its normal; past the last cluster, to that which
 // comes nearest.
-std::uint32_t find_clusters(std::vector<Contact>& contacts) {
+std::uint32_t find_clusters(std::vector<Contact>& contacts, bool& crowded) {
   Vec3 normals[kMostClusters];
   std::uint32_t count = 0;
   for (Contact& c : contacts) {
@@ -123,6 +124,7 @@ std::uint32_t find_clusters(std::vector<Contact>& contacts) {
       c.cluster = k;
     }
     if (c.cluster == count) normals[count++] = c.contact.normal;
+    crowded |= most < kSameNormal;
   }
   return count;
 }
@@ -226,7 +228,7 @@ void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T
   if (scratch.contacts.size() > 1) {
     Pruning(surface, shape, T, size, scratch).prune();
   }
-  const std::uint32_t clusters = find_clusters(scratch.contacts);
+  const std::uint32_t clusters = find_clusters(scratch.contacts, scratch.crowded);
   for (std::uint32_t c = 0; c < clusters; ++c) {
     manifolds.push_back(Cluster(scratch, c, size).reduced());
   }

@@ -76,6 +76,7 @@ void ArcSearch::search(const Flat& from, const Flat& to) {
     waiting[count++] = {arc.from, d, arc.s_from, s};
     waiting[count++] = {d, arc.to, s, arc.s_to};
   }
+  pair_.rough |= count > 0;
 }
 
 void try_edge(const SurfaceTriangle& t, const Vec3 p[3], const CorePair& pair, int e,

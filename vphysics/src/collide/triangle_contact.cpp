@@ -81,6 +81,7 @@ class TriangleCollider {
         points_(points) {}
 
   void find(TriangleContact& contact);
+  bool rough() const { return pair_.rough; }
 
  private:
   void along_face(double gap, TriangleContact& contact);
@@ -201,7 +202,9 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
   if (shape.kind == Kind::sphere) {
     collide_sphere(surface, t, T.position(), shape.radius, margin, contact, points);
   } else {
-    TriangleCollider(surface, t, shape, T, margin, points).find(contact);
+    TriangleCollider collider(surface, t, shape, T, margin, points);
+    collider.find(contact);
+    contact.rough = collider.rough();
   }
   contact.count = points.size() - contact.first_point;
   contact.felt_part = felt_part(t, contact.part);

@@ -23,6 +23,7 @@ struct TriangleContact {
   // twice; of a face kFace.
   std::uint64_t felt_part;
   static constexpr std::uint64_t kFace = ~std::uint64_t{0};
+  bool rough = false;  // CorePair::rough
 };
 
 // Appends the points of a separation of at most margin, not reduced, in the surface's frame.

@@ -86,6 +86,7 @@ std::span<const collide::SubManifold> World::Impl::manifolds_of(const ColliderPa
   manifolds.clear();
   collide::PairCache cache;
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, manifold_scratch, manifolds);
+  for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
   return manifolds;
 }
 

@@ -85,10 +85,12 @@ solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
 }
 
 void World::Impl::find_contacts(double dt) {
-  find_new_contacts();
-  drop_parted_contacts();
-  find_bodies_on_links();
-  find_stale_contacts(dt);
+  {
+    const auto stage = in(Stage::broad_phase);
+    find_new_contacts();
+    drop_parted_contacts();
+    find_bodies_on_links();
+  }
   look_at_stale_contacts(dt);
 }
 
@@ -254,30 +256,45 @@ void World::Impl::want_posed(std::uint32_t index) {
 // In the order of their slots; then those that these have woken.
 void World::Impl::look_at_stale_contacts(double dt) {
   look_again.clear();
-  while (!stale_contacts.empty()) {
-    std::sort(stale_contacts.begin(), stale_contacts.end());
-    looked_at_contacts.swap(stale_contacts);
-    stale_contacts.clear();
-    looked.clear();
-    to_pose.clear();
-    std::uint32_t last = kNone;
-    for (const std::uint32_t index : looked_at_contacts) {
-      const Contact& c = contact_pool[index];
-      if (index == last || !c.alive || !c.stale || c.parked) continue;
-      last = index;
-      if (c.of_link) continue;  // link_contacts.cpp looks at it
-      looked.push_back({index, {}, 0.0, 0.0});
-      for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
-    }
-    in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) pose_colliders(to_pose[k]);
-    });
-    in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
-    });
+  for (bool first = true; first || !stale_contacts.empty(); first = false) {
+    find_manifolds_of_stale(dt, first);
+    const auto stage = in(Stage::lanes);
     for (const Looked& found : looked) take_over(found);
   }
   stale_contacts.swap(look_again);
+}
+
+void World::Impl::find_manifolds_of_stale(double dt, bool first) {
+  const auto stage = in(Stage::narrow_phase);
+  if (first) find_stale_contacts(dt);
+  std::sort(stale_contacts.begin(), stale_contacts.end());
+  looked_at_contacts.swap(stale_contacts);
+  stale_contacts.clear();
+  looked.clear();
+  to_pose.clear();
+  std::uint32_t last = kNone;
+  for (const std::uint32_t index : looked_at_contacts) {
+    const Contact& c = contact_pool[index];
+    if (index == last || !c.alive || !c.stale || c.parked) continue;
+    last = index;
+    if (c.of_link) continue;  // link_contacts.cpp looks at it
+    looked.push_back({index, {}, 0.0, 0.0});
+    for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
+  }
+  in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) pose_colliders(to_pose[k]);
+  });
+  in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
+  });
+}
+
+void World::Impl::note_limits(const collide::Manifold& manifold) {
+  status.distance_limit |= manifold.rough;
+}
+void World::Impl::note_limits_of_surfaces() {
+  status.manifold_limit |= manifold_scratch.crowded;
+  status.distance_limit |= manifold_scratch.rough;
 }
 
 // The narrow phase, for one. What has parts is looked at when it is taken over.
@@ -304,6 +321,7 @@ void World::Impl::take_over(const Looked& found) {
   const bool apart = found.clearance >= kNeverMeets;
   contact_pool[index].stale = false;
   if (!apart) ++counters.looked_at;
+  note_limits(found.manifold);
   if (contact_pool[index].has_parts) {
     if (apart) {
       remove_parts(index);
@@ -347,6 +365,7 @@ void World::Impl::take_out_of_lane(std::uint32_t index) {
 
 void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   Contact& c = contact_pool[index];
+  ++manifolds_renewed;
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const auto end_a = end_of(a.body), end_b = end_of(b.body);
   wake(a.body);

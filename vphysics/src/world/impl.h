@@ -158,6 +158,23 @@ struct Looked {
   double margin, clearance;  // within which it was looked for; free of contact for so far [m]
 };
 
+// Tells who watches, if anybody does.
+class InStage {
+ public:
+  InStage(StageObserver* observer, Stage stage) : observer_(observer), stage_(stage) {
+    if (observer_) observer_->begin(stage_);
+  }
+  ~InStage() {
+    if (observer_) observer_->end(stage_);
+  }
+  InStage(const InStage&) = delete;
+  InStage& operator=(const InStage&) = delete;
+
+ private:
+  StageObserver* observer_;
+  Stage stage_;
+};
+
 struct RecordedCall;
 
 // Share of a penetration that a sub-step pushes out.
@@ -167,7 +184,8 @@ enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
 struct World::Impl {
   WorldDesc desc;
-  std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
+  std::shared_ptr<Jobs> jobs;               // none: all is done by who calls step()
+  std::shared_ptr<StageObserver> observer;  // or null
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
   std::vector<Articulation> articulations;
@@ -213,7 +231,8 @@ struct World::Impl {
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
   std::uint32_t islands_found = 0;
-  double dt_now = 0.0;  // of the step that is going on; 0: none is
+  std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
+  double dt_now = 0.0;                  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
   std::vector<std::uint8_t> mover_news;  // of each mover: it needs more than its own row
   std::vector<Looked> looked;
@@ -271,7 +290,7 @@ struct World::Impl {
   void hold(std::uint32_t body);
 
   // step.cpp
-  void begin_step();
+  void begin_step(double dt);
   void begin_impact_stage();
   void prescribe_velocity(Body& body, double dt);
   void integrate_forces(double dt);
@@ -287,7 +306,11 @@ struct World::Impl {
   bool advance_by_row(std::uint32_t body);
   void apply_corrections();
   void finish_step();
+  InStage in(Stage stage) const { return {observer.get(), stage}; }
+  void count_contacts();
   void run(double dt);
+  void feel_forces(double dt);
+  void run_impacts(double dt);
   double next_impact(double h);
   void hold_what_meets(double h);
 
@@ -339,6 +362,7 @@ struct World::Impl {
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);
+  void find_manifolds_of_stale(double dt, bool first);
   solve::ContactGraph::End end_of(std::uint32_t body) const;
   bool joins_sub_steps(const Body& body) const;
 
@@ -369,6 +393,9 @@ struct World::Impl {
   template <class F>
   void for_partners(std::uint32_t body, const F& f) const;
 
+  void note_limits(const collide::Manifold& manifold);
+  void note_limits_of_surfaces();
+
   // part_contacts.cpp
   void find_parts(std::uint32_t whole, double margin);
   std::uint32_t claim_part(const collide::SubManifold& found);
@@ -377,6 +404,7 @@ struct World::Impl {
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
+  void take_sub_steps(double dt, int count);
   template <class F>
   void for_runs(const F& f);
   template <class F>

@@ -63,6 +63,5 @@ double first_turn(const JointLaw& law);
 int main_slot(const JointKind& kind);
 
 std::optional<std::string> problem_with(const JointDesc& desc);
-std::optional<std::string> problem_with_joint_drive(const JointDrive& drive);
 
 }  // namespace vp

@@ -170,7 +170,7 @@ bool gain(double x) {
 }
 std::optional<std::string> problem_with_axis(double lower, double upper, const JointDrive& drive) {
   if (auto problem = problem_with_limits(lower, upper)) return problem;
-  return problem_with_joint_drive(drive);
+  return problem_with(drive);
 }
 
 std::optional<std::string> problem_in(const BallSocket&) {
@@ -270,12 +270,6 @@ int main_slot(const JointKind& kind) {
       std::holds_alternative<Gear>(kind))
     return 0;
   return -1;
-}
-
-std::optional<std::string> problem_with_joint_drive(const JointDrive& drive) {
-  if (auto problem = problem_with(drive)) return problem;
-  if (gain(drive.stiffness) && gain(drive.damping)) return std::nullopt;
-  return "drive: stiffness and damping must be at most 1e15";
 }
 
 void lay_out(BodyJoint& joint, double h) {

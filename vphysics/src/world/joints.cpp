@@ -168,7 +168,7 @@ double World::joint_residual(JointId id, int row) const {
 namespace {
 
 Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
-  if (auto problem = problem_with_joint_drive(drive)) return refuse("set_drive: " + *problem);
+  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
   AxisDesc& desc = joint.law.axes[slot];
   if (desc.motion == AxisMotion::locked)
     return refuse("set_drive: the joint holds this coordinate; drive one that it leaves free");

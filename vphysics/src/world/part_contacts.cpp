@@ -48,6 +48,7 @@ void World::Impl::find_parts(std::uint32_t index, double margin) {
   manifolds.clear();
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, contact_pool[index].cache, known_parts,
                  manifold_scratch, manifolds);
+  for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
   if (contact_pool[index].sensor) {
     const bool touches = !manifolds.empty();
     if (touches != contact_pool[index].touching) report_touch(index, touches);

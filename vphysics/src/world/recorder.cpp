@@ -5,6 +5,7 @@
 #include "world/recording_limits.h"
 #include "world/refuse.h"
 #include "world/structure.h"
+#include "world/validate.h"
 
 namespace vp {
 namespace {
@@ -40,7 +41,7 @@ void World::Impl::log(const RecordedCall& call) {
 Expected<void> Recorder::begin(const World& world, const WorldDesc& desc, std::uint64_t structure,
                                bool empty) {
   if (begun_) return refuse("record: a recorder records once; make a new one");
-  if (auto problem = recording::problem_with(desc)) return refuse("record: " + *problem);
+  if (auto problem = problem_with(desc)) return refuse("record: " + *problem);
   begun_ = true;
   recording::Writer out(bytes_, parts_);
   std::vector<std::byte> snapshot;

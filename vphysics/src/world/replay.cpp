@@ -8,6 +8,7 @@
 #include "world/recording_io.h"
 #include "world/recording_limits.h"
 #include "world/refuse.h"
+#include "world/validate.h"
 
 namespace vp {
 namespace {
@@ -158,7 +159,7 @@ Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts
   if (!in.ok() || in.left() < sizeof(std::uint32_t) ||
       word_at(std::span(bytes).subspan(header)) !=
           recording::check_of(std::span(bytes).first(header)) ||
-      recording::problem_with(desc)) {
+      problem_with(desc)) {
     return bad("replay: the recording's beginning is damaged or cut short");
   }
   if (later && !built) {

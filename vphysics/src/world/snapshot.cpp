@@ -205,7 +205,7 @@ JointState read(Reader& in, const BodyJoint& joint) {
       for (double* x : {&d.position, &d.velocity, &d.stiffness, &d.damping, &d.max_force})
         *x = in.number();
       const bool held = joint.law.axes[i].motion == AxisMotion::locked;
-      in.check(!problem_with_joint_drive(d).has_value() && !(held && d.max_force > 0.0));
+      in.check(!problem_with(d).has_value() && !(held && d.max_force > 0.0));
     }
     state.impulse[i] = in.number();
     state.stop[i] = in.number();

@@ -7,6 +7,7 @@
 //
 // See docs/decisions/0002-impacts-and-contacts.md.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "vphysics/recording.h"
@@ -19,19 +20,23 @@ namespace vp {
 
 Expected<StepStatus> World::step(double dt) {
   if (!(dt > 0.0 && dt <= 0.1)) return refuse("step: dt must be in (0, 0.1] seconds");
-  impl_->begin_step();
+  impl_->begin_step(dt);
   impl_->run(dt);
   impl_->finish_step();
   if (impl_->recorder) impl_->recorder->add_step(*this, dt);
   return impl_->status;
 }
 
-void World::Impl::begin_step() {
+void World::Impl::begin_step(double dt) {
+  const auto stage = in(Stage::prepare);
   ready_for_queries = false;
+  dt_now = dt;
   const std::size_t n = bodies.size();
   status = {};
   counters = {};
   manifold_scratch.looked_at = 0;
+  manifold_scratch.crowded = manifold_scratch.rough = false;
+  manifolds_renewed = 0;
   events.clear();
   next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
@@ -59,6 +64,7 @@ void World::Impl::begin_step() {
   if (has_impact_stage()) begin_impact_stage();
   if (!joints.empty()) joint_places.resize(n);
   report_ends_of_destroyed();
+  if (some_are_not) load_rows(dt);  // swept bodies and links meet in the stage of impacts alone
 }
 
 void World::Impl::begin_impact_stage() {
@@ -279,9 +285,7 @@ bool World::Impl::has_impact_stage() const {
 }
 
 void World::Impl::run(double dt) {
-  dt_now = dt;
-  if (some_are_not) {  // swept bodies and links meet in the stage of impacts alone
-    load_rows(dt);
+  if (some_are_not) {
     find_contacts(dt);
     list_bodies();  // some may have been woken
   }
@@ -289,9 +293,16 @@ void World::Impl::run(double dt) {
   counters.awake = static_cast<std::uint32_t>(movers.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {
+    const auto stage = in(Stage::advance);
     advance_all(dt);
     return;
   }
+  feel_forces(dt);
+  run_impacts(dt);
+}
+
+void World::Impl::feel_forces(double dt) {
+  const auto stage = in(Stage::forces);
   integrate_forces(dt);
   for (const std::uint32_t i : movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
@@ -299,6 +310,10 @@ void World::Impl::run(double dt) {
       forced[i].v = bodies[i].by_rows() ? Vec3{} : dt * desc.gravity;
     }
   }
+}
+
+void World::Impl::run_impacts(double dt) {
+  const auto stage = in(Stage::impacts);
   double time = 0.0;
   end_links(dt, sub_steps_taken);
   refresh_motions(dt);
@@ -333,9 +348,24 @@ void World::Impl::run(double dt) {
   }
 }
 
-void World::Impl::finish_step() {
+void World::Impl::count_contacts() {
+  note_limits_of_surfaces();
   counters.triangles = manifold_scratch.looked_at;
+  for (std::uint64_t left = graph.colours_in_use(); left != 0; left &= left - 1) {
+    const int c = std::countr_zero(left);
+    counters.manifolds += graph.of<1>(c).lanes + graph.of<4>(c).lanes;
+    ++counters.colours;
+    if (c == solve::kLastColour) status.colour_limit = true;
+  }
+  counters.pairs += counters.manifolds + near_list.size();
+  counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
+  counters.events = static_cast<std::uint32_t>(events.size());
+}
+
+void World::Impl::finish_step() {
+  count_contacts();
   if (desc.sleep_after > 0.0) {
+    const auto stage = in(Stage::sleep);
     for (const std::uint32_t i : movers) watch(i, dt_now);
     send_to_sleep();
   }

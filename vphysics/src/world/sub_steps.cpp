@@ -39,9 +39,18 @@ std::size_t World::Impl::blocks_in_use() {
 
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_of(desc, dt);
-  const float h = static_cast<float>(dt / n);
   sub_steps_taken = n;
   if (!some_are_not) return;
+  take_sub_steps(dt, n);
+  const auto stage = in(Stage::report);
+  end_joints(dt);
+  report_news();
+}
+
+void World::Impl::take_sub_steps(double dt, int n) {
+  const auto stage = in(Stage::sub_steps);
+  counters.sub_steps = static_cast<std::uint32_t>(n);
+  const float h = static_cast<float>(dt / n);
   const solve::Passes& pass = solve::passes();
   const solve::Soft soft{static_cast<float>(kPush) / h, static_cast<float>(1.0 - kLoss),
                          static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h};
@@ -53,7 +62,11 @@ void World::Impl::run_sub_steps(double dt) {
     in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
       pass.accelerate(body_rows.data(), movers.data() + begin, end - begin, h);
     });
-    for (int round = 0; round < kStrikes; ++round) {
+    for (int round = 0;; ++round) {
+      if (round == kStrikes) {
+        status.bounce_limit = true;
+        break;
+      }
       const std::size_t blocks = blocks_in_use();
       std::fill_n(lane_bits.begin(), blocks, 0u);
       for_parts([&](const auto& p, const auto& part, std::size_t first) {
@@ -62,6 +75,7 @@ void World::Impl::run_sub_steps(double dt) {
       const bool again = std::find(lane_bits.begin(), lane_bits.begin() + blocks, 1u) !=
                          lane_bits.begin() + blocks;
       if (!again) break;
+      ++counters.bounce_rounds;
     }
     if (links) begin_links(h);
     warm_start_joints();
@@ -81,8 +95,6 @@ void World::Impl::run_sub_steps(double dt) {
     for_parts([&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft); });
     if (links) relax_links(h);
   }
-  end_joints(dt);
-  report_news();
 }
 
 }  // namespace vp

@@ -86,6 +86,26 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q) {
   return true;
 }
 
+// Each is far beyond what anybody simulates with, and bounds the time that a stranger's step takes.
+std::optional<std::string> problem_with(const WorldDesc& desc) {
+  if (!in_range(desc.gravity)) return "gravity must be finite and at most 1e9 m/s^2";
+  if (!in_range(desc.restitution_threshold) || desc.restitution_threshold < 0.0)
+    return "restitution_threshold must be from 0 to 1e9 m/s";
+  if (!in_range(desc.contact_slop) || !(desc.contact_slop > 0.0))
+    return "contact_slop must be positive and at most 1e9 m";
+  if (!in_range(desc.sleep_after) || desc.sleep_after < 0.0)
+    return "sleep_after must be from 0 (never) to 1e9 s";
+  if (!in_range(desc.sleep_speed) || desc.sleep_speed < 0.0)
+    return "sleep_speed must be from 0 to 1e9 m/s";
+  if (desc.velocity_iterations < 1 || desc.velocity_iterations > 1000)
+    return "velocity_iterations must be from 1 to 1000";
+  if (desc.sub_steps < 0 || desc.sub_steps > 1000)
+    return "sub_steps must be from 0 (as the step needs) to 1000";
+  if (desc.max_impacts_per_step < 0 || desc.max_impacts_per_step > 100000)
+    return "max_impacts_per_step must be from 0 to 100000";
+  return std::nullopt;
+}
+
 std::optional<std::string> problem_with(const BodyDesc& desc) {
   if (!is_pose(desc.T_world_body)) return "T_world_body must be a finite rotation and position";
   if (!in_range(desc.velocity)) return std::string("velocity") + kRange;
@@ -171,9 +191,13 @@ std::optional<std::string> problem_with(const JointDrive& drive) {
   if (!in_range(drive.position) || !in_range(drive.velocity)) {
     return std::string("drive: position and velocity") + kRange;
   }
-  const auto gain = [](double x) { return std::isfinite(x) && x >= 0.0; };
-  if (!gain(drive.stiffness) || !gain(drive.damping) || !gain(drive.max_force)) {
-    return "drive: stiffness, damping and max_force must be finite and zero or more";
+  constexpr double kStiffest = 1e15;  // [N/m, N s/m]: beyond it steps cannot tell any difference
+  const auto gain = [](double x) { return x >= 0.0 && x <= kStiffest; };
+  if (!gain(drive.stiffness) || !gain(drive.damping)) {
+    return "drive: stiffness and damping must be from 0 to 1e15";
+  }
+  if (!std::isfinite(drive.max_force) || drive.max_force < 0.0) {
+    return "drive: max_force must be finite and zero or more";
   }
   return std::nullopt;
 }

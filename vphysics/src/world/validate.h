@@ -30,6 +30,7 @@ bool is_pose(const SE3& T);
 bool has_unit_quaternions(const Model& model, std::span<const double> q);
 
 // The sentence to return, or nothing when all is well.
+std::optional<std::string> problem_with(const WorldDesc& desc);
 std::optional<std::string> problem_with(const BodyDesc& desc);
 std::optional<std::string> problem_with(const Inertia& inertia);
 std::optional<std::string> problem_with(const ColliderDesc& desc);

@@ -48,11 +48,14 @@ ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t ind
 }
 
 World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
-  VP_ASSERT(is_finite(desc.gravity) && desc.contact_slop > 0.0 && desc.velocity_iterations > 0 &&
-            desc.max_impacts_per_step >= 0 && desc.restitution_threshold >= 0.0);
+  VP_ASSERT(!problem_with(desc));
   impl_->desc = desc;
   impl_->body_rows.resize(1);
   Structure(impl_->structure).add(desc);
+}
+Expected<World> World::create(const WorldDesc& desc) {
+  if (auto problem = problem_with(desc)) return refuse("World: " + *problem);
+  return World(desc);
 }
 World::~World() {
   if (impl_) (void)record(nullptr);
@@ -304,6 +307,10 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
 
 void World::set_jobs(std::shared_ptr<Jobs> jobs) {
   impl_->jobs = std::move(jobs);
+}
+
+void World::observe_stages(std::shared_ptr<StageObserver> observer) {
+  impl_->observer = std::move(observer);
 }
 
 std::span<const ContactEvent> World::contact_events() const {

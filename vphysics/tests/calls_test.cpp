@@ -1,0 +1,194 @@
+// Numbers that are none, or too large, at every call that takes numbers and has no test of its own
+// elsewhere: each is refused with a sentence and changes nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "joints_rig.h"
+#include "vphysics/convex_hull.h"
+#include "vphysics/height_field.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kUnusable[] = {kNotANumber, kEndless, -kEndless, 1e10, -1e10, 1e300};
+
+struct Small {
+  World world;
+  BodyId ground = add_ground(world, {});
+  BodyId box = add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}}, .pose = SE3(Vec3{0, 0, 0.1})});
+  Rod rod = add_rod(world, 1.0, 0.09, 1, 0.1, {});
+};
+
+// call(number) must be refused for each number that is none, in one place of its arguments.
+template <class Call>
+void expect_refused(World& world, const char* what, const Call& call) {
+  const std::uint64_t before = world.state_hash();
+  for (const double x : kUnusable) {
+    const auto result = call(x);
+    ASSERT_FALSE(result.has_value()) << what << ' ' << x;
+    EXPECT_EQ(result.error().code, Errc::invalid_argument) << what << ' ' << x;
+    EXPECT_GT(result.error().message.size(), 20u) << what << ' ' << x;
+    EXPECT_EQ(world.state_hash(), before) << what << ' ' << x;
+  }
+}
+
+TEST(EveryCall, RefusesPosesAndVelocitiesThatAreNone) {
+  Small s;
+  for (int i = 0; i < 3; ++i) {
+    const auto at = [i](double x) {
+      Vec3 v;
+      v[i] = x;
+      return v;
+    };
+    expect_refused(s.world, "set_pose",
+                   [&](double x) { return s.world.set_pose(s.box, SE3(at(x))); });
+    expect_refused(s.world, "set_velocity w", [&](double x) {
+      return s.world.set_velocity(s.box, {at(x), {}});
+    });
+    expect_refused(s.world, "set_velocity v", [&](double x) {
+      return s.world.set_velocity(s.box, {{}, at(x)});
+    });
+    expect_refused(s.world, "apply_impulse",
+                   [&](double x) { return s.world.apply_impulse(s.box, at(x), {}); });
+    expect_refused(s.world, "apply_impulse at", [&](double x) {
+      return s.world.apply_impulse(s.box, {1, 0, 0}, at(x));
+    });
+  }
+  expect_refused(s.world, "set_pose, turned", [&](double x) {
+    return s.world.set_pose(s.box, SE3(Mat3{{x, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}));
+  });
+}
+
+TEST(EveryCall, RefusesJointStatesAndDrivesThatAreNone) {
+  Small s;
+  const auto id = s.rod.articulation;
+  expect_refused(s.world, "position",
+                 [&](double x) { return s.world.set_joint_state(id, 0, 1, x, 0); });
+  expect_refused(s.world, "rate",
+                 [&](double x) { return s.world.set_joint_state(id, 0, 1, 0, x); });
+  double JointDrive::*const fields[] = {&JointDrive::position, &JointDrive::velocity,
+                                        &JointDrive::stiffness, &JointDrive::damping};
+  for (double JointDrive::*const field : fields) {
+    for (const double x : {kNotANumber, kEndless, -kEndless, -1e10, 1e300}) {
+      JointDrive drive{0, 0, 1, 1, 1};
+      drive.*field = x;
+      EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive)) << x;
+    }
+  }
+  for (const JointDrive& drive :
+       {JointDrive{0, 0, -1, 1, 1}, JointDrive{0, 0, 1, -1, 1}, JointDrive{0, 0, 1, 1, -1},
+        JointDrive{0, 0, 1, 1, kNotANumber}}) {
+    EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive));
+  }
+}
+
+// Links, dofs and ids that there are not.
+TEST(EveryCall, RefusesWhatDoesNotExist) {
+  Small s;
+  must(s.world.destroy_body(s.box));
+  const std::uint64_t before = s.world.state_hash();
+  const auto id = s.rod.articulation;
+  EXPECT_FALSE(s.world.set_velocity(s.box, {}));
+  EXPECT_FALSE(s.world.set_velocity(s.rod.body, {}));
+  EXPECT_FALSE(s.world.set_pose(s.rod.body, {}));
+  EXPECT_FALSE(s.world.destroy_body(s.rod.body));
+  EXPECT_FALSE(s.world.set_mass_from_colliders(s.box));
+  EXPECT_FALSE(s.world.wake(s.box));
+  EXPECT_FALSE(s.world.destroy_joint({}));
+  EXPECT_FALSE(s.world.create_joint(s.box, s.ground, {}));
+  for (const int out_of_range : {-1, 2, 1 << 30}) {
+    EXPECT_FALSE(s.world.set_joint_state(id, 0, out_of_range, 0, 0));
+    EXPECT_FALSE(s.world.set_joint_state(id, out_of_range, 0, 0, 0));
+    EXPECT_FALSE(s.world.set_drive(id, 0, out_of_range, {}));
+    EXPECT_FALSE(s.world.set_drive(id, out_of_range, 0, {}));
+    EXPECT_EQ(s.world.link_body(id, out_of_range), BodyId{});
+  }
+  EXPECT_EQ(s.world.model({}), nullptr);
+  EXPECT_EQ(s.world.state_hash(), before);
+}
+
+TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
+  const auto refused = [](const WorldDesc& desc) {
+    const auto made = World::create(desc);
+    return !made && made.error().code == Errc::invalid_argument && made.error().message.size() > 20;
+  };
+  ASSERT_TRUE(World::create({}).has_value());
+  double WorldDesc::*const fields[] = {&WorldDesc::restitution_threshold, &WorldDesc::contact_slop,
+                                       &WorldDesc::sleep_after, &WorldDesc::sleep_speed};
+  for (double WorldDesc::*const field : fields) {
+    for (const double x : {kNotANumber, kEndless, -1.0, 1e10}) {
+      WorldDesc desc;
+      desc.*field = x;
+      EXPECT_TRUE(refused(desc)) << x;
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (const double x : kUnusable) {
+      WorldDesc desc;
+      desc.gravity[i] = x;
+      EXPECT_TRUE(refused(desc)) << x;
+    }
+  }
+  int WorldDesc::*const counts[] = {&WorldDesc::velocity_iterations, &WorldDesc::sub_steps,
+                                    &WorldDesc::max_impacts_per_step};
+  for (int WorldDesc::*const count : counts) {
+    for (const int n : {-1, 1 << 30, std::numeric_limits<int>::min()}) {
+      WorldDesc desc;
+      desc.*count = n;
+      EXPECT_TRUE(refused(desc)) << n;
+    }
+  }
+  WorldDesc desc;
+  desc.contact_slop = 0.0;
+  EXPECT_TRUE(refused(desc));
+  desc = {};
+  desc.velocity_iterations = 0;
+  EXPECT_TRUE(refused(desc));
+}
+
+// Of shapes made by calls of their own; a scale of zero or below makes none either.
+TEST(EveryCall, RefusesShapesThatAreNone) {
+  const std::vector<double> flat(9, 0.0);
+  for (const double x : {kNotANumber, kEndless, -kEndless, 1e300}) {
+    std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {x, 0, 0}};
+    EXPECT_FALSE(ConvexHull::of(points)) << x;
+    const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 4}};
+    EXPECT_FALSE(TriangleMesh::of(points, triangles)) << x;
+    std::vector<double> heights = flat;
+    heights[4] = x;
+    EXPECT_FALSE(HeightField::of({3, 3, 1.0, 1.0, heights, {}})) << x;
+    EXPECT_FALSE(HeightField::of({3, 3, x, 1.0, flat, {}})) << x;
+    EXPECT_FALSE(HeightField::of({3, 3, 1.0, x, flat, {}})) << x;
+    const CompoundPart parts[] = {{Sphere{x}, {}}};
+    EXPECT_FALSE(Compound::of(parts)) << x;
+    const CompoundPart moved[] = {{Sphere{1.0}, SE3(Vec3{x, 0, 0})}};
+    EXPECT_FALSE(Compound::of(moved)) << x;
+  }
+  for (const double x : {kNotANumber, kEndless, -1.0, 0.0, 1e300}) {
+    EXPECT_FALSE(scaled(Box{{1, 1, 1}}, {1, x, 1})) << x;
+    EXPECT_FALSE(HeightField::of({3, 3, 1.0, 1.0, flat, {}}).value().scaled({x, 1, 1})) << x;
+  }
+  EXPECT_FALSE(ConvexHull::of({}));
+  EXPECT_FALSE(TriangleMesh::of({}, {}));
+  EXPECT_FALSE(HeightField::of({}));
+  EXPECT_FALSE(Compound::of({}));
+}
+
+TEST(EveryCall, RestoresNothingFromBytesThatAreNone) {
+  Small s;
+  run(s.world, 0.05);
+  const std::uint64_t before = s.world.state_hash();
+  std::vector<std::byte> bytes(4096);
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{8}, bytes.size()}) {
+    EXPECT_FALSE(s.world.restore(std::span(bytes).first(n))) << n;
+    EXPECT_EQ(s.world.state_hash(), before);
+  }
+}
+
+}  // namespace
+}  // namespace vp::test
