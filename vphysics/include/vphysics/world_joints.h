@@ -36,7 +36,7 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 struct JointDrive {
   double position = 0.0;   // [m] | [rad]
   double velocity = 0.0;   // [m/s] | [rad/s]
-  double stiffness = 0.0;  // [N/m] | [N m/rad]
+  double stiffness = 0.0;  // [N/m] | [N m/rad]; this and damping at most 1e15
   double damping = 0.0;    // [N s/m] | [N m s/rad]
   double max_force = 0.0;  // [N] | [N m]; 0: no motor
 };
