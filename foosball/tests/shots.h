@@ -61,9 +61,9 @@ class ShotGallery {
   }
 
  private:
-  static constexpr int kTicks = 16;       // 20 m/s: 0.32 m, two rods and a wall away
-  static constexpr double kSpeed = 20.0;  // [m/s]
-  static constexpr double kCore = 0.6;    // of a box: no chord may cross what is left of it
+  static constexpr int kTicks = 16;  // 25 m/s: 0.4 m, two rods and a wall away
+  static constexpr double kSlowest = 5.0, kFastest = 25.0;  // [m/s]
+  static constexpr double kCore = 0.6;  // of a box: no chord may cross what is left of it
 
   const TableSpec& table() const { return world_.table(); }
 
@@ -90,7 +90,9 @@ class ShotGallery {
     } while (!world_.free_for_ball(place));
     const vp::Vec3 way = random_.unit() < 0.5 ? towards_a_man(place) : anywhere();
     const double length = vp::norm(way);
-    world_.set_ball(place, (kSpeed / std::max(length, 0.01)) * way);
+    // Half of the shots as fast as there are any.
+    const double speed = random_.unit() < 0.5 ? kFastest : random_.between(kSlowest, kFastest);
+    world_.set_ball(place, (speed / std::max(length, 0.01)) * way);
   }
 
   // Mostly along the field; a quarter at any slope.

@@ -11,6 +11,7 @@
 #include "collide/shape_query.h"
 #include "rig.h"
 #include "shape_truth.h"
+#include "surfaces.h"
 
 namespace vp::test {
 namespace {
@@ -58,6 +59,30 @@ BodyId fixed_body(World& world, const SE3& T) {
   return must(world.create_body(desc));
 }
 
+// What has parts: of fixed bodies a lumpy mesh or rough ground, of others a compound.
+Shape random_parted(Random& random, bool fixed) {
+  if (!fixed) {
+    std::vector<CompoundPart> parts;
+    for (int i = 0; i < 4; ++i) {
+      parts.push_back(
+          {random_solid(random, kQueryKinds[random.word() % 6]).shape, random.pose(0.8)});
+    }
+    return Compound::of(parts).value();
+  }
+  if (random.word() % 2 == 0) {
+    MeshPoints points = sphere_mesh(1.0, 1);
+    for (Vec3& v : points.vertices) v = random.uniform(0.7, 1.2) * v;
+    return points.made({random.word() % 2 == 0, false});
+  }
+  std::vector<double> heights(49);
+  for (double& h : heights) h = random.uniform(-0.3, 0.3);
+  HeightGrid grid;
+  grid.columns = grid.rows = 7;
+  grid.spacing_x = grid.spacing_y = 0.5;
+  grid.heights = heights;
+  return HeightField::of(grid).value();
+}
+
 Scene random_scene(Random& random, int bodies, double size) {
   Scene scene;
   for (int i = 0; i < bodies; ++i) {
@@ -68,6 +93,9 @@ Scene random_scene(Random& random, int bodies, double size) {
     desc.velocity = {5.0 * random.direction(), 10.0 * random.direction()};
     const BodyId body = must(scene.world.create_body(desc));
     const int parts = 1 + static_cast<int>(random.word() % 2);
+    if (i % 5 == 0) {
+      add(scene, body, random_parted(random, i % 3 == 0), random.pose(0.5), random);
+    }
     for (int k = 0; k < parts; ++k) {
       add(scene, body, random_solid(random, kQueryKinds[random.word() % 6]).shape, random.pose(0.5),
           random);
@@ -185,9 +213,9 @@ void expect_as_linear_scan(const Scene& scene, Random& random, double size, int 
     must(scene.world.overlapping(solid.shape, T, touched));
     std::vector<ColliderId> expected;
     for (const Known& k : scene.colliders) {
-      collide::PairCache fresh;
-      if (!k.sensor && shapes_overlap(solid.geometry, proper, collide::make_geometry(k.shape),
-                                      scene.pose(k), fresh)) {
+      collide::PartsScratch scratch;
+      if (!k.sensor && parts_touch(solid.geometry, proper, collide::make_geometry(k.shape),
+                                   scene.pose(k), scratch)) {
         expected.push_back(k.id);
       }
     }
@@ -197,8 +225,10 @@ void expect_as_linear_scan(const Scene& scene, Random& random, double size, int 
     const double reach = random.uniform(0.1, 1.0) * size;
     const auto near = must(scene.world.nearest(solid.shape, T, reach));
     const Least nearest = least_of(scene, is_solid, [&](const Geometry& g, const SE3& T_g) {
-      collide::PairCache fresh;
-      return closest_points(solid.geometry, proper, g, T_g, fresh).distance;
+      collide::PartsScratch scratch;
+      collide::NearestParts parts;
+      nearest_parts(solid.geometry, proper, g, T_g, 1e9, scratch, parts);
+      return parts.points.distance;
     });
     ASSERT_EQ(near.has_value(), nearest.value <= reach);
     if (near) {
@@ -485,7 +515,11 @@ TEST(Queries, RefuseWhatIsNoQuestion) {
   expect_refused(world.shape_cast(Sphere{-1}, SE3{}, {{1, 0, 0}, {}}));
   expect_refused(world.shape_cast(Sphere{1}, SE3{}, {{1, 0, 0}, {0, 0, 7}}));
   expect_refused(world.shape_cast(Sphere{1}, SE3({{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}), {}));
-  expect_refused(world.shape_cast(HalfSpace{}, SE3{}, {{1, 0, 0}, {}}), Errc::unsupported);
+  Random random(705);
+  for (const Shape& shape : {Shape{HalfSpace{}}, Shape{sphere_mesh(1.0, 0).made()}}) {
+    expect_refused(world.shape_cast(shape, SE3{}, {{1, 0, 0}, {}}), Errc::unsupported);
+  }
+  EXPECT_TRUE(world.nearest(random_parted(random, false), SE3{}, 1));
   expect_refused(world.overlapping(HalfSpace{}, SE3{}, found), Errc::unsupported);
   expect_refused(world.nearest(HalfSpace{}, SE3{}, 1), Errc::unsupported);
   EXPECT_TRUE(rays.empty() && casts.empty() && found.empty());

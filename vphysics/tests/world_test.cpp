@@ -82,14 +82,6 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
   refused([&](ColliderDesc& d) { d.material.spinning_friction = -1; });
   refused([&](ColliderDesc& d) { d.surface_velocity.y = kInf; });
   refused([&](ColliderDesc& d) { d.T_body_shape = SE3(Vec3{kNaN, 0, 0}); });
-
-  Part fast;
-  fast.continuous = true;
-  const BodyId ball = add_dynamic(world, fast);
-  ColliderDesc box;
-  box.shape = Box{{1, 1, 1}};
-  expect_refused(
-      world, [&] { return world.add_collider(ball, box); }, Errc::unsupported);
 }
 
 TEST(CreateArticulation, RefusesWhatItCannotSimulate) {

@@ -59,7 +59,7 @@ struct BodyDesc {
   Inertia inertia;               // about the body's origin; dynamic bodies need mass > 0
   double linear_damping = 0.0;   // [1/s]
   double angular_damping = 0.0;  // [1/s]
-  bool continuous = false;       // swept against everything it may meet: for small fast bodies
+  bool continuous = false;       // passes through nothing, however fast; cannot be joined
   std::uint64_t user_data = 0;
 };
 

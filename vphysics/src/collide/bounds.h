@@ -23,6 +23,11 @@ inline bool overlap(const Bounds& a, const Bounds& b) {
 inline bool empty(const Bounds& a) {
   return a.lower.x > a.upper.x;
 }
+inline bool holds(const Bounds& outer, const Bounds& inner) {
+  return outer.lower.x <= inner.lower.x && outer.lower.y <= inner.lower.y &&
+         outer.lower.z <= inner.lower.z && inner.upper.x <= outer.upper.x &&
+         inner.upper.y <= outer.upper.y && inner.upper.z <= outer.upper.z;
+}
 inline Bounds merged(const Bounds& a, const Bounds& b) {
   return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y),
            std::min(a.lower.z, b.lower.z)},

@@ -133,9 +133,11 @@ Sweep sweep_of(const ImpactQuery& q, double more) {
 
 class ImpactFinder {
  public:
-  ImpactFinder(double target, double tolerance, PartsScratch& scratch, PartsImpact& best)
+  ImpactFinder(double target, double tolerance, NearParts near_at_start, PartsScratch& scratch,
+               PartsImpact& best)
       : target_(target),
         within_(std::max(0.0, target) + tolerance),
+        passes_near_(near_at_start == NearParts::passed),
         scratch_(scratch),
         best_(best) {
     best_.time = std::numeric_limits<double>::infinity();
@@ -180,7 +182,7 @@ class ImpactFinder {
                 const SurfaceTriangle* one_sided = nullptr) {
     PairCache cache;
     const double t = time_of_impact(q, target_, cache, best_.time);
-    if (t < 0.0 || t > best_.time) return;
+    if (t < 0.0 || t > best_.time || (t == 0.0 && passes_near_)) return;
     const bool first = part_a < best_.part_a || (part_a == best_.part_a && part_b < best_.part_b);
     if (t == best_.time && !first) return;
     if (one_sided != nullptr) {
@@ -193,6 +195,7 @@ class ImpactFinder {
   }
 
   double target_, within_;
+  bool passes_near_;
   PartsScratch& scratch_;
   PartsImpact& best_;
 };
@@ -218,8 +221,8 @@ bool nearest_parts(const Geometry& a, const SE3& T_a, const Geometry& b, const S
 }
 
 bool first_impact(const ImpactQuery& query, double target, PartsScratch& scratch,
-                  PartsImpact& found) {
-  ImpactFinder finder(target, query.tolerance, scratch, found);
+                  PartsImpact& found, NearParts near_at_start) {
+  ImpactFinder finder(target, query.tolerance, near_at_start, scratch, found);
   for_parts(*query.a.shape, query.a.T, [&](const Geometry& part, const SE3& T, std::uint32_t i) {
     ImpactQuery q = query;
     q.a.shape = &part;

@@ -43,8 +43,10 @@ struct PartsImpact {
 // its middle in front of it then. False: not within the duration.
 //
 // Who follows something that touches a surface already has to give a target below the separation of
-// all parts together: else it meets the next triangle wherever it slides.
+// all parts together: else it meets the next triangle wherever it slides. Of what is as near as the
+// target at time 0, he may know better whether it is a contact: parts are then passed over.
+enum class NearParts { met, passed };
 bool first_impact(const ImpactQuery& query, double target, PartsScratch& scratch,
-                  PartsImpact& found);
+                  PartsImpact& found, NearParts near_at_start = NearParts::met);
 
 }  // namespace vp::collide

@@ -27,23 +27,6 @@ Vec3 vector(const float* f) {
   return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
 }
 
-// The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
-// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source:
-// Catto, Numerical Methods, GDC 2015.
-Vec3 gyroscopic_acceleration(const Body& body, double dt) {
-  const Mat3& R = body.T.rotation();
-  const Sym3& I = body.central;
-  const Vec3 w = transposed_times(R, body.w), L = I * w;
-  const Mat3 inertia{I * Vec3{1, 0, 0}, I * Vec3{0, 1, 0}, I * Vec3{0, 0, 1}};
-  const Mat3 J = inertia + dt * (skew(w) * inertia - skew(L));
-  const double determinant = dot(J.cx, cross(J.cy, J.cz));
-  if (!(std::fabs(determinant) > 0.0)) return {};
-  const Vec3 f = cross(L, w);
-  const double scale = 1.0 / determinant;
-  return R * Vec3{scale * dot(f, cross(J.cy, J.cz)), scale * dot(J.cx, cross(f, J.cz)),
-                  scale * dot(J.cx, cross(J.cy, f))};
-}
-
 // Half a margin of the least collider is surely within all enlarged bounds. Sums of components, no
 // less than the lengths, will do.
 bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
@@ -90,6 +73,20 @@ bool is_worn(const Mat3& R) {
 
 }  // namespace
 
+Vec3 gyroscopic_acceleration(const Body& body, double dt) {
+  const Mat3& R = body.T.rotation();
+  const Sym3& I = body.central;
+  const Vec3 w = transposed_times(R, body.w), L = I * w;
+  const Mat3 inertia{I * Vec3{1, 0, 0}, I * Vec3{0, 1, 0}, I * Vec3{0, 0, 1}};
+  const Mat3 J = inertia + dt * (skew(w) * inertia - skew(L));
+  const double determinant = dot(J.cx, cross(J.cy, J.cz));
+  if (!(std::fabs(determinant) > 0.0)) return {};
+  const Vec3 f = cross(L, w);
+  const double scale = 1.0 / determinant;
+  return R * Vec3{scale * dot(f, cross(J.cy, J.cz)), scale * dot(J.cx, cross(f, J.cz)),
+                  scale * dot(J.cx, cross(J.cy, f))};
+}
+
 // R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
 // exact to rounding for turns of a step; larger ones take the long way.
 Mat3 turned(const Mat3& R, const Vec3& t) {
@@ -104,6 +101,7 @@ bool World::Impl::joins_sub_steps(const Body& body) const {
 void World::Impl::list_bodies() {
   if (!lists_are_stale) return;
   lists_are_stale = false;
+  candidates_are_stale = true;
   movers.clear();
   link_bodies.clear();
   some_are_continuous = some_are_not = false;
@@ -268,6 +266,7 @@ void World::Impl::jumped(std::uint32_t index) {
   mark_contacts_stale(index);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
+  candidates_are_stale = true;
   pose_colliders(index);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);

@@ -168,6 +168,10 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
   contacts.assign(discrete_contacts.begin(), discrete_contacts.end());
   find_swept_contacts(first);
+  in_contact.assign(bodies.size(), 0);
+  for (const solve::ContactConstraint& c : contacts) {
+    if (c.swept) in_contact[c.a] = in_contact[c.b] = 1;
+  }
   add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
   if (contacts.empty() && joint_rows.empty()) return;
   refresh_solver_bodies();
@@ -245,10 +249,10 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
 void World::Impl::report_swept_sensors(double h, double time) {
   for (const SweptPair& swept : swept_pairs) {
     if (!swept.sensor) continue;
-    const collide::SweepQuery query = sweep_query(swept, h);
-    const double t = swept.separation <= query.tolerance ? 0.0 : time_of_impact(query, 0.0);
+    const double t = swept.separation <= swept_tolerance() ? 0.0 : time_until(swept, 0.0, h);
     if (t < 0.0) continue;
-    const Vec3 centre = query.centre + t * query.sphere.v;
+    const Collider& c = colliders[swept.swept_is_a ? swept.pair.a : swept.pair.b];
+    const Vec3 centre = c.T.position() + t * motions[c.body].v;
     report_sensor(swept.pair, centre, {0, 0, 0}, time + t);
   }
 }

@@ -131,10 +131,10 @@ struct ColliderPair {
   std::uint32_t a, b;
 };
 
-// A pair in which a sphere is swept; separation is that of now.
+// A pair in which the one is swept against the other; separation is that of now.
 struct SweptPair {
   ColliderPair pair;
-  bool sphere_is_a;
+  bool swept_is_a;
   bool sensor;
   double separation;
 };
@@ -226,7 +226,19 @@ struct World::Impl {
   collide::CastScratch world_cast;
   collide::PartsScratch parts_scratch;
 
+  // Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
+  // both are within the kept ones; what never meets by its filters is left out. They outlast steps,
+  // but decide nothing: what is near enough is found among them anew in every round.
+  std::vector<collide::IndexPair> candidates;
+  std::vector<collide::Bounds> kept_bounds;
+  std::vector<std::uint8_t> sweeps;  // of each body: it is continuous
+  collide::BroadPhase candidate_phase;
+  // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
+  // is fixed are as old.
+  bool candidates_are_stale = true;
+
   // --- scratch of a step; kept for its capacity
+  std::vector<std::uint32_t> leavers;  // of their kept bounds
   std::vector<collide::ProxyPair> new_pairs;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
@@ -244,6 +256,7 @@ struct World::Impl {
   collide::BroadPhase broad_phase;
   std::vector<collide::Bounds> bounds, discrete_bounds;
   std::vector<std::uint8_t> movable, held;
+  std::vector<std::uint8_t> in_contact;  // of the last solve of the stage of impacts
   std::vector<collide::Motion> motions;
   std::vector<Velocity> forced;  // what the step's forces added
   std::vector<solve::SolverBody> solver_bodies;
@@ -426,9 +439,16 @@ struct World::Impl {
   void refresh_bounds(double h);
   bool keep_discrete_bounds();
   void find_discrete_pairs(double h);
+  void keep_bounds(std::uint32_t body, double h);
+  void list_candidates(double h);
+  void find_candidates_of(std::uint32_t body);
+  void refresh_candidates(double h);
   void find_swept_pairs(double h);
   bool swept(const Collider& a, const Collider& b) const;
-  void add_swept_pairs(std::uint32_t sphere, std::uint32_t other_body, double h);
+  bool is_swept(const Collider& collider) const;
+  void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
+  double swept_tolerance() const { return 0.05 * desc.contact_slop; }
+  double time_until(const SweptPair& pair, double target, double h);
   collide::SweepQuery sweep_query(const SweptPair& pair, double h) const;
   double discrete_margin(const ColliderPair& pair, double h) const;
   double swept_separation(const Collider& ball, const Collider& other, double margin);
@@ -482,6 +502,10 @@ struct World::Impl {
 double reach_of(const Body& body);
 // Of a dynamic body; its velocities are not those of the new centre of mass.
 void set_mass(Body& body, const Inertia& inertia);
+// The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
+// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source:
+// Catto, Numerical Methods, GDC 2015.
+Vec3 gyroscopic_acceleration(const Body& body, double dt);
 // The rotation R after a small turn, a vector of the outer frame.
 Mat3 turned(const Mat3& R, const Vec3& turn);
 // Orders a pair by creation.

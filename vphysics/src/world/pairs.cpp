@@ -33,6 +33,13 @@ bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const 
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
 }
 
+// How much larger than what a body may reach its kept bounds are: contact slops, for who is pushed
+// a little, and ways of a step, so that they hold for some steps. Each candidate costs a comparison
+// in every round.
+constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
+// So many look for others one by one, each among all bodies; more, and all are sorted.
+constexpr std::size_t kFewLeavers = 6;
+
 // No point of the body moves farther than this within h.
 double travel(const Body& body, const collide::Motion& m, double h) {
   if (!can_move(body)) return 0.0;
@@ -44,6 +51,7 @@ double travel(const Body& body, const collide::Motion& m, double h) {
 void World::Impl::refresh_bounds(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
+    if (!candidates_are_stale && body.alive && !can_move(body)) continue;
     movable[i] = body.alive && can_move(body);
     if (!body.alive || body.first_collider == kNone) {
       bounds[i] = {};
@@ -88,13 +96,13 @@ double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
   return desc.contact_slop + travel(bodies[a], motions[a], h) + travel(bodies[b], motions[b], h);
 }
 
-// Spheres of a continuous body are swept. What else it carries are sensors; they look where they
-// are at the start of a step.
+// What a continuous body carries is swept, but for sensors that are no spheres: they look where
+// they are at the start of a step.
+bool World::Impl::is_swept(const Collider& c) const {
+  return bodies[c.body].continuous && (!c.sensor || c.geometry.kind == collide::Kind::sphere);
+}
 bool World::Impl::swept(const Collider& a, const Collider& b) const {
-  const auto sweeps = [&](const Collider& c) {
-    return bodies[c.body].continuous && c.geometry.kind == collide::Kind::sphere;
-  };
-  return sweeps(a) || sweeps(b);
+  return is_swept(a) || is_swept(b);
 }
 
 // Bounds of what may meet a link, or a sensor that a continuous body carries, the others' empty;
@@ -161,8 +169,8 @@ void World::Impl::find_discrete_pairs(double h) {
 }
 
 collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const {
-  const Collider& sphere = colliders[p.sphere_is_a ? p.pair.a : p.pair.b];
-  const Collider& other = colliders[p.sphere_is_a ? p.pair.b : p.pair.a];
+  const Collider& sphere = colliders[p.swept_is_a ? p.pair.a : p.pair.b];
+  const Collider& other = colliders[p.swept_is_a ? p.pair.b : p.pair.a];
   return {sphere.T.position(),
           sphere.geometry.radius,
           motions[sphere.body],
@@ -170,20 +178,42 @@ collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const
           other.T,
           motions[other.body],
           h,
-          0.05 * desc.contact_slop};
+          swept_tolerance()};
+}
+
+// Until the separation comes down to target; negative: not within h. A sphere has closed forms,
+// which the general way would only find more slowly.
+double World::Impl::time_until(const SweptPair& p, double target, double h) {
+  const Collider &c = colliders[p.swept_is_a ? p.pair.a : p.pair.b],
+                 &other = colliders[p.swept_is_a ? p.pair.b : p.pair.a];
+  if (c.geometry.kind == collide::Kind::sphere) return time_of_impact(sweep_query(p, h), target);
+  const collide::ImpactQuery query{{&c.geometry, c.T, motions[c.body]},
+                                   {&other.geometry, other.T, motions[other.body]},
+                                   h,
+                                   swept_tolerance()};
+  // What of a surface has come near but is no contact (inner edges, backs) would hold the body
+  // where it is: the solver has nothing that pushes it away.
+  const auto near =
+      is_surface(other.geometry) ? collide::NearParts::passed : collide::NearParts::met;
+  collide::PartsImpact found{};
+  return first_impact(query, target, parts_scratch, found, near) ? found.time : -1.0;
 }
 
 // Of shapes with parts it is known only as far as they touch: what is farther apart is as far as
 // the margin.
-double World::Impl::swept_separation(const Collider& ball, const Collider& other, double margin) {
-  if (!has_parts(ball.geometry, other.geometry)) {
-    const Vec3 local = inverse_times(other.T, ball.T.position());
-    return signed_distance(other.geometry, local).distance - ball.geometry.radius;
+double World::Impl::swept_separation(const Collider& moving, const Collider& other, double margin) {
+  if (!has_parts(moving.geometry, other.geometry)) {
+    if (moving.geometry.kind != collide::Kind::sphere) {
+      collide::PairCache fresh;
+      return closest_points(moving.geometry, moving.T, other.geometry, other.T, fresh).distance;
+    }
+    const Vec3 local = inverse_times(other.T, moving.T.position());
+    return signed_distance(other.geometry, local).distance - moving.geometry.radius;
   }
   double least = margin;
   manifolds.clear();
   collide::PairCache cache;
-  find_manifolds(ball.geometry, ball.T, other.geometry, other.T, desc.contact_slop, cache, {},
+  find_manifolds(moving.geometry, moving.T, other.geometry, other.T, desc.contact_slop, cache, {},
                  manifold_scratch, manifolds);
   for (const collide::SubManifold& found : manifolds) {
     for (int k = 0; k < found.manifold.count; ++k) {
@@ -192,6 +222,20 @@ double World::Impl::swept_separation(const Collider& ball, const Collider& other
   }
   return least;
 }
+
+namespace {
+
+// To the farthest point of what turns with the collider, or of a sphere to its centre.
+double reach_from(const Vec3& x, const Collider& c) {
+  if (c.geometry.kind == collide::Kind::sphere) return norm(c.T.position() - x);
+  if (c.geometry.kind != collide::Kind::compound) {
+    return norm(c.T * core_middle(c.geometry) - x) + core_reach(c.geometry);
+  }
+  const collide::Bounds& b = c.bounds;
+  return norm(0.5 * (b.lower + b.upper) - x) + 0.5 * norm(b.upper - b.lower);
+}
+
+}  // namespace
 
 // Pairs of a continuous body's colliders with those of another body that can meet within h.
 void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
@@ -203,35 +247,78 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   const double speed = norm(ma.v - mb.v);
   const double wa = norm(ma.w), wb = norm(mb.w);
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
-    const Collider& ball = colliders[i];
-    if (ball.geometry.kind != collide::Kind::sphere) continue;  // a sensor of another shape
-    const double own = speed + wa * norm(ball.T.position() - ma.x);
-    const double far = norm(ball.T.position() - mb.x) + own * h;
+    const Collider& ca = colliders[i];
+    if (!is_swept(ca)) continue;
+    const double own = speed + wa * reach_from(ma.x, ca);
+    const double far = reach_from(mb.x, ca) + own * h;
     const double margin = desc.contact_slop + (own + wb * far) * h;
-    const collide::Bounds near = grown(ball.bounds, margin);
+    const collide::Bounds near = grown(ca.bounds, margin);
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
       const Collider& cb = colliders[j];
-      if (!overlap(near, cb.bounds) || !should_meet(ball, cb)) continue;
-      if (b.continuous && other < index && cb.geometry.kind == collide::Kind::sphere) continue;
-      const double separation = swept_separation(ball, cb, margin);
+      if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
+      if (b.continuous && other < index && is_swept(cb)) continue;
+      const double separation = swept_separation(ca, cb, margin);
       if (separation > margin) continue;
       const ColliderPair pair = make_pair(colliders, i, j);
-      swept_pairs.push_back({pair, pair.a == i, ball.sensor || cb.sensor, separation});
+      swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
     }
   }
 }
 
+void World::Impl::keep_bounds(std::uint32_t index, double h) {
+  const collide::Bounds& now = bounds[index];
+  const double margin = kCandidateSlops * desc.contact_slop +
+                        kCandidateSteps * travel(bodies[index], motions[index], h);
+  kept_bounds[index] = collide::empty(now) ? now : grown(now, margin);
+}
+
+void World::Impl::list_candidates(double h) {
+  candidates_are_stale = false;
+  kept_bounds.resize(bodies.size());
+  sweeps.resize(bodies.size());
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    sweeps[i] = bodies[i].alive && bodies[i].continuous;
+    keep_bounds(i, h);
+  }
+  candidates.clear();
+  candidate_phase.find_pairs(kept_bounds, sweeps, candidates);
+  std::erase_if(candidates, [this](const collide::IndexPair& p) {
+    return !may_meet(bodies[p.a], bodies[p.b]);
+  });
+}
+
+void World::Impl::find_candidates_of(std::uint32_t index) {
+  std::erase_if(candidates,
+                [index](const collide::IndexPair& p) { return p.a == index || p.b == index; });
+  for (std::uint32_t j = 0; j < bodies.size(); ++j) {
+    if (j == index || !(sweeps[index] || sweeps[j]) || collide::empty(kept_bounds[j])) continue;
+    if (!overlap(kept_bounds[index], kept_bounds[j]) || !may_meet(bodies[index], bodies[j]))
+      continue;
+    candidates.push_back({std::min(index, j), std::max(index, j)});
+  }
+}
+
+// Who has left its kept bounds looks for others anew, alone or, if many have, with all.
+void World::Impl::refresh_candidates(double h) {
+  if (candidates_are_stale) return list_candidates(h);
+  leavers.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (movable[i] && !holds(kept_bounds[i], bounds[i])) leavers.push_back(i);
+  }
+  if (leavers.size() > kFewLeavers + bodies.size() / 64) return list_candidates(h);
+  for (const std::uint32_t i : leavers) keep_bounds(i, h);
+  for (const std::uint32_t i : leavers) find_candidates_of(i);
+}
+
 void World::Impl::find_swept_pairs(double h) {
   swept_pairs.clear();
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].alive || !bodies[i].continuous) continue;
-    for (std::uint32_t j = 0; j < bodies.size(); ++j) {
-      // Two continuous bodies meet once, in the order of their slots, but for sensors: those of no
-      // sphere are found by the other's spheres.
-      if (j == i || !overlap(bounds[i], bounds[j])) continue;
-      if (bodies[j].continuous && j < i && !bodies[j].has_sensor) continue;
-      if (may_meet(bodies[i], bodies[j])) add_swept_pairs(i, j, h);
-    }
+  refresh_candidates(h);
+  // Two continuous bodies meet once, in the order of their slots, but for sensors: those that are
+  // not swept are found by what the other sweeps.
+  for (const collide::IndexPair& p : candidates) {
+    if (!overlap(bounds[p.a], bounds[p.b])) continue;
+    if (sweeps[p.a]) add_swept_pairs(p.a, p.b, h);
+    if (sweeps[p.b] && (!sweeps[p.a] || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
   }
   std::sort(swept_pairs.begin(), swept_pairs.end(),
             [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });

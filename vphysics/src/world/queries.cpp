@@ -18,13 +18,6 @@
 namespace vp {
 namespace {
 
-bool holds(const collide::Bounds& outer, const collide::Bounds& inner) {
-  for (int i = 0; i < 3; ++i) {
-    if (inner.lower[i] < outer.lower[i] || inner.upper[i] > outer.upper[i]) return false;
-  }
-  return true;
-}
-
 // As near as this a cast shape touches [m, and share of the sizes].
 constexpr double kTouch = 1e-9, kTouchShare = 1e-12;
 constexpr double kFullTurn = 6.2832;

@@ -46,7 +46,8 @@ void World::Impl::begin_step(double dt) {
   next_records.reserve(room);
   contact_pool.reserve(room);
   for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts, &look_again})
-    list->reserve(room);
+    list->reserve(std::max(room, contact_pool.capacity()));  // parts have contacts of their own
+  looked.reserve(std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
   near_list.reserve(room);
   body_stack.reserve(n);
   woken.reserve(n);
@@ -72,6 +73,8 @@ void World::Impl::begin_impact_stage() {
   body_pairs.reserve(room);
   discrete_pairs.reserve(room);
   swept_pairs.reserve(room);
+  candidates.reserve(room);
+  leavers.reserve(n);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   link_contacts.reserve(room);
@@ -86,6 +89,7 @@ void World::Impl::begin_impact_stage() {
   solver_bodies.resize(n);
   start_poses.resize(n);
   held.assign(n, 0);
+  in_contact.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
@@ -171,14 +175,15 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
   return motion;
 }
 
-// For the rest of the step.
+// For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
+// contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (body.is_link && body.first_collider == kNone) continue;
     const bool stands = held[i] || !body.alive || body.motion == Motion::fixed;
-    motions[i] =
-        stands ? collide::Motion{reference_point(body), {}, {}} : motion_of(body, drift[i], h);
+    motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
+                        : motion_of(body, drift[i], in_contact[i] ? 0.0 : h);
   }
 }
 
@@ -187,9 +192,13 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? turned(R, h * m.w) : R;
   if (body.motion == Motion::dynamic && !body.isotropic && turns && !body.by_rows()) {
-    // Angular momentum is what stays; the rate follows from it.
+    // Angular momentum is what stays; the rate follows from it. But where a slender body turns so
+    // far in a step that it is far off, and would have more energy, what is stable is better.
+    constexpr double kMostGain = 1e-3;
     const Vec3 momentum = body.central * transposed_times(R, body.w);
-    body.w = next * (body.inverse_central * transposed_times(next, R * momentum));
+    const Vec3 w = next * (body.inverse_central * transposed_times(next, R * momentum));
+    const bool gains = dot(w, R * momentum) > (1.0 + kMostGain) * dot(body.w, R * momentum);
+    body.w = gains ? next * transposed_times(R, body.w + h * gyroscopic_acceleration(body, h)) : w;
   }
   place(body, m.x + h * m.v, next);
 }
@@ -252,7 +261,7 @@ double World::Impl::next_impact(double h) {
     const double slop = desc.contact_slop;
     const double target =
         swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-    const double t = time_of_impact(sweep_query(swept, first < 0.0 ? h : first), target);
+    const double t = time_until(swept, target, first < 0.0 ? h : first);
     if (t >= 0.0 && (first < 0.0 || t < first)) first = t;
   }
   return first;
@@ -271,7 +280,7 @@ void World::Impl::hold_what_meets(double h) {
       const double slop = desc.contact_slop;
       const double target =
           swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-      if (time_of_impact(sweep_query(swept, h), target) < 0.0) continue;
+      if (time_until(swept, target, h) < 0.0) continue;
       again = true;
       hold(a);
       hold(b);

@@ -175,11 +175,6 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   if (half_space && (body->motion != Motion::fixed)) {
     return refuse("add_collider: a half-space needs a fixed body");
   }
-  if (body->continuous && !desc.sensor && !std::holds_alternative<Sphere>(desc.shape)) {
-    return refuse(
-        Errc::unsupported,
-        "add_collider: only spheres are swept in this version; give a continuous body spheres");
-  }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
   Collider& c = impl_->colliders[index];
   c.body = body_handle.index - 1;
