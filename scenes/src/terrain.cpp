@@ -63,8 +63,9 @@ Scene hills(int count) {
   constexpr double kPitch = 1.3;
   const int along = static_cast<int>(std::ceil(std::sqrt(count)));
   for (int k = 0; k < count; ++k) {
-    const double x = kPitch * (k % along - 0.5 * (along - 1));
-    const double y = kPitch * (k / along - 0.5 * (along - 1));
+    const int column = k % along, row = k / along;
+    const double x = kPitch * (column - 0.5 * (along - 1));
+    const double y = kPitch * (row - 0.5 * (along - 1));
     const Vec3 turn = vp::kPi * random.in_cube(1.0), place{x, y, bowl(x, y) + 1.2};
     const Material material{0.6, 0.2, 0.002};
     const Shape shapes[] = {Sphere{0.3}, Capsule{0.2, 0.25}, Box{{0.3, 0.25, 0.2}}};
@@ -124,8 +125,9 @@ Scene furniture(int along, int layers) {
   for (int layer = 0; layer < layers; ++layer) {
     for (int k = 0; k < along * along; ++k) {
       Body body = k % 3 == 0 ? table() : k % 3 == 1 ? jack() : dumbbell();
-      const Vec3 place{kPitch * (k % along - 0.5 * (along - 1)),
-                       kPitch * (k / along - 0.5 * (along - 1)), 0.8 + kPitch * layer};
+      const int column = k % along, row = k / along;
+      const Vec3 place{kPitch * (column - 0.5 * (along - 1)), kPitch * (row - 0.5 * (along - 1)),
+                       0.8 + kPitch * layer};
       body.T_world_body = turned(vp::kPi * random.in_cube(1.0), place);
       add(scene, std::move(body));
     }

@@ -67,9 +67,9 @@ std::vector<std::pair<Kind, Kind>> every_pair() {
   std::vector<std::pair<Kind, Kind>> pairs;
   for (const Kind a : kConvex) {
     for (const Kind b : kConvex) {
-      if (a <= b) pairs.push_back({a, b});
+      if (a <= b) pairs.emplace_back(a, b);
     }
-    pairs.push_back({a, Kind::half_space});
+    pairs.emplace_back(a, Kind::half_space);
   }
   return pairs;
 }
