@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy: on all of the libraries and programs each time, on every change with everything.
+"""Runs clang-tidy, on what changed first, for a bounded time.
 
 Half of what clang-tidy costs is the headers of a source, and half of the rest the analyzer, which
 follows paths. So:
 - The libraries and programs are looked at together, as a unity build (--unity, a folder that is
-  configured so, with its generated sources) compiles them: by all checks but the analyzer, however
-  long it takes. They are copied into one file each: of a file that is included the analyzer follows
-  no path.
+  configured so, with its generated sources) compiles them: by all checks but the analyzer. They are
+  copied into one file each: of a file that is included the analyzer follows no path.
 - What changed since the base (CHECK_BASE, or where this branch left main) comes first, newest first,
   and has all checks, the analyzer's too: libraries and programs, and what a unity build compiles
-  alone, tests and the readers of command lines. 240 s after the beginning (SF_TIDY_CHANGED_SECONDS)
-  no further one is begun, so that a large change takes a bounded time as well.
-- Then, newest first and until 120 s after the beginning (SF_TIDY_SECONDS), the analyzer has the other
-  libraries and programs, and all checks the other sources.
+  alone, tests and the readers of command lines. 150 s after the beginning (SF_TIDY_CHANGED_SECONDS)
+  no further one is begun; the libraries and programs among them are then looked at as the others.
+- Then come the other libraries and programs, newest first, and last, for them, the analyzer, and all
+  checks for the other sources. 270 s after the beginning (SF_TIDY_SECONDS) nothing more is begun.
 How many were left out is said, of those that changed too; --all leaves out none.
 """
 import argparse
@@ -163,11 +162,11 @@ def finds_faults():
 class Look:
     """clang-tidy over files, several at a time, in the order asked for; what it says is printed."""
 
-    def __init__(self, jobs, folder, build):
+    def __init__(self, jobs, folder, build, budget):
         self.pool = ThreadPoolExecutor(jobs)
-        self.folder, self.build = folder, build
+        self.folder, self.build, self.budget = folder, build, budget
         self.started = time.monotonic()
-        self.asked, self.faulty, self.skipped = [], set(), set()
+        self.asked, self.faulty, self.skipped, self.unseen = [], set(), set(), set()
 
     def _look(self, what, checks):
         if isinstance(what, Together):
@@ -181,12 +180,15 @@ class Look:
             print(said, flush=True)
 
     def _look_until(self, until, what, checks, else_checks):
-        if time.monotonic() - self.started <= until:
+        seconds = time.monotonic() - self.started
+        if seconds <= until:
             self._look(what, checks)
-        else:
-            self.skipped.add(what)
-            if else_checks:
-                self._look(what, else_checks)
+            return
+        self.skipped.add(what)
+        if else_checks and seconds <= self.budget:
+            self._look(what, else_checks)
+        elif checks != ANALYZER:
+            self.unseen.add(what)
 
     def at(self, what, checks=None, until=float('inf'), else_checks=None):
         """what: sources together, by checks, or after until by else_checks if any; or one alone."""
@@ -202,11 +204,11 @@ def main():
     parser.add_argument('--unity', default='build/clang-debug', help='a unity build, configured')
     parser.add_argument('--build', default='build/clang', help='a build of all sources, tests each alone')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 120),
-                        help='seconds after which nothing that did not change is begun')
+    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 270),
+                        help='seconds after which nothing further is begun')
     parser.add_argument('--changed-budget', type=float,
-                        default=os.environ.get('SF_TIDY_CHANGED_SECONDS', 240),
-                        help='seconds after which nothing further that changed is begun')
+                        default=os.environ.get('SF_TIDY_CHANGED_SECONDS', 150),
+                        help='seconds after which nothing further that changed has all checks')
     parser.add_argument('--all', action='store_true', help='everything, however long it takes')
     args = parser.parse_args()
 
@@ -234,13 +236,13 @@ def main():
 
     forever = float('inf')
     until, until_changed = (forever, forever) if args.all else (args.budget, args.changed_budget)
-    look = Look(args.jobs, str(folder), args.build)
+    look = Look(args.jobs, str(folder), args.build, until)
     ranked = {**whole, **changed_alone}
     for what in sorted(ranked, key=ranked.get):
         part = isinstance(what, Together)
         look.at(what, TOGETHER, until_changed, else_checks=WITHOUT_ANALYZER if part else None)
     for part in rest:
-        look.at(part, WITHOUT_ANALYZER)
+        look.at(part, WITHOUT_ANALYZER, until)
     for part in rest:
         look.at(part, ANALYZER, until)
     for name in others:
@@ -253,7 +255,8 @@ def main():
         len(changed_shipped.keys() & part.sources) for part in skipped & whole.keys())
     number = len(changed_alone) + len(changed_shipped)
     since = f', of {number} changed since {base[:9]} {left_out or "none"} left out' if base else ''
-    print(f'tidy: {len(shipped)} of {len(shipped)} sources of libraries and programs, {analyzed} with the '
+    seen = len(shipped) - sum(len(part.sources) for part in look.unseen & set(together))
+    print(f'tidy: {seen} of {len(shipped)} sources of libraries and programs, {analyzed} with the '
           f'analyzer; {len(alone) - len(skipped & set(alone))} of {len(alone)} tests and command lines{since}; '
           f'{len(look.faulty)} with faults')
     return 1 if look.faulty else 0
