@@ -8,10 +8,10 @@ follows paths. So:
   copied into one file each: of a file that is included the analyzer follows no path.
 - What changed since the base (CHECK_BASE, or where this branch left main) comes first, newest first,
   and has all checks, the analyzer's too: libraries and programs, and what a unity build compiles
-  alone, tests and the readers of command lines. 110 s after the beginning (SF_TIDY_CHANGED_SECONDS)
+  alone, tests and the readers of command lines. 80 s after the beginning (SF_TIDY_CHANGED_SECONDS)
   no further one is begun; the libraries and programs among them are then looked at as the others.
 - Then come the other libraries and programs, newest first, and last, for them, the analyzer, and all
-  checks for the other sources. 180 s after the beginning (SF_TIDY_SECONDS) nothing more is begun.
+  checks for the other sources. 120 s after the beginning (SF_TIDY_SECONDS) nothing more is begun.
 How many were left out is said, of those that changed too; --all leaves out none.
 """
 import argparse
@@ -204,10 +204,10 @@ def main():
     parser.add_argument('--unity', default='build/clang-debug', help='a unity build, configured')
     parser.add_argument('--build', default='build/clang', help='a build of all sources, tests each alone')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 180),
+    parser.add_argument('--budget', type=float, default=os.environ.get('SF_TIDY_SECONDS', 120),
                         help='seconds after which nothing further is begun')
     parser.add_argument('--changed-budget', type=float,
-                        default=os.environ.get('SF_TIDY_CHANGED_SECONDS', 110),
+                        default=os.environ.get('SF_TIDY_CHANGED_SECONDS', 80),
                         help='seconds after which nothing further that changed has all checks')
     parser.add_argument('--all', action='store_true', help='everything, however long it takes')
     args = parser.parse_args()
