@@ -165,6 +165,28 @@ TEST(Share, IsOfTheStepsThatBothHaveMade) {
   EXPECT_DOUBLE_EQ(share(whole, timed("MuJoCo", {})), 0.0);
 }
 
+// A crash is no way to lose a goal.
+TEST(Goals, AreKeptWhereThereIsNothingToShow) {
+  const std::vector<Figure> crashed = {
+      {.scene = "towers1120", .engine = kOurs, .rate = 60, .missing = "crashed"}};
+  EXPECT_NE(csv(crashed).find("towers1120@60,goal,drift_mm,5,mm\n"), std::string::npos);
+  EXPECT_EQ(csv(crashed).find("pyramid1128"), std::string::npos);
+  EXPECT_EQ(csv(crashed).find("share_of_bullet"), std::string::npos);  // Bullet was not asked
+  EXPECT_NE(goals_table(crashed).find("short"), std::string::npos);
+  EXPECT_EQ(goals_table(crashed).find("met\n"), std::string::npos);
+}
+
+TEST(Goals, OfGrowthCountTheHeapThatCameToNoEnd) {
+  std::vector<Figure> heaps;
+  for (const auto& [name, us] : {std::pair("heap10", 10.0), {"heap20", 20.0}, {"heap40", 40.0}}) {
+    heaps.push_back({.scene = name, .engine = kOurs, .rate = 60, .settled_us = us});
+  }
+  EXPECT_NE(csv(heaps).find("heaps@60,Virtual Physics,growth_exponent,1,\n"), std::string::npos);
+  heaps[2].settled_us = 0.0;
+  EXPECT_EQ(csv(heaps).find("heaps@60,Virtual Physics"), std::string::npos);
+  EXPECT_NE(csv(heaps).find("heaps@60,goal,growth_exponent,1.11,\n"), std::string::npos);
+}
+
 TEST(Load, RefusesTablesThatAreNone) {
   for (const char* name : {"table", "table0", "table-1", "table1001", "table1x"}) {
     EXPECT_FALSE(load(name).has_value()) << name;
