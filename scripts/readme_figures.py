@@ -4,31 +4,23 @@
     <!-- figures: NAME -->    and    <!-- end of figures -->
 
 so that README never says what was not measured. With --check it changes nothing and fails where
-README and the files differ.
+README and the files differ, or where a picture over a table was drawn from another file.
+With --self-test it checks itself, on small trees.
 """
 import argparse
 import csv
+import hashlib
 import re
 import sys
+import tempfile
 from pathlib import Path
+
+import rigid_tables
+from rigid_tables import grid, in_order
 
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r'(<!-- figures: (\w+) -->\n)(.*?)(<!-- end of figures -->)', re.S)
 COLUMNS = ['subject', 'engine', 'metric', 'value', 'unit']
-
-
-def grid(corner, rows, columns, cell):
-    """A table whose cells are told by cell(row, column); rows without any cell are left out."""
-    lines = [f'| {corner} | {" | ".join(columns)} |', f'| --- |{" ---: |" * len(columns)}']
-    for row in rows:
-        cells = [cell(row, column) for column in columns]
-        if any(cells):
-            lines.append(f'| {row} | {" | ".join(c or "-" for c in cells)} |')
-    return [*lines, '']
-
-
-def in_order(words):
-    return list(dict.fromkeys(words))
 
 
 def flat(rows):
@@ -75,58 +67,111 @@ def operations(rows):
                 in_order(r['engine'] for r in rows), cell)
 
 
-def rigid(rows):
-    """By scene and rate: times, how many bodies are in place, penetration and drift; then the goals."""
-    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
-    ended = {(r['subject'], r['engine']): r['value'] == r['unit'].split()[1] for r in rows
-             if r['metric'] == 'simulated_s'}
-    engines = in_order(r['engine'] for r in rows if r['metric'] == 'step_median_us')
-    subjects = in_order(r['subject'] for r in rows if r['engine'] in engines)
-    lines = []
-    for title, metrics in [('step, median / p99 [us]', ('step_median_us', 'step_p99_us')),
-                           ('in place / penetration [mm] / drift [mm]', ('in_place', 'penetration_mm', 'drift_mm')),
-                           ('peak memory [MB]', ('rss_mb',))]:
-        def cell(subject, engine):
-            found = [value.get((subject, engine, metric)) for metric in metrics]
-            if found[0] is None:
-                return None
-            return ' / '.join(f or '-' for f in found) + ('' if ended.get((subject, engine)) else ' *')
-        lines += grid(title, subjects, engines, cell)
-    return [*lines, '\\* not to the end of the scene within its processor time', '', *verdicts(rows)]
-
-
 # What ./bench draws of a comparison: shown over its tables once it is there.
 PICTURES = {'rigid': ('rigid-step-times.png', 'Time of a step by scene and engine'),
             'scaling': ('rigid-scaling.png', 'Time of a step by number of bodies')}
-LAYOUTS = {'multibody': multibody, 'operations': operations, 'rigid': rigid}  # all others: flat
+# Of ./bench's comparisons.
+LAYOUTS = {'loop': flat, 'multibody': multibody, 'operations': operations, 'rigid': rigid_tables.rigid,
+           'scaling': rigid_tables.scaling}
+
+
+def picture(name, files, root):
+    """The lines that show it, if there is one; it says of which file it was drawn."""
+    file, title = PICTURES.get(name, ('', ''))
+    path = root / 'docs/pictures' / file
+    if not file or not path.exists():
+        return []
+    drawn = path.read_bytes()
+    if not any(hashlib.sha256(f.read_bytes()).hexdigest().encode() in drawn for f in files):
+        raise ValueError(f'docs/pictures/{file} was drawn from figures that are not kept: run '
+                         f'scripts/pictures.sh plots')
+    return [f'![{title}](docs/pictures/{file})', '']
 
 
 def table(name, root):
-    lines = []
-    for path in sorted((root / 'benchmarks/results').glob(f'*/{name}.csv')):
+    if name not in LAYOUTS:
+        raise ValueError(f'README.md asks for figures of {name}; there are {", ".join(LAYOUTS)}')
+    files = sorted((root / 'benchmarks/results').glob(f'*/{name}.csv'))
+    if not files:
+        return f'Not measured yet; `./bench {name}` does it.'
+    lines = picture(name, files, root)
+    for path in files:
         with path.open(newline='') as file:
             rows = list(csv.DictReader(file))
         if not rows or list(rows[0]) != COLUMNS:
             raise ValueError(f'{path.relative_to(root)}: expected the columns {",".join(COLUMNS)}')
-        lines += [f'On {path.parent.name}:', '', *LAYOUTS.get(name, flat)(rows)]
-    if not lines:
-        raise ValueError(f'README.md shows {name}, which nobody has measured: run ./bench {name} and '
-                         f'keep its file in benchmarks/results')
-    picture, title = PICTURES.get(name, ('', ''))
-    if picture and (root / 'docs/pictures' / picture).exists():
-        lines[:0] = [f'![{title}](docs/pictures/{picture})', '']
+        lines += [f'On {path.parent.name}:', '', *LAYOUTS[name](rows)]
     return '\n'.join(lines)
+
+
+def filled(text, root):
+    return BLOCK.sub(lambda m: m.group(1) + table(m.group(2), root).rstrip() + '\n' + m.group(4), text)
+
+
+def self_test():
+    """A tree whose README is filled; then what must be found amiss in it, each by itself."""
+    wrong = []
+
+    def expect(what, root, wanted):
+        readme = root / 'README.md'
+        try:
+            text = readme.read_text()
+            found = 'same' if filled(text, root) == text else 'differs'
+        except ValueError as error:
+            found = str(error)
+        if wanted not in found:
+            wrong.append(f'{what}: expected "{wanted}", found "{found}"')
+
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        readme, kept = root / 'README.md', root / 'benchmarks/results/cpu/scaling.csv'
+        drawn = root / 'docs/pictures/rigid-scaling.png'
+        for path in (kept, drawn):
+            path.parent.mkdir(parents=True)
+        empty = 'before\n<!-- figures: scaling -->\n<!-- end of figures -->\nafter\n'
+        readme.write_text(filled(empty, root))
+        expect('nothing measured', root, 'same')
+        if 'Not measured yet; `./bench scaling`' not in readme.read_text():
+            wrong.append('README does not say that nothing is measured')
+        figures = ','.join(COLUMNS) + '\nheap1000@60,Virtual Physics,step_settled_us,1500,us\n'
+        kept.write_text(figures)
+        expect('the first figures', root, 'differs')
+        readme.write_text(filled(readme.read_text(), root))
+        expect('filled in', root, 'same')
+        if '| 1,000 | 1.50 |' not in readme.read_text() or not readme.read_text().startswith('before\n<!--'):
+            wrong.append('README is not as its figures')
+        kept.write_text(figures.replace('1500', '1600'))
+        expect('other figures', root, 'differs')
+        kept.write_text(figures)
+        drawn.write_bytes(b'of ' + hashlib.sha256(kept.read_bytes()).hexdigest().encode())
+        readme.write_text(filled(readme.read_text(), root))
+        expect('with its picture', root, 'same')
+        drawn.write_bytes(b'of others')
+        expect('a picture of other figures', root, 'scripts/pictures.sh plots')
+        drawn.unlink()
+        expect('no picture', root, 'differs')
+        kept.write_text('a,b\n1,2\n')
+        expect('other columns', root, 'expected the columns')
+        readme.write_text(empty.replace('scaling', 'scalling'))
+        expect('no such comparison', root, 'scalling')
+    for line in wrong:
+        print(line, file=sys.stderr)
+    print(f'figures, self-test: {len(wrong)} wrong')
+    return 1 if wrong else 0
 
 
 def main():
     parser = argparse.ArgumentParser(description='Figures of README.md from benchmarks/results.')
     parser.add_argument('--check', action='store_true')
+    parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--root', type=Path, default=ROOT)
     args = parser.parse_args()
+    if args.self_test:
+        return self_test()
     readme = args.root / 'README.md'
     text = readme.read_text()
     try:
-        wanted = BLOCK.sub(lambda m: m.group(1) + table(m.group(2), args.root).rstrip() + '\n' + m.group(4), text)
+        wanted = filled(text, args.root)
     except ValueError as error:
         print(error, file=sys.stderr)
         return 1
