@@ -11,8 +11,8 @@ OURS, WASM, PEER = 'Virtual Physics', 'Virtual Physics (WebAssembly)', 'Bullet'
 RATES = (60, 1000)  # shown; the files have 240 Hz too, and the goals are of all
 # A step of Bullet's at 60 Hz where the goals at 1000 Hz were set [us].
 PEER_WHEN_SET = {'towers1120': 3400, 'pyramid1128': 10300, 'pile1120': 13300}
-CUT_SHORT = ('\\* not to the end of the scene within its processor time: as it was until then, and what still falls costs '
-             "little; shares of Bullet's time are over the steps that both have made")
+CUT_SHORT = ('\\* not to the end of the scene within its processor time: as it was until then, and what still falls '
+             "costs little; shares of Bullet's time are over the steps that both have made")
 STANDING = ('out_of_place', 'penetration_mm', 'drift_mm')
 
 
@@ -188,9 +188,10 @@ def bits(runs):
     if not both:
         return []
     other = [s for s in both if (s, WASM, 'bits_as_native') not in runs.value]
-    return [f'As WebAssembly {OURS} ends with the native poses, to the bit, in '
-            + (f'{len(both) - len(other)} of the {len(both)} runs that went as far; not in: {runs.where(other)}.' if other
-               else f'all {len(both)} runs that went as far.'), '']
+    where = f'all {len(both)} runs that went as far.'
+    if other:
+        where = f'{len(both) - len(other)} of the {len(both)} runs that went as far; not in: {runs.where(other)}.'
+    return [f'As WebAssembly {OURS} ends with the native poses, to the bit, in {where}', '']
 
 
 def slower(runs, rates):
@@ -206,8 +207,9 @@ def beside(runs):
     scenes = [scene for scene in PEER_WHEN_SET if now[scene]]
     if not scenes:
         return []
+    then = listed(str(PEER_WHEN_SET[s]) for s in scenes)
     return [f'In this run Bullet needs {listed(now[s] for s in scenes)} us a step of {listed(scenes)} at 60 Hz; '
-            f'the goals at 1000 Hz are for a machine where it needs {listed(str(PEER_WHEN_SET[s]) for s in scenes)}.', '']
+            f'the goals at 1000 Hz are for a machine where it needs {then}.', '']
 
 
 def rigid(rows):
