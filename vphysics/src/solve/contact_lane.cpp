@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/row_vector.h"
 #include "vphysics/lie/inertia.h"
 
 namespace vp::solve {
@@ -18,8 +19,8 @@ struct Side {
       : mass(static_cast<double>(row.velocity[kInverseMass])),
         inertia{at(row.inertia, 0), at(row.inertia, 1), at(row.inertia, 2),
                 at(row.inertia, 3), at(row.inertia, 4), at(row.inertia, 5)},
-        way{at(row.way, 0), at(row.way, 1), at(row.way, 2)},
-        turn{at(row.way, 3), at(row.way, 4), at(row.way, 5)} {}
+        way(vector_of(row.way)),
+        turn(vector_of(row.way + 3)) {}
 
  private:
   static double at(const float* f, int i) { return static_cast<double>(f[i]); }

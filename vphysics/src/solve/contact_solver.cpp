@@ -41,7 +41,6 @@ constexpr std::size_t kMostRounds = 8;
 constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
-constexpr double kFastestPush = 3.0;  // of sub-steps [m/s]
 
 // Of what is no link; links as they were before the solve.
 Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactPoint& p) {
@@ -136,7 +135,7 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
 // What is apart may close its gap; what is deep is pushed out, in sub-steps.
 double target_of(const StepContext& s, const ContactPoint& p) {
   const double deep = std::max(0.0, -p.separation - s.slop);
-  return std::min(s.push_rate * deep, kFastestPush) -
+  return std::min(s.push_rate * deep, s.fastest_push) -
          std::max(0.0, p.separation - s.slop) / s.duration;
 }
 

@@ -77,8 +77,8 @@ struct StepContext {
   double slop;
   double restitution_threshold;
   int iterations;
-  double push_rate =
-      0.0;  // of a sub-step: share of a penetration that is pushed out, per time [1/s]
+  // Of a sub-step: share of a penetration that is pushed out, per time [1/s]; the fastest [m/s].
+  double push_rate = 0.0, fastest_push = 0.0;
 };
 
 // Sets the unit normal and two tangents to it.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/row_vector.h"
+
 namespace vp::solve {
 namespace {
 
@@ -16,16 +18,12 @@ constexpr double kExplicit = 0.25;
 constexpr double kDependent = 1e-9;
 constexpr double kFastestStop = 3.0;  // out of a limit [m/s or rad/s]
 
-Vec3 vector(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
-}
-
 struct Velocities {
   Vec3 v_a, w_a, v_b, w_b;
 };
 Velocities velocities(const JointBlock& joint, const BodyRow* rows) {
   const float *a = rows[joint.a].velocity, *b = rows[joint.b].velocity;
-  return {vector(a), vector(a + 3), vector(b), vector(b + 3)};
+  return {vector_of(a), vector_of(a + 3), vector_of(b), vector_of(b + 3)};
 }
 double rate(const Twelve& J, const Velocities& v) {
   return dot(J.linear_a, v.v_a) + dot(J.angular_a, v.w_a) + dot(J.linear_b, v.v_b) +
@@ -37,9 +35,7 @@ double product(const Twelve& a, const Twelve& b) {
 }
 
 void add(float* velocity, const Vec3& v) {
-  velocity[0] = static_cast<float>(static_cast<double>(velocity[0]) + v.x);
-  velocity[1] = static_cast<float>(static_cast<double>(velocity[1]) + v.y);
-  velocity[2] = static_cast<float>(static_cast<double>(velocity[2]) + v.z);
+  vp::put(velocity, vector_of(velocity) + v);
 }
 void push(const JointBlock& joint, BodyRow* rows, const double* change) {
   Velocities sum{};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/row_vector.h"
 #include "world/impl.h"
 #include "world/parallel.h"
 #include "world/validate.h"
@@ -17,15 +18,6 @@ namespace {
 constexpr double kMargin = 0.1;
 // A row's way is started anew beyond this [m or rad], so that single precision tells small steps.
 constexpr float kFarWay = 0.0625f;
-
-void put(float* f, const Vec3& v) {
-  f[0] = static_cast<float>(v.x);
-  f[1] = static_cast<float>(v.y);
-  f[2] = static_cast<float>(v.z);
-}
-Vec3 vector(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
-}
 
 // Half a margin of the least collider is surely within all enlarged bounds. Sums of components, no
 // less than the lengths, will do.
@@ -206,11 +198,11 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
     return more;
   }
   const float* start = start_ways[index].data();
-  body.v = vector(row.velocity);
-  body.w = vector(row.velocity + 3);
+  body.v = vector_of(row.velocity);
+  body.w = vector_of(row.velocity + 3);
   const double per_step = 1.0 / dt;
-  more.v = per_step * (vector(row.way) - vector(start)) - body.v;
-  more.w = per_step * (vector(row.way + 3) - vector(start + 3)) - body.w;
+  more.v = per_step * (vector_of(row.way) - vector_of(start)) - body.v;
+  more.w = per_step * (vector_of(row.way + 3) - vector_of(start + 3)) - body.w;
   if (!in_range(body.v) || !in_range(body.w) || !in_range(more.v) || !in_range(more.w)) {
     status.non_finite = true;
     body.v = body.w = {};
@@ -226,8 +218,9 @@ bool World::Impl::advance_by_row(std::uint32_t index) {
   Body& body = bodies[index];
   const solve::BodyRow& row = body_rows[index + 1];
   const float* start = start_ways[index].data();
-  const Vec3 v = vector(row.velocity), w = vector(row.velocity + 3);
-  const Vec3 gone = vector(row.way) - vector(start), turn = vector(row.way + 3) - vector(start + 3);
+  const Vec3 v = vector_of(row.velocity), w = vector_of(row.velocity + 3);
+  const Vec3 gone = vector_of(row.way) - vector_of(start),
+             turn = vector_of(row.way + 3) - vector_of(start + 3);
   const Vec3 x = body.T * body.centre + gone;
   if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(turn)) return false;
   body.rested = row.way[solve::kCarried] > 0.0f;

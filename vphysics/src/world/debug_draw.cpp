@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "solve/row_vector.h"
 #include "world/impl.h"
 #include "world/refuse.h"
 #include "world/validate.h"
@@ -23,9 +24,6 @@ DebugMark mark_of(const Body& body, const Collider& collider) {
 Vec3 lane_of(const solve::Field3& f, int lane) {
   return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
           static_cast<double>(f.z.lane[lane])};
-}
-Vec3 vector_of(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
 }
 
 // The axes that a joint turns about or slides along, in its frame.

@@ -177,8 +177,9 @@ class InStage {
 
 struct RecordedCall;
 
-// Share of a penetration that a sub-step pushes out.
+// Share of a penetration that a sub-step pushes out, and the fastest that it pushes [m/s].
 inline constexpr double kPush = 0.1;
+inline constexpr double kFastestPush = 3.0;
 
 enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
@@ -307,6 +308,7 @@ struct World::Impl {
   void begin_impact_stage();
   void prescribe_velocity(Body& body, double dt);
   void integrate_forces(double dt);
+  solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
   void refresh_solver_bodies();
   void refresh_motions(double h);
   void pose_colliders(std::uint32_t body);
@@ -389,7 +391,7 @@ struct World::Impl {
   void move_links(double h);
   void relax_links(double h);
   void end_links(double dt, int sub_steps);
-  void load_solver_body(std::uint32_t body, double h);
+  solve::SolverBody solver_body_in_sub_step(std::uint32_t body, double h) const;
   void load_bodies_on_links();
   void store_bodies_on_links();
 

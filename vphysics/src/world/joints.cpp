@@ -1,6 +1,7 @@
 // Joints between bodies: who is joined, and their part of a step.
 #include <algorithm>
 
+#include "solve/row_vector.h"
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/parallel.h"
@@ -239,11 +240,7 @@ BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
   const Body& body = bodies[index];
   if (body.motion == Motion::fixed) return place_of(index);
   const float *way = body_rows[index + 1].way, *start = start_ways[index].data();
-  const auto gone = [&](int i) {
-    return Vec3{static_cast<double>(way[i]) - static_cast<double>(start[i]),
-                static_cast<double>(way[i + 1]) - static_cast<double>(start[i + 1]),
-                static_cast<double>(way[i + 2]) - static_cast<double>(start[i + 2])};
-  };
+  const auto gone = [&](int i) { return vector_of(way + i) - vector_of(start + i); };
   const Vec3 centre = reference_point(body) + gone(0);
   const Mat3 R = turned(body.T.rotation(), gone(3));
   const bool at_centre = body.motion == Motion::dynamic;

@@ -9,20 +9,11 @@
 // An articulation that no such body is near is left to the stage of impacts, with its contacts.
 #include <algorithm>
 
+#include "solve/row_vector.h"
 #include "world/impl.h"
 #include "world/validate.h"
 
 namespace vp {
-namespace {
-
-Vec3 vector_of(const float* f) {
-  return {static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2])};
-}
-void put_into(float* f, const Vec3& v) {
-  for (int i = 0; i < 3; ++i) f[i] = static_cast<float>(v[i]);
-}
-
-}  // namespace
 
 // Which bodies are near a link, and which articulations take part: those, and what these touch.
 void World::Impl::find_bodies_on_links() {
@@ -111,7 +102,8 @@ solve::StepContext World::Impl::link_context(double h) {
           desc.contact_slop,
           desc.restitution_threshold,
           desc.velocity_iterations,
-          kPush / h};
+          kPush / h,
+          kFastestPush};
 }
 
 // Their velocities as the lanes and joints have left them.
@@ -123,8 +115,8 @@ void World::Impl::load_bodies_on_links() {
 }
 void World::Impl::store_bodies_on_links() {
   for (const std::uint32_t i : bodies_on_links) {
-    put_into(body_rows[i + 1].velocity, solver_bodies[i].v);
-    put_into(body_rows[i + 1].velocity + 3, solver_bodies[i].w);
+    put(body_rows[i + 1].velocity, solver_bodies[i].v);
+    put(body_rows[i + 1].velocity + 3, solver_bodies[i].w);
   }
 }
 
@@ -147,34 +139,28 @@ void World::Impl::begin_links(double h) {
   }
   add_joint_rows(h, h, JointRowsOf::sub_step);
   for (const solve::ContactConstraint& c : link_contacts) {
-    for (const std::uint32_t i : {c.a, c.b}) load_solver_body(i, h);
+    for (const std::uint32_t i : {c.a, c.b}) solver_bodies[i] = solver_body_in_sub_step(i, h);
   }
   load_bodies_on_links();
   solve::begin_sub_step(link_context(h));
   store_bodies_on_links();
 }
 
-// Where it is in this sub-step.
-void World::Impl::load_solver_body(std::uint32_t index, double h) {
+// Where it is in this sub-step. A fixed link, too, has its articulation's joints solved with what
+// touches it.
+solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, double h) const {
   const Body& body = bodies[index];
-  solve::SolverBody& s = solver_bodies[index];
-  s = {};
-  s.articulation = -1;
-  s.w = body.w;
-  s.v = body.v;
-  s.x = body.is_link || body.motion == Motion::fixed ? reference_point(body)
-                                                     : place_within_step(index).centre;
+  const bool stands = body.is_link || body.motion == Motion::fixed;
+  const Vec3 at = stands ? reference_point(body) : place_within_step(index).centre;
+  solve::SolverBody s = solver_body(index, at);
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);
     s.link = body.link;
-    s.forced_w = forced[index].w;
-    s.forced_v = forced[index].v;
-  } else if (body.motion == Motion::dynamic) {
-    s.linear = {body.inverse_mass, body.inverse_mass, body.inverse_mass, 0, 0, 0};
-    s.angular =
-        body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
-    s.forced_v = h * desc.gravity;
+  } else {
+    s.forced_w = {};
+    s.forced_v = body.motion == Motion::dynamic ? h * desc.gravity : Vec3{};
   }
+  return s;
 }
 
 void World::Impl::solve_links(double h) {

@@ -135,28 +135,33 @@ bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   return true;
 }
 
+// As the solver wants it, its point being there.
+solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) const {
+  const Body& body = bodies[index];
+  solve::SolverBody s{};
+  s.articulation = -1;
+  s.w = body.w;
+  s.v = body.v;
+  s.x = at;
+  s.forced_w = forced[index].w;
+  s.forced_v = forced[index].v;
+  if (body.motion != Motion::dynamic) return s;
+  if (body.is_link) {
+    s.articulation = static_cast<int>(body.articulation);
+    s.link = body.link;
+  } else {
+    s.linear = {body.inverse_mass, body.inverse_mass, body.inverse_mass, 0, 0, 0};
+    s.angular =
+        body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
+  }
+  return s;
+}
+
 void World::Impl::refresh_solver_bodies() {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    solve::SolverBody& s = solver_bodies[i];
     if (!body.alive || (body.is_link && body.first_collider == kNone)) continue;
-    s = {};
-    s.articulation = -1;
-    s.w = body.w;
-    s.v = body.v;
-    s.x = reference_point(body);
-    s.forced_w = forced[i].w;
-    s.forced_v = forced[i].v;
-    if (body.motion != Motion::dynamic) continue;
-    if (body.is_link) {
-      s.articulation = static_cast<int>(body.articulation);
-      s.link = body.link;
-    } else {
-      const double m = 1.0 / body.mass;
-      s.linear = {m, m, m, 0, 0, 0};
-      s.angular =
-          body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
-    }
+    solver_bodies[i] = solver_body(i, reference_point(body));
   }
 }
 

@@ -13,7 +13,6 @@ namespace {
 // comes to rest. With kPush it leaves a load L, in impulses of a sub-step, to sink by  h (kLoss /
 // kPush) L / m:  0.07 mm under ten boxes at 1 ms.
 constexpr double kLoss = 0.07;
-constexpr double kFastestPush = 3.0;  // [m/s]
 // Passes of pushing in one sub-step.
 constexpr int kRounds = 3;
 // Rounds of bounces in one sub-step: an impact may run through as many contacts against the order
