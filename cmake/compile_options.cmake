@@ -19,8 +19,3 @@ if(SF_SANITIZE)
                                               -fno-sanitize-recover=all)
   target_link_options(sf_options INTERFACE -fsanitize=${SF_SANITIZE})
 endif()
-if(SF_FUZZ)
-  target_compile_options(sf_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
-                                              -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  target_link_options(sf_options INTERFACE -fsanitize=address,undefined)
-endif()

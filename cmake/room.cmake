@@ -6,7 +6,7 @@ add_custom_target(fast_tests)
 add_custom_target(threads_tests)
 
 # Half of what a test's source costs to compile is gtest.h: the fast tests share it, compiled once.
-if(SF_BUILD_TESTS AND NOT SF_FUZZ)
+if(SF_BUILD_TESTS)
   find_package(GTest REQUIRED)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/test_headers.cpp CONTENT "// The headers alone.\n")
   add_library(sf_test_headers OBJECT ${CMAKE_BINARY_DIR}/test_headers.cpp)
@@ -20,15 +20,17 @@ if(SF_BUILD_TESTS AND NOT SF_FUZZ)
                             <vector>)
 endif()
 
-# sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SERIAL]): one
-# GoogleTest program, each of its tests known to ctest. Label "fast" (the default) means: it also runs
-# under the address sanitizer, with "threads" under the thread sanitizer too, which has nothing to look
-# at in a program of one thread. "display": it opens a window. SERIAL: it measures time, nothing else runs beside it.
+# sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SHARDS n] [SERIAL]):
+# one GoogleTest program, each of its tests known to ctest; with the address sanitizer, whose programs
+# are slow to start, the program alone, or so many equal parts of it, which are begun first. Label "fast"
+# (the default) means: it also runs under the address sanitizer, with "threads" under the thread sanitizer
+# too, which has nothing to look at in a program of one thread. "display": it opens a window. SERIAL: it
+# measures time, nothing else runs beside it.
 function(sf_test name)
-  if(NOT SF_BUILD_TESTS OR SF_FUZZ)
+  if(NOT SF_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT;SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS fast)
   endif()
@@ -55,6 +57,19 @@ function(sf_test name)
   # gtest_discover_tests takes a list apart, and with it every property after LABELS; joined by "+"
   # the labels stay one word, which `ctest -L fast` finds just as well.
   string(JOIN "+" labels ${ARG_LABELS})
+  if(SF_SANITIZE MATCHES "address")
+    if(NOT ARG_SHARDS)
+      set(ARG_SHARDS 1)
+    endif()
+    foreach(shard RANGE 1 ${ARG_SHARDS})
+      math(EXPR index "${shard} - 1")
+      add_test(NAME ${name}_${shard} COMMAND ${name} --gtest_brief=1)
+      set_tests_properties(${name}_${shard} PROPERTIES LABELS "${labels}" TIMEOUT 600
+        RUN_SERIAL ${serial} COST ${ARG_SHARDS}
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index};GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/gtest/${name}_${shard}.xml")
+    endforeach()
+    return()
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}" TIMEOUT
                        ${ARG_TIMEOUT} RUN_SERIAL ${serial})
 endfunction()
@@ -66,6 +81,17 @@ if(SF_FUZZ)
   file(WRITE ${SF_FUZZ_LIST} "")
 endif()
 
+# sf_fuzzed(TARGET [SOURCES...]): a library, or sources of it, that takes in a stranger's bytes: the
+# fuzzer is told which ways they go.
+function(sf_fuzzed target)
+  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  if(SF_FUZZ AND ARG_SOURCES)
+    set_property(SOURCE ${ARG_SOURCES} APPEND PROPERTY COMPILE_OPTIONS -fsanitize=fuzzer-no-link)
+  elseif(SF_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
 # sf_fuzz(NAME SOURCES... LIBS...): a libFuzzer program; its kept corpus is corpus/NAME beside the
 # CMakeLists.txt, or fuzz/corpus/NAME.
 function(sf_fuzz name)
@@ -75,6 +101,7 @@ function(sf_fuzz name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS})
+  sf_fuzzed(${name})
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
   add_dependencies(fuzz_targets ${name})
   set(corpus ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})

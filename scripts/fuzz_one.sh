@@ -8,7 +8,7 @@ fail() {
 }
 [[ -n $(ls "$corpus" 2>/dev/null) ]] || fail "its kept corpus $corpus is missing or empty"
 mkdir -p "$results/$name-new"
-ASAN_OPTIONS=detect_leaks=1 "build/fuzz/bin/$name" -seed=1 -max_total_time="$seconds" -timeout=5 \
+ASAN_OPTIONS=detect_leaks=1 "build/asan-ubsan/bin/$name" -seed=1 -max_total_time="$seconds" -timeout=5 \
   -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$results/$name-" "$results/$name-new" "$corpus" \
   </dev/null >"$results/$name.log" 2>&1 || {
   tail -n 40 "$results/$name.log"

@@ -10,6 +10,7 @@
 #include "collide/manifold.h"
 #include "collide/sweep.h"
 #include "random.h"
+#include "samples.h"
 #include "shape_truth.h"
 
 namespace vp::test {
@@ -22,7 +23,7 @@ TEST(SignedDistance, AgreesWithTheSampledSeparation) {
   Random random(31);
   const Geometry point{Kind::sphere, 0.0, {}, {}};
   for (const Kind kind : kBounded) {
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < samples(60); ++i) {
       const Solid solid = random_solid(random, kind);
       const Geometry& g = solid.geometry;
       const SE3 p(random.in_cube(1.5));
@@ -139,7 +140,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
   Random random(34);
   int hits = 0;
   for (const Kind kind : kBounded) {
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < samples(60); ++i) {
       const Solid solid = random_solid(random, kind);
       const Geometry& g = solid.geometry;
       const SE3 T = random.pose(0.3);
@@ -181,7 +182,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
       ASSERT_LE(separation_at(q, t), 2e-7) << i;
     }
   }
-  EXPECT_GT(hits, 60);
+  EXPECT_GT(hits, samples(60));
 }
 
 TEST(Sweep, GrazingTakesNoMoreThanItsAdvances) {

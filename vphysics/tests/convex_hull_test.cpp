@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "random.h"
+#include "samples.h"
 #include "shape_truth.h"
 
 namespace vp::test {
@@ -127,9 +128,10 @@ TEST(ConvexHull, OfAnyCloudHoldsAllOfItsPoints) {
   Random random(52);
   HullOptions options;
   options.max_vertices = 256;
+  const int clouds = samples(12);
   for (int kind = 0; kind < 8; ++kind) {
-    for (int i = 0; i < 12; ++i) {
-      Points points = cloud(random, kind, 20 + 15 * i);
+    for (int i = 0; i < clouds; ++i) {
+      Points points = cloud(random, kind, 20 + 180 / clouds * i);
       const double size = std::pow(10.0, random.uniform(-3, 3));
       const SE3 T = random.pose(i % 3 == 2 ? 1e6 * size : size);
       for (Vec3& p : points) p = T * (size * p);

@@ -11,6 +11,7 @@
 #include "collide/compound_data.h"
 #include "collide/ray.h"
 #include "collide/surface.h"
+#include "samples.h"
 #include "shape_truth.h"
 #include "surfaces.h"
 
@@ -444,10 +445,10 @@ TEST(FirstImpact, IsThatOfFineSamplesOfAllParts) {
       PartsScratch scratch;
       collide::PartsImpact found{};
       const bool met = first_impact(q, 0.0, scratch, found);
-      const int samples = parted.ids.empty() ? 150 : 60;
+      const int looks = samples(parted.ids.empty() ? 150 : 60);
       const double end = met ? found.time : q.duration;
-      for (int k = 0; k < samples; ++k) {
-        ASSERT_GT(separation(end * k / samples), 0.0) << parted.name << " " << i;
+      for (int k = 0; k < looks; ++k) {
+        ASSERT_GT(separation(end * k / looks), 0.0) << parted.name << " " << i;
       }
       if (met) {
         ++meets;

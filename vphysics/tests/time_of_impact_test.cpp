@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "collide/distance.h"
+#include "samples.h"
 #include "shape_truth.h"
 
 namespace vp::test {
@@ -108,7 +109,7 @@ TEST(TimeOfImpact, OfASpinningRodAndAThinWallIsThatOfFineSamples) {
   const Solid rod(Capsule{0.005, 0.2}), wall(Box{{0.001, 0.3, 0.3}});
   Outcome outcome;
   double worst = 0.0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < samples(200); ++i) {
     const SE3 T(random.rotation(),
                 Vec3{random.uniform(-0.4, -0.21), random.uniform(-0.5, 0.5), 0.1});
     const Vec3 w = 150.0 * random.direction();
@@ -119,8 +120,8 @@ TEST(TimeOfImpact, OfASpinningRodAndAThinWallIsThatOfFineSamples) {
     const double t = impact_of(q), sampled = first_sample(q, 1e-6, 4000);
     if (t >= 0.0 && sampled >= 0.0) worst = std::max(worst, sampled - t);
   }
-  EXPECT_GE(outcome.meets, 20);
-  EXPECT_GE(outcome.passes, 20);
+  EXPECT_GE(outcome.meets, samples(20));
+  EXPECT_GE(outcome.passes, samples(20));
   // Of samples 4.2 us apart at the most, the first behind is as near as that.
   EXPECT_LE(worst, 1.0 / 60.0 / 4000.0 + 1e-9);
 }
