@@ -43,6 +43,7 @@ struct ContactBlock {
   IndexField a, b;     // rows of the bodies; of an empty lane the world's
   IndexField contact;  // index in the world's contacts; kNoContact: an empty lane
   IndexField touches;  // 1: it has been told that the two touch
+  Field active;        // 1: the last round of pushing has changed its impulses; else 0
 
   Field3 normal, tangent, d;
   Field3 arm[kPoints];      // jA_i = rA_i x n
@@ -73,9 +74,10 @@ struct ContactBlock {
   Field slid_limit;  // how far they may slide by until it is computed again [m]
 };
 
-// All fields but those of indices, as they lie.
+// All fields from the normal on, as they lie: those that outlast a step, but indices.
 template <int P>
-inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) - 4 * sizeof(IndexField)) /
+inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) -
+                                          offsetof(ContactBlock<P>, normal)) /
                                          sizeof(Field);
 
 static_assert(sizeof(ContactBlock<4>) % sizeof(Field) == 0);

@@ -26,6 +26,28 @@ void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, f
   }
 }
 
+void keep(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    lanes::store<8>(gains[bodies[i]].velocity, lanes::load<8>(rows[bodies[i] + 1].velocity));
+  }
+}
+void find_gains(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Gain& gain = gains[bodies[i]];
+    lanes::store<8>(gain.velocity,
+                    lanes::load<8>(rows[bodies[i] + 1].velocity) - lanes::load<8>(gain.velocity));
+  }
+}
+void repeat(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyRow& row = rows[bodies[i] + 1];
+    Gain& gain = gains[bodies[i]];
+    const Row8 before = lanes::load<8>(row.velocity);
+    lanes::store<8>(row.velocity, before + lanes::load<8>(gain.velocity));
+    lanes::store<8>(gain.velocity, before);
+  }
+}
+
 void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
   const Row8 step = {h, h, h, h, h, h, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
@@ -59,9 +81,10 @@ template <int P>
 [[gnu::flatten]] void warm_start(const typename ContactPasses<P>::Run& run) {
   for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { warm_start_lanes<W, P>(c); });
 }
-template <int P, bool kPush>
+template <int P, Round kRound>
 [[gnu::flatten]] void solve(const typename ContactPasses<P>::Run& run, const Soft& soft) {
-  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kPush>(c, soft); });
+  for_lanes<P>(run,
+               [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kRound>(c, soft); });
 }
 // Lanes that are not in use have no say.
 std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block) {
@@ -98,12 +121,23 @@ template <int P>
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {strike<P>, warm_start<P>, solve<P, true>, solve<P, false>, find_moved<P>, find_news<P>};
+  return {strike<P>,
+          warm_start<P>,
+          solve<P, Round::first>,
+          solve<P, Round::again>,
+          solve<P, Round::relax>,
+          find_moved<P>,
+          find_news<P>};
 }
 
 }  // namespace
 }  // namespace vp::solve
 
-const vphysics_solver::Passes vphysics_solver::VP_PASSES = {
-    vp::solve::accelerate, vp::solve::move, vp::solve::find_closer, vp::solve::contact_passes<1>(),
-    vp::solve::contact_passes<4>()};
+const vphysics_solver::Passes vphysics_solver::VP_PASSES = {vp::solve::accelerate,
+                                                            vp::solve::keep,
+                                                            vp::solve::find_gains,
+                                                            vp::solve::repeat,
+                                                            vp::solve::move,
+                                                            vp::solve::find_closer,
+                                                            vp::solve::contact_passes<1>(),
+                                                            vp::solve::contact_passes<4>()};

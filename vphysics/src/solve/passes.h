@@ -37,7 +37,9 @@ struct ContactPasses {
   };
   bool (*strike)(const Run& run, float h, float threshold);  // true: something bounced
   void (*warm_start)(const Run& run);
-  void (*solve)(const Run& run, const Soft& soft);
+  // Rounds of pushing: the first of a sub-step, and those after it.
+  void (*solve_first)(const Run& run, const Soft& soft);
+  void (*solve_again)(const Run& run, const Soft& soft);
   void (*relax)(const Run& run, const Soft& soft);
   // Of all that find: a bit for each lane, a word for each block.
   void (*find_moved)(const Run& run, float dt, float turn, std::uint32_t* bits);
@@ -46,9 +48,21 @@ struct ContactPasses {
   void (*find_news)(const Run& run, std::uint32_t* bits);
 };
 
+// What contacts have given a body's velocity in a sub-step, as it lies in its row; while that goes
+// on, the velocity before them.
+struct alignas(32) Gain {
+  float velocity[8];
+};
+
 struct Passes {
   // Of bodies, whose rows are one behind their numbers.
   void (*accelerate)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
+  // keep: before the contacts of a sub-step, keeps the velocities. find_gains: after them, leaves
+  // what they have given. repeat: before those of the next, keeps the velocities and gives it once
+  // more. This is what warm_start does, as long as Jacobians stay and contacts alone have acted.
+  void (*keep)(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count);
+  void (*find_gains)(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count);
+  void (*repeat)(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count);
   void (*move)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
   // Bits of the near pairs that may go farther than they may by the end of a step dt.
   void (*find_closer)(NearBlock* blocks, std::size_t count, BodyRow* rows, float dt,

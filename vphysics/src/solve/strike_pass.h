@@ -32,25 +32,33 @@ struct Closing {
   using F = Lanes<W>;
 
   Closing(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
+    normals.speeds(c, u);
+    normals.separations(c, s);
+    closes = F(0.0f) > F(0.0f);
+    for (int i = 0; i < P; ++i) {
+      gap[i] = larger(F(0.0f), s[i]);
+      reaches[i] = F(h) * -u[i] >= gap[i];
+      closes = !both(!closes, !reaches[i]);
+    }
+  }
+  // Of those that do: when and how fast.
+  void find_approach(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
     Vec3T<F> a, b;
     c.gather_accelerations(a, b);
     gain = larger(F(0.0f), dot(normals.n, c.falls_a * a - c.falls_b * b));
     const F added = F(h) * dot(normals.n, a - b);
-    normals.speeds(c, u);
-    normals.separations(c, s);
     soonest = F(h);
     fastest = F(0.0f);
     for (int i = 0; i < P; ++i) {
-      gap[i] = larger(F(0.0f), s[i]);
       const F now = -u[i] - added;  // what the sub-step's own forces add is no approach
-      reaches[i] = both(F(h) * -u[i] >= gap[i], now > F(0.0f));
+      reaches[i] = both(reaches[i], now > F(0.0f));
       fastest = larger(fastest, select(reaches[i], now, F(0.0f)));
       const F time = gap[i] / larger(-u[i], F(1e-30f));
       soonest = select(reaches[i], smaller(soonest, time), soonest);
     }
   }
   F u[P], s[P], gap[P], gain, soonest, fastest;
-  LaneMask<W> reaches[P];
+  LaneMask<W> reaches[P], closes;  // within h; any of a lane's points does
 };
 
 // True if any lane bounced.
@@ -61,11 +69,14 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   auto& block = c.block();
   const auto rests = sum_of_impulses(c) > F(0.0f);
   const F e = c.get(block.restitution);
-  if (all(both(rests, !(e > F(0.0f))))) return false;  // neither bounces nor comes to touch
-  c.gather_velocities();
+  const auto idle = both(rests, !(e > F(0.0f)));  // neither bounces nor comes to touch
+  if (all(idle)) return false;
+  c.gather_speeds();
   c.gather_ways();
   const Normals<W, P> normals(c);
-  const Closing<W, P> closing(c, normals, h);
+  Closing<W, P> closing(c, normals, h);
+  if (none(both(closing.closes, !idle))) return false;
+  closing.find_approach(c, normals, h);
   const auto hits = closing.fastest > F(threshold);
   if (none(hits)) return false;
   const auto fresh = both(hits, !rests);
@@ -74,6 +85,7 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const auto bounces = both(hits, e > F(0.0f));
   if (none(bounces)) return false;
 
+  c.gather_velocities();
   F u[P], p[P];
   const F after = F(h) - closing.soonest;
   F leaving(0.0f), gained(0.0f);

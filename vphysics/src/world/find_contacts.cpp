@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "world/impl.h"
 #include "world/runs.h"
@@ -264,19 +265,30 @@ void World::Impl::look_at_stale_contacts(double dt) {
   stale_contacts.swap(look_again);
 }
 
+// The stale ones become those looked at, ascending, each once: by a bit for each of the pool.
+void World::Impl::order_stale_contacts() {
+  stale_bits.resize(contact_pool.capacity() / 64 + 1);
+  for (const std::uint32_t i : stale_contacts) stale_bits[i / 64] |= std::uint64_t{1} << (i % 64);
+  stale_contacts.clear();
+  looked_at_contacts.clear();
+  const std::size_t words = contact_pool.size() / 64 + 1;
+  for (std::size_t w = 0; w < words; ++w) {
+    for (std::uint64_t left = std::exchange(stale_bits[w], 0); left != 0; left &= left - 1) {
+      looked_at_contacts.push_back(static_cast<std::uint32_t>(64 * w) +
+                                   static_cast<std::uint32_t>(std::countr_zero(left)));
+    }
+  }
+}
+
 void World::Impl::find_manifolds_of_stale(double dt, bool first) {
   const auto stage = in(Stage::narrow_phase);
   if (first) find_stale_contacts(dt);
-  std::sort(stale_contacts.begin(), stale_contacts.end());
-  looked_at_contacts.swap(stale_contacts);
-  stale_contacts.clear();
+  order_stale_contacts();
   looked.clear();
   to_pose.clear();
-  std::uint32_t last = kNone;
   for (const std::uint32_t index : looked_at_contacts) {
     const Contact& c = contact_pool[index];
-    if (index == last || !c.alive || !c.stale || c.parked) continue;
-    last = index;
+    if (!c.alive || !c.stale || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
     looked.push_back({index, {}, 0.0, 0.0});
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);

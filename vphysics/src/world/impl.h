@@ -241,12 +241,14 @@ struct World::Impl {
   // --- scratch of a step; kept for its capacity
   std::vector<std::uint32_t> leavers;  // of their kept bounds
   std::vector<collide::ProxyPair> new_pairs;
+  std::vector<std::uint64_t> stale_bits;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
   std::uint32_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
   double dt_now = 0.0;                  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
+  std::vector<solve::Gain> gains;        // of each body, by the contacts of a sub-step
   std::vector<std::uint8_t> mover_news;  // of each mover: it needs more than its own row
   std::vector<Looked> looked;
   std::vector<std::uint32_t> to_pose;
@@ -377,6 +379,7 @@ struct World::Impl {
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);
+  void order_stale_contacts();
   void find_manifolds_of_stale(double dt, bool first);
   solve::ContactGraph::End end_of(std::uint32_t body) const;
   bool joins_sub_steps(const Body& body) const;

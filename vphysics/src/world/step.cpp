@@ -62,6 +62,7 @@ void World::Impl::begin_step(double dt) {
   body_rows.resize(n + 1);
   graph.resize(n + 1);
   start_ways.resize(n);
+  gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
   if (!joints.empty()) joint_places.resize(n);
   report_ends_of_destroyed();
@@ -202,8 +203,8 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
     constexpr double kMostGain = 1e-3;
     const Vec3 momentum = body.central * transposed_times(R, body.w);
     const Vec3 w = next * (body.inverse_central * transposed_times(next, R * momentum));
-    const bool gains = dot(w, R * momentum) > (1.0 + kMostGain) * dot(body.w, R * momentum);
-    body.w = gains ? next * transposed_times(R, body.w + h * gyroscopic_acceleration(body, h)) : w;
+    const bool more = dot(w, R * momentum) > (1.0 + kMostGain) * dot(body.w, R * momentum);
+    body.w = more ? next * transposed_times(R, body.w + h * gyroscopic_acceleration(body, h)) : w;
   }
   place(body, m.x + h * m.v, next);
 }

@@ -57,9 +57,19 @@ void World::Impl::take_sub_steps(double dt, int n) {
   begin_joints(h);
   const bool links = !bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
+  // What contacts gave in one sub-step is given again in the next as a whole, by body, unless
+  // joints and links have a share in it: these turn within the step.
+  const bool repeats = n > 1 && !links &&
+                       std::none_of(joints.begin(), joints.end(),
+                                    [this](const BodyJoint& joint) { return is_active(joint); });
+  const auto for_movers = [&](const auto& f) {
+    in_parallel(movers.size(), kBodyGrain,
+                [&](std::size_t begin, std::size_t end) { f(movers.data() + begin, end - begin); });
+  };
   for (int k = 0; k < n; ++k) {
-    in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-      pass.accelerate(body_rows.data(), movers.data() + begin, end - begin, h);
+    for_movers([&](const std::uint32_t* some, std::size_t count) {
+      if (repeats && k > 0) pass.find_gains(body_rows.data(), gains.data(), some, count);
+      pass.accelerate(body_rows.data(), some, count, h);
     });
     for (int round = 0;; ++round) {
       if (round == kStrikes) {
@@ -78,15 +88,24 @@ void World::Impl::take_sub_steps(double dt, int n) {
     }
     if (links) begin_links(h);
     warm_start_joints();
-    for_parts([](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
+    if (repeats) {
+      for_movers([&](const std::uint32_t* some, std::size_t count) {
+        (k == 0 ? pass.keep : pass.repeat)(body_rows.data(), gains.data(), some, count);
+      });
+    }
+    if (k == 0 || !repeats) {
+      for_parts([](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
+    }
     for (int round = 0; round < kRounds; ++round) {
       solve_joints(h);
-      for_parts([&](const auto& p, const auto& part, std::size_t) { p.solve(part, soft); });
+      for_parts([&](const auto& p, const auto& part, std::size_t) {
+        (round == 0 ? p.solve_first : p.solve_again)(part, soft);
+      });
       if (links) solve_links(h);
     }
     if (links) move_links(h);
-    in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-      pass.move(body_rows.data(), movers.data() + begin, end - begin, h);
+    for_movers([&](const std::uint32_t* some, std::size_t count) {
+      pass.move(body_rows.data(), some, count, h);
     });
     refresh_joints(h);
     relax_joints(h);
