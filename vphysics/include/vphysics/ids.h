@@ -1,5 +1,8 @@
 // Handles to what a world owns: index and generation; zero is null. A handle to something destroyed
 // is recognised as stale and never aliases what took its place.
+//
+// An id is of the world that gave it, and names the same in worlds made by the same sequence of
+// calls. That it is of this world is not checked: in another it names what has its numbers there.
 #pragma once
 
 #include <compare>

@@ -31,8 +31,8 @@ enum class Limit : std::uint8_t {
               // those past the twelfth count as that of the twelve which is most like them
   distances,  // shapes overlap, and how deep they do is known to no more than a thousandth of the
               // smaller one's size when the rounds of the search are over: the best is taken
-  colours,  // a body has more contacts than the 64 colours allow side by side: the rest are solved
-            // one after the other, with nothing lost but time
+  colours,    // a body has more contacts than there are colours for, 40 with what moves and 23 with
+              // what does not: the rest are solved one after the other, with nothing lost but time
 };
 inline constexpr std::array kLimits{Limit::impacts,   Limit::range,     Limit::bounces,
                                     Limit::manifolds, Limit::distances, Limit::colours};

@@ -2,7 +2,8 @@
 //
 // Units: SI. Right-handed frames. Generalized velocities V = (w, v) are in the body's own frame,
 // about the body's origin (paper, section 4.2). Everything a call needs to be refused is checked:
-// NaN, infinities, non-positive sizes and stale ids give an Error and change nothing.
+// NaN, infinities, sizes and masses out of range and stale ids give an Error and change nothing.
+// Not checked: that an id is of this world (ids.h).
 //
 // Threads: a World is used by one thread at a time; different worlds are independent.
 // Determinism: the same sequence of calls gives the same bits on g++ and clang++, at every
@@ -75,21 +76,29 @@ struct ArticulationDesc {
   Model model;
 };
 
+// What a pair of colliders did in a step. Bodies that meet in sub-steps tell at the end of the
+// step, with time 0; continuous bodies and what links touch tell each impact with its own time. A
+// pair has at most one hit from all sub-steps of a step, and one from each impact.
 struct ContactEvent {
   enum class Kind : std::uint8_t {
     begin,  // they touch, and did not before
-    hit,  // they closed faster than restitution_threshold, what the step's own forces add left out
+    // They closed faster than restitution_threshold, what the step's own forces add left out.
+    // Follows the begin of the same time, if there is one: a pair that touches may hit again, as in
+    // a last small bounce within one step, so that hits may be more than begins.
+    hit,
     end,  // they touch no more, or one was destroyed: each begin is followed by one end
   };
   Kind kind;
-  bool sensor;                             // one of the two is a sensor
+  bool sensor;                             // one of the two is a sensor: no hits
   ColliderId a, b;                         // a < b by creation
   std::uint64_t user_data_a, user_data_b;  // 0 for a collider that was destroyed; its id is stale
-  Vec3 point;                              // world frame [m]
-  Vec3 normal;            // world frame, from a to b; 0 for sensors that see a swept sphere
+  // World frame [m]; 0 in an end, as all numbers below. Where a sensor begins to see something: of
+  // a continuous body its shape's origin, of a link a point of the overlap, of others 0.
+  Vec3 point;
+  Vec3 normal;            // world frame, from a to b; 0 for sensors, but of those that see a link
   double approach_speed;  // just before, along the normal [m/s], >= 0
   double impulse;         // normal impulse [N s]; 0 for sensors
-  double time;            // within the step, [0, dt]
+  double time;            // within the step, [0, dt]: 0 but of impacts, and of sensors swept into
 };
 
 class Recorder;
@@ -103,6 +112,7 @@ class World {
   // Precondition: create() would take it.
   explicit World(const WorldDesc& desc = {});
   ~World();
+  // Precondition of every call: not moved from. Such a world may be destroyed or assigned to.
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   World(const World&) = delete;
