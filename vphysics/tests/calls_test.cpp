@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "joints_rig.h"
@@ -177,6 +179,140 @@ TEST(EveryCall, RefusesShapesThatAreNone) {
   EXPECT_FALSE(TriangleMesh::of({}, {}));
   EXPECT_FALSE(HeightField::of({}));
   EXPECT_FALSE(Compound::of({}));
+}
+
+// Whose inverses single precision does not hold, or whose squares nothing does.
+TEST(EveryCall, RefusesMassesAndSizesThatAreTooSmall) {
+  Small s;
+  const std::uint64_t before = s.world.state_hash();
+  const auto refused = [&](const auto& result, const char* says) {
+    EXPECT_EQ(s.world.state_hash(), before);
+    return !result && result.error().code == Errc::invalid_argument &&
+           result.error().message.find(says) != std::string::npos;
+  };
+  for (const double x : {0.9e-15, 1e-20, 1e-38, 1e-45, 1e-300, 1.1e9}) {
+    BodyDesc desc;
+    desc.inertia = Inertia(x, Vec3{1, 1, 1});
+    EXPECT_TRUE(refused(s.world.create_body(desc), "1e-15 to 1e9 kg")) << x;
+  }
+  for (const double x : {0.9e-30, 1e-38, 1e-45, 1e-100}) {
+    for (int i = 0; i < 3; ++i) {
+      Vec3 moments{1, 1, 1};
+      moments[i] = x;
+      BodyDesc desc;
+      desc.inertia = Inertia(1.0, moments);
+      EXPECT_TRUE(refused(s.world.create_body(desc), "1e-30 kg m^2")) << x;
+    }
+  }
+  for (const double x : {0.9e-6, 1e-12, 1e-45, 1e-160, 1e-300}) {
+    for (const Shape& shape :
+         {Shape(Sphere{x}), Shape(Box{{1, x, 1}}), Shape(Capsule{x, 1}), Shape(Cylinder{x, 1}),
+          Shape(Cylinder{1, x}), Shape(Cone{x, 1}), Shape(Cone{1, x})}) {
+      ColliderDesc desc;
+      desc.shape = shape;
+      EXPECT_TRUE(refused(s.world.add_collider(s.box, desc), "1e-6 to 1e9 m")) << x;
+      EXPECT_TRUE(refused(s.world.nearest(shape, {}, 1.0), "1e-6 to 1e9 m")) << x;
+      const CompoundPart parts[] = {{shape, {}}};
+      EXPECT_TRUE(refused(Compound::of(parts), "1e-6 to 1e9 m")) << x;
+    }
+    const Vec3 corners[] = {{0, 0, 0}, {x, 0, 0}, {0, x, 0}, {0, 0, x}};
+    EXPECT_TRUE(refused(ConvexHull::of(corners), "micrometre")) << x;
+  }
+}
+
+// Of a feather's mass down to none, by its colliders.
+TEST(EveryCall, RefusesAMassFromCollidersThatIsTooSmall) {
+  Small s;
+  ColliderDesc thin;
+  thin.shape = Sphere{1e-3};
+  thin.density = 1e-9;
+  BodyDesc desc;
+  desc.inertia = solid_inertia(Sphere{1.0}, 1.0);
+  const BodyId body = must(s.world.create_body(desc));
+  must(s.world.add_collider(body, thin));
+  const std::uint64_t before = s.world.state_hash();
+  const auto result = s.world.set_mass_from_colliders(body);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("1e-15 to 1e9 kg"), std::string::npos);
+  EXPECT_EQ(s.world.state_hash(), before);
+}
+
+// The least of all, of which one lies on another, is jointed or flies, steps without a complaint
+// and leaves alone what stands beside it; in the shortest steps, too.
+TEST(EveryCall, TakesTheLeastMassesSizesAndTimes) {
+  struct Least {
+    Inertia inertia;
+    Shape shape;
+    double size;
+  };
+  const Least all[] = {
+      {solid_inertia(Sphere{1e-6}, 1000.0), Sphere{1e-6}, 1e-6},
+      {solid_inertia(Box{{1e-6, 1e-6, 1e-6}}, 1000.0), Box{{1e-6, 1e-6, 1e-6}}, 1e-6},
+      {Inertia(1e-15, Vec3{1e-30, 1e-30, 1e-30}), Box{{0.5, 0.5, 0.5}}, 0.5},
+      {Inertia(1e-15, Vec3{1e-16, 1e-16, 1e-16}), Sphere{0.5}, 0.5},
+      {Inertia(1.0, Vec3{1e-30, 1e-30, 1e-30}), Box{{0.5, 0.5, 0.5}}, 0.5},
+      {Inertia(1e9, Vec3{1e-6, 1e9, 1e9}), Box{{0.5, 0.5, 0.5}}, 0.5},
+      {Inertia(1.0, Vec3{1.0, 1.0, 1.0}), Box{{1.0, 1.0, 1e-6}}, 1e-6},
+  };
+  const struct {
+    double dt;
+    int sub_steps;
+  } times[] = {{1.0 / 60.0, 0}, {0.001, 0}, {1e-7, 0}, {1e-7, 1000}};
+  for (const Least& least : all) {
+    for (const auto& time : times) {
+      WorldDesc settings;
+      settings.sub_steps = time.sub_steps;
+      World world(settings);
+      add_ground(world, {});
+      const BodyId beside =
+          add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{20, 0, 0.5})});
+      BodyId last = beside;
+      for (int i = 0; i < 3; ++i) {
+        BodyDesc desc;
+        desc.inertia = least.inertia;
+        desc.T_world_body = SE3(Vec3{0, 0, (1 + 2 * i) * least.size});
+        const BodyId body = must(world.create_body(desc));
+        ColliderDesc collider;
+        collider.shape = least.shape;
+        must(world.add_collider(body, collider));
+        if (i == 2) {
+          JointDesc joint;
+          joint.kind = Weld{};
+          joint.T_b_joint = SE3(Vec3{0, 0, -2 * least.size});
+          must(world.create_joint(last, body, joint));
+        }
+        last = body;
+      }
+      bool out_of_range = false;
+      const int steps = time.sub_steps > 0 ? 20 : 200;
+      for (int i = 0; i < steps; ++i) out_of_range |= must(world.step(time.dt)).non_finite;
+      const std::ptrdiff_t which = &least - all;
+      EXPECT_FALSE(out_of_range) << which << ", " << time.dt;
+      EXPECT_LT(norm(world.pose(beside).position() - Vec3{20, 0, 0.5}), 1e-3) << which;
+    }
+  }
+}
+
+// Each names the call and which of its arguments is meant.
+TEST(EveryCall, SaysWhichArgumentIsStale) {
+  Small s;
+  const BodyId dead = s.box;
+  must(s.world.destroy_body(dead));
+  const auto says = [](const auto& result, const std::string& begin) {
+    return !result && result.error().message.starts_with(begin + " does not exist");
+  };
+  EXPECT_TRUE(says(s.world.create_joint(s.ground, dead, {}), "create_joint: body b"));
+  EXPECT_TRUE(says(s.world.create_joint(dead, s.ground, {}), "create_joint: body a"));
+  EXPECT_TRUE(says(s.world.destroy_body(dead), "destroy_body: the body"));
+  EXPECT_TRUE(says(s.world.add_collider(dead, {}), "add_collider: the body"));
+  EXPECT_TRUE(says(s.world.set_pose(dead, {}), "set_pose: the body"));
+  EXPECT_TRUE(says(s.world.set_velocity(dead, {}), "set_velocity: the body"));
+  EXPECT_TRUE(says(s.world.apply_impulse(dead, {}, {}), "apply_impulse: the body"));
+  EXPECT_TRUE(says(s.world.wake(dead), "wake: the body"));
+  EXPECT_TRUE(says(s.world.set_mass_from_colliders(dead), "set_mass_from_colliders: the body"));
+  EXPECT_TRUE(says(s.world.destroy_joint({}), "destroy_joint: the joint"));
+  EXPECT_TRUE(says(s.world.set_drive(JointId{}, {}), "set_drive: the joint"));
+  EXPECT_TRUE(says(s.world.set_drive(JointId{}, JointAxis::x, {}), "set_drive: the joint"));
 }
 
 TEST(EveryCall, RestoresNothingFromBytesThatAreNone) {

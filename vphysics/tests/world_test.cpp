@@ -151,9 +151,19 @@ TEST(CreateArticulation, TakesPointMassesAndThinRods) {
 
 TEST(Step, RefusesATimeThatIsNone) {
   World world;
-  for (const double dt : {0.0, -0.001, 0.11, kNaN, kInf}) {
+  for (const double dt : {0.0, -0.001, 0.11, kNaN, kInf, 0.9e-7, 1e-12, 1e-30, 1e-300}) {
     expect_refused(world, [&] { return world.step(dt); });
   }
+}
+
+TEST(World, MayBeAssignedToWhenMovedFrom) {
+  World first;
+  const BodyId body = add_dynamic(first, {});
+  World second = std::move(first);
+  EXPECT_TRUE(second.contains(body));
+  first = World();
+  EXPECT_FALSE(first.contains(body));
+  must(first.step(0.001));
 }
 
 TEST(Ids, OfTheDestroyedAreStaleForever) {

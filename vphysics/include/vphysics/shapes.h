@@ -1,4 +1,5 @@
-// Shapes and what is attached to them. Lengths in metres, in the shape's own frame.
+// Shapes and what is attached to them. Lengths in metres, in the shape's own frame. Sizes are from
+// 1e-6 to 1e9 m; what takes a shape refuses others.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +15,17 @@
 namespace vp {
 
 struct Sphere {
-  double radius;  // > 0
+  double radius;
 };
 
 struct Box {
-  Vec3 half_extents;  // each > 0
+  Vec3 half_extents;
 };
 
 // Segment of length 2 * half_length along z, swept by a sphere.
 struct Capsule {
-  double radius;       // > 0
-  double half_length;  // >= 0
+  double radius;
+  double half_length;  // 0 or more, to 1e9
 };
 
 // The half-space z <= 0: solid below, surface normal +z. Only for colliders of fixed bodies.
@@ -32,15 +33,15 @@ struct HalfSpace {};
 
 // Of length 2 * half_length along z.
 struct Cylinder {
-  double radius;       // > 0
-  double half_length;  // > 0
+  double radius;
+  double half_length;
 };
 
 // Along z: the base, a disc, at z = -half_height, the apex at z = +half_height. The centre of mass
 // is half a half_height below the origin.
 struct Cone {
-  double radius;       // of the base, > 0
-  double half_height;  // > 0
+  double radius;  // of the base
+  double half_height;
 };
 
 // ConvexHull: vphysics/convex_hull.h. Only for colliders of fixed bodies, like the half-space:

@@ -56,8 +56,10 @@ enum class Motion : std::uint8_t {
 struct BodyDesc {
   Motion motion = Motion::dynamic;
   SE3 T_world_body;
-  se3 velocity;                  // body frame [rad/s, m/s]
-  Inertia inertia;               // about the body's origin; dynamic bodies need mass > 0
+  se3 velocity;  // body frame [rad/s, m/s]
+  // About the body's origin. Of dynamic bodies: mass from 1e-15 to 1e9 kg, moments about the centre
+  // of mass from 1e-30 kg m^2 on, a water drop of a micrometre; no entry beyond 1e9.
+  Inertia inertia;
   double linear_damping = 0.0;   // [1/s]
   double angular_damping = 0.0;  // [1/s]
   bool continuous = false;       // passes through nothing, however fast; cannot be joined
@@ -126,7 +128,8 @@ class World {
   Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
   // Mass, centre of mass and inertia of a dynamic body from its colliders' shapes and densities.
   // Sensors count for nothing; what two shapes both fill counts twice. The velocity stays that of
-  // the body's origin. Refused: links, bodies that are not dynamic or have no collider with a mass.
+  // the body's origin. Refused: links, bodies that are not dynamic or have no collider with a mass,
+  // and what create_body refuses as an inertia.
   Expected<void> set_mass_from_colliders(BodyId body);
   // With every joint at zero, or at the stop next to it, at rest. Refused with Errc::singular: a
   // joint that moves no inertia.
@@ -186,9 +189,10 @@ class World {
   // Who is told of the stages of the steps to come; null: nobody, which costs nothing. The results
   // are the same bits.
   void observe_stages(std::shared_ptr<StageObserver> observer);
-  // Advances by dt seconds, 0 < dt <= 0.1 (else refused). No heap allocation once warm.
+  // Advances by dt seconds, 1e-7 <= dt <= 0.1 (else refused): what still shorter steps add to a
+  // speed is lost in the solver's single precision. No heap allocation once warm.
   Expected<StepStatus> step(double dt);
-  // Of the last step, in order of time; none after restore().
+  // Of the last step, by time, of one time as they were found; none after restore().
   std::span<const ContactEvent> contact_events() const;
   const StepCounters& counters() const;  // of the last step
 

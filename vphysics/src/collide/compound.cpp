@@ -11,14 +11,14 @@ namespace vp {
 namespace {
 
 constexpr std::size_t kMostParts = std::size_t{1} << 16;
-constexpr double kLargestPart = 1e9;  // [m], as everywhere in the engine
+constexpr double kLeastPart = 1e-6, kLargestPart = 1e9;  // [m], as everywhere in the engine
 
 tl::unexpected<Error> refused_compound(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "compound: " + std::move(message)});
 }
 
 bool is_size(double x) {
-  return x > 0.0 && x <= kLargestPart;
+  return x >= kLeastPart && x <= kLargestPart;
 }
 bool has_size(const Vec3& a) {
   return is_size(a.x) && is_size(a.y) && is_size(a.z);
@@ -39,26 +39,25 @@ bool is_proper_pose(const SE3& T) {
 // What is wrong with a part, or nullptr.
 const char* problem_with_part(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    return is_size(sphere->radius) ? nullptr : "its radius must be positive and at most 1e9 m";
+    return is_size(sphere->radius) ? nullptr : "its radius must be from 1e-6 to 1e9 m";
   }
   if (const auto* box = std::get_if<Box>(&shape)) {
-    return has_size(box->half_extents) ? nullptr
-                                       : "its half extents must be positive and at most 1e9 m";
+    return has_size(box->half_extents) ? nullptr : "its half extents must be from 1e-6 to 1e9 m";
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     const bool good = is_size(capsule->radius) && capsule->half_length >= 0.0 &&
                       capsule->half_length <= kLargestPart;
-    return good ? nullptr : "its radius must be positive, its half length zero or more";
+    return good ? nullptr : "its radius must be from 1e-6 to 1e9 m, its half length from 0";
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     return is_size(cylinder->radius) && is_size(cylinder->half_length)
                ? nullptr
-               : "its radius and half length must be positive and at most 1e9 m";
+               : "its radius and half length must be from 1e-6 to 1e9 m";
   }
   if (const auto* cone = std::get_if<Cone>(&shape)) {
     return is_size(cone->radius) && is_size(cone->half_height)
                ? nullptr
-               : "its radius and half height must be positive and at most 1e9 m";
+               : "its radius and half height must be from 1e-6 to 1e9 m";
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
     return hull->data() ? nullptr : "its convex hull was moved from; hand in a copy";

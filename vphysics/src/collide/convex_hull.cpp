@@ -18,7 +18,7 @@ using collide::HullData;
 using collide::Loop;
 
 constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], as everywhere in the engine
-constexpr double kSmallestExtent = 1e-9;  // extent [m]
+constexpr double kSmallestExtent = 1e-6;  // [m], as of every shape
 constexpr double kThinnest = 1e-6;        // thickness, share of the extent
 constexpr int kMostHullVertices = 256;  // names of features and costs of pairs are made for so many
 constexpr double kCoarsestTolerance = 0.01;  // tolerance
@@ -243,7 +243,7 @@ Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOpti
   if (distinct.size() < 4) return hull_refused("at least four different points are needed");
   const Extent extent = extent_of(distinct);
   if (!(extent.largest >= kSmallestExtent)) {
-    return hull_refused("the points lie within a nanometre; give them in metres");
+    return hull_refused("the points lie within a micrometre; give them in metres");
   }
   const double scale = grid_scale(extent.largest);
   const collide::Quickhull found = find_triangles(distinct, extent, scale, options);

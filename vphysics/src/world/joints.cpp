@@ -68,7 +68,8 @@ void World::Impl::remove_joint(std::uint32_t index) {
 
 Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc& desc) {
   const Body *a = impl_->find(a_id), *b = impl_->find(b_id);
-  if (!a || !b) return stale("body");
+  if (!a) return stale("create_joint", "body a");
+  if (!b) return stale("create_joint", "body b");
   if (a == b) return refuse("create_joint: a body cannot be joined to itself; name two bodies");
   for (const Body* body : {a, b}) {
     if (body->is_link) {
@@ -117,7 +118,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
 }
 
 Expected<void> World::destroy_joint(JointId id) {
-  if (!impl_->find(id)) return stale("joint");
+  if (!impl_->find(id)) return stale("destroy_joint", "the joint");
   const BodyJoint& joint = impl_->joints[id.index - 1];
   impl_->wake(joint.a);
   impl_->wake(joint.b);
@@ -182,7 +183,7 @@ Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
 
 Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
   BodyJoint* joint = impl_->find(id);
-  if (!joint) return stale("joint");
+  if (!joint) return stale("set_drive", "the joint");
   if (joint->main < 0 || joint->law.form != JointLaw::Form::axes)
     return refuse("set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
   const auto driven = drive_slot(*joint, joint->main, drive);
@@ -195,7 +196,7 @@ Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
 
 Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& drive) {
   BodyJoint* joint = impl_->find(id);
-  if (!joint) return stale("joint");
+  if (!joint) return stale("set_drive", "the joint");
   const bool swings = axis == JointAxis::turn_x || axis == JointAxis::turn_y;
   if (joint->law.form != JointLaw::Form::axes || axis > JointAxis::turn_z ||
       (joint->law.cone && swings))

@@ -39,7 +39,7 @@ void set_mass(Body& body, const Inertia& inertia) {
 
 Expected<void> World::set_mass_from_colliders(BodyId id) {
   Body* body = impl_->find(id);
-  if (!body) return stale("body");
+  if (!body) return stale("set_mass_from_colliders", "the body");
   if (body->is_link) {
     return refuse("set_mass_from_colliders: a link has its model's mass");
   }

@@ -14,8 +14,9 @@ inline tl::unexpected<Error> refuse(Errc code, std::string message) {
 inline tl::unexpected<Error> refuse(std::string message) {
   return refuse(Errc::invalid_argument, std::move(message));
 }
-inline tl::unexpected<Error> stale(const char* what) {
-  return refuse(std::string("the ") + what +
+// By the call, and what of its arguments it is: "the body", "body a".
+inline tl::unexpected<Error> stale(const char* call, const char* what) {
+  return refuse(std::string(call) + ": " + what +
                 " does not exist (any more); keep the id that its creation returned");
 }
 

@@ -168,7 +168,7 @@ bool World::is_asleep(BodyId id) const {
 }
 
 Expected<void> World::wake(BodyId id) {
-  if (!impl_->find(id)) return stale("body");
+  if (!impl_->find(id)) return stale("wake", "the body");
   impl_->wake(id.index - 1);
   if (impl_->recorder) impl_->log({calls::Wake{id}});
   return {};

@@ -19,7 +19,8 @@
 namespace vp {
 
 Expected<StepStatus> World::step(double dt) {
-  if (!(dt > 0.0 && dt <= 0.1)) return refuse("step: dt must be in (0, 0.1] seconds");
+  if (!(dt >= kShortestStep && dt <= kLongestStep))
+    return refuse("step: dt must be from 1e-7 to 0.1 seconds");
   impl_->begin_step(dt);
   impl_->run(dt);
   impl_->finish_step();

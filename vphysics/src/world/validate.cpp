@@ -13,6 +13,9 @@ constexpr const char* kRange = " must be finite and at most 1e9 in magnitude";
 bool positive(double x) {
   return in_range(x) && x > 0.0;
 }
+bool is_size(double x) {
+  return in_range(x) && x >= kLeastSize;
+}
 bool not_negative(double x) {
   return in_range(x) && x >= 0.0;
 }
@@ -34,21 +37,21 @@ bool in_range(const Sym3& A) {
 
 std::optional<std::string> problem_with_shape(const Shape& shape) {
   if (const auto* s = std::get_if<Sphere>(&shape)) {
-    if (!positive(s->radius)) return "sphere: the radius must be positive and finite";
+    if (!is_size(s->radius)) return "sphere: the radius must be from 1e-6 to 1e9 m";
   } else if (const auto* b = std::get_if<Box>(&shape)) {
     const Vec3& h = b->half_extents;
-    if (!positive(h.x) || !positive(h.y) || !positive(h.z)) {
-      return "box: every half extent must be positive and finite";
+    if (!is_size(h.x) || !is_size(h.y) || !is_size(h.z)) {
+      return "box: every half extent must be from 1e-6 to 1e9 m";
     }
   } else if (const auto* c = std::get_if<Capsule>(&shape)) {
-    if (!positive(c->radius)) return "capsule: the radius must be positive and finite";
-    if (!not_negative(c->half_length)) return "capsule: the half length must be zero or more";
+    if (!is_size(c->radius)) return "capsule: the radius must be from 1e-6 to 1e9 m";
+    if (!not_negative(c->half_length)) return "capsule: the half length must be from 0 to 1e9 m";
   } else if (const auto* y = std::get_if<Cylinder>(&shape)) {
-    if (!positive(y->radius)) return "cylinder: the radius must be positive and finite";
-    if (!positive(y->half_length)) return "cylinder: the half length must be positive and finite";
+    if (!is_size(y->radius)) return "cylinder: the radius must be from 1e-6 to 1e9 m";
+    if (!is_size(y->half_length)) return "cylinder: the half length must be from 1e-6 to 1e9 m";
   } else if (const auto* k = std::get_if<Cone>(&shape)) {
-    if (!positive(k->radius)) return "cone: the radius must be positive and finite";
-    if (!positive(k->half_height)) return "cone: the half height must be positive and finite";
+    if (!is_size(k->radius)) return "cone: the radius must be from 1e-6 to 1e9 m";
+    if (!is_size(k->half_height)) return "cone: the half height must be from 1e-6 to 1e9 m";
   } else if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
     if (!hull->data()) return "convex hull: it was moved from; hand in a copy";
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
@@ -118,14 +121,21 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
 }
 
 std::optional<std::string> problem_with(const Inertia& J) {
-  if (!positive(J.mass()))
-    return "inertia: the mass must be positive; set a mass or use solid_inertia";
+  if (!in_range(J.mass()) || !(J.mass() >= kLeastMass)) {
+    return "inertia: the mass must be from 1e-15 to 1e9 kg; set a mass or use solid_inertia";
+  }
   if (!in_range(J.first_moment()) || !in_range(J.rotational())) {
     return std::string("inertia: every entry") + kRange;
   }
   if (!positive_definite(J.central())) {
     return "inertia: the rotational part about the centre of mass must be positive definite; is it "
            "given about the body's origin?";
+  }
+  const Sym3 inverse_central = inverse(J.central());
+  const double largest = std::max({inverse_central.xx, inverse_central.yy, inverse_central.zz});
+  if (!(largest * kLeastMoment <= 1.0 + 1e-9)) {
+    return "inertia: the moments about the centre of mass must be at least 1e-30 kg m^2; use "
+           "solid_inertia, or another unit of length";
   }
   return std::nullopt;
 }

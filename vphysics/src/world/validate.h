@@ -14,6 +14,13 @@ class Articulation;
 // Largest magnitude accepted for a length, speed, angle or rate. Squares and products of such
 // numbers stay far from overflow.
 inline constexpr double kLargest = 1e9;
+// Least sizes of shapes [m], masses [kg] and moments of inertia [kg m^2] of bodies: a water drop of
+// a micrometre. The solver's single precision holds the inverses with room for products with arms.
+inline constexpr double kLeastSize = 1e-6, kLeastMass = 1e-15, kLeastMoment = 1e-30;
+// Times that a step may take [s]. In the least one gravity adds eight last bits to a speed of 1 m/s
+// in single precision, and 1000 sub-steps of it leave gaps of kLargest, divided by their length,
+// far within its range.
+inline constexpr double kShortestStep = 1e-7, kLongestStep = 0.1;
 
 inline bool in_range(double x) {
   return std::fabs(x) <= kLargest;  // false for what is no number, too

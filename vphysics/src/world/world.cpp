@@ -144,7 +144,7 @@ void World::Impl::release_collider(std::uint32_t index) {
 
 Expected<void> World::destroy_body(BodyId id) {
   Body* body = impl_->find(id);
-  if (!body) return stale("body");
+  if (!body) return stale("destroy_body", "the body");
   if (body->is_link) return refuse("destroy_body: a link lives as long as its articulation");
   for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
     impl_->release_collider(c);
@@ -162,7 +162,7 @@ Expected<void> World::destroy_body(BodyId id) {
 
 Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
   Body* body = impl_->find(body_handle);
-  if (!body) return stale("body");
+  if (!body) return stale("add_collider", "the body");
   if (auto problem = problem_with(desc)) return refuse("add_collider: " + *problem);
   const bool surface = std::holds_alternative<TriangleMesh>(desc.shape) ||
                        std::holds_alternative<HeightField>(desc.shape);
@@ -245,7 +245,7 @@ se3 World::velocity(BodyId id) const {
 
 Expected<void> World::set_pose(BodyId id, const SE3& T) {
   Body* body = impl_->find(id);
-  if (!body) return stale("body");
+  if (!body) return stale("set_pose", "the body");
   if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
   if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
   body->T = SE3(orthonormalized(T.rotation()), T.position());
@@ -257,7 +257,7 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
 
 Expected<void> World::set_velocity(BodyId id, const se3& V) {
   Body* body = impl_->find(id);
-  if (!body) return stale("body");
+  if (!body) return stale("set_velocity", "the body");
   if (body->is_link)
     return refuse("set_velocity: a link is moved by its joint; use set_joint_state");
   if (body->motion == Motion::fixed) return refuse("set_velocity: the body is fixed");
@@ -281,7 +281,7 @@ void World::Impl::give_velocity(std::uint32_t index, const se3& V) {
 
 Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
   Body* body = impl_->find(id);
-  if (!body) return stale("body");
+  if (!body) return stale("apply_impulse", "the body");
   if (body->motion != Motion::dynamic) return refuse("apply_impulse: the body is not dynamic");
   if (!in_range(impulse) || !in_range(point)) {
     return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
