@@ -216,7 +216,10 @@ TEST(Continuous, AThinWallStopsABoxOf100MetresASecondAt60Hertz) {
       ASSERT_LT(world.pose(box).position().x, 0.0) << i;
       ASSERT_GT(separation(part.shape, world.pose(box), wall, SE3{}), -1e-3) << i;
     }
-    EXPECT_LT(world.pose(box).rotate(world.velocity(box).v).x, 1e-3) << i;
+    // A hit of one corner without bounce may leave the middle going on, as slow as the corner
+    // turns.
+    const se3 V = world.velocity(box);
+    EXPECT_LT(world.pose(box).rotate(V.v).x, 1e-3 + 0.15 * norm(V.w)) << i;
   }
 }
 

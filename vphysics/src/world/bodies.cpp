@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solve/row_vector.h"
+#include "world/free_turn.h"
 #include "world/impl.h"
 #include "world/parallel.h"
 #include "world/validate.h"
@@ -65,18 +66,21 @@ bool is_worn(const Mat3& R) {
 
 }  // namespace
 
-Vec3 gyroscopic_acceleration(const Body& body, double dt) {
+Turned turned_freely(const Body& body, double h) {
   const Mat3& R = body.T.rotation();
-  const Sym3& I = body.central;
-  const Vec3 w = transposed_times(R, body.w), L = I * w;
-  const Mat3 inertia{I * Vec3{1, 0, 0}, I * Vec3{0, 1, 0}, I * Vec3{0, 0, 1}};
-  const Mat3 J = inertia + dt * (skew(w) * inertia - skew(L));
-  const double determinant = dot(J.cx, cross(J.cy, J.cz));
-  if (!(std::fabs(determinant) > 0.0)) return {};
-  const Vec3 f = cross(L, w);
-  const double scale = 1.0 / determinant;
-  return R * Vec3{scale * dot(f, cross(J.cy, J.cz)), scale * dot(J.cx, cross(f, J.cz)),
-                  scale * dot(J.cx, cross(J.cy, f))};
+  const Vec3 w = transposed_times(R, body.w), L = R * (body.central * w);
+  const FreeTurn turn = free_turn(body.central, body.inverse_central, w, h);
+  Mat3 next = R * from_quaternion(turn.q);
+  next = straightened(next);
+  // What stays to rounding is the angular momentum of the world's frame.
+  return {next, next * (body.inverse_central * transposed_times(next, L))};
+}
+
+Vec3 rate_at(const Body& body, const Mat3& R) {
+  const Mat3& before = body.T.rotation();
+  const Vec3 was = transposed_times(before, body.w), is = transposed_times(R, body.w);
+  const bool more = dot(is, body.central * is) > dot(was, body.central * was);
+  return more ? R * was : body.w;
 }
 
 // R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
@@ -109,9 +113,24 @@ void World::Impl::list_bodies() {
   }
 }
 
+namespace {
+
+// What makes of its rate in dt that of a free body, as seen from the body: where it is in the
+// solver, at the start of the step, its energy stays.
+Vec3 gyroscopic_acceleration(const Body& body, double dt) {
+  if (body.isotropic || hardly_turns(body.w, dt)) return {};
+  const Mat3& R = body.T.rotation();
+  const Vec3 w = transposed_times(R, body.w);
+  const FreeTurn turn = free_turn(body.central, body.inverse_central, w, dt);
+  return R * ((1.0 / dt) * (turn.w - w));
+}
+
+}  // namespace
+
 // True if its way has become so long that it must be started anew.
 bool World::Impl::load_row(std::uint32_t index, double dt) {
   Body& body = bodies[index];
+  body.untouched = false;
   solve::BodyRow& row = body_rows[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(row.velocity, body.v);
@@ -131,7 +150,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
     const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
     for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
     put(row.rate, desc.gravity);
-    put(row.rate + 3, body.isotropic ? Vec3{} : gyroscopic_acceleration(body, dt));
+    put(row.rate + 3, gyroscopic_acceleration(body, dt));
     far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
   }
   std::copy_n(way, 6, start_ways[index].begin());
@@ -182,6 +201,27 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
 }
 
+// Whether nothing has changed how it turns, though lanes hold it. Then it turns freely, in double,
+// and its way becomes that.
+bool World::Impl::leave_untouched(std::uint32_t index, double dt) {
+  Body& body = bodies[index];
+  solve::BodyRow& row = body_rows[index + 1];
+  if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
+  if (hardly_turns(body.w, dt)) return false;
+  const float h = static_cast<float>(dt / sub_steps_taken);
+  float w[3];
+  put(w, body.w);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < sub_steps_taken; ++k) w[i] += h * row.rate[3 + i];
+    if (w[i] != row.velocity[3 + i]) return false;
+  }
+  const Mat3& R = body.T.rotation();
+  const FreeTurn turn =
+      free_turn(body.central, body.inverse_central, transposed_times(R, body.w), dt);
+  put(row.way + 3, vector_of(start_ways[index].data() + 3) + R * constant_turn(turn));
+  return body.untouched = true;
+}
+
 // After the sub-steps: the velocities of a dynamic body become those of the end of the step.
 // Returns what its mean velocities over the step have more.
 Velocity World::Impl::settle(std::uint32_t index, double dt) {
@@ -199,10 +239,12 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
   }
   const float* start = start_ways[index].data();
   body.v = vector_of(row.velocity);
-  body.w = vector_of(row.velocity + 3);
   const double per_step = 1.0 / dt;
   more.v = per_step * (vector_of(row.way) - vector_of(start)) - body.v;
-  more.w = per_step * (vector_of(row.way + 3) - vector_of(start + 3)) - body.w;
+  if (!leave_untouched(index, dt)) {
+    body.w = vector_of(row.velocity + 3);
+    more.w = per_step * (vector_of(row.way + 3) - vector_of(start + 3)) - body.w;
+  }
   if (!in_range(body.v) || !in_range(body.w) || !in_range(more.v) || !in_range(more.w)) {
     status.non_finite = true;
     body.v = body.w = {};
@@ -214,7 +256,7 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
 }
 
 // The same, and its pose, of a dynamic body that its row leads; false if it flies out of range.
-bool World::Impl::advance_by_row(std::uint32_t index) {
+bool World::Impl::advance_by_row(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   const solve::BodyRow& row = body_rows[index + 1];
   const float* start = start_ways[index].data();
@@ -225,9 +267,17 @@ bool World::Impl::advance_by_row(std::uint32_t index) {
   if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(turn)) return false;
   body.rested = row.way[solve::kCarried] > 0.0f;
   body.v = v;
-  body.w = w;
-  Mat3 R = turned_nearly(body.T.rotation(), turn);
-  if (is_worn(R)) R = straightened(R);
+  Mat3 R;
+  if (leave_untouched(index, dt)) {
+    const Turned free = turned_freely(body, dt);
+    R = free.R;
+    body.w = free.w;
+  } else {
+    R = turned_nearly(body.T.rotation(), turn);
+    if (is_worn(R)) R = straightened(R);
+    body.w = w;
+    if (!body.isotropic && !hardly_turns(w, dt)) body.w = rate_at(body, R);
+  }
   body.T = SE3(R, x - R * body.centre);
   body.moved();
   return true;

@@ -41,6 +41,7 @@ struct alignas(64) Body {
   bool wanted = false;      // its colliders' poses are about to be computed
   bool posed = false;       // the colliders' poses and bounds are those of T
   bool bounded = false;     // so are `bounds`
+  bool untouched = false;   // by what its row met in this step, so it has turned freely
   std::uint32_t lanes = 0;  // of the solver that hold it
   std::uint32_t first_joint = kNone, first_collider = kNone;
   float bounded_at[6] = {};  // its way when its proxies' bounds were last set
@@ -73,6 +74,8 @@ struct alignas(64) Body {
 
   // Its row of the solver tells how it goes; else it falls freely.
   bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
+  bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
+  bool turns_freely() const { return !by_rows() || untouched; }
   void moved() { posed = bounded = false; }
 };
 
@@ -260,6 +263,7 @@ struct World::Impl {
   std::vector<collide::Bounds> bounds, discrete_bounds;
   std::vector<std::uint8_t> movable, held;
   std::vector<std::uint8_t> in_contact;  // of the last solve of the stage of impacts
+  std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
   std::vector<collide::Motion> motions;
   std::vector<Velocity> forced;  // what the step's forces added
   std::vector<solve::SolverBody> solver_bodies;
@@ -317,10 +321,10 @@ struct World::Impl {
   const collide::Bounds& bounds_at_pose(std::uint32_t body);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
-  void advance(double h);
-  void advance_body(Body& body, const collide::Motion& motion, double h);
+  void advance(double h, bool to_end);
+  void advance_body(Body& body, const collide::Motion& motion, double h, bool freely);
   void advance_all(double dt);
-  bool advance_by_row(std::uint32_t body);
+  bool advance_by_row(std::uint32_t body, double dt);
   void apply_corrections();
   void finish_step();
   InStage in(Stage stage) const { return {observer.get(), stage}; }
@@ -337,6 +341,7 @@ struct World::Impl {
   bool load_row(std::uint32_t body, double dt);
   void start_way_anew(std::uint32_t body);
   Velocity settle(std::uint32_t body, double dt);
+  bool leave_untouched(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
   void forget_contacts(std::uint32_t body);
@@ -507,10 +512,15 @@ struct World::Impl {
 double reach_of(const Body& body);
 // Of a dynamic body; its velocities are not those of the new centre of mass.
 void set_mass(Body& body, const Inertia& inertia);
-// The mean angular acceleration over dt of I w' = I w x w, in the world frame: one step of Newton's
-// method on  I (w' - w) + dt w' x I w' = 0, which is stable at every rate of turning. Source:
-// Catto, Numerical Methods, GDC 2015.
-Vec3 gyroscopic_acceleration(const Body& body, double dt);
+// Where a body comes to in h, and its rate there, if nothing touches it; world frame.
+struct Turned {
+  Mat3 R;
+  Vec3 w;
+};
+Turned turned_freely(const Body& body, double h);
+// The rate of a body that is turned to R at a rate of its contacts' choice: as seen from the body
+// where its energy would grow else.
+Vec3 rate_at(const Body& body, const Mat3& R);
 // The rotation R after a small turn, a vector of the outer frame.
 Mat3 turned(const Mat3& R, const Vec3& turn);
 // Orders a pair by creation.

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "vphysics/recording.h"
+#include "world/free_turn.h"
 #include "world/impl.h"
 #include "world/parallel.h"
 #include "world/refuse.h"
@@ -92,6 +93,7 @@ void World::Impl::begin_impact_stage() {
   start_poses.resize(n);
   held.assign(n, 0);
   in_contact.assign(n, 0);
+  as_swept.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
@@ -167,17 +169,14 @@ void World::Impl::refresh_solver_bodies() {
   }
 }
 
-// A constant twist for h. A tumbling body turns at the rate it will have halfway: w + (h/2) w',
-// I w' = -w x I w, which makes the turn second order.
+// A constant twist for h. A tumbling body's is that which comes to the same end.
 collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, double h) const {
   collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
-  if (body.motion == Motion::dynamic && !body.is_link && !body.isotropic && !body.by_rows()) {
+  if (h > 0.0 && body.tumbles() && body.turns_freely() && !hardly_turns(body.w, h)) {
     const Mat3& R = body.T.rotation();
     const Vec3 w = transposed_times(R, body.w);
-    const Vec3 turn = body.inverse_central * cross(body.central * w, w);
-    const double share = 0.5 * h * norm(turn) / std::max(1e-30, norm(w));
-    // Beyond half of itself the correction is no correction any more.
-    motion.w = body.w + (0.5 * h * std::min(1.0, 0.5 / std::max(share, 0.5))) * (R * turn);
+    const FreeTurn turn = free_turn(body.central, body.inverse_central, w, h);
+    motion.w = (1.0 / h) * (R * constant_turn(turn));
   }
   return motion;
 }
@@ -194,18 +193,32 @@ void World::Impl::refresh_motions(double h) {
   }
 }
 
-void World::Impl::advance_body(Body& body, const collide::Motion& m, double h) {
-  const Mat3 R = body.T.rotation();
+namespace {
+
+// Of a body at the next, at a constant twist. Angular momentum is what stays and the rate follows
+// from it; but where the body would have more energy so, the rate stays as seen from the body.
+Vec3 rate_on_the_way(const Body& body, const Mat3& next) {
+  const Mat3& R = body.T.rotation();
+  const Vec3 was = transposed_times(R, body.w), momentum = R * (body.central * was);
+  const Vec3 w = next * (body.inverse_central * transposed_times(next, momentum));
+  return dot(w, momentum) > dot(body.w, momentum) ? next * was : w;
+}
+
+}  // namespace
+
+// Freely: not at the constant twist, but as a tumbling body does that nothing touches.
+void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely) {
+  const bool tumbles = body.tumbles();
+  if (freely && tumbles && body.turns_freely()) {
+    const Turned free = turned_freely(body, h);
+    body.w = free.w;
+    return place(body, m.x + h * m.v, free.R);
+  }
+  const Mat3& R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? turned(R, h * m.w) : R;
-  if (body.motion == Motion::dynamic && !body.isotropic && turns && !body.by_rows()) {
-    // Angular momentum is what stays; the rate follows from it. But where a slender body turns so
-    // far in a step that it is far off, and would have more energy, what is stable is better.
-    constexpr double kMostGain = 1e-3;
-    const Vec3 momentum = body.central * transposed_times(R, body.w);
-    const Vec3 w = next * (body.inverse_central * transposed_times(next, R * momentum));
-    const bool more = dot(w, R * momentum) > (1.0 + kMostGain) * dot(body.w, R * momentum);
-    body.w = more ? next * transposed_times(R, body.w + h * gyroscopic_acceleration(body, h)) : w;
+  if (tumbles && turns) {
+    body.w = body.turns_freely() ? rate_on_the_way(body, next) : rate_at(body, next);
   }
   place(body, m.x + h * m.v, next);
 }
@@ -216,7 +229,7 @@ void World::Impl::advance_all(double dt) {
     for (std::size_t k = begin; k < end; ++k) {
       const Body& body = bodies[movers[k]];
       const bool led = body.motion == Motion::dynamic && body.by_rows();
-      mover_news[k] = led && advance_by_row(movers[k]) ? 0 : 1;
+      mover_news[k] = led && advance_by_row(movers[k], dt) ? 0 : 1;
     }
   });
   for (std::size_t k = 0; k < movers.size(); ++k) {
@@ -225,16 +238,24 @@ void World::Impl::advance_all(double dt) {
     Body& body = bodies[i];
     const SE3 start = body.T;
     const Velocity more = body.motion == Motion::dynamic ? settle(i, dt) : Velocity{};
-    advance_body(body, motion_of(body, more, dt), dt);
+    advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true);
     (void)stop_if_out_of_range(i, start);
   }
 }
 
-void World::Impl::advance(double h) {
+// To the next impact, or to the end of the step. On the way to an impact what may be met goes as it
+// has been swept.
+void World::Impl::advance(double h, bool to_end) {
+  as_swept.assign(in_contact.begin(), in_contact.end());
+  if (!to_end) {
+    for (const SweptPair& p : swept_pairs) {
+      as_swept[colliders[p.pair.a].body] = as_swept[colliders[p.pair.b].body] = 1;
+    }
+  }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive || body.is_link || is_still(body) || held[i]) continue;
-    advance_body(bodies[i], motions[i], h);
+    advance_body(bodies[i], motions[i], h, !as_swept[i]);
     if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
   }
   advance_articulations(h);
@@ -354,7 +375,7 @@ void World::Impl::run_impacts(double dt) {
     if (last) t = h;
     report_swept_sensors(t, time);
     if (solves == 0) report_ends();
-    advance(t);
+    advance(t, last);
     if (last) return;
     time += t;
     ++counters.impacts;
