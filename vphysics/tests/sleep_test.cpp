@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "joints_rig.h"
+#include "random.h"
 
 namespace vp::test {
 namespace {
@@ -60,6 +61,61 @@ TEST(Sleep, ComesAfterTheTimeThatItIsAskedFor) {
   EXPECT_TRUE(none_asleep(world, tower));
   run(world, 0.2);
   EXPECT_TRUE(all_asleep(world, tower));
+}
+
+// Those that come to rest first wait for the last, and no longer.
+TEST(Sleep, ComesToAllWhenTheLastHasRested) {
+  for (const double height : {0.0, 0.02, 0.1, 0.3, 1.0}) {
+    World world(sleepy());
+    add_ground(world, {});
+    const auto boxes = add_tower(world, 2);
+    must(world.set_pose(boxes[1], SE3(Vec3{0, 0, 3 * kHalf + height})));
+    const double reach = std::sqrt(3.0) * kHalf;
+    double last_fast = 0.0, slept = -1.0;
+    for (int i = 1; i <= 5000 && slept < 0.0; ++i) {
+      must(world.step(0.001));
+      for (const BodyId box : boxes) {
+        const se3 V = world.velocity(box);
+        if (norm(V.v) + reach * norm(V.w) >= sleepy().sleep_speed) last_fast = 0.001 * i;
+      }
+      if (all_asleep(world, boxes)) slept = 0.001 * i;
+    }
+    // It is 0.500 s.
+    EXPECT_NEAR(slept - last_fast, sleepy().sleep_after, 0.003) << "from " << height;
+    must(world.wake(boxes[0]));
+    EXPECT_TRUE(none_asleep(world, boxes));
+    run(world, 0.51);
+    EXPECT_TRUE(all_asleep(world, boxes)) << "again, from " << height;
+  }
+}
+
+// Of many, each comes to rest when it does.
+TEST(Sleep, ComesToAWholePit) {
+  World world(sleepy());
+  add_ground(world, {});
+  for (const double at : {-1.0, 1.0}) {
+    add_fixed(world, Box{{0.1, 1.2, 2}}, {}, SE3(Vec3{at, 0, 2}));
+    add_fixed(world, Box{{1.2, 0.1, 2}}, {}, SE3(Vec3{0, at, 2}));
+  }
+  const Shape kinds[] = {Box{{0.12, 0.1, 0.08}}, Sphere{0.1}, Capsule{0.06, 0.1},
+                         Cylinder{0.09, 0.1}, Box{{0.1, 0.1, 0.1}}};
+  Random random(71);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 200; ++i) {
+    Part part{.shape = kinds[i % 5], .material = {.friction = 0.5, .rolling_friction = 0.01}};
+    const double level = 0.3 + 0.3 * (i / 25), x = 0.3 * (i % 5) - 0.6, y = 0.3 * (i / 5 % 5) - 0.6;
+    part.pose = SE3(random.rotation(), Vec3{x, y, level});
+    bodies.push_back(add_dynamic(world, part));
+  }
+  double slept = -1.0;
+  for (int i = 1; i <= 2500 && slept < 0.0; ++i) {
+    must(world.step(0.004));
+    if (all_asleep(world, bodies)) slept = 0.004 * i;
+  }
+  EXPECT_GT(slept, 1.0);
+  must(world.wake(bodies[0]));
+  must(world.step(0.004));
+  EXPECT_GT(world.counters().awake, 10u);  // with the heap that it lies in
 }
 
 TEST(Sleep, MovesNothingAndLooksAtNothing) {

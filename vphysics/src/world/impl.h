@@ -55,9 +55,11 @@ struct alignas(64) Body {
   Vec3 centre;                    // of mass, body frame
   Sym3 inverse_central, central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
-  double rest_time = 0.0;  // since it was last faster than desc.sleep_speed [s]
+  // Since it was last faster than desc.sleep_speed; once drowsy, sleep_after and the time since it
+  // asked (sleep.cpp) [s].
+  double rest_time = 0.0;
 
-  std::uint32_t island = 0;  // the last that it was found in (sleep.cpp)
+  std::uint64_t island = 0;  // the last that it was found in (sleep.cpp)
   double mass = 0.0;
   se3 prescribed;         // kinematic: body frame
   collide::Bounds local;  // of its bounded colliders, body frame
@@ -247,7 +249,7 @@ struct World::Impl {
   std::vector<std::uint64_t> stale_bits;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
-  std::uint32_t islands_found = 0;
+  std::uint64_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
   double dt_now = 0.0;                  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
@@ -406,7 +408,8 @@ struct World::Impl {
   // sleep.cpp
   void watch(std::uint32_t body, double dt);
   void send_to_sleep();
-  bool find_resting_island(std::uint32_t body);
+  bool find_resting_island(std::uint32_t body, std::uint64_t first);
+  bool is_drowsy(const Body& body) const;
   bool may_sleep(const Body& body) const;
   bool is_still(const Body& body) const;
   void wake(std::uint32_t body);

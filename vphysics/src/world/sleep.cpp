@@ -1,8 +1,11 @@
 // What hangs together by contacts and joints falls asleep together, and wakes together.
 //
-// A body is drowsy when it has been slow for long enough. Each time that one becomes so, all that
-// it hangs together with is gone through: is all of it drowsy, it falls asleep. Its contacts are
-// parked as they are, impulses included, so that what wakes goes on where it stopped.
+// A body is drowsy when it has been slow for sleep_after. As soon as it is, and then each
+// sleep_after, it asks: all that it hangs together with is gone through, and if all of it is
+// drowsy, it falls asleep. If not, those that were gone through stay drowsy, and ask again after as
+// long: so one body is gone through about once in that time, and the last one that becomes drowsy
+// finds the others so. Contacts are parked as they are, impulses included, so that what wakes goes
+// on where it stopped.
 #include <algorithm>
 
 #include "vphysics/assert.h"
@@ -34,18 +37,27 @@ void World::Impl::for_partners(std::uint32_t index, const F& f) const {
   }
 }
 
+bool World::Impl::is_drowsy(const Body& body) const {
+  return body.rest_time >= desc.sleep_after;
+}
+
 void World::Impl::watch(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   if (!may_sleep(body)) return;
   const double before = body.rest_time;
   const bool slow = norm(body.v) + body.reach * norm(body.w) < desc.sleep_speed;
-  body.rest_time = slow ? std::min(before + dt, 2.0 * desc.sleep_after) : 0.0;
-  if (before < desc.sleep_after && body.rest_time >= desc.sleep_after) drowsy.push_back(index);
+  body.rest_time = slow ? before + dt : 0.0;
+  const bool asks_again = body.rest_time >= 2.0 * desc.sleep_after;
+  if (asks_again) body.rest_time = desc.sleep_after;
+  if (asks_again || (before < desc.sleep_after && body.rest_time >= desc.sleep_after)) {
+    drowsy.push_back(index);
+  }
 }
 
-// Into body_stack: all that the body hangs together with. False: some of it does not rest.
-bool World::Impl::find_resting_island(std::uint32_t seed) {
-  const std::uint32_t island = ++islands_found;
+// Into body_stack: all that the body hangs together with. False, and not all of it: some of it does
+// not rest, or was found not to in an island from `first` on.
+bool World::Impl::find_resting_island(std::uint32_t seed, std::uint64_t first) {
+  const std::uint64_t island = ++islands_found;
   bool rests = true;
   body_stack.clear();
   const auto reach = [&](std::uint32_t index) {
@@ -55,8 +67,8 @@ bool World::Impl::find_resting_island(std::uint32_t seed) {
       rests = rests && body.prescribed == se3{};
       return;
     }
+    rests = rests && body.island < first && may_sleep(body) && is_drowsy(body);
     body.island = island;
-    rests = rests && may_sleep(body) && body.rest_time >= desc.sleep_after;
     body_stack.push_back(index);
   };
   reach(seed);
@@ -65,10 +77,13 @@ bool World::Impl::find_resting_island(std::uint32_t seed) {
 }
 
 void World::Impl::send_to_sleep() {
+  const std::uint64_t first = islands_found + 1;
   for (const std::uint32_t seed : drowsy) {
-    if (bodies[seed].asleep) continue;
-    if (!find_resting_island(seed)) {
-      bodies[seed].rest_time = 0.0;  // asks again later
+    if (bodies[seed].island >= first) continue;  // asleep, or gone through in vain
+    if (!find_resting_island(seed, first)) {
+      for (const std::uint32_t i : body_stack) {
+        if (is_drowsy(bodies[i])) bodies[i].rest_time = desc.sleep_after;
+      }
       continue;
     }
     for (const std::uint32_t i : body_stack) {
