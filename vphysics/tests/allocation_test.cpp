@@ -135,6 +135,32 @@ TEST(Step, AllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
+// Of a world in which all sleep, after a sensor has been put among them.
+TEST(Step, OfAWorldAsleepAllocatesNothing) {
+  WorldDesc desc;
+  desc.sleep_after = 0.1;
+  World world(desc);
+  add_ground(world, {});
+  for (int i = 0; i < 20; ++i) {
+    add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}}, .pose = SE3(Vec3{0.3 * i, 0, 0.1})});
+  }
+  for (int i = 0; i < 300; ++i) must(world.step(0.001));
+  ASSERT_EQ(world.counters().awake, 0u);
+  const BodyId zone = add_fixed(world, Sphere{0.01}, {}, SE3(Vec3{0, 0, 5}));
+  ColliderDesc gate;
+  gate.shape = Sphere{0.3};
+  gate.sensor = true;
+  gate.T_body_shape = SE3(Vec3{0, 0, -4.9});
+  must(world.add_collider(zone, gate));
+  must(world.step(0.001));
+  EXPECT_EQ(world.contact_events().size(), 2u);
+  must(world.step(0.001));
+  const long before = g_allocations;
+  for (int i = 0; i < 300; ++i) must(world.step(0.001));
+  EXPECT_EQ(g_allocations - before, 0);
+  EXPECT_EQ(world.counters().awake, 0u);
+}
+
 // Tables and balls thrown about on a mesh: contacts of many parts come and go.
 TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   World world({.gravity = {0, 0, -9.81}});

@@ -323,6 +323,163 @@ TEST(Sleep, IsPartOfTheState) {
   EXPECT_EQ(b.state_hash(), c.state_hash());
 }
 
+// What is made or put beside those that sleep, and what comes of it, is the same whether anything
+// else is awake or not.
+struct News {
+  std::vector<ContactEvent> events;
+  std::vector<SE3> poses;
+  std::uint32_t looked_at = 0;  // in the last step
+};
+template <class F>
+News after_change(bool with_ball, const F& change, double time = 0.1) {
+  World world(sleepy());
+  add_ground(world, {});
+  const BodyId shelf = add_fixed(world, Box{{0.2, 0.2, 0.05}}, {}, SE3(Vec3{0, 9, 5}));
+  const auto boxes = add_tower(world, 2);
+  run(world, 1.0);
+  const SE3 far(Vec3{30, 0, 100});
+  if (with_ball) {
+    add_dynamic(world, {.shape = Sphere{0.1}, .pose = far});
+  } else {
+    add_fixed(world, Sphere{0.1}, {}, far);  // so that all ids are the same
+  }
+  must(world.step(0.001));
+  EXPECT_EQ(world.counters().awake, with_ball ? 1u : 0u);
+  change(world, shelf);
+  News news;
+  for (double t = 0.0; t < time; t += 0.001) {
+    must(world.step(0.001));
+    const auto events = world.contact_events();
+    news.events.insert(news.events.end(), events.begin(), events.end());
+  }
+  for (const BodyId box : boxes) news.poses.push_back(world.pose(box));
+  news.looked_at = world.counters().looked_at;
+  return news;
+}
+template <class F>
+News same_with_and_without_others(const F& change) {
+  const News alone = after_change(false, change), beside = after_change(true, change);
+  EXPECT_EQ(alone.poses, beside.poses);
+  EXPECT_EQ(alone.looked_at, beside.looked_at);
+  EXPECT_EQ(alone.events.size(), beside.events.size());
+  for (std::size_t i = 0; i < std::min(alone.events.size(), beside.events.size()); ++i) {
+    EXPECT_EQ(alone.events[i].kind, beside.events[i].kind);
+    EXPECT_EQ(alone.events[i].a, beside.events[i].a);
+    EXPECT_EQ(alone.events[i].b, beside.events[i].b);
+  }
+  return alone;
+}
+// Where the upper box is: it reaches to 0.1 m to all sides of that.
+constexpr Vec3 kUpper{0, 0, 3 * kHalf};
+
+TEST(Sleep, EndsByWhatIsMadeInItsPlace) {
+  const News box = same_with_and_without_others([](World& world, BodyId) {
+    add_fixed(world, Box{{0.1, 0.1, 0.02}}, {}, SE3(kUpper + Vec3{0.19, 0, 0}));
+  });
+  ASSERT_FALSE(box.events.empty());
+  EXPECT_EQ(box.events[0].kind, ContactEvent::Kind::begin);
+  EXPECT_LT(box.poses[1].position().x, -0.005);
+  const News more = same_with_and_without_others([](World& world, BodyId shelf) {
+    ColliderDesc board;
+    board.shape = Box{{0.1, 0.1, 0.02}};
+    board.T_body_shape = SE3(kUpper + Vec3{0.19, 0, 0} - Vec3{0, 9, 5});
+    must(world.add_collider(shelf, board));
+  });
+  EXPECT_LT(more.poses[1].position().x, -0.005);
+}
+
+TEST(Sleep, EndsByWhatIsPutInItsPlace) {
+  const News news = same_with_and_without_others([](World& world, BodyId shelf) {
+    must(world.set_pose(shelf, SE3(kUpper + Vec3{0.29, 0, 0})));
+  });
+  ASSERT_FALSE(news.events.empty());
+  EXPECT_LT(news.poses[1].position().x, -0.005);
+}
+
+TEST(Sleep, DoesNotMindWhatIsMadeBesideIt) {
+  const News news = same_with_and_without_others([](World& world, BodyId) {
+    add_fixed(world, Box{{0.1, 0.1, 0.02}}, {}, SE3(kUpper + Vec3{0.202, 0, 0}));
+  });
+  EXPECT_TRUE(news.events.empty());
+  EXPECT_EQ(news.looked_at, 0u);
+}
+
+TEST(Sleep, IsSeenBySensorsMadeOrPutThere) {
+  const auto add_gate = [](World& world, const Vec3& at) {
+    BodyDesc zone;
+    zone.motion = Motion::fixed;
+    zone.T_world_body = SE3(at);
+    const BodyId body = must(world.create_body(zone));
+    ColliderDesc gate;
+    gate.shape = Sphere{0.12};
+    gate.sensor = true;
+    must(world.add_collider(body, gate));
+    return body;
+  };
+  const auto made = [&](World& world, BodyId) { add_gate(world, kUpper + Vec3{0.2, 0, 0}); };
+  const auto put = [&](World& world, BodyId) {
+    const BodyId gate = add_gate(world, {0, 50, 0});
+    must(world.step(0.001));
+    must(world.set_pose(gate, SE3(kUpper + Vec3{0.2, 0, 0})));
+  };
+  for (const News& news : {same_with_and_without_others(made), same_with_and_without_others(put)}) {
+    ASSERT_EQ(news.events.size(), 1u);
+    EXPECT_EQ(news.events[0].kind, ContactEvent::Kind::begin);
+    EXPECT_TRUE(news.events[0].sensor);
+    EXPECT_EQ(news.looked_at, 0u);  // not again and again
+  }
+}
+
+// A link is no body that sleeps, nor one that the sub-steps move.
+TEST(Sleep, EndsBeforeALinkArrives) {
+  const News news = same_with_and_without_others([](World& world, BodyId) {
+    LinkSpec slider;
+    slider.joint = PrismaticJoint{.axis = {1, 0, 0}};
+    slider.T_parent_joint = SE3(kUpper + Vec3{0.25, 0, 0});
+    slider.inertia = solid_inertia(Box{{0.1, 0.05, 0.05}}, 1000);
+    const ArticulationId pusher = must(world.create_articulation({model_of({slider})}));
+    ColliderDesc head;
+    head.shape = Box{{0.1, 0.05, 0.05}};
+    must(world.add_collider(world.link_body(pusher, 0), head));
+    must(world.set_joint_state(pusher, 0, 0, 0.0, -3.0));
+  });
+  EXPECT_FALSE(news.events.empty());
+  EXPECT_LT(news.poses[1].position().x, -0.02);
+}
+
+// Also when a sensor has been made since all are asleep.
+TEST(Sleep, IsTheSameAfterARestore) {
+  const auto make = [] {
+    World world(sleepy());
+    add_ground(world, {});
+    add_tower(world, 2);
+    run(world, 1.0);
+    BodyDesc zone;
+    zone.motion = Motion::fixed;
+    ColliderDesc gate;
+    gate.shape = Sphere{0.15};
+    gate.sensor = true;
+    must(world.add_collider(must(world.create_body(zone)), gate));
+    return world;
+  };
+  World a = make(), b = make();
+  std::size_t events = 0;
+  for (int i = 0; i < 5; ++i) {
+    std::vector<std::byte> bytes;
+    a.snapshot(bytes);
+    must(b.restore(bytes));
+    for (int k = 0; k < 3; ++k) {
+      must(a.step(0.001));
+      must(b.step(0.001));
+      events += a.contact_events().size();
+      ASSERT_EQ(a.contact_events().size(), b.contact_events().size());
+      ASSERT_EQ(a.state_hash(), b.state_hash());
+      ASSERT_EQ(a.counters().awake, 0u);
+    }
+  }
+  EXPECT_EQ(events, 1u);
+}
+
 TEST(Sleep, RefusesBodiesThatAreGone) {
   Sleepers s;
   const BodyId gone = s.tower[4];

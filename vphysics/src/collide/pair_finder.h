@@ -54,6 +54,8 @@ class PairFinder {
   // Counts as having moved: new pairs are found by update(), old ones stay.
   void set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask);
 
+  // Whether update() has anything to do.
+  bool has_moved() const { return !moved_.empty(); }
   // Appends the pairs that are new, in ascending order, and puts them into the set.
   void update(std::vector<ProxyPair>& found);
   // Whose enlarged bounds or filter changed before the last update(), ascending.

@@ -114,6 +114,9 @@ class IndexSet {
   void reset(std::uint32_t i) { words_[i / 64] &= ~bit(i); }
   bool test(std::uint32_t i) const { return (words_[i / 64] & bit(i)) != 0; }
   void clear() { std::fill(words_.begin(), words_.end(), 0); }
+  bool empty() const {
+    return std::all_of(words_.begin(), words_.end(), [](std::uint64_t w) { return w == 0; });
+  }
   void append_to(std::vector<std::uint32_t>& indices) const {
     for (std::size_t w = 0; w < words_.size(); ++w) {
       for (std::uint64_t b = words_[w]; b != 0; b &= b - 1) {

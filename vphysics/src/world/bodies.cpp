@@ -100,13 +100,15 @@ void World::Impl::list_bodies() {
   candidates_are_stale = true;
   movers.clear();
   link_bodies.clear();
-  some_are_continuous = some_are_not = false;
+  some_are_continuous = some_are_not = some_sleep = false;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive) continue;
     if (body.is_link) {
       if (body.first_collider != kNone) link_bodies.push_back(i);
-    } else if (body.motion != Motion::fixed && !body.asleep) {
+    } else if (body.asleep) {
+      some_sleep = true;
+    } else if (body.motion != Motion::fixed) {
       movers.push_back(i);
       (body.continuous ? some_are_continuous : some_are_not) = true;
     }
@@ -184,6 +186,9 @@ void World::Impl::load_rows(double dt) {
     if ((mover_news[k] & kFar) != 0) start_way_anew(i);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
+}
+
+void World::Impl::update_bounds_of_links(double dt) {
   for (const std::uint32_t i : link_bodies) update_bounds(i, dt, false);
 }
 

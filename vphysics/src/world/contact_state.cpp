@@ -231,9 +231,8 @@ void World::Impl::ContactState::adopt() {
   world_.points_in_lanes = points_in_lanes_;
   world_.stale_contacts.clear();
   for (std::uint32_t i = 0; i < world_.contact_pool.size(); ++i) {
-    if (world_.contact_pool[i].alive && world_.contact_pool[i].stale) {
-      world_.stale_contacts.push_back(i);
-    }
+    const Contact& c = world_.contact_pool[i];
+    if (c.alive && c.stale && !c.parked) world_.stale_contacts.push_back(i);
   }
   std::swap(world_.graph, graph_);
 }

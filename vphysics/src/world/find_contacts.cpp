@@ -85,6 +85,13 @@ solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
   return {body + 1, b.motion == Motion::dynamic};
 }
 
+// Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
+// put elsewhere since the last step, and by links.
+bool World::Impl::has_contacts_to_find() const {
+  return some_are_not ||
+         (some_sleep && (finder.has_moved() || !stale_contacts.empty() || !link_bodies.empty()));
+}
+
 void World::Impl::find_contacts(double dt) {
   {
     const auto stage = in(Stage::broad_phase);
@@ -350,17 +357,17 @@ void World::Impl::take_over(const Looked& found) {
   Contact& c = contact_pool[index];  // the pool may have grown
   if (c.sensor) {
     c.stale = true;
-    look_again.push_back(index);  // in the next step
-    return;
+  } else if (!c.has_parts || apart) {
+    if (c.touching) report_touch(index, false);
+    if (c.place.points > 0) {
+      take_out_of_lane(index);
+      set_near(index, found.clearance);
+    } else {
+      set_clearance(c, found.clearance);
+    }
   }
-  if (c.has_parts && !apart) return;
-  if (c.touching) report_touch(index, false);
-  if (c.place.points > 0) {
-    take_out_of_lane(index);
-    set_near(index, found.clearance);
-  } else {
-    set_clearance(c, found.clearance);
-  }
+  park(index);  // has no points: if nothing awake may change it
+  if (c.sensor && !c.parked) look_again.push_back(index);  // in the next step
 }
 
 void World::Impl::take_out_of_lane(std::uint32_t index) {

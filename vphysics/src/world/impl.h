@@ -217,6 +217,7 @@ struct World::Impl {
   // or colliders come or go.
   std::vector<std::uint32_t> movers, link_bodies;
   bool some_are_continuous = false, some_are_not = false;  // of the movers
+  bool some_sleep = false;
   bool lists_are_stale = true;
 
   std::shared_ptr<Recorder> recorder;  // or null
@@ -251,7 +252,8 @@ struct World::Impl {
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
   std::uint64_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
-  double dt_now = 0.0;                  // of the step that is going on; 0: none is
+  bool finds_contacts = false;
+  double dt_now = 0.0;  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
   std::vector<solve::Gain> gains;        // of each body, by the contacts of a sub-step
   std::vector<std::uint8_t> mover_news;  // of each mover: it needs more than its own row
@@ -345,6 +347,7 @@ struct World::Impl {
   Velocity settle(std::uint32_t body, double dt);
   bool leave_untouched(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
+  void update_bounds_of_links(double dt);
   void add_proxy(std::uint32_t collider);
   void forget_contacts(std::uint32_t body);
   void jumped(std::uint32_t body);
@@ -367,6 +370,7 @@ struct World::Impl {
   void forget_joints(std::uint32_t body);
 
   // find_contacts.cpp
+  bool has_contacts_to_find() const;
   void find_contacts(double dt);
   void find_new_contacts();
   std::uint32_t new_contact(const Contact& contact);

@@ -68,7 +68,9 @@ void World::Impl::begin_step(double dt) {
   if (has_impact_stage()) begin_impact_stage();
   if (!joints.empty()) joint_places.resize(n);
   report_ends_of_destroyed();
-  if (some_are_not) load_rows(dt);  // swept bodies and links meet in the stage of impacts alone
+  finds_contacts = has_contacts_to_find();
+  if (some_are_not) load_rows(dt);
+  if (finds_contacts) update_bounds_of_links(dt);
 }
 
 void World::Impl::begin_impact_stage() {
@@ -322,7 +324,7 @@ bool World::Impl::has_impact_stage() const {
 }
 
 void World::Impl::run(double dt) {
-  if (some_are_not) {
+  if (finds_contacts) {
     find_contacts(dt);
     list_bodies();  // some may have been woken
   }
