@@ -149,4 +149,18 @@ template void write_lane<1>(ContactBlock<1>&, int, const NewContact&, const Body
 template void write_lane<4>(ContactBlock<4>&, int, const NewContact&, const BodyRow&,
                             const BodyRow&);
 
+template <int P>
+void rescale_impulses(ContactBlock<P>& block, float factor) {
+  const auto rescale = [factor](Field& field) {
+    for (float& p : field.lane) p *= factor;
+  };
+  for (Field& p : block.impulse) rescale(p);
+  for (Field& p : block.tangent_impulse) rescale(p);
+  for (Field& p : block.roll_impulse) rescale(p);
+  rescale(block.twist_impulse);
+}
+
+template void rescale_impulses<1>(ContactBlock<1>&, float);
+template void rescale_impulses<4>(ContactBlock<4>&, float);
+
 }  // namespace vp::solve

@@ -30,4 +30,8 @@ template <int P>
 void write_lane(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyRow& a,
                 const BodyRow& b);
 
+// All accumulated impulses of a block times a factor.
+template <int P>
+void rescale_impulses(ContactBlock<P>& block, float factor);
+
 }  // namespace vp::solve

@@ -210,6 +210,12 @@ void pass_on(const LanesOf<W, P>& c, int i, const Lanes<W>& change, Lanes<W>* u)
   }
 }
 
+// Of the load: a contact that a round of pushing has changed by less is left alone by those after
+// it. Ten times as much does for piles, but a wall then takes longer to come to rest.
+inline constexpr float kSettledForNow = 1e-4f;
+// And one without a load if no blow slower than this closes its gap within the sub-step [m/s].
+inline constexpr float kReach = 1.0f;
+
 // --- friction
 // -------------------------------------------------------------------------------------
 
@@ -250,13 +256,18 @@ void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& mo
 }
 
 template <int W>
+LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& most) {
+  return both(x <= most, -x <= most);
+}
+template <int W>
 Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& most) {
   return larger(-most, smaller(x, most));
 }
 
-// Only of the lanes `acts`. Returns the largest change, as an impulse.
+// Only of the lanes `acts`. Returns the lanes of which nothing has changed by more than a share
+// kSettledForNow of the load.
 template <int W, int P>
-Lanes<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMask<W>& acts) {
+LaneMask<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMask<W>& acts) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
@@ -272,7 +283,8 @@ Lanes<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMa
   p[1] = select(acts, p[1], q[1]);
   c.put(block.tangent_impulse[0], p[0]);
   c.put(block.tangent_impulse[1], p[1]);
-  const F moved = larger(larger(p[0] - q[0], q[0] - p[0]), larger(p[1] - q[1], q[1] - p[1]));
+  const F enough = F(kSettledForNow) * load;
+  auto settled = both(within(p[0] - q[0], enough), within(p[1] - q[1], enough));
   const V force = (p[0] - q[0]) * at.t + (p[1] - q[1]) * at.b;
 
   const V spin = c.w_b - c.w_a;
@@ -281,6 +293,7 @@ Lanes<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMa
       acts, clamped(twist - c.get(block.twist_mass) * dot(n, spin), c.get(block.twist_arm) * load),
       twist);
   c.put(block.twist_impulse, next);
+  settled = both(settled, within(next - twist, c.get(block.twist_arm) * enough));
   V moment = (next - twist) * n;
   const F mass = c.get(block.roll_mass);
   if (!none(mass > F(0.0f))) {
@@ -292,11 +305,13 @@ Lanes<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMa
     const F e0 = select(acts, share * s0, r0), e1 = select(acts, share * s1, r1);
     c.put(block.roll_impulse[0], e0);
     c.put(block.roll_impulse[1], e1);
+    const F lever = c.get(block.roll_arm);
+    settled = both(settled, both(within(e0 - r0, lever * enough), within(e1 - r1, lever * enough)));
     moment += (e0 - r0) * at.t + (e1 - r1) * at.b;
   }
   c.push_linear(force);
   c.push_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
-  return moved;
+  return settled;
 }
 
 // --- the passes
@@ -324,9 +339,6 @@ void warm_start_lanes(LanesOf<W, P>& c) {
 // How often the points of one contact are gone through before the bodies are told.
 inline constexpr int kInnerSweeps = 4;
 inline constexpr float kSettled = 1e-3f;  // of the load: the change of a point that is enough
-// Of the load: a contact that a round of pushing has changed by less is left alone by those after
-// it. Ten times as much does for piles, but a wall then takes longer to come to rest.
-inline constexpr float kSettledForNow = 1e-4f;
 inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 
 // first, again: of a sub-step's rounds of pushing, the first and those after it; relax: without the
@@ -346,7 +358,7 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   c.gather_velocities();
   c.gather_ways();
   const Normals<W, P> normals(c);
-  const F slid = solve_friction(c, normals.n, acts);
+  const auto grips = solve_friction(c, normals.n, acts);
 
   F u[P], s[P], before[P], p[P], mass[P], loss[P], most[P];
   normals.speeds(c, u);
@@ -399,13 +411,19 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   }
   normals.push(c, change);
   c.scatter_velocities();
+  F load = p[0], moved(0.0f), opening = u[0];
+  for (int i = 0; i < P; ++i) {
+    if (i > 0) load += p[i];
+    moved = larger(moved, larger(change[i], -change[i]));
+    opening = smaller(opening, u[i]);
+  }
   if constexpr (kPush) {
-    F moved = slid, load(0.0f);
-    for (int i = 0; i < P; ++i) {
-      moved = larger(moved, larger(change[i], -change[i]));
-      load += p[i];
-    }
-    c.put(block.active, select(moved > F(kSettledForNow) * load, F(1.0f), F(0.0f)));
+    // What carries nothing may be hit in this very sub-step, unless it is farther off than that.
+    const auto quiet = select(load > F(0.0f), F(0.0f), F(kReach) - opening) <= F(0.0f);
+    const auto rests = both(both(grips, moved <= F(kSettledForNow) * load), quiet);
+    c.put(block.active, select(rests, F(0.0f), F(1.0f)));
+  } else {
+    c.put(block.given, F(soft.kept) * c.get(block.given) + load);
   }
 }
 

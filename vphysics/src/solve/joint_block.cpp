@@ -16,6 +16,7 @@ constexpr int kBoundedSweeps = 4;
 constexpr double kExplicit = 0.25;
 // A pivot below this share of its row's own K is of a row that others hold already.
 constexpr double kDependent = 1e-9;
+constexpr double kSettled = 1e-4;     // of the load: the change of a round that is enough
 constexpr double kFastestStop = 3.0;  // out of a limit [m/s or rad/s]
 
 struct Velocities {
@@ -158,12 +159,12 @@ void prepare(JointBlock& joint, const BodyRow* rows) {
     const Twelve& J = row.jacobian;
     row.answer = {m_a * J.linear_a, I_a * J.angular_a, m_b * J.linear_b, I_b * J.angular_b};
     for (int j = 0; j <= i; ++j) K[i][j] = product(J, joint.rows[j].answer);
+    row.own = K[i][i];
     if (i < held) K[i][i] *= 1.0 + row.loss;
   }
   // Below the diagonal L of the held columns; the rest becomes the Schur complement.
   for (int j = 0; j < held; ++j) {
-    const double own = product(joint.rows[j].jacobian, joint.rows[j].answer);
-    const double inverse = K[j][j] > kDependent * own ? 1.0 / K[j][j] : 0.0;
+    const double inverse = K[j][j] > kDependent * joint.rows[j].own ? 1.0 / K[j][j] : 0.0;
     for (int i = j + 1; i < n; ++i) {
       const double l = K[i][j] * inverse;
       for (int k = j + 1; k <= i; ++k) K[i][k] -= l * K[k][j];
@@ -186,11 +187,18 @@ void solve(JointBlock& joint, BodyRow* rows, double h) {
     const JointRow6& row = joint.rows[i];
     u[i] = rate(row.jacobian, v);
     if (i >= joint.held) continue;
-    const double K = product(row.jacobian, row.answer);
-    u[i] += row.rate * row.residual + row.loss * K * row.impulse;
+    u[i] += row.rate * row.residual + row.loss * row.own * row.impulse;
   }
   solve_block(joint, u, change, h, true);
   push(joint, rows, change);
+  double moved = 0.0, load = 0.0;  // by what they do: rows are of forces and of moments
+  for (int i = 0; i < joint.count; ++i) {
+    const JointRow6& row = joint.rows[i];
+    const double p = row.impulse + row.stop;
+    moved += change[i] * change[i] * row.own;
+    load += p * p * row.own;
+  }
+  joint.settled = moved <= kSettled * kSettled * load;
 }
 
 void relax(JointBlock& joint, BodyRow* rows, double h) {

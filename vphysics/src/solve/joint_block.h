@@ -32,6 +32,7 @@ struct Twelve {
 struct JointRow6 {
   Twelve jacobian;
   Twelve answer;          // M^-1 J^T
+  double own = 0.0;       // J M^-1 J^T
   double residual = 0.0;  // C; of a bounded row its coordinate
   double impulse = 0.0;   // [N s] or [N m s]: of what holds or drives
   double stop = 0.0;      // of the limits: >= 0 of the lower one, <= 0 of the upper
@@ -50,6 +51,7 @@ struct JointRow6 {
 struct JointBlock {
   std::uint32_t a = 0, b = 0;  // rows of the bodies
   int count = 0, held = 0;     // the first rows are held
+  bool settled = false;        // the last round of pushing has hardly changed its impulses
   JointRow6 rows[kJointRows];
   double factor[kJointRows][kJointRows];  // below the diagonal L; on it 1 / D
 };
@@ -57,6 +59,7 @@ struct JointBlock {
 // After the rows' Jacobians and residuals: answers, K and its factor.
 void prepare(JointBlock& joint, const BodyRow* rows);
 void warm_start(const JointBlock& joint, BodyRow* rows);
+// A round of pushing. Those after the first of a sub-step may pass by what has settled.
 void solve(JointBlock& joint, BodyRow* rows, double h);
 // Takes from velocities what the push has added.
 void relax(JointBlock& joint, BodyRow* rows, double h);

@@ -22,6 +22,7 @@ struct Soft {
   float impulse_loss;  // of the accumulated impulse
   float fastest_push;  // [m/s]
   float inverse_h;     // [1/s]
+  float kept;          // 0 in the first sub-step of a step, else 1: of ContactBlock::given
 };
 
 // The passes over the blocks of one colour, of which `lanes` are used. One block a lane: of the

@@ -140,9 +140,13 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
   row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
+  if (body.linear_damping > 0.0 || body.angular_damping > 0.0) {
+    const double h = dt / sub_steps_in(dt);
+    row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
+    row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
+  }
   row.way[solve::kCarried] = 0.0f;
   const float* way = row.way;
-  bool far = false;
   if (!pushed) {
     std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
     std::fill_n(row.inertia, 6, 0.0f);
@@ -153,10 +157,9 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
     for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
     put(row.rate, desc.gravity);
     put(row.rate + 3, gyroscopic_acceleration(body, dt));
-    far = std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
   }
   std::copy_n(way, 6, start_ways[index].begin());
-  return far;
+  return std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
 }
 
 void World::Impl::start_way_anew(std::uint32_t index) {

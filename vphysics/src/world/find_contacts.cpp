@@ -251,7 +251,10 @@ void World::Impl::find_stale_contacts(double dt) {
 }
 
 void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits) {
-  for (; bits != 0; bits &= bits - 1) mark_stale(of.lane[std::countr_zero(bits)]);
+  for (; bits != 0; bits &= bits - 1) {
+    const std::uint32_t contact = of.lane[std::countr_zero(bits)];
+    if (contact != solve::kNoContact) mark_stale(contact);
+  }
 }
 
 void World::Impl::want_posed(std::uint32_t index) {

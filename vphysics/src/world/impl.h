@@ -210,6 +210,8 @@ struct World::Impl {
   // Those marked as stale, in no order, and with others that are not any more.
   std::vector<std::uint32_t> stale_contacts;
   std::uint32_t points_in_lanes = 0;
+  // Of sub-steps: that of the impulses in lanes and joints, 0: none yet; that of the push [s].
+  double sub_step_before = 0.0, push_length = 0.0;
   solve::ContactGraph graph;
   std::vector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
 
@@ -262,6 +264,7 @@ struct World::Impl {
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
   std::vector<BodyPlace> joint_places;
+  std::vector<std::uint32_t> active_joints;
   StepStatus status;
   collide::BroadPhase broad_phase;
   std::vector<collide::Bounds> bounds, discrete_bounds;
@@ -364,7 +367,7 @@ struct World::Impl {
   void begin_joints(double h);
   void refresh_joints(double h);
   void warm_start_joints();
-  void solve_joints(double h);
+  void solve_joints(double h, int round);
   void relax_joints(double h);
   void end_joints(double dt);
   void forget_joints(std::uint32_t body);
@@ -434,6 +437,8 @@ struct World::Impl {
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
+  int sub_steps_in(double dt) const;
+  void rescale_impulses(double h);
   void take_sub_steps(double dt, int count);
   template <class F>
   void for_runs(const F& f);

@@ -224,8 +224,11 @@ bool World::Impl::is_active(const BodyJoint& joint) const {
 }
 
 void World::Impl::begin_joints(double h) {
-  for (BodyJoint& joint : joints) {
+  active_joints.clear();
+  for (std::uint32_t i = 0; i < joints.size(); ++i) {
+    BodyJoint& joint = joints[i];
     if (!is_active(joint)) continue;
+    active_joints.push_back(i);
     joint.force = joint.torque = {};
     if (joint.laid_out_for == h) continue;
     lay_out(joint, h);
@@ -249,14 +252,13 @@ BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
 }
 
 void World::Impl::refresh_joints(double) {
-  if (joints.empty()) return;
+  if (active_joints.empty()) return;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
   }
-  in_parallel(joints.size(), kJointGrain, [&](std::size_t begin, std::size_t end) {
+  in_parallel(active_joints.size(), kJointGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      BodyJoint& joint = joints[k];
-      if (!is_active(joint)) continue;
+      BodyJoint& joint = joints[active_joints[k]];
       evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
       solve::prepare(joint.block, body_rows.data());
     }
@@ -264,24 +266,23 @@ void World::Impl::refresh_joints(double) {
 }
 
 void World::Impl::warm_start_joints() {
-  for (BodyJoint& joint : joints) {
-    if (is_active(joint)) solve::warm_start(joint.block, body_rows.data());
-  }
+  for (const std::uint32_t i : active_joints) solve::warm_start(joints[i].block, body_rows.data());
 }
-void World::Impl::solve_joints(double h) {
-  for (BodyJoint& joint : joints) {
-    if (is_active(joint)) solve::solve(joint.block, body_rows.data(), h);
+void World::Impl::solve_joints(double h, int round) {
+  for (const std::uint32_t i : active_joints) {
+    solve::JointBlock& block = joints[i].block;
+    if (round == 0 || !block.settled) solve::solve(block, body_rows.data(), h);
   }
 }
 void World::Impl::relax_joints(double h) {
-  for (BodyJoint& joint : joints) {
-    if (!is_active(joint)) continue;
+  for (const std::uint32_t i : active_joints) {
+    BodyJoint& joint = joints[i];
     solve::relax(joint.block, body_rows.data(), h);
     const BodyPlace& b = joint_places[joint.b];
     const bool user = joint.law.form == JointLaw::Form::user;
     const Vec3 arm = user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre;
-    for (int i = 0; i < joint.block.count; ++i) {
-      const solve::JointRow6& row = joint.block.rows[i];
+    for (int k = 0; k < joint.block.count; ++k) {
+      const solve::JointRow6& row = joint.block.rows[k];
       const double p = row.impulse + row.stop;
       joint.force += p * row.jacobian.linear_b;
       joint.torque += p * (row.jacobian.angular_b - cross(arm, row.jacobian.linear_b));
@@ -289,10 +290,9 @@ void World::Impl::relax_joints(double h) {
   }
 }
 void World::Impl::end_joints(double dt) {
-  for (BodyJoint& joint : joints) {
-    if (!is_active(joint)) continue;
-    joint.force *= 1.0 / dt;
-    joint.torque *= 1.0 / dt;
+  for (const std::uint32_t i : active_joints) {
+    joints[i].force *= 1.0 / dt;
+    joints[i].torque *= 1.0 / dt;
   }
 }
 

@@ -1,7 +1,7 @@
 // The mutable state as bytes: 8-byte little-endian words.
 //
 //   magic, format, structure digest, numbers of bodies, articulations, pair
-//   records, destroyed pairs
+//   records, destroyed pairs; lengths of sub-steps: of impulses, of the push
 //   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
 //   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
 //   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 8;
+constexpr std::uint64_t kFormat = 9;
 
 struct Digest {
   std::uint64_t digest = kMagic;
@@ -243,6 +243,8 @@ void World::Impl::write(Sink& sink) const {
   sink.word(articulations.size());
   sink.word(records.size());
   sink.word(destroyed_pairs.size());
+  put(sink, sub_step_before);
+  put(sink, push_length);
   for (const Body& body : bodies) {
     if (body.is_link) continue;
     const Mat3& R = body.T.rotation();
@@ -306,6 +308,9 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
   const std::size_t count = in.count(kRecord), destroyed_count = in.count(kPair);
   if (!in.ok()) return bad("restore: more contacts announced than bytes follow");
 
+  const double sub_step_before = in.bounded();
+  const double push_length = in.bounded();
+  in.check(sub_step_before >= 0.0 && push_length >= 0.0);
   std::vector<Body> bodies = impl_->bodies;
   std::vector<ArticulationState> articulations;
   std::vector<PairRecord> records(count);
@@ -344,6 +349,8 @@ Expected<void> World::restore(std::span<const std::byte> bytes) {
     if (joint.alive) adopt(joint, joint_states[next_joint++]);
   }
   contact_state.adopt();
+  impl_->sub_step_before = sub_step_before;
+  impl_->push_length = push_length;
   impl_->ready_for_queries = false;
   impl_->records.swap(records);
   impl_->destroyed_pairs.swap(destroyed_pairs);

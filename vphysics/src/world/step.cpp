@@ -67,6 +67,7 @@ void World::Impl::begin_step(double dt) {
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
   if (!joints.empty()) joint_places.resize(n);
+  active_joints.reserve(joints.size());
   report_ends_of_destroyed();
   finds_contacts = has_contacts_to_find();
   if (some_are_not) load_rows(dt);

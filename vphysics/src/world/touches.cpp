@@ -10,10 +10,8 @@ namespace {
 
 // What a lane tells of its contact, but for where.
 template <int P>
-double impulse_of(const solve::ContactBlock<P>& block, int lane, int sub_steps) {
-  float load = 0.0f;
-  for (int i = 0; i < P; ++i) load += block.impulse[i].lane[lane];
-  return static_cast<double>(load) * sub_steps + static_cast<double>(block.impact.lane[lane]);
+double impulse_of(const solve::ContactBlock<P>& block, int lane) {
+  return static_cast<double>(block.given.lane[lane]) + static_cast<double>(block.impact.lane[lane]);
 }
 template <int P>
 Vec3 normal_of(const solve::ContactBlock<P>& block, int lane) {
@@ -104,7 +102,7 @@ void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool load
   const std::uint32_t index = block.contact.lane[lane];
   Contact& c = contact_pool[index];
   const double closing = static_cast<double>(block.closing.lane[lane]);
-  const double impulse = impulse_of(block, lane, sub_steps_taken);
+  const double impulse = impulse_of(block, lane);
   block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
   block.touches.lane[lane] = loaded ? 1 : 0;
   if (c.is_part()) {
