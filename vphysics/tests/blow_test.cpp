@@ -151,6 +151,36 @@ TEST(Stack, OnAKinematicLiftRidesAsWellAfterHundredsOfMetres) {
   EXPECT_LT(fastest, 2e-3);
 }
 
+// A box at rest on a turntable goes along chords, outwards by w^2 r dt / 2: friction knows speeds.
+TEST(Stack, OnATurntableCreepsNoFasterThanChordsDo) {
+  constexpr double kRate = 1.5, kRadius = 1.0;
+  for (const double rate : kRates) {
+    World world;
+    BodyDesc desc;
+    desc.motion = Motion::kinematic;
+    desc.velocity.w = {0, 0, kRate};
+    desc.T_world_body = SE3(Vec3{0, 0, -0.5});
+    const BodyId table = must(world.create_body(desc));
+    ColliderDesc disc;
+    disc.shape = Cylinder{5, 0.5};
+    disc.material = {1.0, 0.0, 0.0};
+    must(world.add_collider(table, disc));
+    const BodyId box = add_dynamic(world, {.shape = kCube,
+                                           .material = {1.0, 0.0, 0.0},
+                                           .pose = SE3(Vec3{kRadius, 0, 0.5}),
+                                           .velocity = {{0, 0, kRate}, {0, kRate * kRadius, 0}}});
+    const auto radius = [&] {
+      const Vec3 p = world.pose(box).position();
+      return std::hypot(p.x, p.y);
+    };
+    for (int i = 0; i < static_cast<int>(2 * rate); ++i) must(world.step(1.0 / rate));
+    const double start = radius();
+    for (int i = 0; i < static_cast<int>(4 * rate); ++i) must(world.step(1.0 / rate));
+    const double chords = 0.5 * kRate * kRate * kRadius / rate;
+    EXPECT_LT((radius() - start) / 4.0, 1.4 * chords) << rate << " Hz";
+  }
+}
+
 // v' = -c v, w' = -d w: of a body that slides on a plane without friction as of one that flies.
 TEST(Damping, ActsOnWhatTouches) {
   for (const double rate : kRates) {

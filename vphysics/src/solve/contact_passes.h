@@ -106,6 +106,10 @@ class LanesOf {
     w_b += inertia_b_ * on_b;
   }
 
+  // Lanes whose a, or b, impulses move.
+  LaneMask<W> pushes_a() const { return mass_a_ > F(0.0f); }
+  LaneMask<W> pushes_b() const { return mass_b_ > F(0.0f); }
+
   // Of bodies that can be carried: those that cannot may be of several lanes.
   void mark_carried(int i) const {
     for (BodyRow* row : {&row_a(i), &row_b(i)}) {

@@ -148,7 +148,9 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
 }
 
 // Bits of lanes whose geometry must be computed again: by the end of a step of dt, at their present
-// speeds, they will have slid by more than slid_limit or turned by more than `turn` [rad].
+// speeds, they will have slid by more than slid_limit or turned by more than `turn` [rad]. What a
+// motor turns may have long arms, and what stands on it goes out by as much as they lag behind.
+inline constexpr float kDrivenTurn = 5e-4f;  // [rad]
 template <int W, int P>
 std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
   using F = Lanes<W>;
@@ -162,9 +164,10 @@ std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
   const V turn_a = c.turn_a + step * c.w_a, turn_b = c.turn_b + step * c.w_b;
   const V slid = x_b + cross(turn_b, r_b) - x_a - cross(turn_a, r_a) - c.get(block.slid);
   const V by_a = turn_a - c.get(block.turned_a), by_b = turn_b - c.get(block.turned_b);
-  const F limit = c.get(block.slid_limit), most(turn * turn);
-  const auto still = both(both(dot(slid, slid) <= limit * limit, dot(by_a, by_a) <= most),
-                          dot(by_b, by_b) <= most);
+  const F limit = c.get(block.slid_limit), own(turn * turn), driven(kDrivenTurn * kDrivenTurn);
+  const auto still = both(
+      both(dot(slid, slid) <= limit * limit, dot(by_a, by_a) <= select(c.pushes_a(), own, driven)),
+      dot(by_b, by_b) <= select(c.pushes_b(), own, driven));
   std::uint32_t bits = 0;
   for (int i = 0; i < W; ++i) bits |= (still.lanes[i] == 0 ? 1u : 0u) << i;
   return bits;
