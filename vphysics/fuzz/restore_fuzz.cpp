@@ -11,7 +11,9 @@ namespace {
 
 vp::World make_world() {
   using namespace vp;
-  World world;
+  WorldDesc desc;
+  desc.region_bodies = 1;
+  World world(desc);
   BodyDesc fixed;
   fixed.motion = Motion::fixed;
   ColliderDesc collider;

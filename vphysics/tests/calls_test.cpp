@@ -137,7 +137,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
     }
   }
   int WorldDesc::*const counts[] = {&WorldDesc::velocity_iterations, &WorldDesc::sub_steps,
-                                    &WorldDesc::max_impacts_per_step};
+                                    &WorldDesc::max_impacts_per_step, &WorldDesc::region_bodies};
   for (int WorldDesc::*const count : counts) {
     for (const int n : {-1, 1 << 30, std::numeric_limits<int>::min()}) {
       WorldDesc desc;

@@ -80,6 +80,7 @@ class Churn {
     WorldDesc d;
     d.sleep_after = random.word() % 2 == 0 ? 0.01 : 0.0;
     d.sleep_speed = 3.0;  // sooner than in life
+    if (random.word() % 2 == 0) d.region_bodies = 1 + static_cast<int>(random.word() % 4);
     return d;
   }
   std::size_t pick(std::size_t n) { return static_cast<std::size_t>(random_.word() % n); }

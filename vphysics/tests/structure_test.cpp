@@ -87,6 +87,7 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
       {"contact_slop", [](Recipe& r) { r.world.contact_slop = 2e-4; }},
       {"velocity_iterations", [](Recipe& r) { r.world.velocity_iterations = 13; }},
       {"max_impacts_per_step", [](Recipe& r) { r.world.max_impacts_per_step = 33; }},
+      {"region_bodies", [](Recipe& r) { r.world.region_bodies = 1024; }},
       {"motion", [](Recipe& r) { r.body.motion = Motion::kinematic; }},
       {"continuous", [](Recipe& r) { r.body.continuous = true; }},
       {"mass",

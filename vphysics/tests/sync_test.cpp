@@ -1,6 +1,7 @@
 // What a game with rollback does: every step is taken, taken back and taken again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <vector>
 
@@ -29,9 +30,11 @@ struct Everything {
   JointId hinge;
   BodyId ball;
 };
+// In regions of a few bodies.
 WorldDesc drowsy() {
   WorldDesc desc;
   desc.sleep_after = 0.3;
+  desc.region_bodies = 3;
   return desc;
 }
 Everything make_everything() {
@@ -109,6 +112,7 @@ TEST(SyncTest, RollingBackEveryStepChangesNoBit) {
   std::vector<std::byte> bytes;
   const int steps = sync_steps();
   int asleep = 0, impacts = 0, events = 0;
+  std::uint32_t regions = 0;
   for (int tick = 0; tick < steps; ++tick) {
     bytes.clear();
     rolled.world.snapshot(bytes);
@@ -124,7 +128,9 @@ TEST(SyncTest, RollingBackEveryStepChangesNoBit) {
     asleep += counters.awake < 16 ? 1 : 0;
     impacts += static_cast<int>(counters.impacts);
     events += static_cast<int>(counters.events);
+    regions = std::max(regions, counters.regions);
   }
+  EXPECT_GE(regions, 4u);
   std::printf("%d steps: %zu bytes a snapshot, some asleep in %d, %d impacts, %d events\n", steps,
               bytes.size(), asleep, impacts, events);
   EXPECT_GT(impacts, steps / 100);

@@ -80,9 +80,10 @@ class Threads final : public Jobs {
 
 // Enough of everything that each loop is shared: boxes and balls that fall on one another and on a
 // belt, chains, and a corner that falls asleep.
-World busy_world() {
+World busy_world(int region_bodies) {
   WorldDesc desc;
   desc.sleep_after = 0.05;
+  desc.region_bodies = region_bodies;
   World world(desc);
   add_ground(world, {.restitution = 0.2});
   BodyDesc belt;
@@ -110,8 +111,9 @@ World busy_world() {
 }
 
 // The hashes of every tenth step.
-std::vector<std::uint64_t> hashes_with(std::shared_ptr<Jobs> jobs, int steps = 30) {
-  World world = busy_world();
+std::vector<std::uint64_t> hashes_with(std::shared_ptr<Jobs> jobs, int steps = 30,
+                                       int region_bodies = 2048) {
+  World world = busy_world(region_bodies);
   world.set_jobs(std::move(jobs));
   std::vector<std::uint64_t> hashes;
   for (int i = 0; i < steps; ++i) {
@@ -132,7 +134,7 @@ TEST_F(Workers, MayTakeThePartsInAnyOrder) {
   const auto jobs = std::make_shared<Backwards>();
   EXPECT_EQ(hashes_with(jobs), alone_);
   EXPECT_GT(jobs->parts, 2000);  // the loops were shared indeed
-  World world = busy_world();
+  World world = busy_world(2048);
   for (int i = 0; i < 30; ++i) must(world.step(1.0 / 240));
   EXPECT_GT(world.counters().contacts, 1000u);
 }
@@ -153,9 +155,21 @@ TEST_F(Workers, MayBeThoseOfOneTbb) {
   }
 }
 #endif
+// And where each takes regions of their own.
+TEST_F(Workers, MayTakeRegions) {
+  constexpr int kRegionBodies = 100;
+  const auto alone = hashes_with(nullptr, 30, kRegionBodies);
+  EXPECT_NE(alone, alone_);  // another order of solving
+  EXPECT_EQ(hashes_with(std::make_shared<Backwards>(), 30, kRegionBodies), alone);
+  EXPECT_EQ(hashes_with(std::make_shared<Threads>(2), 20, kRegionBodies),
+            std::vector<std::uint64_t>(alone.begin(), alone.begin() + 2));
+  World world = busy_world(kRegionBodies);
+  must(world.step(1.0 / 240));
+  EXPECT_EQ(world.counters().regions, 16u);
+}
 // In the midst of a run.
 TEST_F(Workers, MayComeAndGo) {
-  World world = busy_world();
+  World world = busy_world(2048);
   for (int i = 0; i < 30; ++i) {
     world.set_jobs(i % 2 == 0 ? std::make_shared<Backwards>() : nullptr);
     must(world.step(1.0 / 240));

@@ -50,6 +50,7 @@ struct StepCounters {
   std::uint32_t recycled = 0;   // of them, those of the last step, as they were
   std::uint32_t contacts = 0;   // contact points solved, summed over the solves of the step
   std::uint32_t colours = 0;    // sets of contacts that share no body
+  std::uint32_t regions = 0;    // that a large world is solved in; 0: in one piece
   std::uint32_t sub_steps = 0;  // 0: nothing takes part in them
   std::uint32_t bounce_rounds = 0;  // in which something bounced, summed over the sub-steps
   std::uint32_t impacts = 0;        // times of impact found

@@ -43,7 +43,7 @@ struct ContactBlock {
   IndexField a, b;     // rows of the bodies; of an empty lane the world's
   IndexField contact;  // index in the world's contacts; kNoContact: an empty lane
   IndexField touches;  // 1: it has been told that the two touch
-  Field active;        // 1: the next round of pushing must look at it; else 0
+  Field active;        // 1: the next round of pushing, or strike, must look at it; else 0
   Field given;         // normal impulse of the sub-steps of this step so far [N s]
 
   Field3 normal, tangent, d;

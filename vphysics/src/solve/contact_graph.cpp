@@ -10,6 +10,12 @@ namespace {
 
 constexpr std::uint64_t kOfFixed = ~std::uint64_t{0} << kFirstFixedColour;
 
+// Of what does not move it does not matter where it is.
+std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
+  if (!a.moves) return b.moves ? b.region : kBetween;
+  return !b.moves || a.region == b.region ? a.region : kBetween;
+}
+
 template <int P>
 void clear_lane(ContactBlock<P>& block, int lane) {
   static const ContactBlock<P> kEmpty = [] {
@@ -26,13 +32,20 @@ void clear_lane(ContactBlock<P>& block, int lane) {
 
 }  // namespace
 
+// Of several regions, the contacts between them are of fewer bodies than those within.
 void ContactGraph::reserve(std::size_t bodies) {
   constexpr int kReady = 8;  // colours
-  const std::size_t blocks = bodies / (2 * kLanes) + 1;
-  for (const int first : {0, kFirstFixedColour}) {
-    for (int c = first; c < first + kReady; ++c) {
-      of<1>(c).blocks.reserve(blocks);
-      of<4>(c).blocks.reserve(blocks);
+  const std::size_t within = regions() - 1;
+  for (std::size_t region = 0; region < regions(); ++region) {
+    const std::size_t share = within == 0          ? bodies
+                              : region == kBetween ? bodies / 16
+                                                   : bodies / within + 1;
+    const std::size_t blocks = share / (2 * kLanes) + 1;
+    for (const int first : {0, kFirstFixedColour}) {
+      for (int c = first; c < first + kReady; ++c) {
+        of<1>(region, c).blocks.reserve(blocks);
+        of<4>(region, c).blocks.reserve(blocks);
+      }
     }
   }
 }
@@ -65,6 +78,7 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
   }
   place.points = static_cast<std::uint8_t>(points);
   place.colour = static_cast<std::uint8_t>(colour);
+  place.region = colour == kParked ? kBetween : region_of(a, b);
   points == 1 ? add_lane<1>(contact, a, b, place) : add_lane<4>(contact, a, b, place);
   return true;
 }
@@ -80,8 +94,8 @@ std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& 
 
 template <int P>
 void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
-  ColourBlocks<P>& colour = of<P>(place.colour);
-  if (place.colour < kColours) in_use_ |= 1ull << place.colour;
+  ColourBlocks<P>& colour = of<P>(place.region, place.colour);
+  if (place.colour < kColours) regions_[place.region].in_use |= 1ull << place.colour;
   place.index = colour.lanes++;
   const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
   const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
@@ -98,7 +112,7 @@ void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, P
 
 template <int P>
 std::uint32_t ContactGraph::remove_lane(const Place& place) {
-  ColourBlocks<P>& colour = of<P>(place.colour);
+  ColourBlocks<P>& colour = of<P>(place.region, place.colour);
   Place last = place;
   last.index = --colour.lanes;
   ContactBlock<P>& from = block<P>(last);
@@ -109,8 +123,10 @@ std::uint32_t ContactGraph::remove_lane(const Place& place) {
   }
   clear_lane(from, lane(last));
   if (place.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
-  if (place.colour < kColours && of<1>(place.colour).lanes + of<4>(place.colour).lanes == 0) {
-    in_use_ &= ~(1ull << place.colour);
+  Region& region = regions_[place.region];
+  if (place.colour < kColours &&
+      region.ones[place.colour].lanes + region.fours[place.colour].lanes == 0) {
+    region.in_use &= ~(1ull << place.colour);
   }
   return moved;
 }
@@ -122,6 +138,19 @@ std::uint32_t ContactGraph::move_lane(Place& place, const End& a, const End& b, 
   copy_lane(block<P>(from), lane(from), block<P>(place), lane(place));
   return remove(from, a, b);
 }
+
+std::uint32_t ContactGraph::follow(Place& place, const End& a, const End& b) {
+  const Place from = place;
+  place.region = region_of(a, b);
+  if (place.region == from.region) return kNoContact;
+  const auto move = [&]<int P>() {
+    add_lane<P>(block<P>(from).contact.lane[lane(from)], a, b, place);
+    copy_lane(block<P>(from), lane(from), block<P>(place), lane(place));
+    return remove_lane<P>(from);
+  };
+  return from.points == 1 ? move.template operator()<1>() : move.template operator()<4>();
+}
+
 template std::uint32_t ContactGraph::move_lane<1>(Place&, const End&, const End&, int);
 template std::uint32_t ContactGraph::move_lane<4>(Place&, const End&, const End&, int);
 

@@ -8,6 +8,11 @@
 //
 // A body with more contacts than there are colours puts the rest into the last one, where every
 // contact has a block to itself: blocks are solved one after the other.
+//
+// A large world is divided into regions (world/regions.cpp): a contact whose moving bodies are all
+// of one region is kept there, colour by colour, all others in kBetween. So no two regions share a
+// body that moves, and each can be solved by itself, again and again, while it lies in the caches.
+// Colours are those of the whole world: a contact that goes to another region keeps its own.
 #pragma once
 
 #include <array>
@@ -24,10 +29,14 @@ inline constexpr int kFirstFixedColour = 40;  // of contacts with what nothing p
 inline constexpr int kLastColour = kColours - 1;
 inline constexpr int kParked = kColours;  // no colour: lanes put aside, of what is asleep
 
+// Of contacts of several regions, of bodies that are in none, and of all that is put aside.
+inline constexpr std::uint16_t kBetween = 0;
+
 // Where a contact's lane is; points: 1 or 4, or 0 for nowhere.
 struct Place {
   std::uint8_t points = 0, colour = 0;
-  std::uint32_t index = 0;  // of the lane, among all of its colour and kind
+  std::uint16_t region = kBetween;
+  std::uint32_t index = 0;  // of the lane, among all of its region, colour and kind
 };
 
 template <int P>
@@ -55,10 +64,11 @@ std::span<const Field> fields_of(const ContactBlock<P>& block) {
 
 class ContactGraph {
  public:
-  // The lowest colour free for two rows; moves: an impulse can move it.
+  // moves: an impulse can move it.
   struct End {
     std::uint32_t row;
     bool moves;
+    std::uint16_t region;
   };
   // An empty lane for the contact; all its fields are zero but the rows and the contact.
   Place add(std::uint32_t contact, const End& a, const End& b, int points);
@@ -81,26 +91,38 @@ class ContactGraph {
                              : move_lane<4>(place, a, b, colour);
   }
 
+  // To the region that its ends are in now, in its colour. Precondition: it is not put aside.
+  // Returns as remove() does, of the old place.
+  std::uint32_t follow(Place& place, const End& a, const End& b);
+
   template <int P>
   ContactBlock<P>& block(const Place& place) {
-    return of<P>(place.colour).blocks[ColourBlocks<P>::block_of(place.index, place.colour)];
+    return of<P>(place.region, place.colour)
+        .blocks[ColourBlocks<P>::block_of(place.index, place.colour)];
+  }
+  template <int P>
+  const ContactBlock<P>& block(const Place& place) const {
+    return const_cast<ContactGraph*>(this)->block<P>(place);
   }
   static int lane(const Place& place) {
     return ColourBlocks<1>::lane_of(place.index, place.colour);
   }
-  // A bit for each colour that has lanes of either kind.
-  std::uint64_t colours_in_use() const { return in_use_; }
+  // A bit for each colour of which the region has lanes of either kind.
+  std::uint64_t colours_in_use(std::size_t region) const { return regions_[region].in_use; }
   template <int P>
-  ColourBlocks<P>& of(int colour) {
+  ColourBlocks<P>& of(std::size_t region, int colour) {
     if constexpr (P == 1)
-      return ones_[static_cast<std::size_t>(colour)];
+      return regions_[region].ones[static_cast<std::size_t>(colour)];
     else
-      return fours_[static_cast<std::size_t>(colour)];
+      return regions_[region].fours[static_cast<std::size_t>(colour)];
   }
   template <int P>
-  const ColourBlocks<P>& of(int colour) const {
-    return const_cast<ContactGraph*>(this)->of<P>(colour);
+  const ColourBlocks<P>& of(std::size_t region, int colour) const {
+    return const_cast<ContactGraph*>(this)->of<P>(region, colour);
   }
+  // kBetween and those behind it. Precondition of set_regions: those that go are empty.
+  std::size_t regions() const { return regions_.size(); }
+  void set_regions(std::size_t count) { regions_.resize(count); }
   // Room for rows; and for the first contacts of so many bodies, so that a busy step need not take
   // it from the heap.
   void resize(std::size_t rows) { taken_.resize(rows); }
@@ -115,9 +137,12 @@ class ContactGraph {
   std::uint32_t move_lane(Place& place, const End& a, const End& b, int colour);
   int free_colour(const End& a, const End& b) const;
 
-  std::array<ColourBlocks<1>, kColours + 1> ones_;
-  std::array<ColourBlocks<4>, kColours + 1> fours_;
-  std::uint64_t in_use_ = 0;
+  struct Region {
+    std::array<ColourBlocks<1>, kColours + 1> ones;
+    std::array<ColourBlocks<4>, kColours + 1> fours;
+    std::uint64_t in_use = 0;
+  };
+  std::vector<Region> regions_{1};
   std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
 };
 

@@ -134,6 +134,7 @@ template <int P>
 void write_lane(ContactBlock<P>& block, int lane, const NewContact& c, const BodyRow& row_a,
                 const BodyRow& row_b) {
   const Side a(row_a), b(row_b);
+  put(block.active, lane, 1.0);
   put(block.normal, lane, c.normal);
   put(block.d, lane, c.x_a - c.x_b);
   write_normals(block, lane, c, a, b);

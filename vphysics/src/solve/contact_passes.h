@@ -214,6 +214,12 @@ void pass_on(const LanesOf<W, P>& c, int i, const Lanes<W>& change, Lanes<W>* u)
   }
 }
 
+// What a strike need not look at; loaded: the lanes that carry something.
+template <int W>
+LaneMask<W> neither_bounces_nor_comes_to_touch(const LaneMask<W>& loaded, const Lanes<W>& e) {
+  return both(loaded, !(e > Lanes<W>(0.0f)));
+}
+
 // Of the load: a contact that a round of pushing has changed by less is left alone by those after
 // it. Ten times as much does for piles, but a wall then takes longer to come to rest.
 inline constexpr float kSettledForNow = 1e-4f;
@@ -428,6 +434,8 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     c.put(block.active, select(rests, F(0.0f), F(1.0f)));
   } else {
     c.put(block.given, F(soft.kept) * c.get(block.given) + load);
+    const auto idle = neither_bounces_nor_comes_to_touch(load > F(0.0f), c.get(block.restitution));
+    c.put(block.active, select(idle, F(0.0f), F(1.0f)));
   }
 }
 

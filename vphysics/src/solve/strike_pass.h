@@ -61,16 +61,16 @@ struct Closing {
   LaneMask<W> reaches[P], closes;  // within h; any of a lane's points does
 };
 
-// True if any lane bounced.
+// True if any lane bounced. Blocks that relaxing has found idle are passed by.
 template <int W, int P>
 bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
+  if (none(c.get(block.active) > F(0.0f))) return false;
   const auto rests = sum_of_impulses(c) > F(0.0f);
   const F e = c.get(block.restitution);
-  const auto idle = both(rests, !(e > F(0.0f)));  // neither bounces nor comes to touch
-  if (all(idle)) return false;
+  const auto idle = neither_bounces_nor_comes_to_touch(rests, e);
   c.gather_speeds();
   c.gather_ways();
   const Normals<W, P> normals(c);

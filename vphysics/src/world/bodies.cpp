@@ -113,6 +113,7 @@ void World::Impl::list_bodies() {
       (body.continuous ? some_are_continuous : some_are_not) = true;
     }
   }
+  sort_movers_by_region();
 }
 
 namespace {

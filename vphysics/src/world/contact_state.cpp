@@ -29,9 +29,12 @@ void World::Impl::ContactState::read(Reader& in) {
   read_near(in, near_, false);
   read_near(in, parked_near_, true);
   graph_.resize(world_.bodies.size() + 1);
-  for (int c = 0; c <= solve::kParked && in.ok(); ++c) {
-    read_lanes<1>(in, c);
-    read_lanes<4>(in, c);
+  read_regions(in);
+  for (std::size_t region = 0; region < graph_.regions(); ++region) {
+    for (int c = 0; c <= solve::kParked && in.ok(); ++c) {
+      read_lanes<1>(in, region, c);
+      read_lanes<4>(in, region, c);
+    }
   }
   for (std::size_t i = 0; i < pool_.size(); ++i) {
     in.check((seen_[i] & 15u) == (pool_[i].alive ? 7u : 8u));
@@ -184,8 +187,25 @@ void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> 
   }
 }
 
+void World::Impl::ContactState::read_regions(Reader& in) {
+  const std::uint64_t count = in.word();
+  in.check(count == 0 || (std::has_single_bit(count) && count > 1 && count <= kMostRegions));
+  region_age_ = in.bounded();
+  if (!in.ok() || count == 0) return;
+  region_axes_.resize(count);
+  for (std::uint8_t& axis : region_axes_) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
+  for (OfBody& body : bodies_) body.region = static_cast<std::uint16_t>(in.index(count + 1));
+  if (in.ok()) graph_.set_regions(count + 1);
+}
+
+solve::ContactGraph::End World::Impl::ContactState::end_of(std::uint32_t body) const {
+  solve::ContactGraph::End end = world_.end_of(body);
+  end.region = bodies_[body].region;
+  return end;
+}
+
 template <int P>
-void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
+void World::Impl::ContactState::read_lanes(Reader& in, std::size_t region, int colour) {
   constexpr std::size_t kFields = solve::kFieldsOf<P>;
   const std::size_t lanes = in.count(1 + kFields / 2);
   for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
@@ -196,12 +216,14 @@ void World::Impl::ContactState::read_lanes(Reader& in, int colour) {
     if (!in.ok()) return;
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     const std::uint32_t a = world_.colliders[c.a].body, b = world_.colliders[c.b].body;
-    in.check(graph_.append(index, world_.end_of(a), world_.end_of(b), P, colour, c.place));
+    in.check(graph_.append(index, end_of(a), end_of(b), P, colour, c.place) &&
+             c.place.region == region);
     if (!in.ok()) return;
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
     const int lane = solve::ContactGraph::lane(c.place);
     graph_.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
+    graph_.block<P>(c.place).active.lane[lane] = 1.0f;
     read_fields(in, solve::fields_of(graph_.block<P>(c.place)), lane);
     c.parked = colour == solve::kParked;
     if (!c.parked) points_in_lanes_ += c.count;
@@ -220,6 +242,7 @@ void World::Impl::ContactState::adopt() {
     if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);
     body.first_edge = from.first_edge;
     body.lanes = from.lanes;
+    body.region = from.region;
     std::copy_n(from.way, 6, world_.body_rows[i + 1].way);
     std::copy_n(from.bounded_at, 6, body.bounded_at);
   }
@@ -235,6 +258,9 @@ void World::Impl::ContactState::adopt() {
     if (c.alive && c.stale && !c.parked) world_.stale_contacts.push_back(i);
   }
   std::swap(world_.graph, graph_);
+  world_.region_count = static_cast<std::uint16_t>(world_.graph.regions() - 1);
+  world_.region_axes.swap(region_axes_);
+  world_.region_age = region_age_;
 }
 
 }  // namespace vp

@@ -7,8 +7,9 @@
 //   pool            of each slot its flags, and if it is alive the contact, with the chain of its
 //                   parts; free slots, in order
 //   near contacts   in order, then those parked: each contact and all its fields
-//   lanes           of each colour, then of those parked, and each kind: how many, and of each its
-//   contact and all its fields
+//   regions         how many; for how long so; the axis of each halving; of each body its own
+//   lanes           of each region and colour, then of those parked, and each kind: how many, and
+//   of each its contact and all its fields
 //
 // What follows from these is not written: neighbours in lists, rows of lanes, colours taken.
 #pragma once
@@ -34,6 +35,7 @@ class World::Impl::ContactState {
     double rest_time = 0.0;
     float way[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
+    std::uint16_t region = solve::kBetween;
   };
   void read_body(Reader& in, OfBody& body);
   void read_contact(Reader& in, Contact& contact, bool is_part);
@@ -42,8 +44,10 @@ class World::Impl::ContactState {
   void read_edges(Reader& in, std::uint32_t body);
   void read_near(Reader& in, solve::NearList& near, bool parked);
   static void read_fields(Reader& in, std::span<solve::Field> fields, int lane);
+  void read_regions(Reader& in);
+  solve::ContactGraph::End end_of(std::uint32_t body) const;
   template <int P>
-  void read_lanes(Reader& in, int colour);
+  void read_lanes(Reader& in, std::size_t region, int colour);
 
   World::Impl& world_;
   std::vector<OfBody> bodies_;
@@ -55,6 +59,8 @@ class World::Impl::ContactState {
   // parts of its whole.
   std::vector<std::uint8_t> seen_;
   solve::ContactGraph graph_;
+  std::vector<std::uint8_t> region_axes_;
+  double region_age_ = 0.0;
 };
 
 namespace contact_flags {
@@ -121,6 +127,12 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
     }
   }
+  sink.word(region_count);
+  put(sink, region_age);
+  for (const std::uint8_t axis : region_axes) sink.word(axis);
+  if (region_count > 0) {
+    for (const Body& body : bodies) sink.word(body.region);
+  }
   const auto write_lanes = [&](const auto& colour, int index) {
     sink.word(colour.lanes);
     for (std::uint32_t l = 0; l < colour.lanes; ++l) {
@@ -130,9 +142,11 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(block), lane);
     }
   };
-  for (int c = 0; c <= solve::kParked; ++c) {
-    write_lanes(graph.of<1>(c), c);
-    write_lanes(graph.of<4>(c), c);
+  for (std::size_t region = 0; region < graph.regions(); ++region) {
+    for (int c = 0; c <= solve::kParked; ++c) {
+      write_lanes(graph.of<1>(region, c), c);
+      write_lanes(graph.of<4>(region, c), c);
+    }
   }
 }
 

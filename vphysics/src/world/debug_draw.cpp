@@ -78,13 +78,10 @@ class World::Impl::Drawing {
     if (!(options_.contacts || options_.normals || options_.impulses)) return;
     for (const Contact& c : world_.contact_pool) {
       if (!c.alive || !c.touching || c.place.points == 0) continue;
-      const auto draw_lane = [&](const auto& colour) {
-        draw_contact(c, colour.blocks[colour.block_of(c.place.index, c.place.colour)]);
-      };
       if (c.place.points == 1) {
-        draw_lane(world_.graph.of<1>(c.place.colour));
+        draw_contact(c, world_.graph.block<1>(c.place));
       } else {
-        draw_lane(world_.graph.of<4>(c.place.colour));
+        draw_contact(c, world_.graph.block<4>(c.place));
       }
     }
     for (const PairRecord& record : world_.records) draw_record(record);

@@ -81,8 +81,8 @@ float impulse_of(const Contact& contact, const Held& impulses, const collide::Ma
 
 solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
   const Body& b = bodies[body];
-  if (b.motion == Motion::fixed) return {solve::kWorldRow, false};
-  return {body + 1, b.motion == Motion::dynamic};
+  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kBetween};
+  return {body + 1, b.motion == Motion::dynamic, b.region};
 }
 
 // Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
@@ -233,7 +233,7 @@ void World::Impl::mark_contacts_stale(std::uint32_t body) {
 
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
-  (void)blocks_in_use();
+  (void)number_blocks();
   for_parts([&](const auto& pass, const auto& part, std::size_t first) {
     pass.find_moved(part, step, static_cast<float>(kTurn), lane_bits.data() + first);
   });

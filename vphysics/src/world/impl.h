@@ -15,6 +15,7 @@
 #include "solve/contact_graph.h"
 #include "solve/contact_lane.h"
 #include "solve/contact_solver.h"
+#include "solve/large_pages.h"
 #include "solve/passes.h"
 #include "vphysics/jobs.h"
 #include "vphysics/world.h"
@@ -38,10 +39,11 @@ struct alignas(64) Body {
   // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
   // colliders; else ask its articulation.
   bool asleep = false;
-  bool wanted = false;      // its colliders' poses are about to be computed
-  bool posed = false;       // the colliders' poses and bounds are those of T
-  bool bounded = false;     // so are `bounds`
-  bool untouched = false;   // by what its row met in this step, so it has turned freely
+  bool wanted = false;     // its colliders' poses are about to be computed
+  bool posed = false;      // the colliders' poses and bounds are those of T
+  bool bounded = false;    // so are `bounds`
+  bool untouched = false;  // by what its row met in this step, so it has turned freely
+  std::uint16_t region = solve::kBetween;
   std::uint32_t lanes = 0;  // of the solver that hold it
   std::uint32_t first_joint = kNone, first_collider = kNone;
   float bounded_at[6] = {};  // its way when its proxies' bounds were last set
@@ -163,6 +165,14 @@ struct Looked {
   double margin, clearance;  // within which it was looked for; free of contact for so far [m]
 };
 
+inline constexpr std::size_t kMostRegions = 4096;
+inline constexpr std::uint8_t kNoAxis = 3;  // of a halving that has not been
+// Where a body is, on a grid.
+struct RegionKey {
+  std::int32_t at[3];
+  std::uint32_t body;
+};
+
 // Tells who watches, if anybody does.
 class InStage {
  public:
@@ -213,7 +223,12 @@ struct World::Impl {
   // Of sub-steps: that of the impulses in lanes and joints, 0: none yet; that of the push [s].
   double sub_step_before = 0.0, push_length = 0.0;
   solve::ContactGraph graph;
-  std::vector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
+  solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
+  // Regions but kBetween: a power of two, or none; along which axis each halving went, by its
+  // number (regions.cpp); how long ago that was [s].
+  std::uint16_t region_count = 0;
+  std::vector<std::uint8_t> region_axes;
+  double region_age = 0.0;
 
   // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
   // or colliders come or go.
@@ -221,6 +236,8 @@ struct World::Impl {
   bool some_are_continuous = false, some_are_not = false;  // of the movers
   bool some_sleep = false;
   bool lists_are_stale = true;
+  // The same movers by region, and where each region's begin.
+  std::vector<std::uint32_t> movers_by_region, first_of_region;
 
   std::shared_ptr<Recorder> recorder;  // or null
 
@@ -257,8 +274,11 @@ struct World::Impl {
   bool finds_contacts = false;
   double dt_now = 0.0;  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
-  std::vector<solve::Gain> gains;        // of each body, by the contacts of a sub-step
-  std::vector<std::uint8_t> mover_news;  // of each mover: it needs more than its own row
+  std::vector<std::size_t> first_block;  // of each region's, among lane_bits
+  std::vector<RegionKey> region_keys;
+  std::vector<std::uint32_t> changed_regions, region_ends;
+  solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
+  std::vector<std::uint8_t> mover_news;   // of each mover: it needs more than its own row
   std::vector<Looked> looked;
   std::vector<std::uint32_t> to_pose;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
@@ -435,21 +455,38 @@ struct World::Impl {
   void remove_parts(std::uint32_t whole);
   void forget_part(std::uint32_t part);
 
+  // regions.cpp
+  void divide_into_regions(double dt);
+  void assign_regions();
+  void halve(std::span<RegionKey> keys, std::size_t node);
+  void set_region(std::uint32_t body, std::uint16_t region);
+  void take_contacts_along(std::uint32_t body);
+  void sort_movers_by_region();
+
   // sub_steps.cpp
+  class SubSteps;
   void run_sub_steps(double dt);
   int sub_steps_in(double dt) const;
   void rescale_impulses(double h);
   void take_sub_steps(double dt, int count);
+  void strike(const SubSteps& steps, std::size_t blocks);
+  std::size_t number_blocks();
+
+  // runs.h
+  template <class F>
+  void for_runs_of(std::size_t region, const F& f);
   template <class F>
   void for_runs(const F& f);
+  template <class F>
+  void for_regions(const F& f) const;
+  template <class F>
+  void for_parts_of(std::size_t region, const F& f);
   template <class F>
   void for_parts(const F& f);
   template <class F>
   void in_parallel(std::size_t count, std::size_t grain, const F& f) const;
-  std::size_t blocks_in_use();
 
   // touches.cpp
-  void find_news();
   void report_news();
   template <int P>
   void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded);

@@ -1,4 +1,5 @@
-// The contacts of all colours, in the order of solving.
+// The contacts of all regions and colours, in the order of solving: region after region, then what
+// is between them.
 #pragma once
 
 #include <bit>
@@ -8,9 +9,9 @@
 
 namespace vp {
 
-// f(passes of the kind, run of lanes, its blocks).
+// f(passes of the kind, run of lanes, its blocks), one colour after the other.
 template <class F>
-void World::Impl::for_runs(const F& f) {
+void World::Impl::for_runs_of(std::size_t region, const F& f) {
   const solve::Passes& pass = solve::passes();
   const auto one_run = [&](const auto& passes, auto& colour, int index) {
     if (colour.lanes == 0) return;
@@ -21,31 +22,56 @@ void World::Impl::for_runs(const F& f) {
           index >= solve::kFirstFixedColour, body_rows.data()},
       colour.blocks);
   };
-  for (std::uint64_t left = graph.colours_in_use(); left != 0; left &= left - 1) {
+  for (std::uint64_t left = graph.colours_in_use(region); left != 0; left &= left - 1) {
     const int c = std::countr_zero(left);
-    one_run(pass.one, graph.of<1>(c), c);
-    one_run(pass.four, graph.of<4>(c), c);
+    one_run(pass.one, graph.of<1>(region, c), c);
+    one_run(pass.four, graph.of<4>(region, c), c);
   }
 }
 
-// f(passes, part of a run, number of its first block among all), one colour after the other; the
-// parts of a colour side by side. Contacts of the last colour have no parts: they share bodies.
 template <class F>
-void World::Impl::for_parts(const F& f) {
+void World::Impl::for_runs(const F& f) {
+  for (std::size_t region = 1; region <= region_count; ++region) for_runs_of(region, f);
+  for_runs_of(solve::kBetween, f);
+}
+
+// f(region) of all but kBetween, side by side: no body that moves is of two.
+template <class F>
+void World::Impl::for_regions(const F& f) const {
+  in_parallel(region_count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t region = begin + 1; region <= end; ++region) f(region);
+  });
+}
+
+// f(passes, part of a run, number of its first block as number_blocks() has it), one colour after
+// the other; the parts of a colour side by side where regions are not. Contacts of the last colour
+// have no parts: they share bodies.
+template <class F>
+void World::Impl::for_parts_of(std::size_t region, const F& f) {
   constexpr std::size_t kGrain = 8;  // blocks: some microseconds
-  std::size_t first = 0;
-  for_runs([&](const auto& passes, const auto& run, const auto& blocks) {
-    const std::size_t grain = run.stride == 1 ? blocks.size() : kGrain;
-    in_parallel(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
+  std::size_t first = first_block[region];
+  for_runs_of(region, [&](const auto& passes, const auto& run, const auto& blocks) {
+    const auto part_of = [&](std::size_t begin, std::size_t end) {
       auto part = run;
       part.blocks += begin;
       const auto skipped = static_cast<std::uint32_t>(begin) * run.stride;
       part.lanes =
           std::min(run.lanes - skipped, static_cast<std::uint32_t>(end - begin) * run.stride);
       f(passes, part, first + begin);
-    });
+    };
+    if (region == solve::kBetween && run.stride > 1) {
+      in_parallel(blocks.size(), kGrain, part_of);
+    } else {
+      part_of(0, blocks.size());
+    }
     first += blocks.size();
   });
+}
+
+template <class F>
+void World::Impl::for_parts(const F& f) {
+  for_regions([&](std::size_t region) { for_parts_of(region, f); });
+  for_parts_of(solve::kBetween, f);
 }
 
 }  // namespace vp

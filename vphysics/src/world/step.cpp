@@ -58,11 +58,12 @@ void World::Impl::begin_step(double dt) {
   bodies_on_links.clear();
   for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
-  if (!movers.empty()) graph.reserve(movers.size());
   new_pairs.reserve(room);
   lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours);
   body_rows.resize(n + 1);
   graph.resize(n + 1);
+  divide_into_regions(dt);
+  if (!movers.empty()) graph.reserve(movers.size());
   start_ways.resize(n);
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
@@ -391,12 +392,17 @@ void World::Impl::run_impacts(double dt) {
 void World::Impl::count_contacts() {
   note_limits_of_surfaces();
   counters.triangles = manifold_scratch.looked_at;
-  for (std::uint64_t left = graph.colours_in_use(); left != 0; left &= left - 1) {
-    const int c = std::countr_zero(left);
-    counters.manifolds += graph.of<1>(c).lanes + graph.of<4>(c).lanes;
-    ++counters.colours;
-    if (c == solve::kLastColour) status.colour_limit = true;
+  std::uint64_t colours = 0;
+  for (std::size_t region = 0; region < graph.regions(); ++region) {
+    colours |= graph.colours_in_use(region);
+    for (std::uint64_t left = graph.colours_in_use(region); left != 0; left &= left - 1) {
+      const int c = std::countr_zero(left);
+      counters.manifolds += graph.of<1>(region, c).lanes + graph.of<4>(region, c).lanes;
+    }
   }
+  counters.colours = static_cast<std::uint32_t>(std::popcount(colours));
+  counters.regions = region_count;
+  if ((colours >> solve::kLastColour) != 0) status.colour_limit = true;
   counters.pairs += counters.manifolds + near_list.size();
   counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
   counters.events = static_cast<std::uint32_t>(events.size());

@@ -46,6 +46,8 @@ class Structure {
     const WorldDesc usual;
     add_unless(usual.sleep_after, 'a', desc.sleep_after);
     add_unless(usual.sleep_speed, 'z', desc.sleep_speed);
+    add_unless(static_cast<std::uint64_t>(usual.region_bodies), 'g',
+               static_cast<std::uint64_t>(desc.region_bodies));
   }
   void add(const BodyDesc& desc) {
     add(static_cast<std::uint64_t>(desc.motion));

@@ -33,10 +33,16 @@ int World::Impl::sub_steps_in(double dt) const {
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(dt / 0.00026))));
 }
 
-// Of all colours; a word of lane_bits for each.
-std::size_t World::Impl::blocks_in_use() {
+// Of all regions and colours; a word of lane_bits for each. Returns how many.
+std::size_t World::Impl::number_blocks() {
+  first_block.resize(graph.regions());
   std::size_t count = 0;
-  for_runs([&](const auto&, const auto&, const auto& blocks) { count += blocks.size(); });
+  const auto number = [&](std::size_t region) {
+    first_block[region] = count;
+    for_runs_of(region, [&](const auto&, const auto&, const auto& b) { count += b.size(); });
+  };
+  for (std::size_t region = 1; region <= region_count; ++region) number(region);
+  number(solve::kBetween);
   lane_bits.resize(std::max(lane_bits.size(), count));
   return count;
 }
@@ -60,9 +66,11 @@ void World::Impl::rescale_impulses(double h) {
   const auto rescale = [factor](auto& blocks) {
     for (auto& block : blocks) solve::rescale_impulses(block, factor);
   };
-  for (int colour = 0; colour <= solve::kParked; ++colour) {
-    rescale(graph.of<1>(colour).blocks);
-    rescale(graph.of<4>(colour).blocks);
+  for (std::size_t region = 0; region < graph.regions(); ++region) {
+    for (int colour = 0; colour <= solve::kParked; ++colour) {
+      rescale(graph.of<1>(region, colour).blocks);
+      rescale(graph.of<4>(region, colour).blocks);
+    }
   }
   for (BodyJoint& joint : joints) {
     for (solve::JointRow6& row : joint.block.rows) {
@@ -72,79 +80,162 @@ void World::Impl::rescale_impulses(double h) {
   }
 }
 
+// What is done in a sub-step to one region's bodies and contacts. Those of kBetween are gone
+// through by several workers, others by one.
+class World::Impl::SubSteps {
+ public:
+  SubSteps(World::Impl& world, float h, const solve::Soft& soft)
+      : world_(world),
+        h_(h),
+        threshold_(static_cast<float>(world.desc.restitution_threshold)),
+        soft_(soft) {}
+
+  void accelerate(std::size_t region, bool find_gains) const {
+    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
+      if (find_gains) pass_.find_gains(rows(), world_.gains.data(), some, count);
+      pass_.accelerate(rows(), some, count, h_);
+    });
+  }
+  // Of blocks in which something bounces, lane_bits becomes 1.
+  void strike(std::size_t region) const {
+    world_.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t first) {
+      world_.lane_bits[first] = p.strike(part, h_, threshold_) ? 1u : 0u;
+    });
+  }
+  void keep_velocities(std::size_t region) const {
+    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
+      pass_.keep(rows(), world_.gains.data(), some, count);
+    });
+  }
+  void repeat_gains(std::size_t region) const {
+    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
+      pass_.repeat(rows(), world_.gains.data(), some, count);
+    });
+  }
+  void warm_start(std::size_t region) const {
+    world_.for_parts_of(region,
+                        [](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
+  }
+  void push(std::size_t region, int round) const {
+    world_.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t) {
+      (round == 0 ? p.solve_first : p.solve_again)(part, soft_);
+    });
+  }
+  void move(std::size_t region) const {
+    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
+      pass_.move(rows(), some, count, h_);
+    });
+  }
+  // last: of the step. What is worth telling is found before: what pushes two apart that overlap is
+  // a load, though nothing of it is left in the velocities.
+  void relax(std::size_t region, bool last) const {
+    if (last) {
+      world_.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t first) {
+        p.find_news(part, world_.lane_bits.data() + first);
+      });
+    }
+    world_.for_parts_of(
+        region, [&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft_); });
+  }
+  void move_and_relax(std::size_t region, bool last) const {
+    move(region);
+    relax(region, last);
+  }
+  // The first sub-step's impulses have been noted.
+  void go_on() { soft_.kept = 1.0f; }
+
+ private:
+  solve::BodyRow* rows() const { return world_.body_rows.data(); }
+  template <class F>
+  void for_movers(std::size_t region, const F& f) const {
+    const std::uint32_t first = world_.first_of_region[region];
+    const std::uint32_t count = world_.first_of_region[region + 1] - first;
+    const std::uint32_t* some = world_.movers_by_region.data() + first;
+    if (region != solve::kBetween) return f(some, std::size_t{count});
+    world_.in_parallel(count, kBodyGrain,
+                       [&](std::size_t begin, std::size_t end) { f(some + begin, end - begin); });
+  }
+
+  World::Impl& world_;
+  float h_, threshold_;
+  solve::Soft soft_;
+  const solve::Passes& pass_ = solve::passes();
+};
+
 void World::Impl::take_sub_steps(double dt, int n) {
   const auto stage = in(Stage::sub_steps);
   counters.sub_steps = static_cast<std::uint32_t>(n);
   const float h = static_cast<float>(dt / n);
-  const solve::Passes& pass = solve::passes();
   rescale_impulses(h);
   // What has sunk in longer sub-steps is not thrown out by shorter ones: the push becomes as fast
   // as theirs by and by.
   push_length = std::max(static_cast<double>(h), push_length - kHurry * dt);
-  solve::Soft soft{static_cast<float>(kPush / push_length),
-                   static_cast<float>(1.0 - kLoss),
-                   static_cast<float>(kLoss),
-                   static_cast<float>(kFastestPush),
-                   1.0f / h,
-                   0.0f};
-  const auto threshold = static_cast<float>(desc.restitution_threshold);
+  SubSteps steps(*this, h,
+                 {static_cast<float>(kPush / push_length), static_cast<float>(1.0 - kLoss),
+                  static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h, 0.0f});
   begin_joints(h);
   const bool links = !bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
+  const bool contacts_alone = !links && active_joints.empty();
   // What contacts gave in one sub-step is given again in the next as a whole, by body, unless
   // joints and links have a share in it: these turn within the step.
-  const bool repeats = n > 1 && !links && active_joints.empty();
-  const auto for_movers = [&](const auto& f) {
-    in_parallel(movers.size(), kBodyGrain,
-                [&](std::size_t begin, std::size_t end) { f(movers.data() + begin, end - begin); });
+  const bool repeats = contacts_alone && n > 1;
+  const std::size_t blocks = number_blocks();
+  const auto everywhere = [&](const auto& f) {
+    for_regions(f);
+    f(std::size_t{solve::kBetween});
   };
   for (int k = 0; k < n; ++k) {
-    for_movers([&](const std::uint32_t* some, std::size_t count) {
-      if (repeats && k > 0) pass.find_gains(body_rows.data(), gains.data(), some, count);
-      pass.accelerate(body_rows.data(), some, count, h);
-    });
-    for (int round = 0;; ++round) {
-      if (round == kStrikes) {
-        status.bounce_limit = true;
-        break;
-      }
-      const std::size_t blocks = blocks_in_use();
-      std::fill_n(lane_bits.begin(), blocks, 0u);
-      for_parts([&](const auto& p, const auto& part, std::size_t first) {
-        lane_bits[first] = p.strike(part, h, threshold) ? 1u : 0u;
-      });
-      const bool again = std::find(lane_bits.begin(), lane_bits.begin() + blocks, 1u) !=
-                         lane_bits.begin() + blocks;
-      if (!again) break;
-      ++counters.bounce_rounds;
-    }
+    const bool last = k == n - 1;
+    everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
+    strike(steps, blocks);
     if (links) begin_links(h);
     warm_start_joints();
     if (repeats) {
-      for_movers([&](const std::uint32_t* some, std::size_t count) {
-        (k == 0 ? pass.keep : pass.repeat)(body_rows.data(), gains.data(), some, count);
+      everywhere([&](std::size_t region) {
+        k == 0 ? steps.keep_velocities(region) : steps.repeat_gains(region);
       });
     }
-    if (k == 0 || !repeats) {
-      for_parts([](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
-    }
-    for (int round = 0; round < kRounds; ++round) {
-      solve_joints(h, round);
-      for_parts([&](const auto& p, const auto& part, std::size_t) {
-        (round == 0 ? p.solve_first : p.solve_again)(part, soft);
+    if (k == 0 || !repeats) everywhere([&](std::size_t region) { steps.warm_start(region); });
+    if (contacts_alone) {
+      // All that comes one after another for a region alone is done at once, so that its contacts
+      // are read from memory once a sub-step.
+      for (int round = 0; round < kRounds; ++round) steps.push(solve::kBetween, round);
+      for_regions([&](std::size_t region) {
+        for (int round = 0; round < kRounds; ++round) steps.push(region, round);
+        steps.move_and_relax(region, last);
       });
-      if (links) solve_links(h);
+      steps.move_and_relax(solve::kBetween, last);
+    } else {
+      for (int round = 0; round < kRounds; ++round) {
+        solve_joints(h, round);
+        everywhere([&](std::size_t region) { steps.push(region, round); });
+        if (links) solve_links(h);
+      }
+      if (links) move_links(h);
+      everywhere([&](std::size_t region) { steps.move(region); });
+      refresh_joints(h);
+      relax_joints(h);
+      everywhere([&](std::size_t region) { steps.relax(region, last); });
+      if (links) relax_links(h);
     }
-    if (links) move_links(h);
-    for_movers([&](const std::uint32_t* some, std::size_t count) {
-      pass.move(body_rows.data(), some, count, h);
-    });
-    refresh_joints(h);
-    relax_joints(h);
-    if (k == n - 1) find_news();
-    for_parts([&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft); });
-    soft.kept = 1.0f;
-    if (links) relax_links(h);
+    steps.go_on();
+  }
+}
+
+// Until nothing bounces any more.
+void World::Impl::strike(const SubSteps& steps, std::size_t blocks) {
+  const auto end = lane_bits.begin() + static_cast<std::ptrdiff_t>(blocks);
+  for (int round = 0;; ++round) {
+    if (round == kStrikes) {
+      status.bounce_limit = true;
+      return;
+    }
+    std::fill(lane_bits.begin(), end, 0u);
+    for_regions([&](std::size_t region) { steps.strike(region); });
+    steps.strike(solve::kBetween);
+    if (std::find(lane_bits.begin(), end, 1u) == end) return;
+    ++counters.bounce_rounds;
   }
 }
 

@@ -30,15 +30,6 @@ void World::Impl::report_touch(std::uint32_t index, bool loaded) {
   emit(kind, pair, loaded && c.count > 0 ? c.position[0] : Vec3{}, {}, 0.0, 0.0, 0.0);
 }
 
-// Before the last relaxing: what pushes two apart that overlap is a load, though nothing of it is
-// left in the velocities.
-void World::Impl::find_news() {
-  (void)blocks_in_use();
-  for_parts([&](const auto& pass, const auto& part, std::size_t first) {
-    pass.find_news(part, lane_bits.data() + first);
-  });
-}
-
 void World::Impl::report_news() {
   counters.contacts += points_in_lanes;
   std::size_t next = 0;

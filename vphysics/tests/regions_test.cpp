@@ -1,0 +1,179 @@
+// Worlds that are solved region by region: the same physics, and every order of workers the same.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "random.h"
+#include "rig.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kDt = 1.0 / 240;
+
+World world_of(int region_bodies) {
+  WorldDesc desc;
+  desc.region_bodies = region_bodies;
+  return World(desc);
+}
+
+// Unit boxes, each half on two of the row below, the lowest row on the ground.
+std::vector<BodyId> build_wall(World& world, int rows) {
+  std::vector<BodyId> boxes;
+  for (int row = 0; row < rows; ++row) {
+    for (int i = 0; i < rows - row; ++i) {
+      boxes.push_back(add_dynamic(
+          world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{i + 0.5 * row, 0, 0.5 + row})}));
+    }
+  }
+  return boxes;
+}
+
+TEST(Regions, AreAsManyAsNeeded) {
+  World world = world_of(16);
+  add_ground(world, {});
+  std::vector<BodyId> boxes;
+  const auto regions_of = [&](int bodies) {
+    while (boxes.size() < static_cast<std::size_t>(bodies)) {
+      const auto n = static_cast<double>(boxes.size());
+      boxes.push_back(
+          add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{2.0 * n, 0, 0.5})}));
+    }
+    while (boxes.size() > static_cast<std::size_t>(bodies)) {
+      must(world.destroy_body(boxes.back()));
+      boxes.pop_back();
+    }
+    must(world.step(kDt));
+    return world.counters().regions;
+  };
+  EXPECT_EQ(regions_of(16), 0u);
+  EXPECT_EQ(regions_of(17), 2u);
+  EXPECT_EQ(regions_of(33), 4u);
+  EXPECT_EQ(regions_of(100), 8u);
+  // Fewer only when they are well filled, so that a body more or less does not change all.
+  EXPECT_EQ(regions_of(60), 8u);
+  EXPECT_EQ(regions_of(40), 4u);
+  EXPECT_EQ(regions_of(20), 2u);
+  EXPECT_EQ(regions_of(13), 2u);
+  EXPECT_EQ(regions_of(12), 0u);
+  EXPECT_EQ(regions_of(16), 0u);
+}
+
+// Every contact of a body is found wherever it is kept: each box carries what lies on it, of which
+// there is a closed form.
+TEST(Regions, CarryWhatLiesOnThem) {
+  World world = world_of(4);
+  add_ground(world, {});
+  constexpr int kTowers = 9, kHigh = 6;
+  std::vector<BodyId> boxes;
+  for (int t = 0; t < kTowers; ++t) {
+    for (int k = 0; k < kHigh; ++k) {
+      boxes.push_back(add_dynamic(
+          world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{1.5 * t, 0, 0.5 + k})}));
+    }
+  }
+  for (int i = 0; i < 480; ++i) must(world.step(kDt));
+  EXPECT_EQ(world.counters().regions, 16u);
+  EXPECT_EQ(world.counters().manifolds, boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Vec3 x = world.pose(boxes[i]).position();
+    const double t = static_cast<double>(i / kHigh), k = static_cast<double>(i % kHigh);
+    EXPECT_NEAR(x.x, 1.5 * t, 1e-3);
+    EXPECT_NEAR(x.z, 0.5 + k, 2e-3);
+    EXPECT_LT(norm(world.velocity(boxes[i]).v), 1e-3);
+  }
+}
+
+// A wall hangs together across all regions. It stands as one that is solved in one piece does.
+TEST(Regions, StandAsOnePieceDoes) {
+  for (const double dt : {1.0 / 60, kDt}) {
+    double drift[2] = {};
+    for (const int regions : {0, 1}) {
+      World world = world_of(regions == 1 ? 12 : 2048);
+      add_ground(world, {.friction = 0.6});
+      const std::vector<BodyId> boxes = build_wall(world, 16);
+      std::vector<Vec3> start;
+      for (const BodyId box : boxes) start.push_back(world.pose(box).position());
+      for (double t = 0.0; t < 5.0; t += dt) must(world.step(dt));
+      EXPECT_EQ(world.counters().regions, regions == 1 ? 16u : 0u);
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        drift[regions] = std::max(drift[regions], norm(world.pose(boxes[i]).position() - start[i]));
+    }
+    std::printf("wall of 136 at %.0f Hz: drift %.2f mm in one piece, %.2f mm in 16 regions\n",
+                1.0 / dt, 1e3 * drift[0], 1e3 * drift[1]);
+    EXPECT_LT(drift[1], 5e-3);
+  }
+}
+
+// A blow runs through a row of equal balls, from region to region, within a step: the last leaves
+// with the speed of the first.
+TEST(Regions, PassABlowOn) {
+  WorldDesc desc;
+  desc.gravity = {};
+  desc.region_bodies = 2;
+  World world(desc);
+  constexpr int kBalls = 12;
+  std::vector<BodyId> balls;
+  for (int i = 0; i < kBalls; ++i) {
+    Part ball{.shape = Sphere{0.1}, .material = {0.0, 1.0}, .pose = SE3(Vec3{0.2 * i, 0, 0})};
+    if (i == 0) {
+      ball.pose = SE3(Vec3{-0.05, 0, 0});
+      ball.velocity = {{}, {2, 0, 0}};
+    }
+    balls.push_back(add_dynamic(world, ball));
+  }
+  for (int i = 0; i < 24; ++i) must(world.step(kDt));
+  EXPECT_EQ(world.counters().regions, 8u);
+  EXPECT_NEAR(world.velocity(balls.back()).v.x, 2.0, 1e-3);
+  for (int i = 0; i < kBalls - 1; ++i) EXPECT_NEAR(world.velocity(balls[i]).v.x, 0.0, 1e-3) << i;
+}
+
+// What is thrown together keeps its momentum, and loses energy, while bodies change their regions.
+TEST(Regions, KeepMomentum) {
+  WorldDesc desc;
+  desc.gravity = {};
+  desc.region_bodies = 8;
+  World world(desc);
+  Random random(5);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 150; ++i) {
+    const Vec3 at = random.in_cube(2.0);
+    Part part{.shape = Box{{0.12, 0.1, 0.15}}, .pose = SE3(random.rotation(), at)};
+    if (i % 3 == 0) part.shape = Sphere{0.13};
+    part.velocity = {random.in_cube(2.0), -2.0 * at};
+    part.velocity.v = transposed_times(part.pose.rotation(), part.velocity.v);
+    bodies.push_back(add_dynamic(world, part));
+  }
+  struct Sum {
+    Vec3 momentum;
+    double energy = 0.0, speed = 0.0;
+  };
+  const auto sum_of = [&] {
+    Sum sum;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Shape shape = i % 3 == 0 ? Shape{Sphere{0.13}} : Shape{Box{{0.12, 0.1, 0.15}}};
+      const double mass = solid_inertia(shape, 1000.0).mass();
+      const Vec3 v = world.pose(bodies[i]).rotate(world.velocity(bodies[i]).v);
+      sum.momentum += mass * v;
+      sum.energy += 0.5 * mass * dot(v, v);
+      sum.speed += mass * norm(v);
+    }
+    return sum;
+  };
+  const Sum before = sum_of();
+  std::uint32_t contacts = 0;
+  for (int i = 0; i < 480; ++i) {
+    must(world.step(kDt));
+    contacts = std::max(contacts, world.counters().manifolds);
+  }
+  const Sum after = sum_of();
+  EXPECT_EQ(world.counters().regions, 32u);
+  EXPECT_GT(contacts, 60u);
+  EXPECT_LT(norm(after.momentum - before.momentum), 1e-5 * before.speed);
+  EXPECT_LT(after.energy, 0.6 * before.energy);
+}
+
+}  // namespace
+}  // namespace vp::test
