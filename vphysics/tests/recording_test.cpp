@@ -335,8 +335,8 @@ TEST(Recorder, WritesGoldenBytes) {
   for (const std::byte b : drop.bytes) {
     hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
   }
-  EXPECT_EQ(drop.bytes.size(), 1173u);
-  EXPECT_EQ(hash, 17568323414727701000u);
+  EXPECT_EQ(drop.bytes.size(), 1175u);
+  EXPECT_EQ(hash, 17839458664266283469u);
 }
 
 TEST(Replay, TellsTheFirstStepThatDiffers) {
