@@ -53,7 +53,7 @@ class Lockstep {
     }
   }
   // Ticks until the condition holds: for what another thread has to hand on first.
-  bool tick_until(const std::function<bool()>& condition, int max_ms = 5000) {
+  bool tick_until(const std::function<bool()>& condition, int max_ms = 30000) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(max_ms);
     while (!condition()) {
       if (std::chrono::steady_clock::now() > until) return false;

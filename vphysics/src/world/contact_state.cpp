@@ -191,6 +191,7 @@ void World::Impl::ContactState::read_regions(Reader& in) {
   const std::uint64_t count = in.word();
   in.check(count == 0 || (std::has_single_bit(count) && count > 1 && count <= kMostRegions));
   region_age_ = in.bounded();
+  in.check(region_age_ >= 0.0);
   if (!in.ok() || count == 0) return;
   region_axes_.resize(count);
   for (std::uint8_t& axis : region_axes_) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
