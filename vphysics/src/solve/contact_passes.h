@@ -431,7 +431,8 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     // What carries nothing may be hit in this very sub-step, unless it is farther off than that.
     const auto quiet = select(load > F(0.0f), F(0.0f), F(kReach) - opening) <= F(0.0f);
     const auto rests = both(both(grips, moved <= F(kSettledForNow) * load), quiet);
-    c.put(block.active, select(rests, F(0.0f), F(1.0f)));
+    // What was left alone stays so: whether it was looked at turns on the lanes beside it.
+    c.put(block.active, select(both(acts, !rests), F(1.0f), F(0.0f)));
   } else {
     c.put(block.given, F(soft.kept) * c.get(block.given) + load);
     const auto idle = neither_bounces_nor_comes_to_touch(load > F(0.0f), c.get(block.restitution));

@@ -1,0 +1,199 @@
+// The solver's passes give the same bits however many lanes they take at a time.
+#include "solve/passes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "random.h"
+#include "solve/contact_graph.h"
+#include "solve/contact_lane.h"
+
+namespace vp::solve {
+namespace {
+
+constexpr std::uint32_t kBodies = 160;
+constexpr float kH = 1.0f / 540;
+
+struct Instructions {
+  const char* name;
+  const Passes* passes;
+};
+std::vector<Instructions> of_this_machine() {
+  std::vector<Instructions> all = {{"baseline", &kBaseline}};
+#ifdef VP_INSTRUCTION_SETS
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx2")) all.push_back({"AVX2", &kAvx2});
+  if (&passes() == &kAvx512) all.push_back({"AVX-512", &kAvx512});
+#endif
+  return all;
+}
+
+// A net of bodies with contacts of which some rest, some gape, some bounce and some are hit.
+struct Net {
+  std::vector<BodyRow> rows{kBodies + 1};
+  ContactGraph graph;
+  std::vector<std::uint32_t> bodies;
+  std::vector<Gain> gains{kBodies};
+
+  double gaping;             // share of the contacts
+  std::vector<float> acted;  // which lanes later rounds have found unsettled
+
+  explicit Net(std::uint64_t seed) : gaping(seed % 2 == 0 ? 0.3 : 0.8) {
+    vp::test::Random random(seed);
+    const auto number = [&](double low, double high) {
+      return static_cast<float>(random.uniform(low, high));
+    };
+    graph.resize(rows.size());
+    for (std::uint32_t i = 0; i < kBodies; ++i) {
+      BodyRow& row = rows[i + 1];
+      bodies.push_back(i);
+      // Some fly, most hardly move.
+      const double speed = random.word() % 8 == 0 ? 3.0 : 0.01;
+      for (int k = 0; k < 6; ++k) row.velocity[k] = number(-speed, speed);
+      row.velocity[kInverseMass] = number(0.5, 2.0);
+      row.velocity[kFalls] = 1.0f;
+      for (int k = 0; k < 3; ++k) row.inertia[k] = number(4.0, 8.0);
+      for (int k = 3; k < 6; ++k) row.inertia[k] = number(-1.0, 1.0);
+      row.inertia[kKeepLinear] = row.inertia[kKeepAngular] = 1.0f;
+      row.rate[2] = -9.81f;
+    }
+    std::uint32_t contact = 0;
+    for (std::uint32_t i = 0; i < kBodies; ++i) {
+      for (const std::uint32_t step : {0u, 1u, 7u}) {  // 0: with what is fixed
+        if (random.word() % 4 == 0) continue;
+        const std::uint32_t j = (i + step) % kBodies;
+        const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kBetween};
+        const ContactGraph::End b{j + 1, true, kBetween};
+        const bool ball = random.word() % 5 == 0;
+        const Place place = graph.add(contact++, a, b, ball ? 1 : 4);
+        if (ball) {
+          write(graph.block<1>(place), place, a, b, random);
+        } else {
+          write(graph.block<4>(place), place, a, b, random);
+        }
+      }
+    }
+  }
+
+  template <int P>
+  void write(ContactBlock<P>& block, const Place& place, const ContactGraph::End& a,
+             const ContactGraph::End& b, vp::test::Random& random) {
+    NewContact c{};
+    c.normal = random.rotation() * Vec3{0, 0, 1};
+    c.x_b = random.in_cube(0.5);
+    c.count = P == 1 ? 1 : 1 + static_cast<int>(random.word() % 4);
+    const bool gapes = random.uniform(0.0, 1.0) < gaping;
+    const double gap = gapes ? random.uniform(0.0, 6e-3) : -1e-4;
+    for (int i = 0; i < c.count; ++i) {
+      c.points[i] = {random.in_cube(0.5), gap + random.uniform(0.0, 1e-4), 0.0f};
+      if (!gapes) c.points[i].impulse = static_cast<float>(random.uniform(0.0, 0.02));
+    }
+    c.friction = random.uniform(0.0, 1.0);
+    c.restitution = random.word() % 6 == 0 ? 0.5 : 0.0;
+    c.rolling = P == 1 ? 0.01 : 0.0;
+    c.slid_limit = 0.01;
+    write_lane(block, ContactGraph::lane(place), c, rows[a.row], rows[b.row]);
+  }
+
+  // f(passes of the kind, run).
+  template <class F>
+  void for_runs(const Passes& passes, const F& f) {
+    for (int c = 0; c < kLastColour; ++c) {
+      const auto one = [&](const auto& of_kind, auto& colour) {
+        using Run = typename std::remove_cvref_t<decltype(of_kind)>::Run;
+        if (colour.lanes > 0) {
+          f(of_kind,
+            Run{colour.blocks.data(), colour.lanes, kLanes, c >= kFirstFixedColour, rows.data()});
+        }
+      };
+      one(passes.one, graph.of<1>(kBetween, c));
+      one(passes.four, graph.of<4>(kBetween, c));
+    }
+  }
+
+  int sub_step(const Passes& passes, const Soft& soft, bool first) {
+    int bounces = 0;
+    const std::size_t n = bodies.size();
+    if (!first) passes.find_gains(rows.data(), gains.data(), bodies.data(), n);
+    passes.accelerate(rows.data(), bodies.data(), n, kH);
+    for (int round = 0; round < 4; ++round) {
+      for_runs(passes,
+               [&](const auto& p, const auto& run) { bounces += p.strike(run, kH, 0.05f); });
+    }
+    (first ? passes.keep : passes.repeat)(rows.data(), gains.data(), bodies.data(), n);
+    if (first) for_runs(passes, [&](const auto& p, const auto& run) { p.warm_start(run); });
+    for_runs(passes, [&](const auto& p, const auto& run) { p.solve_first(run, soft); });
+    acted.clear();
+    for (int round = 0; round < 2; ++round) {
+      for_runs(passes, [&](const auto& p, const auto& run) {
+        p.solve_again(run, soft);
+        for (std::uint32_t l = 0; l < run.lanes; ++l)
+          acted.push_back(run.blocks[l / kLanes].active.lane[l % kLanes]);
+      });
+    }
+    passes.move(rows.data(), bodies.data(), n, kH);
+    for_runs(passes, [&](const auto& p, const auto& run) { p.relax(run, soft); });
+    return bounces;
+  }
+
+  // Of all that the passes read and write, but lanes that are not in use.
+  std::vector<float> state() {
+    std::vector<float> all = acted;
+    const auto add = [&all](const float(&row)[8]) { all.insert(all.end(), row, row + 8); };
+    for (const BodyRow& row : rows) {
+      add(row.velocity);
+      add(row.way);
+    }
+    for_runs(passes(), [&](const auto&, const auto& run) {
+      for (std::uint32_t l = 0; l < run.lanes; ++l) {
+        auto& block = run.blocks[l / kLanes];
+        for (const Field* f : {&block.active, &block.given}) all.push_back(f->lane[l % kLanes]);
+        for (const Field& f : fields_of(block)) all.push_back(f.lane[l % kLanes]);
+      }
+    });
+    return all;
+  }
+};
+
+// An early end of one lane's work must not turn on the lanes beside it.
+TEST(Passes, GiveTheSameBitsInEveryWidth) {
+  const std::vector<Instructions> all = of_this_machine();
+  int bounces = 0;
+  std::size_t loaded = 0, idle = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::vector<Net> nets(all.size(), Net(seed));
+    Soft soft{0.1f / kH, 0.93f, 0.07f, 3.0f, 1.0f / kH, 0.0f};
+    for (int k = 0; k < 9; ++k) {
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const int found = nets[i].sub_step(*all[i].passes, soft, k == 0);
+        if (i == 0) bounces += found;
+      }
+      soft.kept = 1.0f;
+      const std::vector<float> first = nets[0].state();
+      for (std::size_t i = 1; i < all.size(); ++i) {
+        const std::vector<float> other = nets[i].state();
+        ASSERT_EQ(first.size(), other.size());
+        ASSERT_EQ(std::memcmp(first.data(), other.data(), first.size() * sizeof(float)), 0)
+            << all[i].name << ", seed " << seed << ", sub-step " << k;
+      }
+    }
+    nets[0].for_runs(passes(), [&](const auto&, const auto& run) {
+      for (std::uint32_t l = 0; l < run.lanes; ++l) {
+        const auto& block = run.blocks[l / kLanes];
+        loaded += block.impulse[0].lane[l % kLanes] > 0.0f;
+        idle += block.active.lane[l % kLanes] == 0.0f;
+      }
+    });
+  }
+  std::printf("%zu widths; of the contacts %zu loaded, %zu idle; %d bounces\n", all.size(), loaded,
+              idle, bounces);
+  EXPECT_GT(loaded, 1000u);
+  EXPECT_GT(idle, 500u);
+  EXPECT_GT(bounces, 100);
+}
+
+}  // namespace
+}  // namespace vp::solve
