@@ -34,8 +34,9 @@ class LanesOf {
   using S = Sym3T<F>;
   using Block = ContactBlock<P>;
 
-  LanesOf(Block& block, int at, const typename ContactPasses<P>::Run& run)
-      : block_(block), at_(at), rows_(run.rows), shares_rows_(run.shares_rows) {}
+  // all_used: no lane is empty; empty ones are of the world's row, which other workers may read.
+  LanesOf(Block& block, int at, bool all_used, const typename ContactPasses<P>::Run& run)
+      : block_(block), at_(at), rows_(run.rows), shares_rows_(run.shares_rows || !all_used) {}
 
   F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
   V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }

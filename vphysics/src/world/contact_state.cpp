@@ -188,15 +188,15 @@ void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> 
 }
 
 void World::Impl::ContactState::read_regions(Reader& in) {
-  const std::uint64_t count = in.word();
-  in.check(count == 0 || (std::has_single_bit(count) && count > 1 && count <= kMostRegions));
+  const std::uint32_t count = in.index(kMostRegions + 1);
+  in.check(count == 0 || (std::has_single_bit(count) && count > 1));
   region_age_ = in.bounded();
   in.check(region_age_ >= 0.0);
   if (!in.ok() || count == 0) return;
   region_axes_.resize(count);
   for (std::uint8_t& axis : region_axes_) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
   for (OfBody& body : bodies_) body.region = static_cast<std::uint16_t>(in.index(count + 1));
-  if (in.ok()) graph_.set_regions(count + 1);
+  if (in.ok()) graph_.set_regions(std::size_t{count} + 1);
 }
 
 solve::ContactGraph::End World::Impl::ContactState::end_of(std::uint32_t body) const {
