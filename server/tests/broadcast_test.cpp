@@ -113,7 +113,7 @@ class InputTest : public testing::Test {
     return in;
   }
   // A datagram on loopback is there when sendto() returns.
-  const InputCounters counters() {
+  InputCounters counters() {
     table.tick();
     return table->counters().input;
   }

@@ -86,6 +86,44 @@ TEST(Regions, CarryWhatLiesOnThem) {
   }
 }
 
+// Of nine bodies in regions of one each, some of sixteen are empty.
+TEST(Regions, MayBeEmpty) {
+  World world = world_of(1);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 9; ++i)
+    bodies.push_back(add_dynamic(world, {.pose = SE3(Vec3{1.0 * i, 0, 0})}));
+  must(world.step(kDt));
+  EXPECT_EQ(world.counters().regions, 16u);
+  must(world.destroy_body(bodies[3]));
+  must(world.destroy_body(bodies[7]));
+  for (int i = 0; i < 100; ++i) must(world.step(kDt));
+  EXPECT_EQ(world.counters().regions, 16u);
+}
+
+// A kinematic body goes its way in the turn of its own region; what it carries is of all.
+TEST(Regions, AreCarriedByALift) {
+  for (const Vec3& speed : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{0.6, 0.2, 0.8}}) {
+    World world = world_of(8);
+    BodyDesc lift;
+    lift.motion = Motion::kinematic;
+    lift.velocity = {{}, speed};
+    const BodyId body = must(world.create_body(lift));
+    ColliderDesc floor;
+    floor.shape = Box{{10, 10, 0.5}};
+    must(world.add_collider(body, floor));
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 64; ++i) {
+      boxes.push_back(
+          add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}},
+                              .pose = SE3(Vec3{2.0 * (i % 8 - 4), 2.0 * (i / 8 - 4), 1}),
+                              .velocity = {{}, speed}}));
+    }
+    for (int i = 0; i < 240; ++i) must(world.step(kDt));
+    EXPECT_EQ(world.counters().regions, 16u);
+    for (const BodyId box : boxes) EXPECT_LT(norm(world.velocity(box).v - speed), 2e-3);
+  }
+}
+
 // A wall hangs together across all regions. It stands as one that is solved in one piece does.
 TEST(Regions, StandAsOnePieceDoes) {
   for (const double dt : {1.0 / 60, kDt}) {
@@ -103,7 +141,7 @@ TEST(Regions, StandAsOnePieceDoes) {
     }
     std::printf("wall of 136 at %.0f Hz: drift %.2f mm in one piece, %.2f mm in 16 regions\n",
                 1.0 / dt, 1e3 * drift[0], 1e3 * drift[1]);
-    EXPECT_LT(drift[1], 5e-3);
+    EXPECT_LT(drift[1], 1.2 * drift[0]);  // measured: 1.82 of 1.82 mm, 0.37 of 0.37 mm
   }
 }
 

@@ -155,6 +155,41 @@ TEST_F(Workers, MayBeThoseOfOneTbb) {
   }
 }
 #endif
+// Contacts alone, in regions of a few bodies that are divided anew on the way: a heap on a lift
+// that rises and turns.
+std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<Jobs>& jobs) {
+  WorldDesc desc;
+  desc.region_bodies = 12;
+  World world(desc);
+  BodyDesc lift;
+  lift.motion = Motion::kinematic;
+  lift.velocity = {{0, 0, 0.3}, {0.1, 0, 0.5}};
+  const BodyId moving = must(world.create_body(lift));
+  ColliderDesc floor;
+  floor.shape = Box{{3, 3, 0.05}};
+  must(world.add_collider(moving, floor));
+  for (int i = 0; i < 120; ++i) {
+    Part part{.shape = Box{{0.1, 0.1, 0.1}}, .material = {.restitution = i % 7 == 0 ? 0.5 : 0.0}};
+    if (i % 5 == 0) part.shape = Sphere{0.1};
+    part.pose =
+        SE3(Vec3{0.21 * (i % 5) + 0.01 * (i % 3), 0.21 * (i / 5 % 5), 0.2 + 0.22 * (i / 25)});
+    add_dynamic(world, part);
+  }
+  world.set_jobs(jobs);
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < 150; ++i) {
+    must(world.step(1.0 / 240));
+    if (i % 10 == 9) hashes.push_back(world.state_hash());
+  }
+  EXPECT_EQ(world.counters().regions, 16u);
+  EXPECT_GT(world.counters().manifolds, 120u);
+  return hashes;
+}
+TEST_F(Workers, MayTakeTheTurnsOfRegions) {
+  const auto alone = hashes_of_lift(nullptr);
+  EXPECT_EQ(hashes_of_lift(std::make_shared<Backwards>()), alone);
+  EXPECT_EQ(hashes_of_lift(std::make_shared<Threads>(2)), alone);
+}
 // And where each takes regions of their own.
 TEST_F(Workers, MayTakeRegions) {
   constexpr int kRegionBodies = 100;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "solve/body_row.h"
 #include "solve/lane_copy.h"
 
 namespace vp::solve {
@@ -10,10 +11,11 @@ namespace {
 
 constexpr std::uint64_t kOfFixed = ~std::uint64_t{0} << kFirstFixedColour;
 
-// Of what does not move it does not matter where it is.
+// What nothing pushes may go its way all the same, as others of its region do: it counts, but for
+// the world itself.
 std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
-  if (!a.moves) return b.moves ? b.region : kBetween;
-  return !b.moves || a.region == b.region ? a.region : kBetween;
+  if (a.row == kWorldRow) return b.region;
+  return b.row == kWorldRow || a.region == b.region ? a.region : kBetween;
 }
 
 template <int P>
@@ -40,6 +42,7 @@ void ContactGraph::reserve(std::size_t bodies) {
     const std::size_t share = within == 0          ? bodies
                               : region == kBetween ? bodies / 16
                                                    : bodies / within + 1;
+    if (within > 0 && share < 2 * kLanes) continue;  // a block of each colour would be too much
     const std::size_t blocks = share / (2 * kLanes) + 1;
     for (const int first : {0, kFirstFixedColour}) {
       for (int c = first; c < first + kReady; ++c) {
@@ -68,6 +71,7 @@ Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int p
 
 bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
                           Place& place) {
+  if ((!a.moves || !b.moves) && colour < kFirstFixedColour) return false;
   if (colour < kLastColour) {
     const std::uint64_t bit = 1ull << colour;
     if ((a.moves && (taken_[a.row] & bit) != 0) || (b.moves && (taken_[b.row] & bit) != 0)) {

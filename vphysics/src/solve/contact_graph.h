@@ -9,9 +9,10 @@
 // A body with more contacts than there are colours puts the rest into the last one, where every
 // contact has a block to itself: blocks are solved one after the other.
 //
-// A large world is divided into regions (world/regions.cpp): a contact whose moving bodies are all
-// of one region is kept there, colour by colour, all others in kBetween. So no two regions share a
-// body that moves, and each can be solved by itself, again and again, while it lies in the caches.
+// A large world is divided into regions (world/regions.cpp): a contact of two bodies of one region,
+// or of one and the fixed world, is kept there, colour by colour, all others in kBetween. So no two
+// regions share a body, and each can be solved by itself, again and again, while it lies in the
+// caches.
 // Colours are those of the whole world: a contact that goes to another region keeps its own.
 #pragma once
 
@@ -120,9 +121,13 @@ class ContactGraph {
   const ColourBlocks<P>& of(std::size_t region, int colour) const {
     return const_cast<ContactGraph*>(this)->of<P>(region, colour);
   }
-  // kBetween and those behind it. Precondition of set_regions: those that go are empty.
-  std::size_t regions() const { return regions_.size(); }
-  void set_regions(std::size_t count) { regions_.resize(count); }
+  // kBetween and those behind it. Precondition of set_regions: those that go are empty. Their
+  // memory stays, for when they are back.
+  std::size_t regions() const { return regions_in_use_; }
+  void set_regions(std::size_t count) {
+    if (count > regions_.size()) regions_.resize(count);
+    regions_in_use_ = count;
+  }
   // Room for rows; and for the first contacts of so many bodies, so that a busy step need not take
   // it from the heap.
   void resize(std::size_t rows) { taken_.resize(rows); }
@@ -143,6 +148,7 @@ class ContactGraph {
     std::uint64_t in_use = 0;
   };
   std::vector<Region> regions_{1};
+  std::size_t regions_in_use_ = 1;
   std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
 };
 

@@ -159,6 +159,7 @@ void rescale_impulses(ContactBlock<P>& block, float factor) {
   for (Field& p : block.tangent_impulse) rescale(p);
   for (Field& p : block.roll_impulse) rescale(p);
   rescale(block.twist_impulse);
+  for (float& active : block.active.lane) active = 1.0f;  // a load may have become none
 }
 
 template void rescale_impulses<1>(ContactBlock<1>&, float);

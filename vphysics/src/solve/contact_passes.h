@@ -437,7 +437,8 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   } else {
     c.put(block.given, F(soft.kept) * c.get(block.given) + load);
     const auto idle = neither_bounces_nor_comes_to_touch(load > F(0.0f), c.get(block.restitution));
-    c.put(block.active, select(idle, F(0.0f), F(1.0f)));
+    const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
+    c.put(block.active, select(both(!idle, there), F(1.0f), F(0.0f)));
   }
 }
 

@@ -7,7 +7,7 @@
 //   pool            of each slot its flags, and if it is alive the contact, with the chain of its
 //                   parts; free slots, in order
 //   near contacts   in order, then those parked: each contact and all its fields
-//   regions         how many; for how long so; the axis of each halving; of each body its own
+//   regions         how many; how long ago divided; the axis of each halving; of each body its own
 //   lanes           of each region and colour, then of those parked, and each kind: how many, and
 //   of each its contact and all its fields
 //

@@ -43,8 +43,8 @@ struct alignas(64) Body {
   bool posed = false;      // the colliders' poses and bounds are those of T
   bool bounded = false;    // so are `bounds`
   bool untouched = false;  // by what its row met in this step, so it has turned freely
-  std::uint16_t region = solve::kBetween;
-  std::uint32_t lanes = 0;  // of the solver that hold it
+  std::uint16_t region = solve::kBetween;  // regions.cpp
+  std::uint32_t lanes = 0;                 // of the solver that hold it
   std::uint32_t first_joint = kNone, first_collider = kNone;
   float bounded_at[6] = {};  // its way when its proxies' bounds were last set
   // To the farthest point of its bounded colliders from the reference point; half of the least
@@ -479,6 +479,8 @@ struct World::Impl {
   void for_runs(const F& f);
   template <class F>
   void for_regions(const F& f) const;
+  template <class F>
+  void everywhere(const F& f) const;
   template <class F>
   void for_parts_of(std::size_t region, const F& f);
   template <class F>

@@ -1,5 +1,4 @@
-// The contacts of all regions and colours, in the order of solving: region after region, then what
-// is between them.
+// The contacts of all regions and colours: region after region, then what is between them.
 #pragma once
 
 #include <bit>
@@ -35,7 +34,7 @@ void World::Impl::for_runs(const F& f) {
   for_runs_of(solve::kBetween, f);
 }
 
-// f(region) of all but kBetween, side by side: no body that moves is of two.
+// f(region) of all but kBetween, side by side: no body but the fixed world is of two.
 template <class F>
 void World::Impl::for_regions(const F& f) const {
   in_parallel(region_count, 1, [&](std::size_t begin, std::size_t end) {
@@ -68,10 +67,16 @@ void World::Impl::for_parts_of(std::size_t region, const F& f) {
   });
 }
 
+// The same, and then of kBetween.
+template <class F>
+void World::Impl::everywhere(const F& f) const {
+  for_regions(f);
+  f(std::size_t{solve::kBetween});
+}
+
 template <class F>
 void World::Impl::for_parts(const F& f) {
-  for_regions([&](std::size_t region) { for_parts_of(region, f); });
-  for_parts_of(solve::kBetween, f);
+  everywhere([&](std::size_t region) { for_parts_of(region, f); });
 }
 
 }  // namespace vp

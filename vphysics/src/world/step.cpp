@@ -59,10 +59,10 @@ void World::Impl::begin_step(double dt) {
   for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
   new_pairs.reserve(room);
-  lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours);
   body_rows.resize(n + 1);
   graph.resize(n + 1);
   divide_into_regions(dt);
+  lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours * graph.regions());
   if (!movers.empty()) graph.reserve(movers.size());
   start_ways.resize(n);
   gains.resize(n);

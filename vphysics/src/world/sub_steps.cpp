@@ -181,10 +181,6 @@ void World::Impl::take_sub_steps(double dt, int n) {
   // joints and links have a share in it: these turn within the step.
   const bool repeats = contacts_alone && n > 1;
   const std::size_t blocks = number_blocks();
-  const auto everywhere = [&](const auto& f) {
-    for_regions(f);
-    f(std::size_t{solve::kBetween});
-  };
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
@@ -199,7 +195,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
     if (k == 0 || !repeats) everywhere([&](std::size_t region) { steps.warm_start(region); });
     if (contacts_alone) {
       // All that comes one after another for a region alone is done at once, so that its contacts
-      // are read from memory once a sub-step.
+      // are read from memory once, but for what strikes and the first warm start look at.
       for (int round = 0; round < kRounds; ++round) steps.push(solve::kBetween, round);
       for_regions([&](std::size_t region) {
         for (int round = 0; round < kRounds; ++round) steps.push(region, round);
@@ -232,8 +228,7 @@ void World::Impl::strike(const SubSteps& steps, std::size_t blocks) {
       return;
     }
     std::fill(lane_bits.begin(), end, 0u);
-    for_regions([&](std::size_t region) { steps.strike(region); });
-    steps.strike(solve::kBetween);
+    everywhere([&](std::size_t region) { steps.strike(region); });
     if (std::find(lane_bits.begin(), end, 1u) == end) return;
     ++counters.bounce_rounds;
   }
