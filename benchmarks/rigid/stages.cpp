@@ -49,7 +49,8 @@ int run(const std::string& name, double rate) {
   std::array sums{Sum{"pairs", &C::pairs},         Sum{"looked at", &C::looked_at},
                   Sum{"manifolds", &C::manifolds}, Sum{"recycled", &C::recycled},
                   Sum{"contacts", &C::contacts},   Sum{"colours", &C::colours},
-                  Sum{"impacts", &C::impacts},     Sum{"events", &C::events}};
+                  Sum{"regions", &C::regions},     Sum{"impacts", &C::impacts},
+                  Sum{"events", &C::events}};
   vp::StepStatus status;
   const long steps = std::lround(world->scene().seconds * rate);
   for (long i = 0; i < steps; ++i) {

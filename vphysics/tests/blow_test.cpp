@@ -128,15 +128,7 @@ TEST(Stack, IsNotThrownByOneLongStep) {
 // A lift of 5 m/s, at 1 kHz: 400 m up it carries its tower as it did at the foot.
 TEST(Stack, OnAKinematicLiftRidesAsWellAfterHundredsOfMetres) {
   World world;
-  BodyDesc desc;
-  desc.motion = Motion::kinematic;
-  desc.velocity.v = {0, 0, 5};
-  desc.T_world_body = SE3(Vec3{0, 0, -0.5});
-  const BodyId lift = must(world.create_body(desc));
-  ColliderDesc plate;
-  plate.shape = Box{{5, 5, 0.5}};
-  plate.material = kDull;
-  must(world.add_collider(lift, plate));
+  add_kinematic(world, Box{{5, 5, 0.5}}, {{}, {0, 0, 5}}, kDull, SE3(Vec3{0, 0, -0.5}));
   const std::vector<BodyId> tower = add_tower(world, 5, {{}, {0, 0, 5}});
   std::size_t events = 0;
   double fastest = 0.0;
@@ -156,15 +148,8 @@ TEST(Stack, OnATurntableCreepsNoFasterThanChordsDo) {
   constexpr double kRate = 1.5, kRadius = 1.0;
   for (const double rate : kRates) {
     World world;
-    BodyDesc desc;
-    desc.motion = Motion::kinematic;
-    desc.velocity.w = {0, 0, kRate};
-    desc.T_world_body = SE3(Vec3{0, 0, -0.5});
-    const BodyId table = must(world.create_body(desc));
-    ColliderDesc disc;
-    disc.shape = Cylinder{5, 0.5};
-    disc.material = {1.0, 0.0, 0.0};
-    must(world.add_collider(table, disc));
+    add_kinematic(world, Cylinder{5, 0.5}, {{0, 0, kRate}, {}}, {1.0, 0.0, 0.0},
+                  SE3(Vec3{0, 0, -0.5}));
     const BodyId box = add_dynamic(world, {.shape = kCube,
                                            .material = {1.0, 0.0, 0.0},
                                            .pose = SE3(Vec3{kRadius, 0, 0.5}),

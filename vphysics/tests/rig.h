@@ -40,6 +40,21 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
   return add_fixed(world, HalfSpace{}, material, SE3(R, {}));
 }
 
+// Goes at the velocity, body frame.
+inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocity,
+                            const Material& material = {}, const SE3& pose = {}) {
+  BodyDesc desc;
+  desc.motion = Motion::kinematic;
+  desc.T_world_body = pose;
+  desc.velocity = velocity;
+  const BodyId body = must(world.create_body(desc));
+  ColliderDesc collider;
+  collider.shape = shape;
+  collider.material = material;
+  must(world.add_collider(body, collider));
+  return body;
+}
+
 struct Part {
   Shape shape = Sphere{0.1};
   Material material{};

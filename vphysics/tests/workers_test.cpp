@@ -86,13 +86,7 @@ World busy_world(int region_bodies) {
   desc.region_bodies = region_bodies;
   World world(desc);
   add_ground(world, {.restitution = 0.2});
-  BodyDesc belt;
-  belt.motion = Motion::kinematic;
-  belt.velocity = {{0, 0, 0.1}, {0.3, 0, 0}};
-  const BodyId moving = must(world.create_body(belt));
-  ColliderDesc slab;
-  slab.shape = Box{{3, 3, 0.05}};
-  must(world.add_collider(moving, slab));
+  add_kinematic(world, Box{{3, 3, 0.05}}, {{0, 0, 0.1}, {0.3, 0, 0}});
   for (int i = 0; i < 26; ++i) {
     for (int j = 0; j < 26; ++j) {
       Part part{.material = {.restitution = j % 5 == 0 ? 0.5 : 0.0}};
@@ -161,13 +155,7 @@ std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<Jobs>& jobs) {
   WorldDesc desc;
   desc.region_bodies = 12;
   World world(desc);
-  BodyDesc lift;
-  lift.motion = Motion::kinematic;
-  lift.velocity = {{0, 0, 0.3}, {0.1, 0, 0.5}};
-  const BodyId moving = must(world.create_body(lift));
-  ColliderDesc floor;
-  floor.shape = Box{{3, 3, 0.05}};
-  must(world.add_collider(moving, floor));
+  add_kinematic(world, Box{{3, 3, 0.05}}, {{0, 0, 0.3}, {0.1, 0, 0.5}});
   for (int i = 0; i < 120; ++i) {
     Part part{.shape = Box{{0.1, 0.1, 0.1}}, .material = {.restitution = i % 7 == 0 ? 0.5 : 0.0}};
     if (i % 5 == 0) part.shape = Sphere{0.1};

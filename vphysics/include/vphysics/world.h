@@ -115,7 +115,7 @@ class World {
  public:
   // Of settings that come from a file or a user. Refused: numbers that are not finite, negative
   // ones, gravity or lengths beyond 1e9, no iterations or more than 1000, sub-steps beyond 1000,
-  // more than 100000 impacts a step.
+  // more than 100000 impacts a step, regions of no bodies or of more than 1,000,000.
   static Expected<World> create(const WorldDesc& desc);
   // Precondition: create() would take it.
   explicit World(const WorldDesc& desc = {});

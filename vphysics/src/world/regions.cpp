@@ -15,8 +15,7 @@
 namespace vp {
 namespace {
 
-// In a fall of so long bodies go 0.3 m against one another, and a division of 10,000 takes as long
-// as a twentieth of a step.
+// What falls for so long goes 0.3 m.
 constexpr double kDivisionTime = 0.25;  // [s]
 
 // Sum of the distances from the mean.
