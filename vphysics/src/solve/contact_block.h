@@ -45,13 +45,13 @@ struct ContactBlock {
   IndexField touches;  // 1: it has been told that the two touch
   Field active;        // 1: the next round of pushing, or strike, must look at it; else 0
   Field given;         // normal impulse of the sub-steps of this step so far [N s]
+  Field bias[kPoints];  // of the sub-step's first round of pushing (find_bias) [m/s]
 
   Field3 normal, tangent, d;
   Field3 arm[kPoints];      // jA_i = rA_i x n
   Field base[kPoints];      // [m]; of a point that is not there: far
   Field impulse[kPoints];   // [N s], accumulated
-  Field diagonal[kPoints];  // K_ii and its inverse; the latter is 0 of a point that is not there
-  Field inverse[kPoints];
+  Field inverse[kPoints];   // 1 / K_ii; 0 of a point that is not there
   Field off_diagonal[kPairs > 0 ? kPairs : 1];
 
   // Friction. The 2x2 inverse of what the tangents feel (xx, xy, yy), and the one mass with which

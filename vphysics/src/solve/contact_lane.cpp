@@ -52,7 +52,7 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
     if (i >= c.count) {
       put(block.arm[i], lane, {});
       put(block.base[i], lane, static_cast<double>(kFarApart));
-      for (Field* f : {&block.impulse[i], &block.diagonal[i], &block.inverse[i]})
+      for (Field* f : {&block.impulse[i], &block.inverse[i]})
         put(*f, lane, 0.0);
       for (int j = 0; j < i; ++j) put(block.off_diagonal[pair_index(i, j)], lane, 0.0);
       continue;
@@ -66,7 +66,6 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
       if (j < i) {
         put(block.off_diagonal[pair_index(i, j)], lane, k);
       } else {
-        put(block.diagonal[i], lane, k);
         put(block.inverse[i], lane, k > 0.0 ? 1.0 / k : 0.0);
       }
     }

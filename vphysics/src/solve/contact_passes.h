@@ -34,9 +34,7 @@ class LanesOf {
   using S = Sym3T<F>;
   using Block = ContactBlock<P>;
 
-  // all_used: no lane is empty; empty ones are of the world's row, which other workers may read.
-  LanesOf(Block& block, int at, bool all_used, const typename ContactPasses<P>::Run& run)
-      : block_(block), at_(at), rows_(run.rows), shares_rows_(run.shares_rows || !all_used) {}
+  LanesOf(Block& block, int at, BodyRow* rows) : block_(block), at_(at), rows_(rows) {}
 
   F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
   V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
@@ -70,8 +68,8 @@ class LanesOf {
   void scatter_velocities() const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
-    scatter([this](int i) -> BodyRow& { return row_a(i); }, &BodyRow::velocity, a);
-    scatter([this](int i) -> BodyRow& { return row_b(i); }, &BodyRow::velocity, b);
+    scatter([this](int i) { return row_a(i).velocity; }, a, pushes_a());
+    scatter([this](int i) { return row_b(i).velocity; }, b, pushes_b());
   }
   void gather_ways() {
     F r[8];
@@ -86,8 +84,8 @@ class LanesOf {
     const F zero(0.0f);
     const F a[8] = {x_a.x, x_a.y, x_a.z, turn_a.x, turn_a.y, turn_a.z, zero, zero};
     const F b[8] = {x_b.x, x_b.y, x_b.z, turn_b.x, turn_b.y, turn_b.z, zero, zero};
-    scatter([this](int i) -> BodyRow& { return row_a(i); }, &BodyRow::way, a);
-    scatter([this](int i) -> BodyRow& { return row_b(i); }, &BodyRow::way, b);
+    scatter([this](int i) { return row_a(i).way; }, a, pushes_a());
+    scatter([this](int i) { return row_b(i).way; }, b, pushes_b());
   }
   // Accelerations by the forces matter to bounces alone.
   void gather_accelerations(V& a, V& b) const {
@@ -124,15 +122,15 @@ class LanesOf {
  private:
   BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
   BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
-  // What nothing pushes keeps its row, which several lanes, and workers, may read.
-  template <class Row>
-  void scatter(const Row& row, float (BodyRow::*part)[8], const F* values) const {
-    const auto place = [&](int i) { return row(i).*part; };
-    if (shares_rows_) {
-      lanes::scatter8<W>(place, values,
-                         [&](int i) { return row(i).velocity[kInverseMass] > 0.0f; });
-    } else {
+  // What nothing pushes keeps its row, which several lanes, and workers, may read. Empty lanes are
+  // of the world's.
+  template <class Place>
+  static void scatter(const Place& place, const F* values, const LaneMask<W>& pushed) {
+    const unsigned bits = lanes::bits_of(pushed);
+    if (bits == lanes::kAllBits<W>) {
       lanes::scatter8<W>(place, values, [](int) { return true; });
+    } else {
+      lanes::scatter8<W>(place, values, [bits](int i) { return (bits >> i & 1u) != 0; });
     }
   }
   static const float* first_line(const BodyRow& row) {
@@ -149,19 +147,9 @@ class LanesOf {
   Block& block_;
   int at_;
   BodyRow* rows_;
-  bool shares_rows_;
   F mass_a_, mass_b_;
   S inertia_a_, inertia_b_;
 };
-
-template <int W>
-Lanes<W> larger(const Lanes<W>& a, const Lanes<W>& b) {
-  return select(a > b, a, b);
-}
-template <int W>
-Lanes<W> smaller(const Lanes<W>& a, const Lanes<W>& b) {
-  return select(a < b, a, b);
-}
 
 // What is common to the normal rows of a contact.
 template <int W, int P>
@@ -206,14 +194,43 @@ Lanes<W> sum_of_impulses(const LanesOf<W, P>& c) {
   return sum;
 }
 
-// What one point's change of impulse does to the speeds of all.
+// The points of one contact, each of which stops its own speed u_i by an impulse p_i >= 0 while the
+// others have theirs: with the masses m_i and the shares s_i = m_i K_ii,
+//   p_i' = p_i - m_i u_i - (1 - s_i) p_i,   u = u0 + K (p - p0)
+// is, since p_i cancels,
+//   p_i' = e_i - sum_{j != i} m_i K_ij p_j,  e_i = s_i p0_i - m_i u0_i + sum_{j != i} m_i K_ij p0_j
+// which has a third of the operations that wait for one another.
 template <int W, int P>
-void pass_on(const LanesOf<W, P>& c, int i, const Lanes<W>& change, Lanes<W>* u) {
-  for (int j = 0; j < P; ++j) {
-    const Field& k = i == j ? c.block().diagonal[i] : c.block().off_diagonal[pair_index(i, j)];
-    u[j] += c.get(k) * change;
+class Points {
+ public:
+  using F = Lanes<W>;
+
+  Points(const LanesOf<W, P>& c, const F* mass, const F* share, const F* u0, const F* p0) {
+    for (int i = 0; i < P; ++i) {
+      F e = share[i] * p0[i] - mass[i] * u0[i];
+      for (int j = 0; j < P; ++j) {
+        if (j == i) continue;
+        k_[i][j] = mass[i] * c.get(c.block().off_diagonal[pair_index(i, j)]);
+        e += k_[i][j] * p0[j];
+      }
+      e_[i] = e;
+    }
   }
-}
+  // Where it may also pull.
+  F wanted(int i, const F* p) const {
+    F x = e_[i];
+    for (int j = 1; j < P; ++j) {  // what has changed last comes last
+      const int other = (i + j) % P;
+      x -= k_[i][other] * p[other];
+    }
+    return x;
+  }
+  // Where no point carries anything: m_i times the speed that is left, with the other sign.
+  const F& closing(int i) const { return e_[i]; }
+
+ private:
+  F e_[P], k_[P][P];
+};
 
 // What a strike need not look at; loaded: the lanes that carry something.
 template <int W>
@@ -356,6 +373,29 @@ inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 // push.
 enum class Round { first, again, relax };
 
+// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is positive;
+// of what is not open, the push's, negative or zero. Rounds after the first take over what it has
+// found: nothing moves on between them.
+template <int W, int P, Round kRound>
+void find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, Lanes<W>* bias) {
+  using F = Lanes<W>;
+  auto& block = c.block();
+  if constexpr (kRound == Round::again) {
+    for (int i = 0; i < P; ++i) bias[i] = c.get(block.bias[i]);
+    return;
+  }
+  c.gather_ways();
+  F s[P];
+  normals.separations(c, s);
+  for (int i = 0; i < P; ++i) {
+    const F push = kRound == Round::relax
+                       ? F(0.0f)
+                       : larger(F(soft.rate) * s[i], F(-soft.fastest_push));
+    bias[i] = select(s[i] > F(0.0f), F(soft.inverse_h) * s[i], push);
+    if constexpr (kRound == Round::first) c.put(block.bias[i], bias[i]);
+  }
+}
+
 template <int W, int P, Round kRound>
 void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   using F = Lanes<W>;
@@ -367,42 +407,34 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     if (none(acts)) return;
   }
   c.gather_velocities();
-  c.gather_ways();
   const Normals<W, P> normals(c);
   const auto grips = solve_friction(c, normals.n, acts);
 
-  F u[P], s[P], before[P], p[P], mass[P], loss[P], most[P];
+  F u[P], bias[P], p0[P], p[P], mass[P], share[P], most[P];
   normals.speeds(c, u);
-  normals.separations(c, s);
+  find_bias<W, P, kRound>(c, normals, soft, bias);
   for (int i = 0; i < P; ++i) {
-    const auto open = s[i] > F(0.0f);
-    const F gap = F(soft.inverse_h) * s[i];
-    const F push = kPush ? larger(F(soft.rate) * s[i], F(-soft.fastest_push)) : F(0.0f);
-    u[i] += select(open, gap, push);
-    mass[i] = c.get(block.inverse[i]);
-    loss[i] = F(0.0f);
-    if constexpr (kPush) {
-      mass[i] *= select(open, F(1.0f), F(soft.mass_share));
-      loss[i] = select(open, F(0.0f), F(soft.impulse_loss));
-    }
+    const auto open = bias[i] > F(0.0f);
+    u[i] += bias[i];
+    p0[i] = p[i] = c.get(block.impulse[i]);
+    share[i] = kPush ? select(open, F(1.0f), F(soft.share)) : F(1.0f);
+    mass[i] = share[i] * c.get(block.inverse[i]);
     if constexpr (kRound == Round::again) {
+      share[i] = select(acts, share[i], F(1.0f));
       mass[i] = select(acts, mass[i], F(0.0f));
-      loss[i] = select(acts, loss[i], F(0.0f));
     }
-    before[i] = p[i] = c.get(block.impulse[i]);
     // Gaps that close in the next sub-step are its own affair: it may be a bounce.
-    most[i] = kPush ? F(kLargestImpulse) : select(open, p[i], F(kLargestImpulse));
+    if constexpr (!kPush) most[i] = select(open, p0[i], F(kLargestImpulse));
   }
+  const Points<W, P> points(c, mass, share, u, p0);
   const auto sweep = [&](const auto& next_of) {
     F moved(0.0f), load(0.0f);
     for (int i = 0; i < P; ++i) {
-      const F wanted = p[i] - (mass[i] * u[i] + loss[i] * p[i]);
-      const F next = next_of(smaller(most[i], larger(F(0.0f), wanted)), p[i]);
-      if constexpr (P > 1) {
-        pass_on(c, i, next - p[i], u);
-        moved = larger(moved, larger(next - p[i], p[i] - next));
-        load += next;
-      }
+      F next = larger(points.wanted(i, p), F(0.0f));
+      if constexpr (!kPush) next = smaller(next, most[i]);
+      next = next_of(next, p[i]);
+      moved = larger(moved, abs(next - p[i]));
+      load += next;
       p[i] = next;
     }
     return moved <= F(kSettled) * load;
@@ -415,28 +447,26 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
         sweep([&](const F& next, const F& last) { return select(before_it, last, next); });
     settled = !both(!before_it, !more);
   }
-  F change[P];
+  F change[P], load(0.0f), moved(0.0f);
+  auto quiet = F(0.0f) <= F(0.0f);
   for (int i = 0; i < P; ++i) {
-    change[i] = p[i] - before[i];
+    change[i] = p[i] - p0[i];
     c.put(block.impulse[i], p[i]);
+    load += p[i];
+    moved = larger(moved, abs(change[i]));
+    // Of what carries nothing: no blow slower than kReach closes it.
+    quiet = both(quiet, points.closing(i) + F(kReach) * mass[i] <= F(0.0f));
   }
   normals.push(c, change);
   c.scatter_velocities();
-  F load = p[0], moved(0.0f), opening = u[0];
-  for (int i = 0; i < P; ++i) {
-    if (i > 0) load += p[i];
-    moved = larger(moved, larger(change[i], -change[i]));
-    opening = smaller(opening, u[i]);
-  }
+  const auto loaded = load > F(0.0f);
   if constexpr (kPush) {
-    // What carries nothing may be hit in this very sub-step, unless it is farther off than that.
-    const auto quiet = select(load > F(0.0f), F(0.0f), F(kReach) - opening) <= F(0.0f);
-    const auto rests = both(both(grips, moved <= F(kSettledForNow) * load), quiet);
+    const auto rests = both(moved <= F(kSettledForNow) * load, either(loaded, quiet));
     // What was left alone stays so: whether it was looked at turns on the lanes beside it.
-    c.put(block.active, select(both(acts, !rests), F(1.0f), F(0.0f)));
+    c.put(block.active, select(both(acts, !both(grips, rests)), F(1.0f), F(0.0f)));
   } else {
     c.put(block.given, F(soft.kept) * c.get(block.given) + load);
-    const auto idle = neither_bounces_nor_comes_to_touch(load > F(0.0f), c.get(block.restitution));
+    const auto idle = neither_bounces_nor_comes_to_touch(loaded, c.get(block.restitution));
     const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
     c.put(block.active, select(both(!idle, there), F(1.0f), F(0.0f)));
   }

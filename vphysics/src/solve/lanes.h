@@ -9,6 +9,10 @@
 #include <cstdint>
 #include <utility>
 
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
 #include "vphysics/lie/inertia.h"
 #include "vphysics/lie/pack.h"
 
@@ -17,9 +21,32 @@ namespace vp::solve {
 template <int W>
 using Lanes = PackT<float, W>;
 template <int W>
-using LaneMask = typename Lanes<W>::Mask;
+using LaneMask = PackMaskT<float, W>;
 
 namespace lanes {
+
+// A bit for each lane.
+template <int W>
+unsigned bits_of(const LaneMask<W>& m) {
+#if defined(__AVX512DQ__)
+  if constexpr (W == 16) return _mm512_movepi32_mask(reinterpret_cast<__m512i>(m.lanes));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 8) {
+    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(m.lanes)));
+  }
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 4) {
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(m.lanes)));
+  }
+#endif
+  unsigned bits = 0;
+  for (int i = 0; i < W; ++i) bits |= (m.lanes[i] != 0 ? 1u : 0u) << i;
+  return bits;
+}
+template <int W>
+inline constexpr unsigned kAllBits = (1u << W) - 1u;
 
 // g++ drops the attribute of a dependent `using`.
 template <int N>
@@ -130,4 +157,54 @@ void gather16(const Row& p, Lanes<W>* out) {
 }
 
 }  // namespace lanes
+
+// What the generic ones of packs find, by fewer instructions.
+template <int W>
+bool none(const LaneMask<W>& m) {
+  return lanes::bits_of(m) == 0u;
+}
+template <int W>
+bool all(const LaneMask<W>& m) {
+  return lanes::bits_of(m) == lanes::kAllBits<W>;
+}
+template <int W>
+LaneMask<W> either(const LaneMask<W>& a, const LaneMask<W>& b) {
+  return {a.lanes | b.lanes};
+}
+
+// a > b ? a : b and a < b ? a : b: so b where they are equal or cannot be compared. g++ makes two
+// instructions of the one there is where one side is a constant.
+template <int W>
+Lanes<W> larger(const Lanes<W>& a, const Lanes<W>& b) {
+#if defined(__AVX512F__)
+  if constexpr (W == 16) return Lanes<W>(_mm512_maskz_max_ps(0xffff, a.lanes, b.lanes));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 8) return Lanes<W>(_mm256_max_ps(a.lanes, b.lanes));
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 4) return Lanes<W>(_mm_max_ps(a.lanes, b.lanes));
+#endif
+  return select(a > b, a, b);
+}
+template <int W>
+Lanes<W> smaller(const Lanes<W>& a, const Lanes<W>& b) {
+#if defined(__AVX512F__)
+  if constexpr (W == 16) return Lanes<W>(_mm512_maskz_min_ps(0xffff, a.lanes, b.lanes));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 8) return Lanes<W>(_mm256_min_ps(a.lanes, b.lanes));
+#endif
+#if defined(__SSE2__)
+  if constexpr (W == 4) return Lanes<W>(_mm_min_ps(a.lanes, b.lanes));
+#endif
+  return select(a < b, a, b);
+}
+// Without its sign.
+template <int W>
+Lanes<W> abs(const Lanes<W>& x) {
+  using Words = decltype(LaneMask<W>::lanes);
+  return Lanes<W>(reinterpret_cast<lanes::RawT<W>>(reinterpret_cast<Words>(x.lanes) & 0x7fffffff));
+}
+
 }  // namespace vp::solve

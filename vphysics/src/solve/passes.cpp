@@ -63,7 +63,7 @@ void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
   for (std::uint32_t first = 0; first < run.lanes; first += run.stride, ++block) {
     const int end = static_cast<int>(std::min(run.stride, run.lanes - first));
     for (int at = 0; at < end; at += W) {
-      LanesOf<W, P> lanes(*block, at, at + W <= end, run);
+      LanesOf<W, P> lanes(*block, at, run.rows);
       f(lanes, static_cast<std::size_t>(block - run.blocks), at);
     }
   }

@@ -15,11 +15,10 @@ namespace vphysics_solver {
 
 // How a contact answers penetration s < 0 in a sub-step h: as a spring and a damper of frequency f
 // and damping ratio z, integrated implicitly, that is by
-//   p' = p - mass_share m (u + max(rate s, -fastest_push)) - impulse_loss p
+//   p' = p - share m (u + max(rate s, -fastest_push)) - (1 - share) p
 struct Soft {
   float rate;          // [1/s]
-  float mass_share;    // of the effective mass
-  float impulse_loss;  // of the accumulated impulse
+  float share;         // of the effective mass, and what stays of the accumulated impulse
   float fastest_push;  // [m/s]
   float inverse_h;     // [1/s]
   float kept;          // 0 in the first sub-step of a step, else 1: of ContactBlock::given
@@ -33,7 +32,6 @@ struct ContactPasses {
   struct Run {
     Blocks blocks;
     std::uint32_t lanes, stride;
-    bool shares_rows;  // with bodies that nothing pushes; those keep their rows
     BodyRow* rows;
   };
   bool (*strike)(const Run& run, float h, float threshold);  // true: something bounced

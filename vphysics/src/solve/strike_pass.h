@@ -22,11 +22,6 @@ namespace vp::solve {
 // flat needs more than one that falls on a corner.
 inline constexpr int kStrikeSweeps = 8;
 
-template <int W>
-bool any(const LaneMask<W>& m) {
-  return !none(m);
-}
-
 template <int W, int P>
 struct Closing {
   using F = Lanes<W>;
@@ -86,7 +81,7 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   if (none(bounces)) return false;
 
   c.gather_velocities();
-  F u[P], p[P];
+  F u[P], p[P], mass[P], share[P];
   const F after = F(h) - closing.soonest;
   F leaving(0.0f), gained(0.0f);
   for (int i = 0; i < P; ++i) {
@@ -95,15 +90,14 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
     const F target = e * at_surface - closing.gain * (F(0.5f * h) - closing.soonest);
     leaving = larger(leaving, select(closing.reaches[i], e * at_surface, F(0.0f)));
     const auto acts = both(bounces, closing.reaches[i]);
-    u[i] = select(acts, closing.u[i] - target, F(1e30f));  // others are not pushed
+    u[i] = closing.u[i] - target;
+    mass[i] = select(acts, c.get(block.inverse[i]), F(0.0f));
+    share[i] = select(acts, F(1.0f), F(0.0f));
     p[i] = F(0.0f);
   }
+  const Points<W, P> points(c, mass, share, u, p);
   for (int sweep = 0; sweep < (P > 1 ? kStrikeSweeps : 1); ++sweep) {
-    for (int i = 0; i < P; ++i) {
-      const F next = larger(F(0.0f), p[i] - c.get(block.inverse[i]) * u[i]);
-      if (P > 1) pass_on(c, i, next - p[i], u);
-      p[i] = next;
-    }
+    for (int i = 0; i < P; ++i) p[i] = larger(points.wanted(i, p), F(0.0f));
   }
   F load = p[0];
   for (int i = 1; i < P; ++i) load += p[i];
@@ -126,11 +120,11 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const F wanted = leaving * after - F(0.5f) * closing.gain * after * after;
   const F error = wanted - (larger(F(0.0f), gap) + F(h) * speed);
   const auto moves = both(bounces, gained > F(1e-9f));
-  const F share = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
-  c.x_a += share * (c.v_a - v_a);
-  c.turn_a += share * (c.w_a - w_a);
-  c.x_b += share * (c.v_b - v_b);
-  c.turn_b += share * (c.w_b - w_b);
+  const F part = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
+  c.x_a += part * (c.v_a - v_a);
+  c.turn_a += part * (c.w_a - w_a);
+  c.x_b += part * (c.v_b - v_b);
+  c.turn_b += part * (c.w_b - w_b);
   c.scatter_ways();
 
   // Friction of the bounce.
@@ -168,9 +162,7 @@ std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
   const auto still = both(
       both(dot(slid, slid) <= limit * limit, dot(by_a, by_a) <= select(c.pushes_a(), own, driven)),
       dot(by_b, by_b) <= select(c.pushes_b(), own, driven));
-  std::uint32_t bits = 0;
-  for (int i = 0; i < W; ++i) bits |= (still.lanes[i] == 0 ? 1u : 0u) << i;
-  return bits;
+  return lanes::bits_of(!still);
 }
 
 // Bits of lanes that hit, or that push and did not touch, or the other way round; kLanes above,
@@ -213,9 +205,7 @@ std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, f
                  get(block.reach_a) * size(turn_a - get3(block.turn_a)) +
                  get(block.reach_b) * size(turn_b - get3(block.turn_b));
   const auto stays = gone <= get(block.clearance);
-  std::uint32_t bits = 0;
-  for (int i = 0; i < W; ++i) bits |= (stays.lanes[i] == 0 ? 1u : 0u) << i;
-  return bits;
+  return lanes::bits_of(!stays);
 }
 
 }  // namespace vp::solve

@@ -18,7 +18,7 @@ void World::Impl::for_runs_of(std::size_t region, const F& f) {
     const bool last = index == solve::kLastColour;
     f(passes,
       Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes},
-          index >= solve::kFirstFixedColour, body_rows.data()},
+          body_rows.data()},
       colour.blocks);
   };
   for (std::uint64_t left = graph.colours_in_use(region); left != 0; left &= left - 1) {

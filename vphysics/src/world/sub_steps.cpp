@@ -172,7 +172,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
   push_length = std::max(static_cast<double>(h), push_length - kHurry * dt);
   SubSteps steps(*this, h,
                  {static_cast<float>(kPush / push_length), static_cast<float>(1.0 - kLoss),
-                  static_cast<float>(kLoss), static_cast<float>(kFastestPush), 1.0f / h, 0.0f});
+                  static_cast<float>(kFastestPush), 1.0f / h, 0.0f});
   begin_joints(h);
   const bool links = !bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
