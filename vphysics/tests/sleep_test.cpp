@@ -89,8 +89,10 @@ TEST(Sleep, ComesToAllWhenTheLastHasRested) {
   }
 }
 
-// Of many, each comes to rest when it does.
-TEST(Sleep, ComesToAWholePit) {
+// Of many, each comes to rest when it does: balls that spin on a point because that is braked.
+class SleepIn : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Heaps, SleepIn, testing::Range<std::uint64_t>(71, 75));
+TEST_P(SleepIn, AWholePitComesToAll) {
   World world(sleepy());
   add_ground(world, {});
   for (const double at : {-1.0, 1.0}) {
@@ -99,10 +101,11 @@ TEST(Sleep, ComesToAWholePit) {
   }
   const Shape kinds[] = {Box{{0.12, 0.1, 0.08}}, Sphere{0.1}, Capsule{0.06, 0.1},
                          Cylinder{0.09, 0.1}, Box{{0.1, 0.1, 0.1}}};
-  Random random(71);
+  Random random(GetParam());
   std::vector<BodyId> bodies;
   for (int i = 0; i < 200; ++i) {
-    Part part{.shape = kinds[i % 5], .material = {.friction = 0.5, .rolling_friction = 0.01}};
+    Part part{.shape = kinds[i % 5],
+              .material = {.friction = 0.5, .rolling_friction = 0.01, .spinning_friction = 0.005}};
     const double level = 0.3 + 0.3 * (i / 25), x = 0.3 * (i % 5) - 0.6, y = 0.3 * (i / 5 % 5) - 0.6;
     part.pose = SE3(random.rotation(), Vec3{x, y, level});
     bodies.push_back(add_dynamic(world, part));

@@ -59,7 +59,9 @@ struct Material {
   double friction = 0.5;          // Coulomb; a pair uses sqrt(a * b)
   double restitution = 0.0;       // [0, 1]; a pair uses the larger
   double rolling_friction = 0.0;  // lever arm of the rolling resistance [m]; a pair uses the larger
-  double spinning_friction = 0.0;  // of that against spin about the normal [m]; the same
+  // Of that against spin about the normal [m]; the same. What lies on a single point spins on for
+  // ever without it, and never sleeps.
+  double spinning_friction = 0.0;
 };
 
 // Two colliders meet if each one's category is in the other's mask.

@@ -1,6 +1,6 @@
 // A body as the solver sees it: a row of two cache lines.
 //
-// The first line is all that a pass over velocities reads, the second what positions need. World
+// The first line is all that passes over contacts read, the second what begins a sub-step. World
 // axes, about the centre of mass. Written by the world before a step (load) and by the passes;
 // read back after it. Row 0 is the world itself: nothing moves it, and all that is fixed shares it.
 #pragma once
@@ -13,12 +13,12 @@ struct alignas(64) BodyRow {
   // v of the centre of mass [m/s], w [rad/s]; the inverse mass; 1 if nothing carried it in the last
   // step, 0 if something did, which matters to bounces.
   float velocity[8];
-  // Inverse rotational inertia xx yy zz xy yz zx; the shares of v and of w that damping leaves in a
-  // sub-step.
-  float inertia[8];
   // Way of the centre of mass since the row was last rebased [m], and its turning, the sum of small
   // rotation vectors [rad]; 1 if something carried it in this step, else 0; 0.
   float way[8];
+  // Inverse rotational inertia xx yy zz xy yz zx; the shares of v and of w that damping leaves in a
+  // sub-step.
+  float inertia[8];
   // What the forces add: acceleration [m/s^2], angular acceleration [rad/s^2]; 0, 0.
   float rate[8];
 };

@@ -10,7 +10,7 @@
 //   K_ij = du_i / dp_j = 1/m_a + 1/m_b + jA_i . I_a^-1 jA_j + jB_i . I_b^-1 jB_j
 //
 // with jA_i = rA_i x n, jB_i = jA_i + d x n. Friction acts at the middle of the points: along two
-// tangents t, n x t, and about the normal.
+// tangents t, b = n x t, and about the normal.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +29,12 @@ struct alignas(64) IndexField {
 struct Field3 {
   Field x, y, z;
 };
+struct FieldTangent {
+  Field t, b;  // along the tangents t and b = n x t
+};
+struct FieldSym3 {
+  Field xx, yy, zz, xy, yz, zx;
+};
 
 // The place of K_ij, i != j, among `off_diagonal`.
 constexpr int pair_index(int i, int j) {
@@ -45,13 +51,14 @@ struct ContactBlock {
   IndexField touches;  // 1: it has been told that the two touch
   Field active;        // 1: the next round of pushing, or strike, must look at it; else 0
   Field given;         // normal impulse of the sub-steps of this step so far [N s]
-  Field bias[kPoints];  // of the sub-step's first round of pushing (find_bias) [m/s]
+  FieldSym3 inertia_a, inertia_b;  // inverse, copied from the rows before the sub-steps
+  Field bias[kPoints];             // of the sub-step's first round of pushing (find_bias) [m/s]
 
   Field3 normal, tangent, d;
-  Field3 arm[kPoints];      // jA_i = rA_i x n
-  Field base[kPoints];      // [m]; of a point that is not there: far
-  Field impulse[kPoints];   // [N s], accumulated
-  Field inverse[kPoints];   // 1 / K_ii; 0 of a point that is not there
+  FieldTangent arm[kPoints];  // jA_i
+  Field base[kPoints];        // [m]; of a point that is not there: far
+  Field impulse[kPoints];     // [N s], accumulated
+  Field inverse[kPoints];     // 1 / K_ii; 0 of a point that is not there
   Field off_diagonal[kPairs > 0 ? kPairs : 1];
 
   // Friction. The 2x2 inverse of what the tangents feel (xx, xy, yy), and the one mass with which

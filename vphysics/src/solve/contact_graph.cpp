@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "solve/body_row.h"
 #include "solve/lane_copy.h"
@@ -34,21 +35,24 @@ void clear_lane(ContactBlock<P>& block, int lane) {
 
 }  // namespace
 
-// Of several regions, the contacts between them are of fewer bodies than those within.
+// Of several regions, the contacts between them are of the bodies at their faces: of a cube of n^3,
+// some 2 n^2 where each face is of two.
 void ContactGraph::reserve(std::size_t bodies) {
-  constexpr int kReady = 8;  // colours
+  constexpr int kReady = 8, kReadyFixed = 4;  // colours
   const std::size_t within = regions() - 1;
   for (std::size_t region = 0; region < regions(); ++region) {
+    const auto all = static_cast<double>(bodies);
+    const double faces =
+        within == 0 ? 0.0 : std::min(1.0, 2.0 / std::cbrt(all / static_cast<double>(within)));
     const std::size_t share = within == 0          ? bodies
-                              : region == kBetween ? bodies / 16
+                              : region == kBetween ? static_cast<std::size_t>(faces * all)
                                                    : bodies / within + 1;
     if (within > 0 && share < 2 * kLanes) continue;  // a block of each colour would be too much
     const std::size_t blocks = share / (2 * kLanes) + 1;
-    for (const int first : {0, kFirstFixedColour}) {
-      for (int c = first; c < first + kReady; ++c) {
-        of<1>(region, c).blocks.reserve(blocks);
-        of<4>(region, c).blocks.reserve(blocks);
-      }
+    for (int c = 0; c < kFirstFixedColour + kReadyFixed; ++c) {
+      if (c >= kReady && c < kFirstFixedColour) continue;
+      of<1>(region, c).blocks.reserve(blocks);
+      of<4>(region, c).blocks.reserve(blocks);
     }
   }
 }
@@ -96,6 +100,17 @@ std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& 
   return place.points == 1 ? remove_lane<1>(place) : remove_lane<4>(place);
 }
 
+// What one region has come to need, others will: room is made in all of them at once.
+template <int P>
+void ContactGraph::make_room(const Place& place) {
+  const std::size_t room = 2 * of<P>(place.region, place.colour).blocks.capacity() + 1;
+  const bool of_all = place.region != kBetween;
+  for (std::size_t region = 1; of_all && region < regions(); ++region) {
+    of<P>(region, place.colour).blocks.reserve(room);
+  }
+  of<P>(place.region, place.colour).blocks.reserve(room);
+}
+
 template <int P>
 void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
   ColourBlocks<P>& colour = of<P>(place.region, place.colour);
@@ -104,6 +119,7 @@ void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, P
   const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
   const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
   if (block == colour.blocks.size()) {
+    if (block == colour.blocks.capacity()) make_room<P>(place);
     colour.blocks.emplace_back();
     for (int l = 0; l < kLanes; ++l) clear_lane(colour.blocks.back(), l);
   }

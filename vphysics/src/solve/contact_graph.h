@@ -135,6 +135,8 @@ class ContactGraph {
 
  private:
   template <int P>
+  void make_room(const Place& place);
+  template <int P>
   void add_lane(std::uint32_t contact, const End& a, const End& b, Place& place);
   template <int P>
   std::uint32_t remove_lane(const Place& place);

@@ -42,18 +42,18 @@ Vec3 any_tangent(const Vec3& n) {
 
 // Points that are not there push nothing.
 template <int P>
-void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const Side& a,
-                   const Side& b) {
+void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const Vec3& t,
+                   const Side& a, const Side& b) {
   const Vec3& n = c.normal;
   const Vec3 d_n = cross(c.x_a - c.x_b, n);
   const double linear = dot(n, b.way - a.way) + dot(d_n, b.turn);
   Vec3 arm_a[4], arm_b[4], answer_a[4], answer_b[4];
   for (int i = 0; i < P; ++i) {
     if (i >= c.count) {
-      put(block.arm[i], lane, {});
+      put(block.arm[i].t, lane, 0.0);
+      put(block.arm[i].b, lane, 0.0);
       put(block.base[i], lane, static_cast<double>(kFarApart));
-      for (Field* f : {&block.impulse[i], &block.inverse[i]})
-        put(*f, lane, 0.0);
+      for (Field* f : {&block.impulse[i], &block.inverse[i]}) put(*f, lane, 0.0);
       for (int j = 0; j < i; ++j) put(block.off_diagonal[pair_index(i, j)], lane, 0.0);
       continue;
     }
@@ -69,7 +69,8 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
         put(block.inverse[i], lane, k > 0.0 ? 1.0 / k : 0.0);
       }
     }
-    put(block.arm[i], lane, arm_a[i]);
+    put(block.arm[i].t, lane, dot(arm_a[i], t));
+    put(block.arm[i].b, lane, dot(arm_a[i], cross(n, t)));
     put(block.base[i], lane, c.points[i].separation - linear - dot(arm_a[i], b.turn - a.turn));
     block.impulse[i].lane[lane] = c.points[i].impulse;
   }
@@ -84,11 +85,11 @@ Vec3 middle_of(const NewContact& c) {
 }
 
 template <int P>
-void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const Side& a,
-                    const Side& b) {
+void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const Vec3& t1,
+                    const Side& a, const Side& b) {
   const Vec3& n = c.normal;
   const Vec3 middle = middle_of(c), r_a = middle - c.x_a, r_b = middle - c.x_b;
-  const Vec3 t1 = any_tangent(n), t2 = cross(n, t1);
+  const Vec3 t2 = cross(n, t1);
   const Vec3 a1 = cross(r_a, t1), a2 = cross(r_a, t2), b1 = cross(r_b, t1), b2 = cross(r_b, t2);
   const double mass = a.mass + b.mass;
   const double xx = mass + dot(a1, a.inertia * a1) + dot(b1, b.inertia * b1);
@@ -136,8 +137,9 @@ void write_lane(ContactBlock<P>& block, int lane, const NewContact& c, const Bod
   put(block.active, lane, 1.0);
   put(block.normal, lane, c.normal);
   put(block.d, lane, c.x_a - c.x_b);
-  write_normals(block, lane, c, a, b);
-  write_friction(block, lane, c, a, b);
+  const Vec3 t = any_tangent(c.normal);
+  write_normals(block, lane, c, t, a, b);
+  write_friction(block, lane, c, t, a, b);
   put(block.restitution, lane, c.restitution);
   put(block.turned_a, lane, a.turn);
   put(block.turned_b, lane, b.turn);

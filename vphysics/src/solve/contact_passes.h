@@ -38,6 +38,9 @@ class LanesOf {
 
   F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
   V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
+  S get(const FieldSym3& f) const {
+    return {get(f.xx), get(f.yy), get(f.zz), get(f.xy), get(f.yz), get(f.zx)};
+  }
   void put(Field& f, const F& x) const { lanes::store<W>(f.lane + at_, x.lanes); }
   void put(Field3& f, const V& x) const {
     put(f.x, x.x);
@@ -46,39 +49,31 @@ class LanesOf {
   }
   Block& block() const { return block_; }
 
-  // Without what impulses meet.
-  void gather_speeds() {
-    F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).velocity; }, r);
-    v_a = {r[0], r[1], r[2]};
-    w_a = {r[3], r[4], r[5]};
-    falls_a = r[7];
-    lanes::gather8<W>([this](int i) { return row_b(i).velocity; }, r);
-    v_b = {r[0], r[1], r[2]};
-    w_b = {r[3], r[4], r[5]};
-    falls_b = r[7];
+  void load_inertias() const {
+    load_inertias([this](int i) { return row_a(i).inertia; }, block_.inertia_a);
+    load_inertias([this](int i) { return row_b(i).inertia; }, block_.inertia_b);
   }
   void gather_velocities() {
+    F r[8];
+    lanes::gather8<W>([this](int i) { return row_a(i).velocity; }, r);
+    take_velocity(r, v_a, w_a, mass_a_, falls_a);
+    lanes::gather8<W>([this](int i) { return row_b(i).velocity; }, r);
+    take_velocity(r, v_b, w_b, mass_b_, falls_b);
+  }
+  void gather_velocities_and_ways() {
     F r[16];
     lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
-    take(r, v_a, w_a, mass_a_, falls_a, inertia_a_);
+    take_velocity(r, v_a, w_a, mass_a_, falls_a);
+    take_way(r + 8, x_a, turn_a);
     lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
-    take(r, v_b, w_b, mass_b_, falls_b, inertia_b_);
+    take_velocity(r, v_b, w_b, mass_b_, falls_b);
+    take_way(r + 8, x_b, turn_b);
   }
   void scatter_velocities() const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
     scatter([this](int i) { return row_a(i).velocity; }, a, pushes_a());
     scatter([this](int i) { return row_b(i).velocity; }, b, pushes_b());
-  }
-  void gather_ways() {
-    F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).way; }, r);
-    x_a = {r[0], r[1], r[2]};
-    turn_a = {r[3], r[4], r[5]};
-    lanes::gather8<W>([this](int i) { return row_b(i).way; }, r);
-    x_b = {r[0], r[1], r[2]};
-    turn_b = {r[3], r[4], r[5]};
   }
   void scatter_ways() const {
     const F zero(0.0f);
@@ -101,8 +96,8 @@ class LanesOf {
     v_b += mass_b_ * p;
   }
   void push_angular(const V& on_a, const V& on_b) {
-    w_a -= inertia_a_ * on_a;
-    w_b += inertia_b_ * on_b;
+    w_a -= get(block_.inertia_a) * on_a;
+    w_b += get(block_.inertia_b) * on_b;
   }
 
   // Lanes whose a, or b, impulses move.
@@ -122,6 +117,14 @@ class LanesOf {
  private:
   BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
   BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
+  template <class Place>
+  void load_inertias(const Place& place, FieldSym3& inertia) const {
+    F r[8];
+    lanes::gather8<W>(place, r);
+    Field* const to[6] = {&inertia.xx, &inertia.yy, &inertia.zz,
+                          &inertia.xy, &inertia.yz, &inertia.zx};
+    for (int f = 0; f < 6; ++f) put(*to[f], r[f]);
+  }
   // What nothing pushes keeps its row, which several lanes, and workers, may read. Empty lanes are
   // of the world's.
   template <class Place>
@@ -136,19 +139,21 @@ class LanesOf {
   static const float* first_line(const BodyRow& row) {
     return reinterpret_cast<const float*>(&row);
   }
-  static void take(const F* r, V& v, V& w, F& mass, F& falls, S& inertia) {
+  static void take_velocity(const F* r, V& v, V& w, F& mass, F& falls) {
     v = {r[0], r[1], r[2]};
     w = {r[3], r[4], r[5]};
-    mass = r[6];
-    falls = r[7];
-    inertia = {r[8], r[9], r[10], r[11], r[12], r[13]};
+    mass = r[kInverseMass];
+    falls = r[kFalls];
+  }
+  static void take_way(const F* r, V& x, V& turn) {
+    x = {r[0], r[1], r[2]};
+    turn = {r[3], r[4], r[5]};
   }
 
   Block& block_;
   int at_;
   BodyRow* rows_;
   F mass_a_, mass_b_;
-  S inertia_a_, inertia_b_;
 };
 
 // What is common to the normal rows of a contact.
@@ -158,14 +163,23 @@ struct Normals {
   using V = Vec3T<F>;
 
   explicit Normals(const LanesOf<W, P>& c)
-      : n(c.get(c.block().normal)), d_n(cross(c.get(c.block().d), n)) {
-    for (int i = 0; i < P; ++i) arm[i] = c.get(c.block().arm[i]);
+      : n(c.get(c.block().normal)),
+        t(c.get(c.block().tangent)),
+        b(cross(n, t)),
+        d_n(cross(c.get(c.block().d), n)) {
+    for (int i = 0; i < P; ++i) {
+      arm_t[i] = c.get(c.block().arm[i].t);
+      arm_b[i] = c.get(c.block().arm[i].b);
+    }
   }
-  // n . b + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
+  // n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
   void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
     const F common = dot(n, linear) + dot(d_n, turn_b);
     const V turn = turn_b - turn_a;
-    for (int i = 0; i < P; ++i) out[i] = common + dot(arm[i], turn);
+    const F turn_t = dot(t, turn), turn_about_b = dot(b, turn);
+    for (int i = 0; i < P; ++i) {
+      out[i] = common + (arm_t[i] * turn_t + arm_b[i] * turn_about_b);
+    }
   }
   void speeds(const LanesOf<W, P>& c, F* u) const { along(c.v_b - c.v_a, c.w_a, c.w_b, u); }
   void separations(const LanesOf<W, P>& c, F* s) const {
@@ -174,17 +188,19 @@ struct Normals {
   }
   // Gives the bodies the changes of the points' impulses.
   void push(LanesOf<W, P>& c, const F* change) const {
-    F sum = change[0];
-    V moment = change[0] * arm[0];
+    F sum = change[0], moment_t = change[0] * arm_t[0], moment_b = change[0] * arm_b[0];
     for (int i = 1; i < P; ++i) {
       sum += change[i];
-      moment += change[i] * arm[i];
+      moment_t += change[i] * arm_t[i];
+      moment_b += change[i] * arm_b[i];
     }
+    const V moment = moment_t * t + moment_b * b;
     c.push_linear(sum * n);
     c.push_angular(moment, moment + sum * d_n);
   }
 
-  V n, d_n, arm[P];
+  V n, t, b, d_n;
+  F arm_t[P], arm_b[P];
 };
 
 template <int W, int P>
@@ -252,11 +268,8 @@ struct Grip {
   using F = Lanes<W>;
   using V = Vec3T<F>;
 
-  Grip(const LanesOf<W, P>& c, const V& n)
-      : t(c.get(c.block().tangent)),
-        b(cross(n, t)),
-        r_a(c.get(c.block().grip)),
-        r_b(r_a + c.get(c.block().d)) {}
+  Grip(const LanesOf<W, P>& c, const Normals<W, P>& normals)
+      : t(normals.t), b(normals.b), r_a(c.get(c.block().grip)), r_b(r_a + c.get(c.block().d)) {}
   V velocity(const LanesOf<W, P>& c) const {
     return c.v_b + cross(c.w_b, r_b) - c.v_a - cross(c.w_a, r_a);
   }
@@ -285,7 +298,7 @@ void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& mo
 
 template <int W>
 LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& most) {
-  return both(x <= most, -x <= most);
+  return abs(x) <= most;
 }
 template <int W>
 Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& most) {
@@ -295,12 +308,14 @@ Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& most) {
 // Only of the lanes `acts`. Returns the lanes of which nothing has changed by more than a share
 // kSettledForNow of the load.
 template <int W, int P>
-LaneMask<W> solve_friction(LanesOf<W, P>& c, const Vec3T<Lanes<W>>& n, const LaneMask<W>& acts) {
+LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
+                           const LaneMask<W>& acts) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
   const F load = sum_of_impulses(c);
-  const Grip<W, P> at(c, n);
+  const Grip<W, P> at(c, normals);
+  const V& n = normals.n;
   const V slip = at.velocity(c);
   F u[2] = {dot(at.t, slip) - c.get(block.surface_speed[0]),
             dot(at.b, slip) - c.get(block.surface_speed[1])};
@@ -355,7 +370,7 @@ void warm_start_lanes(LanesOf<W, P>& c) {
   F p[P];
   for (int i = 0; i < P; ++i) p[i] = c.get(block.impulse[i]);
   normals.push(c, p);
-  const Grip<W, P> at(c, normals.n);
+  const Grip<W, P> at(c, normals);
   const V force = c.get(block.tangent_impulse[0]) * at.t + c.get(block.tangent_impulse[1]) * at.b;
   const V moment = c.get(block.twist_impulse) * normals.n + c.get(block.roll_impulse[0]) * at.t +
                    c.get(block.roll_impulse[1]) * at.b;
@@ -373,9 +388,9 @@ inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 // push.
 enum class Round { first, again, relax };
 
-// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is positive;
-// of what is not open, the push's, negative or zero. Rounds after the first take over what it has
-// found: nothing moves on between them.
+// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is
+// positive; of what is not open, the push's, negative or zero. Rounds after the first take over
+// what it has found: nothing moves on between them.
 template <int W, int P, Round kRound>
 void find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, Lanes<W>* bias) {
   using F = Lanes<W>;
@@ -384,13 +399,11 @@ void find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft,
     for (int i = 0; i < P; ++i) bias[i] = c.get(block.bias[i]);
     return;
   }
-  c.gather_ways();
   F s[P];
   normals.separations(c, s);
   for (int i = 0; i < P; ++i) {
-    const F push = kRound == Round::relax
-                       ? F(0.0f)
-                       : larger(F(soft.rate) * s[i], F(-soft.fastest_push));
+    const F push =
+        kRound == Round::relax ? F(0.0f) : larger(F(soft.rate) * s[i], F(-soft.fastest_push));
     bias[i] = select(s[i] > F(0.0f), F(soft.inverse_h) * s[i], push);
     if constexpr (kRound == Round::first) c.put(block.bias[i], bias[i]);
   }
@@ -406,9 +419,13 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     acts = c.get(block.active) > F(0.0f);
     if (none(acts)) return;
   }
-  c.gather_velocities();
+  if constexpr (kRound == Round::again) {
+    c.gather_velocities();
+  } else {
+    c.gather_velocities_and_ways();
+  }
   const Normals<W, P> normals(c);
-  const auto grips = solve_friction(c, normals.n, acts);
+  const auto grips = solve_friction(c, normals, acts);
 
   F u[P], bias[P], p0[P], p[P], mass[P], share[P], most[P];
   normals.speeds(c, u);

@@ -70,6 +70,10 @@ void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
 }
 
 template <int P>
+void load_inertias(const typename ContactPasses<P>::Run& run) {
+  for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { c.load_inertias(); });
+}
+template <int P>
 [[gnu::flatten]] bool strike(const typename ContactPasses<P>::Run& run, float h, float threshold) {
   bool bounced = false;
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
@@ -121,13 +125,10 @@ template <int P>
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {strike<P>,
-          warm_start<P>,
-          solve<P, Round::first>,
-          solve<P, Round::again>,
-          solve<P, Round::relax>,
-          find_moved<P>,
-          find_news<P>};
+  return {load_inertias<P>,       strike<P>,
+          warm_start<P>,          solve<P, Round::first>,
+          solve<P, Round::again>, solve<P, Round::relax>,
+          find_moved<P>,          find_news<P>};
 }
 
 }  // namespace

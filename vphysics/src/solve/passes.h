@@ -34,6 +34,8 @@ struct ContactPasses {
     std::uint32_t lanes, stride;
     BodyRow* rows;
   };
+  // Before the sub-steps of a step.
+  void (*load_inertias)(const Run& run);
   bool (*strike)(const Run& run, float h, float threshold);  // true: something bounced
   void (*warm_start)(const Run& run);
   // Rounds of pushing: the first of a sub-step, and those after it.

@@ -66,8 +66,7 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const auto rests = sum_of_impulses(c) > F(0.0f);
   const F e = c.get(block.restitution);
   const auto idle = neither_bounces_nor_comes_to_touch(rests, e);
-  c.gather_speeds();
-  c.gather_ways();
+  c.gather_velocities_and_ways();
   const Normals<W, P> normals(c);
   Closing<W, P> closing(c, normals, h);
   if (none(both(closing.closes, !idle))) return false;
@@ -80,7 +79,6 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const auto bounces = both(hits, e > F(0.0f));
   if (none(bounces)) return false;
 
-  c.gather_velocities();
   F u[P], p[P], mass[P], share[P];
   const F after = F(h) - closing.soonest;
   F leaving(0.0f), gained(0.0f);
@@ -128,7 +126,7 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   c.scatter_ways();
 
   // Friction of the bounce.
-  const Grip<W, P> at(c, normals.n);
+  const Grip<W, P> at(c, normals);
   const V slip = at.velocity(c);
   const F slide[2] = {dot(at.t, slip) - c.get(block.surface_speed[0]),
                       dot(at.b, slip) - c.get(block.surface_speed[1])};
@@ -150,8 +148,7 @@ std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
-  c.gather_velocities();
-  c.gather_ways();
+  c.gather_velocities_and_ways();
   const V r_a = c.get(block.grip), r_b = r_a + c.get(block.d);
   const F step(dt);
   const V x_a = c.x_a + step * c.v_a, x_b = c.x_b + step * c.v_b;

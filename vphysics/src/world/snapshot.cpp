@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-constexpr std::uint64_t kFormat = 10;
+constexpr std::uint64_t kFormat = 11;
 
 struct Digest {
   std::uint64_t digest = kMagic;

@@ -90,6 +90,10 @@ class World::Impl::SubSteps {
         threshold_(static_cast<float>(world.desc.restitution_threshold)),
         soft_(soft) {}
 
+  void load_inertias(std::size_t region) const {
+    world_.for_parts_of(
+        region, [](const auto& p, const auto& part, std::size_t) { p.load_inertias(part); });
+  }
   void accelerate(std::size_t region, bool find_gains) const {
     for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
       if (find_gains) pass_.find_gains(rows(), world_.gains.data(), some, count);
@@ -181,6 +185,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
   // joints and links have a share in it: these turn within the step.
   const bool repeats = contacts_alone && n > 1;
   const std::size_t blocks = number_blocks();
+  everywhere([&](std::size_t region) { steps.load_inertias(region); });
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
