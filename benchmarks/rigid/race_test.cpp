@@ -109,6 +109,34 @@ TEST_F(Race, LeavesOutWhoStopsEarlyAndCountsLostBodies) {
   EXPECT_NE(table(figures).find("stopped: diverged"), std::string::npos);
 }
 
+// Every run takes another time; one that ends elsewhere is another thing.
+TEST_F(Race, KeepsTheLeastOfEachStepOfRunsThatAreTheSame) {
+  const std::string count = folder_ + "/count";
+  const auto leaving = [&](const std::string& end) {
+    std::ofstream(count) << "0\n";
+    script("rigid-bullet",
+           "read n <" + count + "; n=$((n + 1)); echo $n >" + count +
+               "; echo ready; read turn; (echo simulated 10; echo rss_mb 1; echo steps 3; "
+               "echo $((10 + n)); echo $((30 - n)); echo 25; echo poses 11; "
+               "for i in 1 2 3 4 5 6 7 8 9 10 11; do echo 1 0 0 0 1 0 0 0 1 " +
+               end + " 0 0; done; echo whole) >$4; echo end finished\n");
+  };
+  leaving("0");
+  const auto figures = run();
+  ASSERT_EQ(figures.size(), 1u);
+  EXPECT_EQ(figures[0].runs, 3);
+  EXPECT_EQ(figures[0].steps_us, (std::vector<double>{11, 27, 25}));
+  EXPECT_EQ(figures[0].median_us, 25.0);
+  EXPECT_NE(csv(figures).find("tower10@60,Bullet,runs,3,\n"), std::string::npos);
+  leaving("$n");
+  const auto others = run();
+  EXPECT_EQ(others[0].runs, 1);
+  EXPECT_EQ(others[0].steps_us, (std::vector<double>{11, 29, 25}));
+  plan_.rates = {240};
+  leaving("0");
+  EXPECT_EQ(run()[0].runs, 1);
+}
+
 // Our own program, whole: two engines that take turns, one of which does not answer.
 TEST_F(Race, GoesOnWithTheOthers) {
   std::filesystem::create_symlink(RIGID_OURS, folder_ + "/rigid-ours");

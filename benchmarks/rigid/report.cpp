@@ -11,8 +11,6 @@
 namespace rigid {
 namespace {
 
-constexpr const char* kReference = "Bullet";
-
 std::string subject(const Figure& f) {
   return fmt::format("{}@{}", f.scene, f.rate);
 }
@@ -88,6 +86,7 @@ std::vector<Row> rows_of(const std::vector<Figure>& figures, const Figure& f) {
   const auto add = [&](const char* metric, const std::string& value, const std::string& unit) {
     rows.push_back({metric, value, unit});
   };
+  if (f.runs > 1) add("runs", std::to_string(f.runs), "");
   if (f.settled_us > 0.0) add("step_settled_us", fmt::format("{:.5g}", f.settled_us), "us");
   if (const auto share = share_of_bullet(figures, f); share && f.engine != kReference) {
     add("share_of_bullet", fmt::format("{:.4g}", *share), "");

@@ -453,7 +453,7 @@ TEST(Memory, OfABodyAndOfAContactIsAsTheDocumentationSays) {
   const double contact = (stacked.bytes - apart.bytes) / stacked.contacts;
   std::printf("%.0f bytes a body with its collider, %.0f more a contact of four points\n", body,
               contact);
-  EXPECT_LT(body, 8200.0);    // measured: 7722
+  EXPECT_LT(body, 8500.0);    // measured: 8079
   EXPECT_LT(contact, 300.0);  // measured: 220
 }
 
