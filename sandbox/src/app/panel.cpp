@@ -118,6 +118,8 @@ void timings(const Simulation& simulation, const Meter& meter, double drawing) {
     row("looked at", "%.0f", counters.looked_at);
     row("recycled", "%.0f", counters.recycled);
     row("colours", "%.0f", counters.colours);
+    row("regions", "%.0f", counters.regions);
+    row("sub-steps", "%.0f", counters.sub_steps);
     row("impacts", "%.0f", counters.impacts);
     row("frames", "%.0f /s", meter.rate());
     row("drawing", "%.1f ms", 1e3 * drawing);
@@ -129,9 +131,8 @@ void stage_timings(const Simulation& simulation) {
   if (!ImGui::CollapsingHeader("Stages of a step", ImGuiTreeNodeFlags_DefaultOpen)) return;
   if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_SizingStretchProp)) return;
   for (const vp::Stage stage : vp::kStages) {
-    if (simulation.stage_us(stage) > 0.0) {
-      row(vp::name_of(stage), "%.1f us", simulation.stage_us(stage));
-    }
+    const double us = simulation.stage_us(stage);
+    if (us > 0.0) row(vp::name_of(stage), us < 1000.0 ? "%.1f us" : "%.0f us", us);
   }
   ImGui::EndTable();
 }
