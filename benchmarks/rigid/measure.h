@@ -43,8 +43,8 @@ struct Plan {
   // Of processor time for a peer's run, at most; at 60 Hz, where runs are to reach their end, more.
   // Ours has six times that.
   double seconds = 10.0, seconds_at_60 = 30.0;
-  // Of Virtual Physics and Bullet at 60 Hz, what comes to its end within this processor time [s] is
-  // run so often.
+  // At 60 Hz, if both come to their end within this processor time [s], Virtual Physics and Bullet
+  // are run so often.
   int runs = 3;
   double repeated_within = 60.0;
   // By the clock: how long the programs may take to answer, beyond ten times that. Others run too.
@@ -63,22 +63,24 @@ struct Figure {
   int rate = 0;
   std::string missing{};  // why there is none; empty: there are figures
   std::string settings{};
-  std::string ended{};     // finished, budget, or stopped: and why
-  double simulated = 0.0;  // of the scene's seconds [s]
-  double median_us = 0.0, p99_us = 0.0;
-  double settled_us = 0.0;  // median of the last quarter of a finished run; else 0
+  std::string ended{};      // finished, budget, or stopped: and why
+  double simulated = 0.0;   // of the scene's seconds [s]
+  double median_us = 0.0;   // of least_us where there are several runs
+  double p99_us = 0.0;      // of the first run
+  double settled_us = 0.0;  // as median_us, of the last quarter of a finished run; else 0
   double rss_mb = 0.0;
-  bool bits_as_native = false;     // its poses are those of the native program
-  scenes::Standing standing{};     // where it ended
-  int runs = 1;                    // of which steps_us are the least
-  std::vector<double> steps_us{};  // of each step but the first of each turn
+  bool bits_as_native = false;  // its poses are those of the native program
+  scenes::Standing standing{};  // where it ended
+  int runs = 1;
+  std::vector<double> steps_us{};  // of each step but the first of each turn, in the first run
+  std::vector<double> least_us{};  // the same, of all runs; empty if there is only one
   std::vector<vp::SE3> poses{};    // the same
 
   bool stopped() const { return ended.starts_with("stopped"); }
 };
 
 // The median step of a as a share of b's, over the steps that both have made: at the same moments
-// of the scene. 0: there are none.
+// of the scene, of as many runs. 0: there are none.
 double share(const Figure& a, const Figure& b);
 
 // In the order of the plan. said: told what is being done.

@@ -109,32 +109,63 @@ TEST_F(Race, LeavesOutWhoStopsEarlyAndCountsLostBodies) {
   EXPECT_NE(table(figures).find("stopped: diverged"), std::string::npos);
 }
 
-// Every run takes another time; one that ends elsewhere is another thing.
-TEST_F(Race, KeepsTheLeastOfEachStepOfRunsThatAreTheSame) {
-  const std::string count = folder_ + "/count";
-  const auto leaving = [&](const std::string& end) {
+// Programs that take another time in every run n.
+class Repeated : public Race {
+ protected:
+  Repeated() { plan_.engines = {"vphysics", "bullet"}; }
+
+  // Of three steps; `end` is a coordinate of where its bodies end.
+  void play(const std::string& program, const std::string& end, const std::string& steps) {
+    const std::string count = folder_ + "/" + program + ".count";
     std::ofstream(count) << "0\n";
-    script("rigid-bullet",
-           "read n <" + count + "; n=$((n + 1)); echo $n >" + count +
-               "; echo ready; read turn; (echo simulated 10; echo rss_mb 1; echo steps 3; "
-               "echo $((10 + n)); echo $((30 - n)); echo 25; echo poses 11; "
-               "for i in 1 2 3 4 5 6 7 8 9 10 11; do echo 1 0 0 0 1 0 0 0 1 " +
-               end + " 0 0; done; echo whole) >$4; echo end finished\n");
-  };
-  leaving("0");
+    script(
+        program,
+        "read n <" + count + "; n=$((n + 1)); echo $n >" + count +
+            "; echo ready; read turn; (echo simulated 10; echo rss_mb 1; echo steps 3; for us in " +
+            steps +
+            "; do echo $us; done; echo poses 11; for i in 1 2 3 4 5 6 7 8 9 10 11; do "
+            "echo 1 0 0 0 1 0 0 0 1 " +
+            end + " 0 0; done; echo whole) >$4; echo end finished\n");
+  }
+};
+
+TEST_F(Repeated, KeepsTheLeastOfEachStep) {
+  play("rigid-ours", "0", "$((10 + n)) $((30 - n)) 25");
+  play("rigid-bullet", "0", "$((100 + n)) $((100 - n)) $((400 / n))");
   const auto figures = run();
-  ASSERT_EQ(figures.size(), 1u);
+  ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].runs, 3);
-  EXPECT_EQ(figures[0].steps_us, (std::vector<double>{11, 27, 25}));
+  EXPECT_EQ(figures[0].least_us, (std::vector<double>{11, 27, 25}));
   EXPECT_EQ(figures[0].median_us, 25.0);
+  EXPECT_EQ(figures[0].steps_us, (std::vector<double>{11, 29, 25}));
+  EXPECT_EQ(figures[1].least_us, (std::vector<double>{101, 97, 133}));
+  EXPECT_DOUBLE_EQ(share(figures[0], figures[1]), 25.0 / 101.0);
   EXPECT_NE(csv(figures).find("tower10@60,Bullet,runs,3,\n"), std::string::npos);
-  leaving("$n");
-  const auto others = run();
-  EXPECT_EQ(others[0].runs, 1);
-  EXPECT_EQ(others[0].steps_us, (std::vector<double>{11, 29, 25}));
+  // With one that was run once, the first runs are compared.
+  Figure once = figures[1];
+  once.runs = 1;
+  EXPECT_DOUBLE_EQ(share(figures[0], once), 25.0 / 101.0);
+  once.steps_us = {50, 50, 50};
+  EXPECT_DOUBLE_EQ(share(figures[0], once), 0.5);
+
   plan_.rates = {240};
-  leaving("0");
   EXPECT_EQ(run()[0].runs, 1);
+}
+
+TEST_F(Repeated, CountsAllOrNone) {
+  play("rigid-ours", "0", "$((40 / n)) $((40 / n)) $((40 / n))");
+  play("rigid-bullet", "$n", "$((80 / n)) $((80 / n)) $((80 / n))");
+  const auto elsewhere = run();
+  EXPECT_EQ(elsewhere[0].runs, 1);
+  EXPECT_EQ(elsewhere[1].runs, 1);
+  EXPECT_DOUBLE_EQ(share(elsewhere[0], elsewhere[1]), 0.5);
+
+  play("rigid-ours", "0", "$((40 / n)) $((40 / n)) $((40 / n))");
+  play("rigid-bullet", "0", "1000000 1000000 1000000");
+  plan_.repeated_within = 2.0;
+  const auto too_long = run();
+  EXPECT_EQ(too_long[0].runs, 1);
+  EXPECT_EQ(too_long[0].median_us, 40.0);
 }
 
 // Our own program, whole: two engines that take turns, one of which does not answer.

@@ -88,8 +88,8 @@ inline constexpr std::size_t kFieldsOf = (sizeof(ContactBlock<P>) -
                                           offsetof(ContactBlock<P>, normal)) /
                                          sizeof(Field);
 
-static_assert(sizeof(ContactBlock<4>) % sizeof(Field) == 0);
-static_assert(sizeof(ContactBlock<1>) % sizeof(Field) == 0);
+static_assert(sizeof(ContactBlock<4>) == 89 * sizeof(Field));
+static_assert(sizeof(ContactBlock<1>) == 66 * sizeof(Field));
 
 inline constexpr std::uint32_t kNoContact = 0xffffffffu;
 // A separation that no point comes near: of those that are not there.

@@ -100,11 +100,12 @@ std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& 
   return place.points == 1 ? remove_lane<1>(place) : remove_lane<4>(place);
 }
 
-// What one region has come to need, others will: room is made in all of them at once.
+// What one region has come to need, others will: room is made in all of them at once. Not of the
+// last colour: a body with hundreds of contacts fills that where it is, with a block for each.
 template <int P>
 void ContactGraph::make_room(const Place& place) {
   const std::size_t room = 2 * of<P>(place.region, place.colour).blocks.capacity() + 1;
-  const bool of_all = place.region != kBetween;
+  const bool of_all = place.region != kBetween && place.colour != kLastColour;
   for (std::size_t region = 1; of_all && region < regions(); ++region) {
     of<P>(region, place.colour).blocks.reserve(room);
   }

@@ -215,7 +215,8 @@ Lanes<W> sum_of_impulses(const LanesOf<W, P>& c) {
 //   p_i' = p_i - m_i u_i - (1 - s_i) p_i,   u = u0 + K (p - p0)
 // is, since p_i cancels,
 //   p_i' = e_i - sum_{j != i} m_i K_ij p_j,  e_i = s_i p0_i - m_i u0_i + sum_{j != i} m_i K_ij p0_j
-// which has a third of the operations that wait for one another.
+// which has a third of the operations that wait for one another. With
+// m_i = 0 a point keeps p0_i where s_i is 1, and has none where it is 0.
 template <int W, int P>
 class Points {
  public:
@@ -462,7 +463,7 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     const auto before_it = settled;
     const auto more =
         sweep([&](const F& next, const F& last) { return select(before_it, last, next); });
-    settled = !both(!before_it, !more);
+    settled = either(before_it, more);
   }
   F change[P], load(0.0f), moved(0.0f);
   auto quiet = F(0.0f) <= F(0.0f);

@@ -33,7 +33,7 @@ struct Closing {
     for (int i = 0; i < P; ++i) {
       gap[i] = larger(F(0.0f), s[i]);
       reaches[i] = F(h) * -u[i] >= gap[i];
-      closes = !both(!closes, !reaches[i]);
+      closes = either(closes, reaches[i]);
     }
   }
   // Of those that do: when and how fast.
