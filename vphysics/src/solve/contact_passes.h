@@ -215,8 +215,8 @@ Lanes<W> sum_of_impulses(const LanesOf<W, P>& c) {
 //   p_i' = p_i - m_i u_i - (1 - s_i) p_i,   u = u0 + K (p - p0)
 // is, since p_i cancels,
 //   p_i' = e_i - sum_{j != i} m_i K_ij p_j,  e_i = s_i p0_i - m_i u0_i + sum_{j != i} m_i K_ij p0_j
-// which has a third of the operations that wait for one another. With
-// m_i = 0 a point keeps p0_i where s_i is 1, and has none where it is 0.
+// which has a third of the operations that wait for one another. With m_i = 0 a point keeps p0_i
+// where s_i is 1, and has none where it is 0.
 template <int W, int P>
 class Points {
  public:
@@ -242,7 +242,7 @@ class Points {
     }
     return x;
   }
-  // Where no point carries anything: m_i times the speed that is left, with the other sign.
+  // Where no point carries anything: m_i times the speed of closing that is left.
   const F& closing(int i) const { return e_[i]; }
 
  private:
@@ -419,8 +419,6 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   if constexpr (kRound == Round::again) {
     acts = c.get(block.active) > F(0.0f);
     if (none(acts)) return;
-  }
-  if constexpr (kRound == Round::again) {
     c.gather_velocities();
   } else {
     c.gather_velocities_and_ways();
