@@ -217,7 +217,8 @@ TEST(Step, WithRegionsAllocatesNothingOnceWarm) {
   Random random(59);
   std::vector<BodyId> bodies;
   for (int i = 0; i < 500; ++i) {
-    const Vec3 at{0.3 * (i % 10) - 1.35, 0.3 * (i / 10 % 10) - 1.35, 0.2 + 0.3 * (i / 100)};
+    const int level = i / 100;
+    const Vec3 at{0.3 * (i % 10) - 1.35, 0.3 * (i / 10 % 10) - 1.35, 0.2 + 0.3 * level};
     const Shape shape = i % 2 ? Shape(Box{{0.1, 0.1, 0.1}}) : Shape(Sphere{0.1});
     bodies.push_back(add_dynamic(world, {.shape = shape, .pose = SE3(random.rotation(), at)}));
   }
@@ -438,7 +439,8 @@ TEST(Memory, OfABodyAndOfAContactIsAsTheDocumentationSays) {
     World world;
     add_ground(world, {});
     for (int i = 0; i < kBoxes; ++i) {
-      const double along = 3.0 * (i / 10 % 20), across = 3.0 * (i / 200);
+      const int tower = i / 10;
+      const double along = 3.0 * (tower % 20), across = 3.0 * (tower / 20);
       const double up = stacked ? 0.5 + 1.0 * (i % 10) : 2.0 + 3.0 * (i % 10);
       add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{along, across, up})});
     }

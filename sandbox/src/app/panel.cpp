@@ -29,8 +29,8 @@ bool pressed(int key) {
 // The scene that is so many places after this one in the catalogue, from its end to its beginning.
 std::string neighbour(std::string_view name, int places) {
   const auto all = scenes::catalogue();
-  if (all.empty()) return std::string(name);
   const auto count = static_cast<int>(all.size());
+  if (count == 0) return std::string(name);
   int at = 0;
   for (int i = 0; i < count; ++i) {
     if (all[static_cast<std::size_t>(i)].name == name) at = i;

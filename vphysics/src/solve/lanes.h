@@ -182,9 +182,6 @@ Lanes<W> larger(const Lanes<W>& a, const Lanes<W>& b) {
 #if defined(__AVX__)
   if constexpr (W == 8) return Lanes<W>(_mm256_max_ps(a.lanes, b.lanes));
 #endif
-#if defined(__SSE2__)
-  if constexpr (W == 4) return Lanes<W>(_mm_max_ps(a.lanes, b.lanes));
-#endif
   return select(a > b, a, b);
 }
 template <int W>
@@ -194,9 +191,6 @@ Lanes<W> smaller(const Lanes<W>& a, const Lanes<W>& b) {
 #endif
 #if defined(__AVX__)
   if constexpr (W == 8) return Lanes<W>(_mm256_min_ps(a.lanes, b.lanes));
-#endif
-#if defined(__SSE2__)
-  if constexpr (W == 4) return Lanes<W>(_mm_min_ps(a.lanes, b.lanes));
 #endif
   return select(a < b, a, b);
 }
