@@ -439,8 +439,8 @@ TEST(Memory, OfABodyAndOfAContactIsAsTheDocumentationSays) {
     World world;
     add_ground(world, {});
     for (int i = 0; i < kBoxes; ++i) {
-      const int tower = i / 10;
-      const double along = 3.0 * (tower % 20), across = 3.0 * (tower / 20);
+      const int tower = i / 10, row = tower / 20;
+      const double along = 3.0 * (tower % 20), across = 3.0 * row;
       const double up = stacked ? 0.5 + 1.0 * (i % 10) : 2.0 + 3.0 * (i % 10);
       add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{along, across, up})});
     }
