@@ -82,10 +82,11 @@ void time_controls(const Simulation& simulation, const Meter& meter, Controls& c
   if (ImGui::SliderFloat("##speed", &speed, static_cast<float>(kSlowest), 1.0f, "speed %.2f",
                          ImGuiSliderFlags_Logarithmic))
     controls.speed = speed;
-  ImGui::SameLine();
   if (controls.paused) {
+    ImGui::SameLine();
     ImGui::TextColored(kBright, "paused");
   } else if (meter.rate() > 0.0) {
+    ImGui::SameLine();
     const bool behind = meter.speed() < 0.95 * controls.speed;
     ImGui::TextColored(behind ? kBright : kDim, "reached %.2f", meter.speed());
   }
