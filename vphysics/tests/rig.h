@@ -19,17 +19,23 @@ inline void must(const Expected<void>& result) {
   if (!result) ADD_FAILURE() << result.error().message;
 }
 
-inline BodyId add_fixed(World& world, const Shape& shape, const Material& material,
-                        const SE3& pose = {}) {
-  BodyDesc desc;
-  desc.motion = Motion::fixed;
-  desc.T_world_body = pose;
+// With one collider.
+inline BodyId add_body(World& world, const BodyDesc& desc, const Shape& shape,
+                       const Material& material) {
   const BodyId body = must(world.create_body(desc));
   ColliderDesc collider;
   collider.shape = shape;
   collider.material = material;
   must(world.add_collider(body, collider));
   return body;
+}
+
+inline BodyId add_fixed(World& world, const Shape& shape, const Material& material,
+                        const SE3& pose = {}) {
+  BodyDesc desc;
+  desc.motion = Motion::fixed;
+  desc.T_world_body = pose;
+  return add_body(world, desc, shape, material);
 }
 
 inline BodyId add_ground(World& world, const Material& material, const Vec3& normal = {0, 0, 1}) {
@@ -47,12 +53,7 @@ inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocit
   desc.motion = Motion::kinematic;
   desc.T_world_body = pose;
   desc.velocity = velocity;
-  const BodyId body = must(world.create_body(desc));
-  ColliderDesc collider;
-  collider.shape = shape;
-  collider.material = material;
-  must(world.add_collider(body, collider));
-  return body;
+  return add_body(world, desc, shape, material);
 }
 
 struct Part {

@@ -1,9 +1,9 @@
 // A body as the solver sees it: a row of two cache lines.
 //
 // The first line is all that warm starts and rounds read, the second what sub-steps and bounces
-// begin with. World
-// axes, about the centre of mass. Written by the world before a step (load) and by the passes;
-// read back after it. Row 0 is the world itself: nothing moves it, and all that is fixed shares it.
+// begin with. World axes, about the centre of mass. Written by the world before a step (load) and
+// by the passes; read back after it. Row 0 is the world itself: nothing moves it, and all that is
+// fixed shares it.
 #pragma once
 
 #include <cstdint>

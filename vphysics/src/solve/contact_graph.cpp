@@ -40,10 +40,10 @@ void clear_lane(ContactBlock<P>& block, int lane) {
 void ContactGraph::reserve(std::size_t bodies) {
   constexpr int kReady = 8, kReadyFixed = 4;  // colours
   const std::size_t within = regions() - 1;
+  const auto all = static_cast<double>(bodies);
+  const double faces =
+      within == 0 ? 0.0 : std::min(1.0, 2.0 / std::cbrt(all / static_cast<double>(within)));
   for (std::size_t region = 0; region < regions(); ++region) {
-    const auto all = static_cast<double>(bodies);
-    const double faces =
-        within == 0 ? 0.0 : std::min(1.0, 2.0 / std::cbrt(all / static_cast<double>(within)));
     const std::size_t share = within == 0          ? bodies
                               : region == kBetween ? static_cast<std::size_t>(faces * all)
                                                    : bodies / within + 1;
