@@ -2,7 +2,7 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does), bench (the
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make the Debian package), bench (the
 # engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
 # WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
@@ -42,6 +42,8 @@ check  clang-format          formatting
 check  clang-tidy            static checks
 check  doxygen               the engine's headers as pages: what their comments say must be well formed
 check  shellcheck            static checks of the scripts
+check  dpkg-dev              the libraries that the Debian package depends on
+check  systemd               verifies the service that the package installs
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests
 check  libeigen3-dev         6x6 matrices that the tests compare with
@@ -51,6 +53,7 @@ check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
 check  libelf-dev            simavr reads the firmware through it
+deb    dpkg-dev              the libraries that the Debian package depends on
 bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
 bench  libdart-dev           DART, another one to compare with
 bench  liborocos-kdl-dev     KDL, another one
