@@ -40,7 +40,7 @@ bool usable(const RodTarget& target) {
 
 struct Match::Impl {
   explicit Impl(const MatchDesc& d)
-      : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built)) {
+      : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built, state.first)) {
     state.random = Random(d.seed).state();
     events.reserve(kMaxEventsPerStep);
     reset_gestures();
@@ -244,11 +244,13 @@ bool Match::Impl::find_place(int rod_index, vp::Vec3& place) {
   // A foot's half depth, the ball's radius and some 6 mm of air; then further off, then beside.
   constexpr double kAhead[] = {0.034, 0.042, 0.050};
   constexpr double kBeside[] = {0.0, 0.03, -0.03, 0.06, -0.06};
+  const double forward = attack_sign(rod.team);
   const double slide = world->rod(rod_index).slide;
-  const int man = rod.men / 2;
+  // The man in the middle, or the one left of it as his player sees it.
+  const int man = rod.team == 0 ? rod.men / 2 : rod.men - 1 - rod.men / 2;
   for (const double beside : kBeside) {
     for (const double ahead : kAhead) {
-      place = {rod.x + attack_sign(rod.team) * ahead, man_offset(rod, man) + slide + beside,
+      place = {rod.x + forward * ahead, man_offset(rod, man) + slide + forward * beside,
                table().ball_radius};
       const double to_wall = 0.5 * table().width - table().ball_radius - 0.002;
       if (std::fabs(place.y) <= to_wall && world->free_for_ball(place)) return true;
@@ -344,6 +346,7 @@ void Match::Impl::start_play() {
     server = random.below(kTeams);
     state.random = random.state();
     state.last_server = server;
+    state.first = server;
     rebuild_world();
   }
   enter(Screen::play);
@@ -353,7 +356,7 @@ void Match::Impl::start_play() {
 // The men take on the chosen characters; the rods stay as they are in the hands that hold them.
 void Match::Impl::rebuild_world() {
   state.built = state.character;
-  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built);
+  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
   for (int rod = 0; rod < kRods; ++rod) rebuilt->set_rod(rod, world->rod(rod));
   world = std::move(rebuilt);
 }

@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32'30'4d'42'46'53;  // "SFBM02"
+constexpr std::uint64_t kMagic = 0x33'30'4d'42'46'53;  // "SFBM03"
 
 template <class Archive, class Count, class Desc, class State>
 void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
@@ -54,7 +54,7 @@ vp::Expected<SavedMatch> load_match(const MatchDesc& desc, std::span<const std::
   if (saved_desc.layout != desc.layout || !(saved_desc.rules == desc.rules)) {
     return refuse("The saved match has another table or other rules; create the match with those.");
   }
-  saved.world = std::make_unique<TableWorld>(desc.layout, saved.state.built);
+  saved.world = std::make_unique<TableWorld>(desc.layout, saved.state.built, saved.state.first);
   if (auto result = saved.world->restore(reader.rest()); !result) {
     return tl::unexpected(std::move(result).error());
   }

@@ -17,6 +17,7 @@ struct MatchState {
   std::array<int, kTeams> score{};
   std::array<int, kTeams> character{1, 1};
   std::array<int, kTeams> built{1, 1};  // the characters that the world was made with
+  int first = 0;  // the team whose side the world was made from: who served first (table_world.h)
   std::array<bool, kTeams> confirmed{};
   std::uint64_t screen_ticks = 0;
   std::uint64_t play_ticks = 0;
@@ -61,6 +62,7 @@ void MatchState::visit(Archive& archive, Self& self) {
     archive.choice(self.built[team], kCharacters);
     archive.flag(self.confirmed[team]);
   }
+  archive.choice(self.first, kTeams);
   archive.count(self.screen_ticks);
   archive.count(self.play_ticks);
   archive.choice(self.last_scorer, kTeams);

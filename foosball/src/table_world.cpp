@@ -88,15 +88,19 @@ Tag decode_tag(std::uint64_t user_data) {
           static_cast<std::uint8_t>(user_data >> 16), static_cast<std::uint8_t>(user_data >> 24)};
 }
 
-TableWorld::TableWorld(Layout layout, const Characters& characters)
-    : table_(table_spec(layout)), world_({.gravity = {0.0, 0.0, -tuning::kGravity}}) {
+TableWorld::TableWorld(Layout layout, const Characters& characters, int first)
+    : table_(table_spec(layout)),
+      first_(first),
+      world_({.gravity = {0.0, 0.0, -tuning::kGravity}}) {
   vp::BodyDesc fixed;
   fixed.motion = vp::Motion::fixed;
   fixed_ = must(world_.create_body(fixed));
   add_field_and_walls();
   add_corners();
   add_ball();
-  for (int i = 0; i < kRods; ++i) add_rod(i, characters[table_.rods[i].team]);
+  for (const int team : {first, 1 - first}) {
+    for (const int rod : rods_of_team(table_, team)) add_rod(rod, characters[team]);
+  }
   found_.reserve(64);
   park_ball();
 }
@@ -120,11 +124,11 @@ void TableWorld::add_field_and_walls() {
   const double h = 0.5 * table_.wall_height;
   const double beyond = table_.goal_depth + kWallThickness;
   const Box side{{0.5 * table_.length + beyond, t, h}};
-  for (const double s : {-1.0, 1.0}) {
+  for (const double s : ends()) {
     add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), tuning::kWall,
               Tag::What::wall);
-    add_goal(s);
   }
+  for (const double s : ends()) add_goal(s);
 }
 
 // An end wall as deep as the goal, with the opening, and the box behind it.
@@ -135,7 +139,7 @@ void TableWorld::add_goal(double side) {
   const double post = 0.5 * table_.goal_width;
   const double flank = 0.5 * (0.5 * table_.width - post);
   const double h = 0.5 * table_.wall_height;
-  for (const double s : {-1.0, 1.0}) {
+  for (const double s : ends()) {
     add_fixed(Box{{depth, flank, h}}, SE3(Vec3{x, s * (post + flank), h}), tuning::kWall,
               Tag::What::wall);
   }
@@ -160,8 +164,8 @@ void TableWorld::add_goal(double side) {
 void TableWorld::add_corners() {
   const double leg = table_.corner_size;
   const double half_thickness = 0.03;
-  for (const double sx : {-1.0, 1.0}) {
-    for (const double sy : {-1.0, 1.0}) {
+  for (const double sx : ends()) {
+    for (const double sy : ends()) {
       const Vec3 corner{sx * 0.5 * table_.length, sy * 0.5 * table_.width, 0.0};
       const Vec3 foot = corner - 0.5 * leg * Vec3{sx, sy, 0.0};  // middle of the ramp's lower edge
       const Vec3 rise = corner + Vec3{0.0, 0.0, table_.corner_rise} - foot;
@@ -199,7 +203,8 @@ void TableWorld::add_rod(int rod, int character) {
   rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, c)}));
   const vp::BodyId body = world_.link_body(rods_[rod], kTurn);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
-  for (int man = 0; man < spec.men; ++man) {
+  for (int i = 0; i < spec.men; ++i) {
+    const int man = spec.team == 0 ? i : spec.men - 1 - i;  // from the player's left
     const auto boxes = man_boxes(character);
     for (std::size_t part = 0; part < boxes.size(); ++part) {
       const Vec3 centre = boxes[part].centre + Vec3{0.0, man_offset(spec, man), 0.0};

@@ -43,9 +43,16 @@ class TableWorld {
   TableWorld& operator=(const TableWorld&) = delete;
 
   // All rods at slide 0, angle 0; the ball parked. Each character is in [0, kCharacters).
-  TableWorld(Layout layout, const Characters& characters);
+  //
+  // Symmetry: the engine solves contacts in the order in which their colliders were made, and that
+  // shows in the last bits when the ball touches two things at once. So the world is made in the
+  // order of the team that is first: its side before the other's, its rods from its goal outwards,
+  // each rod's men from the player's left. A world of the other team first, with characters,
+  // targets and ball turned by half a revolution about z, then moves exactly turned.
+  TableWorld(Layout layout, const Characters& characters, int first = 0);
 
   const TableSpec& table() const { return table_; }
+  int first() const { return first_; }
 
   // Drives a rod towards a target: finite, within the slide limit.
   void drive(int rod, const RodTarget& target);
@@ -75,12 +82,15 @@ class TableWorld {
                  Tag::What what);
   void add_field_and_walls();
   void add_goal(double side);
+  // Signs of x or y, first the side where the team that was made first stands.
+  std::array<double, 2> ends() const { return {-attack_sign(first_), attack_sign(first_)}; }
   void add_corners();
   void add_ball();
   void add_rod(int rod, int character);
   void let_field_sag();
 
   const TableSpec& table_;
+  int first_;
   vp::World world_;
   vp::BodyId fixed_;
   vp::BodyId ball_;
