@@ -1,0 +1,253 @@
+// What happened in matches, as counts: a pure observer of the view, the events and the targets of
+// each tick. docs/match-runner.md defines each figure that is made of these counts.
+//
+// All counts are integers, and distributions are histograms, so that the totals of many matches do
+// not depend on the order in which they are added. No clock; no allocation.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "foosball/match.h"
+
+namespace foosball {
+
+// Counts of values in bins of equal width [1e-6 of the value's unit], from 0; the last bin takes
+// all that is larger.
+template <int kBinCount, int kWidthMicro>
+struct Histogram {
+  static constexpr int kBins = kBinCount;
+  static constexpr double kWidth = kWidthMicro * 1e-6;
+
+  std::array<std::uint64_t, kBinCount> bins{};
+
+  void add(double value) {
+    const double bin = std::clamp(value / kWidth, 0.0, kBinCount - 1.0);
+    ++bins[static_cast<std::size_t>(bin)];
+  }
+  std::uint64_t count() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t bin : bins) sum += bin;
+    return sum;
+  }
+  // 0 <= fraction <= 1; linear within a bin; 0 of an empty histogram.
+  double quantile(double fraction) const {
+    const double wanted = fraction * static_cast<double>(count());
+    double below = 0.0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const double here = static_cast<double>(bins[i]);
+      if (here > 0.0 && below + here >= wanted) {
+        return (static_cast<double>(i) + (wanted - below) / here) * kWidth;
+      }
+      below += here;
+    }
+    return 0.0;
+  }
+  // Of the bins' centers.
+  double mean() const {
+    const std::uint64_t n = count();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      sum += (static_cast<double>(i) + 0.5) * static_cast<double>(bins[i]);
+    }
+    return n == 0 ? 0.0 : kWidth * sum / static_cast<double>(n);
+  }
+  bool operator==(const Histogram&) const = default;
+};
+
+using PerTeam = std::array<std::uint64_t, kTeams>;
+using PerRod = std::array<std::uint64_t, kRods>;
+
+struct Statistics {
+  // Matches.
+  PerTeam wins{};
+  std::uint64_t undecided = 0;        // left before a side had won
+  std::uint64_t lead_changes = 0;     // the lead passed to the side that had been behind
+  Histogram<180, 10'000'000> length;  // play of a decided match [s]
+
+  // Time, in ticks of the play screen that is not paused.
+  std::uint64_t ticks = 0;              // stepped, any screen
+  std::uint64_t play_ticks = 0;         // on the play screen
+  std::uint64_t ball_ticks = 0;         // with the ball in play; the counts below are parts of it
+  std::uint64_t still_ticks = 0;        // the ball is slower than kStillSpeed
+  std::uint64_t unreachable_ticks = 0;  // no man can touch the ball
+  PerTeam possession_ticks{};           // by who touched last
+  std::uint64_t longest_unreachable_ticks = 0;  // at a stretch
+  std::uint64_t longest_stuck_ticks = 0;        // within kStuckDistance, touched by nobody
+
+  // Goals and what stopped play.
+  PerTeam goals{};            // by who scored
+  PerTeam own_goals_swing{};  // by who touched last: the foot drove the ball towards its own goal
+  PerTeam own_goals_deflected{};  // by who touched last: any other
+  PerTeam serves{};               // from the midfield
+  PerTeam goals_of_server{};      // the team of the last serve scored; by that team
+  PerTeam goals_of_receiver{};    // the other team scored; by the team of the last serve
+  std::uint64_t dead_balls = 0;
+  std::uint64_t balls_out = 0;
+
+  // Hands. A rod counts while a hand is on it (RodTarget::live).
+  std::array<std::array<std::uint64_t, 5>, kTeams> moving_ticks{};  // [team][rods moving at once]
+  PerRod hand_ticks{};
+  PerRod slide_reversals{};
+  PerRod swing_reversals{};
+  PerRod spins{};  // full turns without touching the ball
+
+  // Play of the ball.
+  PerTeam touches{};  // by one man, however long
+  PerTeam passes{};   // see docs/match-runner.md
+  PerTeam shots{};
+  PerTeam shots_on_target{};
+  PerTeam saves{};                      // by the team that defended
+  Histogram<300, 100'000> shot_speed;   // [m/s]
+  Histogram<500, 1'000> hop_height;     // underside of the ball over the ground [m]
+  Histogram<200, 10'000> bounce_ratio;  // height after a bounce on the ground to that before it
+  Histogram<64, 1'000'000> rally;       // how often the ball changed teams until play stopped
+
+  std::uint64_t matches() const { return wins[0] + wins[1] + undecided; }
+  void merge(const Statistics& other);
+  bool operator==(const Statistics&) const = default;
+
+  // Every count in a fixed order, with its name: visitor.sum(name, count) for what adds up,
+  // visitor.max(name, count) for a largest one.
+  template <class Visitor, class Self>
+  static void visit(Visitor& visitor, Self& self);
+};
+
+inline constexpr double kStillSpeed = 0.02;     // [m/s]
+inline constexpr double kStuckDistance = 0.08;  // as the referee's for a dead ball [m]
+inline constexpr double kShotSpeed = 4.0;       // [m/s]
+
+// Whether any man of the rod could touch the ball, were his rod at its best slide and angle: the
+// solid that his foot sweeps, a cylinder about the rod's axis, meets the ball. Source: TableSpec
+// and CharacterSpec alone. 0 <= rod < kRods.
+bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball);
+
+// Height of the ground under a point of the field, which the corners raise [m].
+double ground_height(const TableSpec& table, double x, double y);
+
+// Follows one match after another. One call a tick, in order, with what the step was given and what
+// it made: the match's view and events after the step, and the targets that it was stepped with.
+class StatisticsObserver {
+ public:
+  void observe(const MatchView& view, std::span<const Event> events, const RodTargets& targets);
+  // The match under way is given up: counts as undecided, if it had begun. Forgets it.
+  void abandon();
+  const Statistics& totals() const { return totals_; }
+
+ private:
+  // A man's time at the ball: all contacts until another man has one or kTouchPause has passed.
+  struct Touch {
+    int team = -1, rod = -1, man = -1;  // -1: none yet since the ball was put in play
+    std::uint64_t since = 0, last = 0;  // [ticks]
+    double arrival_vx = 0.0;            // ball's, before [m/s]
+    double arrival_speed = 0.0;         // [m/s]
+    double departure_vx = 0.0;          // ball's, so far [m/s]
+    double drive = 0.0;                 // the foot's largest velocity towards its own goal [m/s]
+    double stroke = 0.0;                // the foot's largest speed along the ball's way out [m/s]
+  };
+  // A hand's turning points on one axis.
+  struct Reversals {
+    double extreme = 0.0;
+    int way = 0;  // of the motion: -1, 0 not known yet, +1
+    bool update(double value, double hysteresis);
+  };
+  struct Rod {
+    Reversals slide, swing;
+    double spin_from = 0.0;  // angle at the last touch, turn or change of direction [rad]
+    Reversals spin;
+    bool followed = false;
+  };
+  struct Shot {
+    int team = -1;  // -1: none under way
+    bool on_target = false;
+    double peak = 0.0;  // [m/s]
+  };
+
+  void begin_rally(const MatchView& view, const Event& serve);
+  void end_rally();
+  void note_events(const MatchView& view, std::span<const Event> events);
+  void note_goal(int scorer);
+  void note_match_won(const MatchView& view, int team);
+  void watch_hands(const MatchView& view, const RodTargets& targets);
+  void watch_ball(const MatchView& view, std::span<const Event> events);
+  void find_touches(const MatchView& view, std::span<const Event> events);
+  void touch(const MatchView& view, int rod, int man);
+  void begin_touch(const MatchView& view, int rod, int man);
+  void watch_pass(const MatchView& view);
+  void watch_shot(const MatchView& view);
+  void end_shot();
+  void watch_height(const MatchView& view, std::span<const Event> events);
+  void watch_reach(const MatchView& view);
+  void watch_stuck(const MatchView& view);
+
+  Statistics totals_;
+  std::uint64_t now_ = 0;  // ticks observed
+  bool begun_ = false;     // a match
+  int leader_ = -1;        // who was last ahead
+  int server_ = -1;        // of the last serve from a midfield
+  std::array<Rod, kRods> rods_{};
+
+  bool in_play_ = false;  // the ball, in the tick before
+  vp::Vec3 velocity_before_;
+  Touch touch_, previous_touch_;
+  bool touched_now_ = false;
+  std::uint64_t rally_changes_ = 0;
+  Shot shot_;
+  int saver_ = -1;  // team that touched a shot on target; -1: none
+  std::uint64_t saved_at_ = 0;
+  bool pass_open_ = false;  // a man received from another of his team; under control yet?
+  vp::Vec3 stuck_at_;
+  std::uint64_t stuck_ticks_ = 0, unreachable_ticks_ = 0;
+  bool airborne_ = false;
+  bool falling_clean_ = false;  // since the peak, nothing but air
+  double peak_ = 0.0;           // of this hop [m]
+  double bounced_from_ = 0.0;   // peak before the last landing; 0: not to be compared [m]
+  double rebound_ = 0.0;        // highest since that landing [m]
+  std::uint64_t landed_at_ = 0;
+};
+
+template <class Visitor, class Self>
+void Statistics::visit(Visitor& visitor, Self& self) {
+  const auto list = [&](const char* name, auto& counts) {
+    for (auto& count : counts) visitor.sum(name, count);
+  };
+  list("wins", self.wins);
+  visitor.sum("undecided", self.undecided);
+  visitor.sum("lead_changes", self.lead_changes);
+  list("length", self.length.bins);
+  visitor.sum("ticks", self.ticks);
+  visitor.sum("play_ticks", self.play_ticks);
+  visitor.sum("ball_ticks", self.ball_ticks);
+  visitor.sum("still_ticks", self.still_ticks);
+  visitor.sum("unreachable_ticks", self.unreachable_ticks);
+  list("possession_ticks", self.possession_ticks);
+  visitor.max("longest_unreachable_ticks", self.longest_unreachable_ticks);
+  visitor.max("longest_stuck_ticks", self.longest_stuck_ticks);
+  list("goals", self.goals);
+  list("own_goals_swing", self.own_goals_swing);
+  list("own_goals_deflected", self.own_goals_deflected);
+  list("serves", self.serves);
+  list("goals_of_server", self.goals_of_server);
+  list("goals_of_receiver", self.goals_of_receiver);
+  visitor.sum("dead_balls", self.dead_balls);
+  visitor.sum("balls_out", self.balls_out);
+  for (auto& team : self.moving_ticks) list("moving_ticks", team);
+  list("hand_ticks", self.hand_ticks);
+  list("slide_reversals", self.slide_reversals);
+  list("swing_reversals", self.swing_reversals);
+  list("spins", self.spins);
+  list("touches", self.touches);
+  list("passes", self.passes);
+  list("shots", self.shots);
+  list("shots_on_target", self.shots_on_target);
+  list("saves", self.saves);
+  list("shot_speed", self.shot_speed.bins);
+  list("hop_height", self.hop_height.bins);
+  list("bounce_ratio", self.bounce_ratio.bins);
+  list("rally", self.rally.bins);
+}
+
+}  // namespace foosball
