@@ -59,6 +59,7 @@ LAYERS = {
     'draw/': 'draw',
     'client/': 'client',
     'sandbox/': 'sandbox',
+    'foosball/include/foosball/rod_motion.h': 'table',
     'foosball/include/foosball/table.h': 'table',
     'tools/': 'tools',
     'benchmarks/': 'benchmarks',

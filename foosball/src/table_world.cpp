@@ -39,22 +39,16 @@ void must([[maybe_unused]] const vp::Expected<void>& result) {
 
 // Rod with its men, which are balanced about the axis as on tournament tables, so that a rod let go
 // stays as it is. Link frame: z along the rod.
-vp::Inertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterSpec& c) {
+vp::Inertia link_inertia(const RodInertia& rod) {
   constexpr double kHalfLength = 0.55;
-  const double men = rod.men * c.mass;
-  const double mass = table.rod_mass + men;
-  // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
-  const double gyration = 0.6 * c.foot_reach;
-  const double axial =
-      0.5 * table.rod_mass * table.rod_radius * table.rod_radius + men * gyration * gyration;
-  const double across = mass * kHalfLength * kHalfLength / 3.0;
-  return {mass, Vec3{across, across, axial}};
+  const double across = rod.rod_and_men * kHalfLength * kHalfLength / 3.0;
+  return {rod.rod_and_men, Vec3{across, across, rod.axial}};
 }
 
 // Two joints: the slide along the rod, which has no mass of its own, and the turn about it. At each
 // the hand's inertia is felt.
 constexpr int kSlide = 0, kTurn = 1;  // links
-vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const CharacterSpec& c) {
+vp::Model rod_model(const TableSpec& table, const RodSpec& rod, int character) {
   vp::ModelBuilder builder;
   vp::LinkSpec slide;
   slide.joint = vp::PrismaticJoint{};
@@ -64,7 +58,7 @@ vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const CharacterS
   vp::LinkSpec turn;
   turn.parent = must(builder.add(slide));
   turn.joint = vp::RevoluteJoint{};
-  turn.inertia = rod_inertia(table, rod, c);
+  turn.inertia = link_inertia(rod_inertia(table, rod, character));
   turn.armature = tuning::kHandInertia;
   must(builder.add(turn));
   return builder.build().value();
@@ -200,7 +194,7 @@ void TableWorld::add_ball() {
 void TableWorld::add_rod(int rod, int character) {
   const RodSpec& spec = table_.rods[rod];
   const CharacterSpec& c = character_spec(character);
-  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, c)}));
+  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, character)}));
   const vp::BodyId body = world_.link_body(rods_[rod], kTurn);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
   for (int i = 0; i < spec.men; ++i) {
@@ -225,35 +219,16 @@ void TableWorld::add_rod(int rod, int character) {
 
 namespace {
 
-// A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
-// The error is cut so that the speed it asks for stays within the bound: at rest
-// error * stiffness = speed * damping.
-vp::JointDrive drive_towards(double target, double target_rate, double now, double inertia,
-                             double max_force, double max_rate) {
-  const double stiffness = inertia * tuning::kDriveOmega * tuning::kDriveOmega;
-  const double damping = 2.0 * inertia * tuning::kDriveOmega;
-  const double furthest = max_rate * damping / stiffness;
-  const double rate = std::clamp(target_rate, -max_rate, max_rate);
-  const double error = target + rate * kTick - now;
-  return {now + std::clamp(error, -furthest, furthest), rate, stiffness, damping, max_force};
+vp::JointDrive joint_drive(const AxisDrive& d) {
+  return {d.position, d.velocity, d.stiffness, d.damping, d.max_force};
 }
 
 }  // namespace
 
 void TableWorld::drive(int rod, const RodTarget& target) {
-  const RodSpec& spec = table_.rods[rod];
-  const RodState now = this->rod(rod);
-  const double slide = std::clamp(target.slide, -spec.slide_limit, spec.slide_limit);
-  const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
-  // The heaviest rod's figures serve all: a lighter one is only damped a little more.
-  constexpr double kSlideInertia = 1.9;     // [kg]
-  constexpr double kAngleInertia = 1.2e-3;  // [kg m^2]
-  must(world_.set_drive(rods_[rod], kSlide, 0,
-                        drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide,
-                                      kSlideInertia, tuning::kHandForce, tuning::kMaxSlideRate)));
-  must(world_.set_drive(rods_[rod], kTurn, 0,
-                        drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia,
-                                      tuning::kHandTorque, tuning::kMaxAngleRate)));
+  const RodDrive drive = rod_drive(table_.rods[rod], this->rod(rod), target);
+  must(world_.set_drive(rods_[rod], kSlide, 0, joint_drive(drive.slide)));
+  must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(drive.angle)));
 }
 
 RodState TableWorld::rod(int rod) const {

@@ -12,6 +12,7 @@
 #include "app/view_motion.h"
 #include "app/window.h"
 #include "client/player_input.h"
+#include "client/rod_prediction.h"
 #include "draw/image.h"
 #include "os/clock.h"
 #include "render/hud.h"
@@ -37,6 +38,7 @@ class App {
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
+  void predict(std::int64_t now);
   void draw(float dt);
   HudState hud(const Camera& camera) const;
   void judge_quality();
@@ -55,10 +57,12 @@ class App {
   std::unique_ptr<SoundPlayer> sounds_;
   std::unique_ptr<Connection> connection_;
   std::unique_ptr<PlayerInput> player_;
+  std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
   ViewMotion motion_;
   FrameMeter meter_;
   SceneSample sample_;
+  wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
   bool show_help_ = false;
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
@@ -129,9 +133,12 @@ void App::follow_connection() {
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   player_.reset();
+  prediction_.reset();
   if (status_.welcome.team < foosball::kTeams) {
     player_ = std::make_unique<PlayerInput>(status_.welcome.session, status_.welcome.team,
                                             static_cast<foosball::Layout>(status_.welcome.layout));
+    prediction_ = std::make_unique<RodPrediction>(
+        status_.welcome.team, static_cast<foosball::Layout>(status_.welcome.layout));
   }
 }
 
@@ -159,9 +166,18 @@ void App::take_input(std::int64_t now) {
   for (const wire::Wish& wish : player_->wishes()) connection_->wish(player_->session(), wish);
 }
 
+// Last before drawing, so that what the hand did is in this very frame.
+void App::predict(std::int64_t now) {
+  if (!sample_.any) return;
+  drawn_ = sample_.state;
+  if (!prediction_ || !player_->begun() || !scene_is_current()) return;
+  prediction_->update(player_->rods(), sample_.state, now);
+  prediction_->apply(drawn_);
+}
+
 HudState App::hud(const Camera& camera) const {
   HudState hud;
-  hud.state = sample_.any ? &sample_.state : nullptr;
+  hud.state = sample_.any ? &drawn_ : nullptr;
   hud.camera = camera;
   hud.viewer_team = player_ ? status_.welcome.team : -1;
   hud.mouse_free = !window_->captured();
@@ -198,10 +214,9 @@ void App::draw(float dt) {
   view.time = static_cast<float>(seconds_);
   view.active_rod = player_ ? player_->active_rod() : -1;
   view.camera = player_camera(
-      motion_.step(sample_.any ? &sample_.state : nullptr, player_ ? status_.welcome.team : 0, dt),
-      size_);
+      motion_.step(sample_.any ? &drawn_ : nullptr, player_ ? status_.welcome.team : 0, dt), size_);
   static const wire::Snapshot kNothing;
-  const wire::Snapshot& state = sample_.any ? sample_.state : kNothing;
+  const wire::Snapshot& state = sample_.any ? drawn_ : kNothing;
   if (state.ball_in_play && !state.paused && status_.link == Link::joined) {
     const auto& ball = state.ball;
     const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
@@ -277,8 +292,10 @@ int App::loop() {
     before = now;
     seconds_ = 1e-6 * static_cast<double>(now - began);
     meter_.begin(now);
-    take_input(now);
-    hear(os::monotonic_us());
+    hear(now);
+    const std::int64_t input_us = os::monotonic_us();
+    take_input(input_us);
+    predict(input_us);
     draw(dt);
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {

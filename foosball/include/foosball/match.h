@@ -14,20 +14,13 @@
 #include <span>
 #include <vector>
 
+#include "foosball/rod_motion.h"
 #include "foosball/table.h"
 #include "vphysics/error.h"
 #include "vphysics/lie.h"
 
 namespace foosball {
 
-// Where a hand wants a rod. A rod that is not live is held where it is.
-struct RodTarget {
-  double slide = 0.0;       // [m]
-  double angle = 0.0;       // [rad], unbounded: full turns count
-  double slide_rate = 0.0;  // [m/s]
-  double angle_rate = 0.0;  // [rad/s]
-  bool live = false;
-};
 using RodTargets = std::array<RodTarget, kRods>;
 
 // Wishes of a client, applied at the start of a tick if the screen allows them.
@@ -88,10 +81,6 @@ struct MatchDesc {
   Layout layout = Layout::tournament;
   std::uint64_t seed = 1;
   Rules rules;
-};
-
-struct RodState {
-  double slide, angle, slide_rate, angle_rate;  // as simulated [m, rad, m/s, rad/s]
 };
 
 // All that a renderer or a player may see.

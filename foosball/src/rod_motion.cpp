@@ -1,0 +1,77 @@
+// One axis of a rod with mass m, driven by f = k (p - q) + d (u - v) with |f| <= F, integrated
+// implicitly over h (Catto, "Soft constraints", 2011):
+//   gain = h (h k + d),  target = h (k (p - q) + d u) / gain,  softness = 1 / gain
+//   impulse = clamp((target - v) / (1 / m + softness), +-h F),  v+ = v + impulse / m
+//   stops:   v+ limited so that q + h v+ stays within them,     q+ = q + h v+
+#include "foosball/rod_motion.h"
+
+#include <algorithm>
+
+#include "tuning.h"
+
+namespace foosball {
+namespace {
+
+// A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
+// The error is cut so that the speed it asks for stays within the bound: at rest
+// error * stiffness = speed * damping.
+AxisDrive drive_towards(double target, double target_rate, double now, double inertia,
+                        double max_force, double max_rate) {
+  const double stiffness = inertia * tuning::kDriveOmega * tuning::kDriveOmega;
+  const double damping = 2.0 * inertia * tuning::kDriveOmega;
+  const double furthest = max_rate * damping / stiffness;
+  const double rate = std::clamp(target_rate, -max_rate, max_rate);
+  const double error = target + rate * kTick - now;
+  return {now + std::clamp(error, -furthest, furthest), rate, stiffness, damping, max_force};
+}
+
+// The heaviest rod's inertia serves all: a lighter one is only damped a little more.
+constexpr double kSlideInertia = 1.9;     // [kg]
+constexpr double kAngleInertia = 1.2e-3;  // [kg m^2]
+
+double step_rate(const AxisDrive& drive, double mass, double position, double rate) {
+  constexpr double h = kTick;
+  const double gain = h * (h * drive.stiffness + drive.damping);
+  const double target =
+      h * (drive.stiffness * (drive.position - position) + drive.damping * drive.velocity) / gain;
+  const double most = h * drive.max_force;
+  const double impulse = std::clamp((target - rate) / (1.0 / mass + 1.0 / gain), -most, most);
+  return rate + impulse / mass;
+}
+
+}  // namespace
+
+RodDrive rod_drive(const RodSpec& rod, const RodState& now, const RodTarget& target) {
+  const double slide = std::clamp(target.slide, -rod.slide_limit, rod.slide_limit);
+  const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
+  return {drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide, kSlideInertia,
+                        tuning::kHandForce, tuning::kMaxSlideRate),
+          drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia,
+                        tuning::kHandTorque, tuning::kMaxAngleRate)};
+}
+
+RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character) {
+  const CharacterSpec& c = character_spec(character);
+  const double men = rod.men * c.mass;
+  // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
+  const double gyration = 0.6 * c.foot_reach;
+  const double mass = table.rod_mass + men;
+  const double axial =
+      0.5 * table.rod_mass * table.rod_radius * table.rod_radius + men * gyration * gyration;
+  return {mass, mass + tuning::kHandMass, axial, axial + tuning::kHandInertia};
+}
+
+RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
+                  const RodTarget& target) {
+  const RodDrive drive = rod_drive(rod, now, target);
+  RodState next;
+  next.slide_rate =
+      std::clamp(step_rate(drive.slide, inertia.slide, now.slide, now.slide_rate),
+                 (-rod.slide_limit - now.slide) / kTick, (rod.slide_limit - now.slide) / kTick);
+  next.angle_rate = step_rate(drive.angle, inertia.turn, now.angle, now.angle_rate);
+  next.slide = now.slide + kTick * next.slide_rate;
+  next.angle = now.angle + kTick * next.angle_rate;
+  return next;
+}
+
+}  // namespace foosball

@@ -1,0 +1,87 @@
+// The rod's motion as a pure function against the rod of the simulated table.
+#include "foosball/rod_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "../src/random.h"
+#include "../src/table_world.h"
+
+namespace foosball {
+namespace {
+
+struct Difference {
+  double slide = 0.0, angle = 0.0;
+};
+
+// Drives every rod of a table and its prediction with the same hand; the largest difference.
+template <class Hand>
+Difference compare(Layout layout, int character, int ticks, Hand&& hand) {
+  TableWorld world(layout, {character, character});
+  const TableSpec& table = world.table();
+  std::array<RodState, kRods> predicted{};
+  Difference worst;
+  for (int tick = 0; tick < ticks; ++tick) {
+    for (int rod = 0; rod < kRods; ++rod) {
+      const RodSpec& spec = table.rods[rod];
+      const RodTarget target = hand(rod, tick, spec);
+      world.drive(rod, target);
+      predicted[rod] = step_rod(spec, rod_inertia(table, spec, character), predicted[rod], target);
+    }
+    world.park_ball();  // touches nothing
+    world.step();
+    for (int rod = 0; rod < kRods; ++rod) {
+      const RodState simulated = world.rod(rod);
+      worst.slide = std::max(worst.slide, std::fabs(simulated.slide - predicted[rod].slide));
+      worst.angle = std::max(worst.angle, std::fabs(simulated.angle - predicted[rod].angle));
+    }
+  }
+  std::printf("layout %d, character %d: within %.2g m, %.2g rad\n", static_cast<int>(layout),
+              character, worst.slide, worst.angle);
+  return worst;
+}
+
+class RodMotionTest : public testing::TestWithParam<Layout> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, RodMotionTest,
+                         testing::Values(Layout::paper, Layout::tournament));
+
+TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
+  for (int character = 0; character < kCharacters; ++character) {
+    Random random(7);
+    std::array<RodTarget, kRods> targets{};
+    const Difference worst =
+        compare(GetParam(), character, 3000, [&](int rod, int tick, const RodSpec& spec) {
+          RodTarget& t = targets[rod];
+          if (tick % 400 == 50 * rod) {  // a jump: the force and the rates reach their bounds
+            t = {spec.slide_limit * random.between(-1.2, 1.2), random.between(0.0, 9.0), 0.0, 0.0,
+                 true};
+          } else if (tick % 400 > 200) {  // a stroke
+            t.slide_rate = 1.5;
+            t.angle_rate = -60.0;
+            t.slide += t.slide_rate * kTick;
+            t.angle += t.angle_rate * kTick;
+          } else {
+            t.slide_rate = t.angle_rate = 0.0;
+          }
+          return t;
+        });
+    EXPECT_LT(worst.slide, kRodSlideTolerance);
+    EXPECT_LT(worst.angle, kRodAngleTolerance);
+  }
+}
+
+TEST_P(RodMotionTest, ARodStopsAtItsStop) {
+  const TableSpec& table = table_spec(GetParam());
+  const RodSpec& spec = table.rods[3];
+  RodState rod{};
+  for (int tick = 0; tick < 500; ++tick)
+    rod = step_rod(spec, rod_inertia(table, spec, 1), rod, {9.0, 0.0, 5.0, 0.0, true});
+  EXPECT_NEAR(rod.slide, spec.slide_limit, 1e-9);
+  EXPECT_NEAR(rod.slide_rate, 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace foosball
