@@ -7,15 +7,16 @@
 namespace cabinet {
 namespace {
 
-constexpr double kKeyRate = 1.2;    // [m/s] slide at full ramp: the goal's width in 0.17 s
-constexpr double kKeyRamp = 12.0;   // [m/s^2]: a tap moves a few mm, 0.1 s to full rate
-constexpr double kPadRate = 1.5;    // [m/s] at full deflection
-constexpr float kDeadZone = 0.12f;  // of a worn stick
-constexpr double kSwing = 1.4;      // [rad] feet at full flick, either way: the ball is struck at 0
+constexpr double kKeyRate = 1.2;       // [m/s] slide at full ramp: the goal's width in 0.17 s
+constexpr double kKeyRamp = 12.0;      // [m/s^2]: a tap moves a few mm, 0.1 s to full rate
+constexpr double kPadRate = 1.5;       // [m/s] at full deflection
+constexpr float kDeadZone = 0.12f;     // of a worn stick
 constexpr double kKeySwingRate = 60;   // [rad/s]: a foot at 72 mm strikes with 4.3 m/s
 constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a rod
 constexpr double kNearer = 0.03;       // [m] a rod must be nearer by, to be chosen: no flicker
-constexpr double kLongestStep = 0.05;  // [s] a stalled window does not fling the rods
+// A stalled window does not fling the rods [s]; a window of 10 frames a second is none.
+constexpr double kLongestStep = 0.11;
+constexpr int kMostTaps = 4;  // in one poll
 
 // A mouse reports every 8 ms or faster: a poll that brings nothing, that long after the last
 // movement, says that the hand stands. Held longer, the rate drives the rod on past where the hand
@@ -81,6 +82,11 @@ void Hand::key_axis(double slide, double spin) {
   key_spin_ = std::clamp(finite(spin), -1.0, 1.0);
 }
 
+void Hand::key_taps(int slide, int spin) {
+  slide_taps_ = std::clamp(slide, -kMostTaps, kMostTaps);
+  spin_taps_ = std::clamp(spin, -1, 1);
+}
+
 void Hand::pad(const PadState& state) {
   const bool previous = state.previous_rod && !pad_.previous_rod;
   const bool next = state.next_rod && !pad_.next_rod;
@@ -139,14 +145,16 @@ void Hand::drive_slide(double seconds) {
   if (key_slide_ == 0 || key_slide_ * key_rate_ < 0) key_rate_ = 0;
   key_rate_ = towards(key_rate_, key_slide_ * kKeyRate, kKeyRamp * seconds);
   const double stick = larger(outside_dead_zone(pad_.left_x), outside_dead_zone(pad_.left_y));
-  const double rate = larger(key_rate_, stick * kPadRate);
-  if (rate == 0) return;
-  slide_by(lines_[line_], options_.slide_sign * rate * seconds, options_.slide_limit[line_]);
+  const double way = larger(key_rate_, stick * kPadRate) * seconds + kTapSlide * slide_taps_;
+  slide_taps_ = 0;
+  if (way == 0) return;
+  slide_by(lines_[line_], options_.slide_sign * way, options_.slide_limit[line_]);
 }
 
 void Hand::drive_swing(int index, double seconds) {
   Line& line = lines_[index];
-  const double wanted = index == line_ ? swing_wanted() : 0;
+  const bool tapped = index == line_ && spin_taps_ != 0 && swing_wanted() == 0;
+  const double wanted = tapped ? spin_taps_ : index == line_ ? swing_wanted() : 0;
   if (wanted != 0 && !line.swinging) {
     constexpr double turn = 2 * std::numbers::pi;
     line.rest_angle = turn * std::round(line.angle / turn);
@@ -155,7 +163,9 @@ void Hand::drive_swing(int index, double seconds) {
   if (!line.swinging) return;
   const bool by_stick = key_spin_ == 0 && wanted != 0;
   const double target = line.rest_angle + options_.angle_sign * wanted * kSwing;
-  line.angle = towards(line.angle, target, (by_stick ? kPadSwingRate : kKeySwingRate) * seconds);
+  // A tap is over before the next poll: the whole flick is in this one.
+  const double reach = (by_stick ? kPadSwingRate : kKeySwingRate) * seconds;
+  line.angle = tapped ? target : towards(line.angle, target, reach);
   if (wanted == 0 && line.angle == line.rest_angle) line.swinging = false;
 }
 
@@ -169,6 +179,7 @@ void Hand::poll(std::int64_t now_us) {
   drive_slide(seconds);
   for (int i = 0; i < 4; ++i) {
     drive_swing(i, seconds);
+    if (i == line_) spin_taps_ = 0;
     Line& line = lines_[i];
     line.rate.update(line.slide - line.sent_slide, line.angle - line.sent_angle, now_us);
     line.sent_slide = line.slide;

@@ -171,6 +171,41 @@ TEST(Hand, AHeldKeyRampsUpAndStopsWhenLetGo) {
   EXPECT_EQ(p.active().slide_rate, 0);
 }
 
+TEST(Hand, ATapBetweenTwoPollsMovesTheRodByTheStatedAmount) {
+  for (const std::int64_t period_us : {4'167, 16'667, 100'000}) {
+    Player p;
+    p.hand.choose(0);
+    p.hand.key_taps(1, 0);
+    p.frames(1, period_us);
+    EXPECT_NEAR(p.active().slide, kTapSlide, 1e-12) << period_us;
+    p.hand.key_taps(-2, 0);
+    p.frames(1, period_us);
+    EXPECT_NEAR(p.active().slide, -kTapSlide, 1e-12) << period_us;
+    p.hand.key_taps(0, 0);
+    p.frames(3, period_us);
+    EXPECT_NEAR(p.active().slide, -kTapSlide, 1e-12) << period_us;
+
+    p.hand.key_taps(0, 1);
+    p.frames(1, period_us);
+    EXPECT_NEAR(p.active().angle, kSwing, 1e-12) << period_us;
+    p.hand.key_taps(0, 0);
+    p.frames(10, period_us);
+    EXPECT_EQ(p.active().angle, 0) << period_us;
+  }
+}
+
+TEST(Hand, AHeldKeyMovesAsFarAtTenFramesASecondAsAtSixty) {
+  double way[2] = {};
+  for (int i = 0; i < 2; ++i) {
+    Player p;
+    p.hand.choose(0);
+    p.hand.key_axis(1, 0);
+    p.frames(i == 0 ? 12 : 2, i == 0 ? 16'667 : 100'000);
+    way[i] = p.active().slide;
+  }
+  EXPECT_NEAR(way[1] / way[0], 1.0, 0.35);  // the ramp is taken in larger steps
+}
+
 TEST(Hand, ASpinKeyFlicksAndReturnsToTheNearestHangingAngle) {
   Player p;
   p.hand.adopt(3, 0, kTurn + 0.3);

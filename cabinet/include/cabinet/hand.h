@@ -19,6 +19,12 @@
 
 namespace cabinet {
 
+// What a key does that is let go before the hand is polled: as if held for a person's shortest tap,
+// 30 ms, of the ramp that held keys have [m].
+inline constexpr double kTapSlide = 0.0054;
+// Of a full flick by key or stick, either way [rad]: the ball is struck at 0.
+inline constexpr double kSwing = 1.4;
+
 struct HandOptions {
   std::array<int, 4> rods{0, 1, 3, 5};  // this person's rods, own goal outwards
   std::array<double, 4> slide_limit{};  // |slide| <= this [m]
@@ -44,6 +50,9 @@ class Hand final : public InputSource {
   void choose(int line);                     // 0..3, own goal outwards; others are ignored
   void cycle(int steps);                     // wheel: +1 outwards, wraps at neither end
   void key_axis(double slide, double spin);  // held keys, each -1, 0, 1
+  // Keys that were pressed and let go between two polls, how often, with their sign: each moves the
+  // rod by kTapSlide; any spin swings the feet to kSwing for one poll.
+  void key_taps(int slide, int spin);
   void pad(const PadState& state);
   // Where the rods really are (from the snapshot; call it with each): taken over once, until this
   // hand first moves the rod, so that nothing jumps. Later calls are ignored: the rod then follows
@@ -86,6 +95,7 @@ class Hand final : public InputSource {
   bool automatic_ = false;
   int nearest_line_ = -1;
   double key_slide_ = 0, key_spin_ = 0;
+  int slide_taps_ = 0, spin_taps_ = 0;
   double key_rate_ = 0;  // of the ramp [m/s]
   PadState pad_{};
   std::int64_t last_us_ = 0;

@@ -1,7 +1,10 @@
 // What a person did at the window between two frames, without any window library's types.
 #pragma once
 
+#include <array>
+
 #include "cabinet/hand.h"
+#include "client/controls.h"
 
 namespace client {
 
@@ -12,6 +15,9 @@ struct InputEvents {
   int wheel = 0;               // steps, outwards positive
   double key_slide = 0.0;      // -1, 0, 1: away from the person positive, as held
   double key_spin = 0.0;       // -1, 0, 1: to the right positive, as held
+  // Presses of these keys that were over before the frame, with their sign.
+  int slide_taps = 0, spin_taps = 0;
+  std::array<int, kActions> presses{};  // of keys, by Action
   bool toggle_automatic = false;
   bool toggle_pause = false;
   bool toggle_help = false;
@@ -20,6 +26,8 @@ struct InputEvents {
   cabinet::PadState pad;
   bool pad_push = false;
   bool pad_pause = false;
+  bool back = false;  // Esc, while the pointer is free
+  int any_key = 0;    // of the window library; 0: none was pressed
 };
 
 }  // namespace client

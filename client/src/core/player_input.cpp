@@ -62,6 +62,7 @@ void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
   }
   hand_.mouse_moved(events.mouse_forward, events.mouse_right);
   hand_.key_axis(events.key_slide, events.key_spin);
+  hand_.key_taps(events.slide_taps, events.spin_taps);
   hand_.pad(events.has_pad ? turned(events.pad) : cabinet::PadState{});
 }
 
@@ -83,7 +84,7 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
   int wanted = now;
   if (events.choose_line >= 0 && events.choose_line < foosball::kCharacters)
     wanted = events.choose_line;
-  int steps = -events.wheel;
+  int steps = -events.wheel + events.spin_taps - events.slide_taps;
   if (!key_was_held_) steps += static_cast<int>(std::lround(events.key_spin - events.key_slide));
   if (steps != 0)
     wanted =
