@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "app/frame_meter.h"
+#include "app/match_story.h"
 #include "app/options.h"
 #include "app/view_motion.h"
 #include "render/particles.h"
 #include "render/table_mesh.h"
 #include "scripted_scene.h"
 #include "sound/player.h"
+#include "wire/enums.h"
 
 namespace client {
 namespace {
@@ -97,6 +99,7 @@ TEST(Sounds, AreHeardEndInSilenceAndNeverClip) {
     for (const std::int16_t s : samples) peak = std::max(peak, std::abs(static_cast<int>(s)));
     EXPECT_GT(peak, 25'000) << i;
     EXPECT_LT(peak, 32'767) << i;
+    if (is_loop(static_cast<Sound>(i))) continue;
     EXPECT_LT(std::abs(static_cast<int>(samples.back())), 200) << i;
     double early = 0, late = 0;
     const std::size_t tenth = samples.size() / 10;
@@ -108,19 +111,121 @@ TEST(Sounds, AreHeardEndInSilenceAndNeverClip) {
   }
 }
 
-TEST(Sounds, HarderHitsAreLouderUpToFull) {
+TEST(Sounds, ALoopGoesOverIntoItsBeginningAsEvenlyAsWithinItself) {
+  for (int i = 0; i < kSounds; ++i) {
+    if (!is_loop(static_cast<Sound>(i))) continue;
+    const auto samples = synthesise(static_cast<Sound>(i));
+    int roughest = 0;
+    for (std::size_t k = 1; k < samples.size(); ++k)
+      roughest = std::max(roughest, std::abs(samples[k] - samples[k - 1]));
+    EXPECT_LE(std::abs(samples.front() - samples.back()), roughest) << i;
+  }
+}
+
+// From the softest touch to the hardest shot each step is heard: no plateau within play.
+TEST(Sounds, VolumeFollowsImpulseOverTheWholeRangeOfPlay) {
   EXPECT_EQ(volume_of_impulse(0), 0.0f);
-  EXPECT_LT(volume_of_impulse(0.01f), volume_of_impulse(0.1f));
   EXPECT_EQ(volume_of_impulse(5), 1.0f);
+  // A good shot leaves at 10 m/s; half of it is 6 dB and more below it, not full volume.
+  const float shot = 0.026f * 10.0f;
+  EXPECT_LT(volume_of_impulse(0.5f * shot), 0.80f * volume_of_impulse(shot));
+  EXPECT_LT(volume_of_impulse(shot), 0.75f);
+  for (float impulse = kSoftestImpulse; impulse < kHardestImpulse; impulse *= 1.5f) {
+    const float rise = volume_of_impulse(1.5f * impulse) / volume_of_impulse(impulse);
+    EXPECT_GT(rise, 1.05f) << impulse;
+    EXPECT_LT(rise, 1.5f) << impulse;
+  }
+}
+
+TEST(Sounds, TheRollingBallIsHeardByItsSpeed) {
+  EXPECT_EQ(rolling_sound(0.0f).volume, 0.0f);
+  float before = 0.0f;
+  for (const float speed : {0.2f, 0.8f, 2.0f, 5.0f}) {
+    EXPECT_GT(rolling_sound(speed).volume, before);
+    before = rolling_sound(speed).volume;
+  }
+  EXPECT_LE(rolling_sound(30.0f).volume, 1.0f);
+}
+
+TEST(Particles, AreManyAndColouredByStrengthMaterialAndTeam) {
+  const auto sparks = [](Material material, const glm::vec3& colour, float strength) {
+    Particles particles;
+    particles.spark(material, {0, 0, 0}, {0, 0, 0}, colour, strength);
+    glm::vec3 light(0.0f);
+    for (const ParticleVertex& v : particles.vertices()) light += glm::vec3(v.light_opacity);
+    return std::pair(particles.count(), light);
+  };
+  const glm::vec3 orange{0.86f, 0.23f, 0.025f}, blue{0.07f, 0.42f, 0.95f};
+  EXPECT_GT(sparks(Material::man, orange, 1.0f).first, 60u);
+  EXPECT_LT(sparks(Material::man, orange, 0.1f).first, 20u);
+  const glm::vec3 warm = sparks(Material::man, orange, 0.6f).second;
+  const glm::vec3 cold = sparks(Material::man, blue, 0.6f).second;
+  const glm::vec3 turf = sparks(Material::field, orange, 0.6f).second;
+  EXPECT_GT(warm.r, 1.5f * warm.b);
+  EXPECT_GT(cold.b, cold.r);
+  EXPECT_GT(turf.g, turf.r);
+  Particles reduced;
+  reduced.set_reduced(true);
+  reduced.spark(Material::man, {0, 0, 0}, {0, 0, 0}, orange, 1.0f);
+  EXPECT_LT(reduced.count(), 40u);
 }
 
 TEST(Particles, DieAndNeverGrowBeyondTheirBound) {
   Particles particles;
-  for (int i = 0; i < 100; ++i) particles.celebrate({0, 0, 0}, {1, 1, 1});
+  for (int i = 0; i < 100; ++i) particles.celebrate({0, 0, 0}, {1, 1, 1}, 1.0f);
   EXPECT_GT(particles.count(), 100u);
-  EXPECT_LE(particles.count(), 600u);
+  EXPECT_LE(particles.count(), 900u);
   for (int i = 0; i < 300; ++i) particles.step(0.016f);
   EXPECT_EQ(particles.count(), 0u);
+}
+
+wire::EventSnapshot event_of(wire::EventKind kind, int team, int rod = 0, float value = 0.1f) {
+  wire::EventSnapshot event;
+  event.kind = number(kind);
+  event.team = static_cast<std::uint8_t>(team);
+  event.rod = static_cast<std::uint8_t>(rod);
+  event.value = value;
+  return event;
+}
+
+TEST(MatchStory, NamesScorerSaveAndOwnGoal) {
+  MatchStory story;
+  wire::Snapshot scene = scripted_play(0.0);
+  const auto step = [&](std::vector<wire::EventSnapshot> events, float vx) {
+    scene.ball.linear_velocity = {vx, 0, 0};
+    story.update(events, scene, 0.03f);
+  };
+  using Kind = wire::EventKind;
+  // Team 0 shoots, the goalie of team 1 saves.
+  step({event_of(Kind::serve, 0)}, 0.0f);
+  step({event_of(Kind::man_hit, 0, 5)}, 8.0f);
+  EXPECT_EQ(story.statistics()[0].shots, 1);
+  EXPECT_NEAR(story.statistics()[0].fastest_shot, 8.0f, 1e-5);
+  step({event_of(Kind::man_hit, 1, 7)}, -1.0f);
+  EXPECT_EQ(story.statistics()[1].saves, 1);
+  EXPECT_EQ(story.statistics()[1].shots, 0) << "a clearance is no shot";
+  // He then knocks it in himself.
+  step({event_of(Kind::goal, 0)}, 1.0f);
+  EXPECT_TRUE(story.last_goal().own_goal);
+  EXPECT_EQ(story.last_goal().team, 0);
+  EXPECT_EQ(story.last_goal().scorer_rod, 7);
+  EXPECT_EQ(story.statistics()[1].own_goals, 1);
+  ASSERT_EQ(story.moments().size(), 1u);
+  EXPECT_EQ(story.moments()[0].moment, Moment::own_goal);
+  // A goal that team 1's attack shoots.
+  step({event_of(Kind::man_hit, 1, 2)}, -9.0f);
+  step({event_of(Kind::goal, 1)}, -9.0f);
+  EXPECT_FALSE(story.last_goal().own_goal);
+  EXPECT_EQ(story.last_goal().scorer_rod, 2);
+  // Nobody touched it.
+  step({event_of(Kind::serve, 0)}, 0.0f);
+  step({event_of(Kind::goal, 1)}, -1.0f);
+  EXPECT_FALSE(story.last_goal().own_goal);
+  EXPECT_EQ(story.last_goal().scorer_rod, -1);
+  // The next match begins with nothing.
+  scene.screen = number(wire::Screen::selection);
+  step({}, 0.0f);
+  EXPECT_EQ(story.statistics()[0].shots, 0);
 }
 
 TEST(ViewMotion, IsGentleAndComesToRest) {

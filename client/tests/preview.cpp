@@ -75,15 +75,16 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
       const auto radius =
           static_cast<float>(foosball::table_spec(foosball::Layout::tournament).ball_radius);
       for (int i = 0; i < 4; ++i) {
-        particles.streak({b.position[0], b.position[1], b.position[2]}, {6, 3, 0}, radius, 0.016f);
+        particles.streak({b.position[0], b.position[1], b.position[2]}, {6, 3, 0}, radius,
+                         {0.86f, 0.23f, 0.025f}, 0.016f);
         particles.step(0.016f);
       }
-      particles.spark({b.position[0], b.position[1], b.position[2]}, {1, 0, 0}, {1.2f, 0.9f, 0.5f},
-                      0.7f);
+      particles.spark(Material::man, {b.position[0], b.position[1], b.position[2]}, {1, 0, 0},
+                      {0.86f, 0.23f, 0.025f}, 0.7f);
       particles.step(0.05f);
     }
     if (shot.screen == 3) {
-      particles.celebrate({-0.6f, 0, 0.06f}, {0.9f, 0.4f, 0.1f});
+      particles.celebrate({-0.6f, 0, 0.06f}, {0.9f, 0.4f, 0.1f}, 1.0f);
       for (int i = 0; i < 30; ++i) particles.step(0.016f);
     }
     // CPU time of all threads: what software OpenGL costs, whatever else the machine does.

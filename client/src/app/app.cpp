@@ -59,6 +59,9 @@ class App {
   std::unique_ptr<PlayerInput> player_;
   std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
+  Effects effects_;
+  MatchStory story_;
+  std::vector<wire::EventSnapshot> events_;  // reached, not shown yet
   ViewMotion motion_;
   FrameMeter meter_;
   SceneSample sample_;
@@ -153,7 +156,8 @@ void App::hear(std::int64_t now) {
   follow_connection();
   SceneSample sample = connection_->sample(now);
   if (sample.any) sample_ = std::move(sample);  // else the last scene stands
-  show_events(connection_->take_events(), particles_, sounds_.get());
+  const auto events = connection_->take_events();
+  events_.insert(events_.end(), events.begin(), events.end());
 }
 
 void App::take_input(std::int64_t now) {
@@ -217,13 +221,12 @@ void App::draw(float dt) {
       motion_.step(sample_.any ? &drawn_ : nullptr, player_ ? status_.welcome.team : 0, dt), size_);
   static const wire::Snapshot kNothing;
   const wire::Snapshot& state = sample_.any ? drawn_ : kNothing;
-  if (state.ball_in_play && !state.paused && status_.link == Link::joined) {
-    const auto& ball = state.ball;
-    const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
-    particles_.streak({ball.position[0], ball.position[1], ball.position[2]},
-                      {ball.linear_velocity[0], ball.linear_velocity[1], ball.linear_velocity[2]},
-                      static_cast<float>(table.ball_radius), dt);
+  const bool moves = !state.paused && status_.link == Link::joined;
+  if (sample_.any) {
+    story_.update(events_, state, dt);
+    effects_.show(events_, state, story_, particles_, sounds_.get(), moves ? dt : 0.0f);
   }
+  events_.clear();
   if (!state.paused) particles_.step(dt);
   if (sounds_) sounds_->set_listener(view.camera.eye, glm::vec3(0));
   scene_->draw(state, view, particles_, size_);

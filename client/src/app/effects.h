@@ -1,16 +1,39 @@
-// What events of the match look and sound like.
+// What a match looks and sounds like beside its picture: sparks, streaks, dust; hits, rolling, the
+// crowd, the shouts of men.
 #pragma once
 
 #include <span>
 
+#include "app/match_story.h"
 #include "render/particles.h"
 #include "sound/player.h"
 #include "wire/snapshot.h"
 
 namespace client {
 
-// sounds: null when there are none.
-void show_events(std::span<const wire::EventSnapshot> events, Particles& particles,
-                 SoundPlayer* sounds);
+// How strong a hit looks, 0..1, from its impulse [N s]: by its logarithm over the range of play, as
+// volume_of_impulse has it for the ear.
+float strength_of_impulse(float impulse);
+
+class Effects {
+ public:
+  // sounds: null when there are none. dt [s]; 0 while the match stands.
+  void show(std::span<const wire::EventSnapshot> events, const wire::Snapshot& scene,
+            const MatchStory& story, Particles& particles, SoundPlayer* sounds, float dt);
+  // How far a goal or a hard hit still shakes the picture, 0..1.
+  float shake() const { return shake_; }
+
+ private:
+  void hit(const wire::EventSnapshot& event, const wire::Snapshot& scene, Particles& particles,
+           SoundPlayer* sounds);
+  void react(const MatchStory& story, const wire::Snapshot& scene, Particles& particles,
+             SoundPlayer* sounds);
+  void follow_ball(const wire::Snapshot& scene, const MatchStory& story, Particles& particles,
+                   SoundPlayer* sounds, float dt);
+  void follow_rods(const wire::Snapshot& scene, SoundPlayer* sounds) const;
+
+  float excitement_ = 0.0f;  // of the crowd, 0..1
+  float shake_ = 0.0f;
+};
 
 }  // namespace client

@@ -4,7 +4,6 @@
 #include <GLFW/glfw3.h>
 
 #include <cmath>
-#include <utility>
 
 namespace client {
 
@@ -17,7 +16,13 @@ struct Window::Impl {
   bool captured = false;
   double last_x = 0, last_y = 0, wheel = 0;
   bool have_last = false, close_asked = false;
-  bool pad_push_held = false, pad_pause_held = false;
+  ActionState actions;
+  KeyBindings keys = default_keys();
+  // Of the pad's buttons: down at the last look; pressed since the last poll.
+  struct PadButtons {
+    bool push = false, pause = false, previous_rod = false, next_rod = false;
+  };
+  PadButtons pad_down, pad_pressed;
 
   void capture(bool on) {
     captured = on;
@@ -26,50 +31,38 @@ struct Window::Impl {
     if (glfwRawMouseMotionSupported()) glfwSetInputMode(handle, GLFW_RAW_MOUSE_MOTION, on);
   }
   void pressed(int key);
+  void released(int key);
   void moved(double x, double y);
-  void read_held_keys();
+  void read_keys();
   void read_pad();
+  void take_pad_presses();
 };
 
 namespace {
 
 Window::Impl& impl_of(GLFWwindow* handle);
 
+template <class Do>
+void for_actions_of(const KeyBindings& keys, int key, Do&& act) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i][0] == key || keys[i][1] == key) act(static_cast<Action>(i));
+  }
+}
+
 }  // namespace
 
 void Window::Impl::pressed(int key) {
-  switch (key) {
-    case GLFW_KEY_1:
-    case GLFW_KEY_2:
-    case GLFW_KEY_3:
-    case GLFW_KEY_4:
-      events.choose_line = key - GLFW_KEY_1;
-      break;
-    case GLFW_KEY_TAB:
-      events.toggle_automatic = !events.toggle_automatic;
-      break;
-    case GLFW_KEY_P:
-      events.toggle_pause = !events.toggle_pause;
-      break;
-    case GLFW_KEY_F1:
-    case GLFW_KEY_H:
-      events.toggle_help = !events.toggle_help;
-      break;
-    case GLFW_KEY_SPACE:
-    case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER:
-      events.push = true;
-      break;
-    case GLFW_KEY_ESCAPE:
-      if (captured) {
-        capture(false);
-      } else {
-        close_asked = true;
-      }
-      break;
-    default:
-      break;
+  if (key == GLFW_KEY_ESCAPE) {
+    events.back = events.back || !captured;
+    if (captured) capture(false);
+    return;
   }
+  events.any_key = key;
+  for_actions_of(keys, key, [&](Action action) { actions.press(action); });
+}
+
+void Window::Impl::released(int key) {
+  for_actions_of(keys, key, [&](Action action) { actions.release(action); });
 }
 
 void Window::Impl::moved(double x, double y) {
@@ -82,12 +75,25 @@ void Window::Impl::moved(double x, double y) {
   have_last = true;
 }
 
-void Window::Impl::read_held_keys() {
-  const auto held = [&](int a, int b) {
-    return glfwGetKey(handle, a) == GLFW_PRESS || glfwGetKey(handle, b) == GLFW_PRESS ? 1.0 : 0.0;
-  };
-  events.key_slide = held(GLFW_KEY_UP, GLFW_KEY_W) - held(GLFW_KEY_DOWN, GLFW_KEY_S);
-  events.key_spin = held(GLFW_KEY_RIGHT, GLFW_KEY_D) - held(GLFW_KEY_LEFT, GLFW_KEY_A);
+void Window::Impl::read_keys() {
+  const auto presses = [&](Action action) { return actions.presses(action); };
+  const auto odd = [&](Action action) { return presses(action) % 2 != 0; };
+  for (int i = 0; i < kActions; ++i)
+    events.presses[static_cast<std::size_t>(i)] = presses(static_cast<Action>(i));
+  events.key_slide = actions.axis(Action::slide_away, Action::slide_near);
+  events.key_spin = actions.axis(Action::spin_right, Action::spin_left);
+  events.slide_taps = actions.tapped(Action::slide_away, Action::slide_near);
+  events.spin_taps = actions.tapped(Action::spin_right, Action::spin_left);
+  for (int line = 0; line < 4; ++line) {
+    if (presses(static_cast<Action>(static_cast<int>(Action::rod_1) + line)) > 0)
+      events.choose_line = line;
+  }
+  wheel += presses(Action::next_rod) - presses(Action::previous_rod);
+  events.push = events.push || presses(Action::push) > 0;
+  events.toggle_automatic = odd(Action::automatic);
+  events.toggle_pause = odd(Action::pause);
+  events.toggle_help = odd(Action::help);
+  actions.clear();
 }
 
 void Window::Impl::read_pad() {
@@ -99,14 +105,25 @@ void Window::Impl::read_pad() {
     events.pad.left_y = -state.axes[GLFW_GAMEPAD_AXIS_LEFT_Y];  // GLFW: down positive
     events.pad.right_x = state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X];
     events.pad.right_y = -state.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y];
-    events.pad.previous_rod = state.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
-    events.pad.next_rod = state.buttons[GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER] == GLFW_PRESS;
-    const bool push = state.buttons[GLFW_GAMEPAD_BUTTON_A] == GLFW_PRESS;
-    const bool pause = state.buttons[GLFW_GAMEPAD_BUTTON_START] == GLFW_PRESS;
-    events.pad_push = push && !std::exchange(pad_push_held, push);
-    events.pad_pause = pause && !std::exchange(pad_pause_held, pause);
+    const auto look = [&](int button, bool& down, bool& pressed) {
+      const bool now = state.buttons[button] == GLFW_PRESS;
+      pressed = pressed || (now && !down);
+      down = now;
+    };
+    look(GLFW_GAMEPAD_BUTTON_A, pad_down.push, pad_pressed.push);
+    look(GLFW_GAMEPAD_BUTTON_START, pad_down.pause, pad_pressed.pause);
+    look(GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, pad_down.previous_rod, pad_pressed.previous_rod);
+    look(GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, pad_down.next_rod, pad_pressed.next_rod);
     return;
   }
+}
+
+// Bumpers change the rod as the wheel does, once a press.
+void Window::Impl::take_pad_presses() {
+  events.pad_push = pad_pressed.push;
+  events.pad_pause = pad_pressed.pause;
+  wheel += (pad_pressed.next_rod ? 1 : 0) - (pad_pressed.previous_rod ? 1 : 0);
+  pad_pressed = {};
 }
 
 tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& options) {
@@ -117,6 +134,7 @@ tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& 
   glfwSetWindowUserPointer(handle, impl.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int action, int) {
     if (action == GLFW_PRESS) impl_of(w).pressed(key);
+    if (action == GLFW_RELEASE) impl_of(w).released(key);
   });
   glfwSetCursorPosCallback(handle,
                            [](GLFWwindow* w, double x, double y) { impl_of(w).moved(x, y); });
@@ -131,7 +149,9 @@ tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& 
     }
   });
   glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
-    if (!focused) impl_of(w).capture(false);
+    if (focused) return;
+    impl_of(w).capture(false);
+    impl_of(w).actions.release_all();
   });
   return Window(std::move(impl));
 }
@@ -169,11 +189,21 @@ void Window::swap() {
   impl_->window.swap();
 }
 
+void Window::set_keys(const KeyBindings& keys) {
+  impl_->keys = keys;
+  impl_->actions.release_all();
+}
+
+void Window::look_at_pad() {
+  impl_->read_pad();
+}
+
 InputEvents Window::poll() {
   impl_->events = {};
   impl_->window.poll();
-  impl_->read_held_keys();
+  impl_->read_keys();
   impl_->read_pad();
+  impl_->take_pad_presses();
   const double whole = std::trunc(impl_->wheel);  // touch pads scroll in fractions of a step
   impl_->wheel -= whole;
   impl_->events.wheel = static_cast<int>(whole);

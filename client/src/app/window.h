@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 
 #include "client/input_events.h"
+#include "client/settings.h"
 #include "draw/window.h"
 
 namespace client {
@@ -22,8 +23,12 @@ class Window {
   void close();
   glm::ivec2 size() const;  // of the framebuffer [px]
   void swap();              // shows the frame; waits for the display's refresh
+  void set_keys(const KeyBindings& keys);
   // What happened since the last call, mouse motion summed up.
   InputEvents poll();
+  // Looks at the gamepad in between. It has no events, so a button is noticed if it is down at one
+  // of these looks or at a poll; call it where a frame has taken a while.
+  void look_at_pad();
   void wait(double seconds);  // until the window has news, at most so long
   bool captured() const;
   std::string renderer() const;  // name of the driver's, for the log

@@ -16,13 +16,23 @@ struct ParticleVertex {
   glm::vec4 light_opacity;
 };
 
+// What is struck gives the sparks their look.
+enum class Material : std::uint8_t { man, wall, field, goal };
+
 class Particles {
  public:
-  // strength 0..1; towards: where the sparks prefer to fly, or zero.
-  void spark(const glm::vec3& at, const glm::vec3& towards, const glm::vec3& colour,
-             float strength);
-  void celebrate(const glm::vec3& at, const glm::vec3& colour);
-  void streak(const glm::vec3& ball, const glm::vec3& velocity, float radius, float dt);
+  // Fewer and dimmer, without white flashes.
+  void set_reduced(bool reduced) { reduced_ = reduced; }
+  // strength 0..1; towards: where the sparks prefer to fly, or zero; colour: of the team that
+  // struck.
+  void spark(Material material, const glm::vec3& at, const glm::vec3& towards,
+             const glm::vec3& colour, float strength);
+  void celebrate(const glm::vec3& at, const glm::vec3& colour, float strength);
+  // Behind a fast ball; colour: of the team that touched it last.
+  void streak(const glm::vec3& ball, const glm::vec3& velocity, float radius,
+              const glm::vec3& colour, float dt);
+  // What a ball whirls up that runs on the field.
+  void dust(const glm::vec3& ball, const glm::vec3& velocity, float radius, float dt);
   void step(float dt);  // [s]
   void clear() { alive_.clear(); }
   std::size_t count() const { return alive_.size(); }
@@ -32,6 +42,7 @@ class Particles {
   struct Particle {
     glm::vec3 position, velocity, colour;
     float radius, age, life, gravity;
+    float drag = 0.0f;  // [1/s]
   };
   void add(const Particle& particle);
   float uniform();  // -1..1, from a small generator of its own
@@ -39,6 +50,8 @@ class Particles {
   std::vector<Particle> alive_;
   std::vector<ParticleVertex> vertices_;
   std::uint32_t random_ = 0x9E3779B9u;
+  bool reduced_ = false;
+  float dust_due_ = 0.0f;
 };
 
 }  // namespace client

@@ -15,7 +15,9 @@
 namespace client {
 namespace {
 
-constexpr std::size_t kVoices = 16;  // more at once are not told apart; the oldest is taken over
+constexpr int kFirstLoop = static_cast<int>(Sound::roll);
+constexpr std::size_t kLoops = kSounds - kFirstLoop;
+constexpr std::size_t kVoices = 24;  // more at once are not told apart; the oldest is taken over
 
 // Without a device the libraries below OpenAL write a dozen lines of their own and cannot be asked
 // not to: the game says it in one sentence. Nothing else runs while a device is opened.
@@ -42,12 +44,14 @@ struct SoundPlayer::Impl {
   ALCcontext* context = nullptr;
   std::array<ALuint, kSounds> buffers{};
   std::array<ALuint, kVoices> voices{};
+  std::array<ALuint, kLoops> loops{};
   std::size_t next = 0;
   bool made = false;
 
   ~Impl() {
     if (made) {
       alDeleteSources(static_cast<ALsizei>(voices.size()), voices.data());
+      alDeleteSources(static_cast<ALsizei>(loops.size()), loops.data());
       alDeleteBuffers(static_cast<ALsizei>(buffers.size()), buffers.data());
     }
     alcMakeContextCurrent(nullptr);
@@ -76,11 +80,19 @@ tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::open() {
   }
   alGenBuffers(static_cast<ALsizei>(impl->buffers.size()), impl->buffers.data());
   alGenSources(static_cast<ALsizei>(impl->voices.size()), impl->voices.data());
+  alGenSources(static_cast<ALsizei>(impl->loops.size()), impl->loops.data());
   impl->made = true;
   for (std::size_t i = 0; i < impl->buffers.size(); ++i) {
     const auto samples = synthesise(static_cast<Sound>(i));
     alBufferData(impl->buffers[i], AL_FORMAT_MONO16, samples.data(),
                  static_cast<ALsizei>(samples.size() * sizeof samples[0]), kSampleRate);
+  }
+  for (std::size_t i = 0; i < kLoops; ++i) {
+    const ALuint source = impl->loops[i];
+    alSourcei(source, AL_BUFFER, static_cast<ALint>(impl->buffers[kFirstLoop + i]));
+    alSourcei(source, AL_LOOPING, AL_TRUE);
+    alSourcef(source, AL_GAIN, 0.0f);
+    alSourcePlay(source);
   }
   if (alGetError() != AL_NO_ERROR)
     return tl::unexpected(std::string("OpenAL has no room for the sounds: playing on without."));
@@ -94,21 +106,41 @@ void SoundPlayer::set_listener(const glm::vec3& eye, const glm::vec3& at) {
   alListenerfv(AL_ORIENTATION, orientation);
 }
 
-void SoundPlayer::play(Sound sound, float volume, const glm::vec3& at) {
+void SoundPlayer::set_volume(float volume) {
+  alListenerf(AL_GAIN, std::clamp(volume, 0.0f, 1.0f));
+}
+
+void SoundPlayer::play(Sound sound, float volume, const glm::vec3& at, float pitch) {
   const ALuint voice = impl_->voices[impl_->next];
   impl_->next = (impl_->next + 1) % kVoices;
   alSourceStop(voice);
   alSourcei(voice, AL_BUFFER, static_cast<ALint>(impl_->buffers[static_cast<std::size_t>(sound)]));
   alSourcef(voice, AL_GAIN, std::clamp(volume, 0.0f, 1.0f));
   // A quarter of a semitone either way, so that a rally does not sound like a machine.
-  alSourcef(voice, AL_PITCH, 0.97f + 0.02f * static_cast<float>(impl_->next % 4));
+  alSourcef(voice, AL_PITCH, pitch * (0.97f + 0.02f * static_cast<float>(impl_->next % 4)));
   alSource3f(voice, AL_POSITION, at.x, at.y, at.z);
   alSourcePlay(voice);
 }
 
+void SoundPlayer::set_loop(Sound loop, float volume, const glm::vec3& at, float pitch) {
+  const ALuint source = impl_->loops[static_cast<std::size_t>(loop) - kFirstLoop];
+  alSourcef(source, AL_GAIN, std::clamp(volume, 0.0f, 1.0f));
+  alSourcef(source, AL_PITCH, std::clamp(pitch, 0.5f, 2.0f));
+  alSource3f(source, AL_POSITION, at.x, at.y, at.z);
+}
+
 float volume_of_impulse(float impulse) {
-  // The ball weighs 26 g: 0.25 N s sends it off at nearly 10 m/s.
-  return std::clamp(std::sqrt(std::max(impulse, 0.0f) / 0.25f), 0.0f, 1.0f);
+  constexpr float kQuietest = 0.05f;  // -26 dB, at kSoftestImpulse
+  if (!(impulse > 0.0f)) return 0.0f;
+  const float share =
+      std::log(impulse / kSoftestImpulse) / std::log(kHardestImpulse / kSoftestImpulse);
+  return share < 0.0f ? 0.0f : std::pow(kQuietest, 1.0f - std::min(share, 1.0f));
+}
+
+RollingSound rolling_sound(float speed) {
+  constexpr float kHeard = 0.05f, kFull = 6.0f;  // [m/s]
+  const float share = std::clamp((speed - kHeard) / (kFull - kHeard), 0.0f, 1.0f);
+  return {0.5f * std::sqrt(share), 0.7f + 0.8f * share};
 }
 
 }  // namespace client

@@ -17,8 +17,11 @@ class SoundPlayer {
   ~SoundPlayer();
 
   void set_listener(const glm::vec3& eye, const glm::vec3& at);
-  // volume 0..1; at: world [m].
-  void play(Sound sound, float volume, const glm::vec3& at);
+  void set_volume(float volume);  // 0..1, of everything
+  // volume 0..1; at: world [m]. pitch: 1 as made.
+  void play(Sound sound, float volume, const glm::vec3& at, float pitch = 1.0f);
+  // A loop goes on with this volume (0: silent) and pitch until it is told otherwise.
+  void set_loop(Sound loop, float volume, const glm::vec3& at, float pitch = 1.0f);
 
  private:
   struct Impl;
@@ -26,7 +29,16 @@ class SoundPlayer {
   std::unique_ptr<Impl> impl_;
 };
 
-// Loudness of a hit from its impulse [N s]: a tap is heard, a shot is not painful.
+// Volume of a hit from its impulse [N s], 0..1: by decibels, from the softest touch that is heard
+// to the hardest shot of a table, so that each tenfold impulse is as much louder as the last.
+inline constexpr float kSoftestImpulse = 0.004f;
+inline constexpr float kHardestImpulse = 0.60f;  // the ball's 26 g at 23 m/s
 float volume_of_impulse(float impulse);
+
+// Of the rolling ball, from its speed along the field [m/s].
+struct RollingSound {
+  float volume, pitch;
+};
+RollingSound rolling_sound(float speed);
 
 }  // namespace client

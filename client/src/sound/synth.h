@@ -1,4 +1,4 @@
-// The game's short sounds, made from a few decaying modes and a puff of noise. No device here.
+// The game's sounds, made from decaying modes and shaped noise. No device here.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,30 @@
 
 namespace client {
 
-enum class Sound : std::uint8_t { kick, wall, field, goal, serve, whistle };
-inline constexpr int kSounds = 6;
+enum class Sound : std::uint8_t {
+  kick,  // a man of hollow plastic
+  shot,  // the same, struck hard: brighter and longer
+  wall,
+  field,
+  goal,
+  serve,
+  whistle,
+  cheer,  // many voices, rising
+  groan,  // many voices, falling: an own goal
+  gasp,   // a shot, a save
+  voice,  // a character's shout; its pitch is the character's
+  // Loops: without a beginning and an end, of constant loudness.
+  roll,
+  slide,
+  crowd,
+};
+inline constexpr int kSounds = 14;
+constexpr bool is_loop(Sound sound) {
+  return sound >= Sound::roll;
+}
 inline constexpr int kSampleRate = 44100;  // [Hz]
 
-// Mono, full scale, ending in silence. The same for every call.
+// Mono, full scale; those that are no loops end in silence. The same for every call.
 std::vector<std::int16_t> synthesise(Sound sound);
 
 }  // namespace client

@@ -1,0 +1,70 @@
+// What a person sets for this renderer, and the file it is kept in: lines of "name = value".
+//
+// A line that cannot be read is reported with its number and what to write instead; all other lines
+// count. Before a file with such lines is written anew, it is kept beside it (".bad"), so that
+// nothing a person wrote is lost.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "client/controls.h"
+
+namespace client {
+
+enum class View : std::uint8_t { seat, above, follow, spectator };
+inline constexpr int kViews = 4;
+enum class QualityChoice : std::uint8_t { automatic, low, high };
+enum class Language : std::uint8_t { automatic, english, korean, german };
+inline constexpr int kLanguages = 4;
+
+// Keys by the window library's number (GLFW: US layout); 0: none. Two for each action.
+using KeyBindings = std::array<std::array<int, 2>, kActions>;
+KeyBindings default_keys();
+
+struct Settings {
+  float volume = 0.8f;  // 0..1, of all sounds
+  QualityChoice quality = QualityChoice::automatic;
+  float text_scale = 1.0f;       // kTextScale[0]..kTextScale[1]
+  bool reduced_flashes = false;  // no bursts of light, no pulses
+  bool reduced_shake = false;    // a camera that stands
+  bool distinct_teams = false;   // teams told apart by pattern and shape, colours for all eyes
+  Language language = Language::automatic;
+  View view = View::seat;
+  bool hide_rods = false;
+  bool automatic_rod = false;  // assists, each by itself
+  bool goalie_follows = false;
+  bool aim = false;
+  // Of each handle outside the screen against its rod in the picture, along the table [m]: for the
+  // view from above on a cabinet. kHandleOffset at most either way.
+  std::array<float, 8> handle_offset{};
+  KeyBindings keys = default_keys();
+
+  bool operator==(const Settings&) const = default;
+};
+inline constexpr std::array<float, 2> kTextScale{0.8f, 1.6f};
+inline constexpr float kHandleOffset = 0.060f;  // [m]
+
+struct ReadSettings {
+  Settings settings;
+  std::vector<std::string> problems;  // one sentence each: line, what is wrong, what to write
+};
+ReadSettings parse_settings(std::string_view text);
+std::string format_settings(const Settings& settings);
+
+// As the file and the settings screen have them: "slide_away"; "Up". Empty: no such key.
+const char* name_of(Action action);
+std::string name_of_key(int key);
+int key_of_name(std::string_view name);  // 0: no such key
+
+// $XDG_CONFIG_HOME/space-foosball/client.conf, or ~/.config/...; empty without either.
+std::string settings_path();
+// A file that is not there is no problem: the defaults.
+ReadSettings load_settings(const std::string& path);
+// Written beside and then moved over the old one. The error is a sentence.
+tl::expected<void, std::string> save_settings(const Settings& settings, const std::string& path);
+
+}  // namespace client

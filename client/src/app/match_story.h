@@ -1,0 +1,67 @@
+// What the events of a match tell a person: who scored, by which line, an own goal or not; shots,
+// saves, the fastest shot, who had the ball. Pure: events and scenes in, a story out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foosball/table.h"
+#include "wire/snapshot.h"
+
+namespace client {
+
+struct GoalStory {
+  int team = 0;                          // that it counts for
+  int scorer_rod = -1, scorer_man = -1;  // who touched the ball last; -1: nobody did
+  bool own_goal = false;
+  float speed = 0.0f;  // of the ball at the last touch's end [m/s]
+};
+
+struct TeamStatistics {
+  int shots = 0, saves = 0, own_goals = 0;
+  float fastest_shot = 0.0f;  // [m/s]
+  float possession = 0.0f;    // [s] that the ball was last touched by this team
+};
+
+// What is worth a reaction of the crowd.
+enum class Moment : std::uint8_t { shot, save, goal, own_goal };
+struct StoryMoment {
+  Moment moment;
+  int team;        // whose shot, save or goal
+  float strength;  // 0..1
+};
+
+class MatchStory {
+ public:
+  static constexpr float kShotSpeed = 2.5f;   // [m/s] towards the other goal: a shot, no pass
+  static constexpr float kSaveWithin = 1.0f;  // [s] after a shot, a touch of the defence saves it
+
+  // The scene that is drawn and the events that it has reached. dt [s] of play.
+  void update(std::span<const wire::EventSnapshot> events, const wire::Snapshot& scene, float dt);
+  const std::vector<StoryMoment>& moments() const { return moments_; }  // of the last update
+  const GoalStory& last_goal() const { return goal_; }
+  const std::array<TeamStatistics, 2>& statistics() const { return statistics_; }
+  int last_touch_team() const { return touch_.team; }  // -1: nobody
+
+ private:
+  struct Touch {
+    int team = -1, rod = -1, man = -1;
+  };
+  void begin_match();
+  void touch(const wire::EventSnapshot& event, const foosball::TableSpec& table);
+  void watch_shot(const wire::Snapshot& scene, float dt);
+  void score(int team);
+
+  GoalStory goal_;
+  std::array<TeamStatistics, 2> statistics_;
+  std::vector<StoryMoment> moments_;
+  Touch touch_;
+  float since_touch_ = 0.0f;  // [s]
+  bool shot_judged_ = true;   // the last touch was looked at: a shot or none
+  int shooting_team_ = -1;
+  float since_shot_ = 0.0f, shot_speed_ = 0.0f, speed_ = 0.0f;
+};
+
+}  // namespace client
