@@ -56,6 +56,7 @@ LAYERS = {
     'cabinet/include/cabinet/rate_filter.h': 'hand',
     'firmware/': 'firmware',
     'server/': 'server',
+    'match/': 'match',
     'draw/': 'draw',
     'client/': 'client',
     'sandbox/': 'sandbox',
@@ -91,6 +92,8 @@ MAY_USE = {
     'cabinet': {'os', 'device-frame', 'hand'},
     'firmware': {'device-frame'},
     'server': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
+    # Plays and records matches as the server does, without its sockets.
+    'match': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     # The client draws from snapshots only: the table's geometry, never the match.
     'draw': set(),
     'client': {ENGINE_FACE, 'os', 'draw', 'table', 'wire', 'device-frame', 'hand'},

@@ -214,7 +214,12 @@ void StatisticsObserver::note_goal(int scorer) {
     const double home = -attack_sign(toucher);
     const bool sped_up = home * touch_.departure_vx > home * touch_.arrival_vx;
     const bool swing = touch_.drive >= kOwnDrive && sped_up;
-    ++(swing ? totals_.own_goals_swing : totals_.own_goals_deflected)[toucher];
+    // A shot on target that goes in off a defender is the shooter's goal.
+    if (swing) {
+      ++totals_.own_goals_swing[toucher];
+    } else if (!touch_.faced_shot) {
+      ++totals_.own_goals_deflected[toucher];
+    }
   }
   if (saver_ == opponent(scorer)) saver_ = -1;
   if (shot_.team == scorer) shot_.on_target = true;
@@ -337,7 +342,8 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
 void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {
   const int team = table_spec(view.layout).rods[rod].team;
   previous_touch_ = touch_;
-  if (shot_.team == opponent(team) && shot_.on_target) {
+  const bool faces_shot = shot_.team == opponent(team) && shot_.on_target;
+  if (faces_shot) {
     saver_ = team;
     saved_at_ = now_;
   } else if (saver_ >= 0) {
@@ -351,6 +357,7 @@ void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {
   touch_.rod = rod;
   touch_.man = man;
   touch_.since = now_;
+  touch_.faced_shot = faces_shot;
   touch_.arrival_vx = velocity_before_.x;
   touch_.arrival_speed = vp::norm(velocity_before_);
   ++totals_.touches[team];

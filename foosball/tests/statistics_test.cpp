@@ -83,13 +83,24 @@ TEST(Statistics, AStillFootOrOneThatOnlySlowsTheShotDeflectsIt) {
   for (const double foot : {0.0, -1.0}) {
     Script script;
     script.serve(1);
-    script.view.ball_velocity = {-6.0, 0.0, 0.0};
+    script.view.ball_velocity = {-6.0, 0.0, 0.0};  // nobody's shot
     script.tick();
     script.hit(rod_of(0, Line::goalie), 0, foot, {-4.0, 0.0, 0.0});
     script.goal(1);
     EXPECT_EQ(script.totals().own_goals_swing, (PerTeam{0, 0}));
     EXPECT_EQ(script.totals().own_goals_deflected, (PerTeam{1, 0}));
   }
+}
+
+TEST(Statistics, AShotOnTargetThatGoesInOffADefenderIsTheShootersGoal) {
+  Script script;
+  script.serve(1);
+  script.hit(rod_of(1, Line::attack), 1, -5.0, {-6.0, 0.0, 0.0});
+  script.tick(5);
+  script.hit(rod_of(0, Line::goalie), 0, 0.0, {-4.0, 0.0, 0.0});
+  script.goal(1);
+  EXPECT_EQ(script.totals().own_goals_deflected, (PerTeam{0, 0}));
+  EXPECT_EQ(script.totals().saves, (PerTeam{0, 0}));
 }
 
 TEST(Statistics, AGoalOfTheLastToucherIsNoOwnGoal) {

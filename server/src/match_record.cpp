@@ -1,4 +1,4 @@
-#include "match_record.h"
+#include "server/match_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +62,11 @@ std::uint32_t milliseconds(double seconds) {
 wire::JournalRod to_grid(const cabinet::RodInput& input) {
   return wire::quantise_rod({input.slide, input.angle, input.slide_rate, input.angle_rate,
                              input.status == cabinet::RodStatus::live});
+}
+
+wire::JournalRod to_grid(const foosball::RodTarget& target) {
+  return wire::quantise_rod(
+      {target.slide, target.angle, target.slide_rate, target.angle_rate, target.live});
 }
 
 foosball::RodTarget from_grid(const wire::JournalRod& rod) {

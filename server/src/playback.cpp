@@ -1,7 +1,7 @@
 #include "server/playback.h"
 
-#include "match_record.h"
 #include "server/exit_code.h"
+#include "server/match_record.h"
 #include "wire/read_file.h"
 
 namespace server {

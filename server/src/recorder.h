@@ -1,33 +1,33 @@
-// What goes into a match's journal, and when: the header, every tick's inputs, a hash each second,
-// a keyframe every 10 s, the end.
+// A match's journal on disk: what goes into it, and when, is server/record_schedule.h.
 #pragma once
 
 #include <memory>
 
 #include "foosball/match.h"
 #include "journal_file.h"
+#include "server/record_schedule.h"
 
 namespace server {
 
 class Recorder {
  public:
-  static constexpr std::uint64_t kHashTicks = 1'000;
-  static constexpr std::uint64_t kKeyframeTicks = 10'000;
-
-  Recorder(std::unique_ptr<JournalFile> file, const wire::JournalHeader& header);
+  Recorder(std::unique_ptr<JournalFile> file, const wire::JournalHeader& header)
+      : file_(std::move(file)), schedule_(*file_, header) {}
 
   // After the match was stepped with the tick.
-  void add(const wire::JournalTick& tick, const foosball::Match& match);
-  void finish(const foosball::Match& match);
+  void add(const wire::JournalTick& tick, const foosball::Match& match) {
+    schedule_.add(tick, match);
+  }
+  void finish(const foosball::Match& match) {
+    schedule_.finish(match);
+    file_->close();
+  }
 
   const JournalFile& file() const { return *file_; }
 
  private:
   std::unique_ptr<JournalFile> file_;
-  std::uint64_t ticks_ = 0;
-  // Kept from tick to tick for their memory.
-  wire::JournalEntry tick_entry_{wire::JournalTick{}};
-  wire::JournalEntry keyframe_entry_{wire::JournalKeyframe{}};
+  RecordSchedule<JournalFile> schedule_;
 };
 
 }  // namespace server

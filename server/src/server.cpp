@@ -12,11 +12,11 @@
 #include "device_watch.h"
 #include "event_repeater.h"
 #include "input_port.h"
-#include "match_record.h"
 #include "os/clock.h"
 #include "os/socket_address.h"
 #include "recorder.h"
 #include "rod_desk.h"
+#include "server/match_record.h"
 #include "snapshot_builder.h"
 #include "socket.h"
 

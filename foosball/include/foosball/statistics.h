@@ -146,6 +146,7 @@ class StatisticsObserver {
     double arrival_speed = 0.0;         // [m/s]
     double departure_vx = 0.0;          // ball's, so far [m/s]
     double drive = 0.0;                 // the foot's largest velocity towards its own goal [m/s]
+    bool faced_shot = false;            // it met a shot on target of the other team
     double stroke = 0.0;                // the foot's largest speed along the ball's way out [m/s]
   };
   // A hand's turning points on one axis.

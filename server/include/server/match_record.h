@@ -10,6 +10,7 @@ namespace server {
 // The one way of a target into the simulation: through the journal's grid, so that live play and
 // replay feed it the same bits. Only a live rod follows its target; the others hold.
 wire::JournalRod to_grid(const cabinet::RodInput& input);
+wire::JournalRod to_grid(const foosball::RodTarget& target);
 foosball::RodTarget from_grid(const wire::JournalRod& rod);
 
 // A match is always made from its journal header, for the same reason.

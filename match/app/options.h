@@ -1,0 +1,37 @@
+// The command line of space-foosball-match.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "foosball/table.h"
+
+namespace app {
+
+enum class Mode { matches, report, sprt, round_robin, balance };
+
+struct Options {
+  Mode mode = Mode::matches;
+  std::vector<std::string> players{"classic",
+                                   "classic"};  // by the mode: home and away, old and new
+  foosball::Layout layout = foosball::Layout::tournament;
+  std::uint64_t seed = 1;
+  std::uint64_t matches = 100;
+  std::uint64_t max_matches = 2000;  // of a sequential test
+  double max_minutes = 10.0;         // of a match
+  double elo0 = 0.0, elo1 = 20.0, alpha = 0.05, beta = 0.05;
+  int jobs = 1;
+  std::string record, checkpoint, csv, json;
+  bool quiet = false;
+};
+
+// Leaves the program: with text for stdout (0) or one sentence for stderr (2).
+struct Leave {
+  int exit_code;
+  std::string text;
+};
+tl::expected<Options, Leave> parse(int argc, const char* const* argv);
+
+}  // namespace app

@@ -1,0 +1,221 @@
+#include "plan.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "match/rating.h"
+
+namespace app {
+namespace {
+
+using match::log_likelihood_ratio;
+using match::mean_score;
+using match::pair_count;
+using match::score_error;
+using match::Series;
+using match::SeriesDesc;
+
+SeriesDesc base_of(const Options& o) {
+  SeriesDesc desc;
+  desc.players = {o.players[0], o.players[1]};
+  desc.layout = o.layout;
+  desc.seed = o.seed;
+  desc.max_ticks = static_cast<std::uint64_t>(o.max_minutes * 60.0 / foosball::kTick);
+  desc.max_games = o.matches;
+  return desc;
+}
+
+match::ReportPlan report_plan(const Options& o) {
+  const SeriesDesc base = base_of(o);
+  return {o.players[0], o.players[1], o.layout, o.seed, base.max_ticks, o.matches};
+}
+
+std::vector<SeriesDesc> round_robin(const Options& o) {
+  std::vector<SeriesDesc> all;
+  for (std::size_t i = 0; i < o.players.size(); ++i) {
+    for (std::size_t k = i + 1; k < o.players.size(); ++k) {
+      SeriesDesc desc = base_of(o);
+      desc.players = {o.players[i], o.players[k]};
+      desc.max_games = o.max_matches;
+      // Which of the two is the better one: 10 Elo either way are let pass.
+      const double elo = 0.5 * (o.elo1 - o.elo0);
+      desc.test = {match::score_of_elo(-elo), match::score_of_elo(elo), o.alpha, o.beta};
+      all.push_back(desc);
+    }
+  }
+  return all;
+}
+
+// No pair of characters beyond 60:40, either way: H1 of each test is a score of 0.60 or more.
+constexpr double kBalanced = 0.55, kBeyond = 0.60;
+
+std::vector<SeriesDesc> balance(const Options& o) {
+  std::vector<SeriesDesc> all;
+  for (int a = 0; a < foosball::kCharacters; ++a) {
+    for (int b = a + 1; b < foosball::kCharacters; ++b) {
+      SeriesDesc desc = base_of(o);
+      desc.players = {o.players[0], o.players[0]};
+      desc.max_games = o.max_matches;
+      desc.draw_characters = false;
+      desc.characters = {a, b};
+      desc.band = {kBalanced, kBeyond, o.alpha, o.beta};
+      all.push_back(desc);
+    }
+  }
+  return all;
+}
+
+std::string line(const char* format, auto... values) {
+  char text[240];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string score_text(const Series& series) {
+  const auto [wins, draws, losses] = series.wins_draws_losses();
+  return line("%llu won, %llu drawn, %llu lost", static_cast<unsigned long long>(wins),
+              static_cast<unsigned long long>(draws), static_cast<unsigned long long>(losses));
+}
+
+std::string elo_text(const Series& series) {
+  const double score = mean_score(series.pairs()), error = 1.96 * score_error(series.pairs());
+  const auto elo = [](double s) { return match::elo_of_score(std::clamp(s, 0.001, 0.999)); };
+  return line("%+.0f Elo (95 %%: %+.0f to %+.0f)", elo(score), elo(score - error),
+              elo(score + error));
+}
+
+void add(Results& results, const std::string& section, const std::string& name, double value,
+         const std::string& unit) {
+  results.figures.push_back({section, name, value, unit, "", match::Figure::Judgment::none});
+}
+
+Results of_matches(const Options& o, const Series& series) {
+  Results results;
+  const std::string section = o.players[0] + " against " + o.players[1];
+  results.text = section + ": " + score_text(series) + "; " + elo_text(series) + "\n\n";
+  results.figures = match::figures_of(section, series.statistics());
+  results.text += match::as_table(results.figures);
+  results.text +=
+      line("\ndigest of all matches %016llx\n", static_cast<unsigned long long>(series.digest()));
+  return results;
+}
+
+Results of_sprt(const Options& o, const Series& series) {
+  Results results;
+  const match::SequentialTest& test = *series.desc().test;
+  const auto& p = series.pairs();
+  const double llr = log_likelihood_ratio(p, test.score0, test.score1);
+  const match::Verdict verdict = test.verdict(p);
+  const std::string section = o.players[0] + " (new) against " + o.players[1] + " (old)";
+  results.text = section + ": " + score_text(series) + "\n" +
+                 line("pairs %llu %llu %llu %llu %llu (0 to 2 points), ",
+                      static_cast<unsigned long long>(p[0]), static_cast<unsigned long long>(p[1]),
+                      static_cast<unsigned long long>(p[2]), static_cast<unsigned long long>(p[3]),
+                      static_cast<unsigned long long>(p[4])) +
+                 elo_text(series) + "\n" +
+                 line("LLR %.2f (%.2f to %.2f) of H1 %+.1f Elo against H0 %+.1f Elo: ", llr,
+                      test.lower_bound(), test.upper_bound(), o.elo1, o.elo0);
+  results.text += verdict == match::Verdict::h1   ? "H1, the new one is better\n"
+                  : verdict == match::Verdict::h0 ? "H0, the new one is not better by so much\n"
+                                                  : "not decided within --max-matches\n";
+  add(results, section, "pairs", static_cast<double>(pair_count(p)), "");
+  add(results, section, "score", mean_score(p), "");
+  add(results, section, "LLR", llr, "");
+  add(results, section, "verdict",
+      verdict == match::Verdict::open ? -1 : verdict == match::Verdict::h1, "1 H1, 0 H0, -1 open");
+  return results;
+}
+
+Results of_round_robin(const Options& o, const std::vector<Series>& series) {
+  Results results;
+  std::vector<match::Encounter> encounters;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < o.players.size(); ++i) {
+    for (std::size_t k = i + 1; k < o.players.size(); ++k) {
+      const Series& s = series[next++];
+      encounters.push_back({i, k, s.pairs()});
+      const match::Verdict verdict = s.verdict();
+      results.text += o.players[i] + " against " + o.players[k] + ": " + score_text(s) + ", " +
+                      line("%.1f %%, ", 100.0 * mean_score(s.pairs())) +
+                      (verdict == match::Verdict::h1   ? o.players[i] + " is the better one\n"
+                       : verdict == match::Verdict::h0 ? o.players[k] + " is the better one\n"
+                                                       : "not decided\n");
+      add(results, o.players[i] + " against " + o.players[k], "score", mean_score(s.pairs()), "");
+    }
+  }
+  results.text += "\nplayer                        Elo   95 %\n";
+  const auto ratings = match::rate(o.players.size(), encounters);
+  for (std::size_t i = 0; i < o.players.size(); ++i) {
+    results.text += line("%-26s %+6.0f   +-%.0f\n", o.players[i].c_str(), ratings[i].elo,
+                         1.96 * ratings[i].error);
+    add(results, "Elo", o.players[i], ratings[i].elo, "");
+    add(results, "Elo, standard error", o.players[i], ratings[i].error, "");
+  }
+  return results;
+}
+
+Results of_balance(const Options& o, const std::vector<Series>& series) {
+  Results results;
+  results.text = "characters, both sides played by " + o.players[0] + "\n";
+  for (const Series& s : series) {
+    const auto& c = s.desc().characters;
+    const std::string name = std::string(foosball::character_spec(c[0]).name) + " against " +
+                             foosball::character_spec(c[1]).name;
+    const match::Verdict verdict = s.verdict();
+    results.text += line("  %-34s %5.1f %% +-%.1f  %5llu matches  ", name.c_str(),
+                         100.0 * mean_score(s.pairs()), 196.0 * score_error(s.pairs()),
+                         static_cast<unsigned long long>(s.taken()));
+    results.text += verdict == match::Verdict::h0   ? "within 60:40\n"
+                    : verdict == match::Verdict::h1 ? "beyond 60:40\n"
+                                                    : "not decided\n";
+    const auto judgment = verdict == match::Verdict::h0   ? match::Figure::Judgment::pass
+                          : verdict == match::Verdict::h1 ? match::Figure::Judgment::falls_short
+                                                          : match::Figure::Judgment::unknown;
+    results.figures.push_back(
+        {"balance", name, 100.0 * mean_score(s.pairs()), "% points", "40 to 60", judgment});
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<SeriesDesc> series_of(const Options& o) {
+  SeriesDesc desc = base_of(o);
+  switch (o.mode) {
+    case Mode::matches:
+      return {desc};
+    case Mode::report:
+      return match::report_series(report_plan(o));
+    case Mode::sprt:
+      desc.max_games = o.max_matches;
+      desc.test = {match::score_of_elo(o.elo0), match::score_of_elo(o.elo1), o.alpha, o.beta};
+      return {desc};
+    case Mode::round_robin:
+      return round_robin(o);
+    case Mode::balance:
+      return balance(o);
+  }
+  return {};
+}
+
+Results results_of(const Options& o, const std::vector<Series>& series) {
+  switch (o.mode) {
+    case Mode::matches:
+      return of_matches(o, series[0]);
+    case Mode::report: {
+      Results results;
+      results.figures = match::report_figures(report_plan(o), series);
+      results.text = match::as_table(results.figures);
+      return results;
+    }
+    case Mode::sprt:
+      return of_sprt(o, series[0]);
+    case Mode::round_robin:
+      return of_round_robin(o, series);
+    case Mode::balance:
+      return of_balance(o, series);
+  }
+  return {};
+}
+
+}  // namespace app

@@ -1,0 +1,25 @@
+// How far a run has come, on stderr: a bar that is drawn over and over on a terminal, else a line
+// every ten seconds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "match/executor.h"
+
+namespace app {
+
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  void show(const match::Schedule& schedule, const match::Effort& effort);
+  void finish();
+
+ private:
+  bool quiet_, terminal_;
+  bool drawn_ = false;
+  std::int64_t begun_ns_, shown_ns_ = 0;
+  std::uint64_t known_ = 0;  // games that an earlier run had finished
+};
+
+}  // namespace app

@@ -1,0 +1,45 @@
+// Who plays a side, by name. The one registry of players is src/players.cpp: a new kind of player
+// is one row there.
+//
+//   classic:SKILL     the computer player of foosball/computer_player.h, SKILL 0 to 1 (default 0.6)
+//   idle              no hand on any rod
+//   spinner           every rod spins all the time, as fast as the drive allows
+//   one-rod:PLAYER    PLAYER with a hand on the rod nearest to the ball only, as a person with a
+//   mouse
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "foosball/match.h"
+
+namespace match {
+
+// Plays one side of one game. Deterministic: the same desc and the same views give the same
+// targets.
+class Player {
+ public:
+  virtual ~Player() = default;
+  // Targets for the rods of its team; the others are left as they are. One call a tick.
+  virtual void play(const foosball::MatchView& view, foosball::RodTargets& targets) = 0;
+};
+
+struct PlayerDesc {
+  std::string name;  // as in the list above
+  int team = 0;
+  std::uint64_t seed = 1;
+};
+
+// The error is a sentence that lists what may be given.
+tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc& desc);
+
+struct PlayerKind {
+  std::string syntax, meaning;
+};
+std::vector<PlayerKind> player_kinds();
+
+}  // namespace match

@@ -1,0 +1,36 @@
+// Figures of play, each beside its goal; docs/match-runner.md defines them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "match/schedule.h"
+
+namespace match {
+
+struct Figure {
+  std::string section, name;
+  double value = 0.0;
+  std::string unit;
+  std::string goal;  // as text; empty: none
+  enum class Judgment { none, pass, falls_short, unknown } judgment = Judgment::none;
+};
+
+std::vector<Figure> figures_of(const std::string& section, const foosball::Statistics& statistics);
+
+std::string as_table(const std::vector<Figure>& figures);
+std::string as_csv(const std::vector<Figure>& figures);
+std::string as_json(const std::vector<Figure>& figures);
+
+// The matches of --report: the two players, and what a reviewer of play tried against them.
+struct ReportPlan {
+  std::string home = "classic", away = "classic";
+  foosball::Layout layout = foosball::Layout::tournament;
+  std::uint64_t seed = 1, max_ticks = 600'000;
+  std::uint64_t matches = 100;
+};
+std::vector<SeriesDesc> report_series(const ReportPlan& plan);
+// Precondition: the series of that plan, in their order.
+std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Series>& series);
+
+}  // namespace match

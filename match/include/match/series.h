@@ -1,0 +1,65 @@
+// Games that belong together and are judged in their order: n matches, or as many as a sequential
+// test needs. Games are played anywhere and in any order; a series takes its results in its own
+// order and stops at the first point where it is decided, so that its totals are the same however
+// many threads or machines played. What was played beyond that point is not counted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "foosball/statistics.h"
+#include "match/game.h"
+#include "match/sequential.h"
+
+namespace match {
+
+// Two players, in mirrored pairs: games 2k and 2k + 1 have one match seed, hence the same first
+// serve and the same characters on each side, and the sides changed over. The players' own seeds
+// differ, so that a player against himself does not play one game twice.
+struct SeriesDesc {
+  std::array<std::string, 2> players;  // the first is on team 0 in even games
+  foosball::Layout layout = foosball::Layout::tournament;
+  std::uint64_t seed = 1;  // of the first pair
+  std::uint64_t max_ticks = 600'000;
+  std::uint64_t max_games = 100;        // even
+  bool draw_characters = true;          // for each side of each pair from its seed; else
+  std::array<int, 2> characters{1, 1};  // those of the players
+  std::optional<SequentialTest> test;   // of the first player's score; none: by max_games
+  // As test, of either player's score: decided when one of the two is H1 or both are H0, each with
+  // half of alpha.
+  std::optional<SequentialTest> band;
+  std::string text() const;  // all of it, for a checkpoint's head
+};
+
+class Series {
+ public:
+  explicit Series(SeriesDesc desc) : desc_(std::move(desc)) {}
+
+  const SeriesDesc& desc() const { return desc_; }
+  GameDesc game(std::uint64_t index) const;
+  // Precondition: that of game taken(), and not decided().
+  void take(const GameResult& result);
+  std::uint64_t taken() const { return taken_; }
+  bool decided() const;
+  Verdict verdict() const;  // of the test or the band so far
+
+  // Of the first player. [0] both games lost .. [4] both won, in half points of a pair.
+  const PairCounts& pairs() const { return pairs_; }
+  std::array<std::uint64_t, 3> wins_draws_losses() const { return games_; }
+  const foosball::Statistics& statistics() const { return statistics_; }
+  // Of all results in order: two runs that agree in it agree in every game.
+  std::uint64_t digest() const { return digest_; }
+
+ private:
+  SeriesDesc desc_;
+  std::uint64_t taken_ = 0;
+  int first_of_pair_ = 0;
+  PairCounts pairs_{};
+  std::array<std::uint64_t, 3> games_{};
+  foosball::Statistics statistics_;
+  std::uint64_t digest_ = 0;
+};
+
+}  // namespace match

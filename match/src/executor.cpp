@@ -1,0 +1,112 @@
+#include "match/executor.h"
+
+#include <condition_variable>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "os/clock.h"
+
+namespace match {
+namespace {
+
+class Pool {
+ public:
+  Pool(Schedule& schedule, const ExecutorOptions& options)
+      : schedule_(schedule), options_(options) {}
+
+  tl::expected<Effort, std::string> run() {
+    const std::int64_t begun = os::monotonic_ns();
+    std::vector<std::thread> threads;
+    for (int i = 0; i < options_.jobs; ++i) threads.emplace_back([this] { work(); });
+    for (std::thread& thread : threads) thread.join();
+    effort_.seconds = static_cast<double>(os::monotonic_ns() - begun) * 1e-9;
+    if (!problem_.empty()) return tl::unexpected(problem_);
+    return effort_;
+  }
+
+ private:
+  bool stopped() const {
+    return !problem_.empty() || (options_.stop != nullptr && options_.stop->load());
+  }
+
+  // A thread ends when nothing is left that may be needed: what is under way elsewhere can only
+  // make it less.
+  void work() {
+    while (true) {
+      JobId id;
+      GameDesc game;
+      {
+        const std::lock_guard lock(mutex_);
+        const auto next = stopped() ? std::nullopt : schedule_.next();
+        if (!next) return;
+        id = *next;
+        game = schedule_.game(id);
+      }
+      const std::int64_t before = os::thread_ns();
+      auto result = play_job(game, id, options_.record_folder);
+      const std::int64_t cost = os::thread_ns() - before;
+      const std::lock_guard lock(mutex_);
+      if (!take(id, std::move(result), cost)) return;
+    }
+  }
+
+  bool take(JobId id, tl::expected<GameResult, std::string> result, std::int64_t cost_ns) {
+    if (!result) {
+      problem_ = result.error();
+      return false;
+    }
+    effort_.core_seconds += static_cast<double>(cost_ns) * 1e-9;
+    effort_.ticks += result->statistics.ticks;
+    ++effort_.games;
+    if (options_.checkpoint != nullptr) {
+      if (auto kept = options_.checkpoint->append(id, *result); !kept) {
+        problem_ = kept.error();
+        return false;
+      }
+    }
+    schedule_.complete(id, std::move(*result));
+    if (options_.progress) options_.progress(schedule_, effort_);
+    return true;
+  }
+
+  Schedule& schedule_;
+  const ExecutorOptions& options_;
+  std::mutex mutex_;
+  Effort effort_;
+  std::string problem_;
+};
+
+}  // namespace
+
+tl::expected<Effort, std::string> play_all(Schedule& schedule, const ExecutorOptions& options) {
+  return Pool(schedule, options).run();
+}
+
+std::string journal_name(JobId id, const GameDesc& game) {
+  char name[96];
+  std::snprintf(name, sizeof name, "series%03zu-game%06llu-seed%llu.sfr", id.series,
+                static_cast<unsigned long long>(id.game),
+                static_cast<unsigned long long>(game.seed));
+  return name;
+}
+
+tl::expected<GameResult, std::string> play_job(const GameDesc& game, JobId id,
+                                               const std::string& record_folder) {
+  const bool recorded = !record_folder.empty();
+  PlayedGame played = play_game(game, recorded ? Recording::on : Recording::off);
+  if (recorded) {
+    const std::string path = record_folder + "/" + journal_name(id, game);
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(played.journal.data()),
+               static_cast<std::streamsize>(played.journal.size()));
+    file.close();
+    if (!file)
+      return tl::unexpected("cannot write " + path + "; is there space, may it be written?");
+  }
+  return std::move(played.result);
+}
+
+}  // namespace match

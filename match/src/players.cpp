@@ -1,0 +1,152 @@
+// The registry of players: one row for each kind.
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+
+#include "foosball/computer_player.h"
+#include "match/player.h"
+
+namespace match {
+namespace {
+
+using foosball::kRods;
+using foosball::MatchView;
+using foosball::RodTargets;
+using Made = tl::expected<std::unique_ptr<Player>, std::string>;
+
+class Classic final : public Player {
+ public:
+  Classic(const PlayerDesc& desc, double skill)
+      : player_({.team = desc.team, .seed = desc.seed, .opens_match = false, .skill = skill}) {}
+  void play(const MatchView& view, RodTargets& targets) override { player_.play(view, targets); }
+
+ private:
+  foosball::ComputerPlayer player_;
+};
+
+class Idle final : public Player {
+ public:
+  void play(const MatchView&, RodTargets&) override {}
+};
+
+// All rods of the team turn forward at a rate that a hard flick of the wrist reaches.
+class Spinner final : public Player {
+ public:
+  explicit Spinner(int team) : team_(team) {}
+  void play(const MatchView& view, RodTargets& targets) override {
+    constexpr double kRate = 40.0;  // [rad/s]
+    const bool turns = view.screen == foosball::Screen::play && !view.paused;
+    const double rate = turns ? -foosball::attack_sign(team_) * kRate : 0.0;
+    angle_ += rate * foosball::kTick;
+    for (const int rod : rods_of_team(foosball::table_spec(view.layout), team_)) {
+      targets[rod] = {0.0, angle_, 0.0, rate, true};
+    }
+  }
+
+ private:
+  int team_;
+  double angle_ = 0.0;
+};
+
+// Lets only one hand of another player through: the one on the rod nearest to the ball. A hand that
+// has just changed stays for a while, as a person's does.
+class OneRod final : public Player {
+ public:
+  OneRod(int team, std::unique_ptr<Player> inner) : team_(team), inner_(std::move(inner)) {}
+  void play(const MatchView& view, RodTargets& targets) override {
+    inner_->play(view, targets);
+    const auto& table = foosball::table_spec(view.layout);
+    const auto rods = rods_of_team(table, team_);
+    const auto distance = [&](int rod) {
+      return std::fabs(table.rods[rod].x - view.ball_position.x);
+    };
+    int nearest = rods[0];
+    for (const int rod : rods) nearest = distance(rod) < distance(nearest) ? rod : nearest;
+    constexpr double kClearlyNearer = 0.03;  // [m]
+    constexpr int kSettle = 100;             // ticks
+    const bool better = rod_ < 0 || distance(nearest) < distance(rod_) - kClearlyNearer;
+    if (better && ++since_ >= kSettle) {
+      rod_ = nearest;
+      since_ = 0;
+    } else if (rod_ < 0) {
+      rod_ = nearest;
+    }
+    for (const int rod : rods) targets[rod].live = targets[rod].live && rod == rod_;
+  }
+
+ private:
+  int team_, rod_ = -1, since_ = 0;
+  std::unique_ptr<Player> inner_;
+};
+
+Made make_classic(const PlayerDesc& desc, const std::string& argument) {
+  double skill = 0.6;
+  const char* end = argument.data() + argument.size();
+  const auto parsed = std::from_chars(argument.data(), end, skill);
+  const bool number = argument.empty() || (parsed.ec == std::errc{} && parsed.ptr == end);
+  if (!number || !(skill >= 0.0 && skill <= 1.0)) {
+    return tl::unexpected("\"" + desc.name + "\": a skill is a number from 0 to 1");
+  }
+  return std::make_unique<Classic>(desc, skill);
+}
+
+Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
+  auto inner = make_player({argument.empty() ? "classic" : argument, desc.team, desc.seed});
+  if (!inner) return inner;
+  return std::make_unique<OneRod>(desc.team, std::move(*inner));
+}
+
+Made without_argument(const PlayerDesc& desc, const std::string& argument,
+                      std::unique_ptr<Player> player) {
+  if (!argument.empty())
+    return tl::unexpected("\"" + desc.name + "\": nothing may follow the name");
+  return player;
+}
+
+struct Kind {
+  const char* name;
+  const char* syntax;
+  const char* meaning;
+  Made (*make)(const PlayerDesc&, const std::string& argument);  // what follows the colon
+};
+
+constexpr Kind kKinds[] = {
+    {"classic", "classic[:SKILL]", "the computer player, SKILL 0 to 1, default 0.6", make_classic},
+    {"idle", "idle", "no hand on any rod",
+     [](const PlayerDesc& desc, const std::string& argument) {
+       return without_argument(desc, argument, std::make_unique<Idle>());
+     }},
+    {"spinner", "spinner", "all rods spin all the time",
+     [](const PlayerDesc& desc, const std::string& argument) {
+       return without_argument(desc, argument, std::make_unique<Spinner>(desc.team));
+     }},
+    {"one-rod", "one-rod[:PLAYER]", "PLAYER with one hand, on the rod nearest to the ball",
+     make_one_rod},
+};
+
+std::string all_syntax() {
+  std::string list;
+  for (const Kind& kind : kKinds) list += (list.empty() ? "" : ", ") + std::string(kind.syntax);
+  return list;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc& desc) {
+  const auto colon = desc.name.find(':');
+  const std::string name = desc.name.substr(0, colon);
+  const std::string argument = colon == std::string::npos ? "" : desc.name.substr(colon + 1);
+  for (const Kind& kind : kKinds) {
+    if (name == kind.name) return kind.make(desc, argument);
+  }
+  return tl::unexpected("\"" + desc.name + "\" is no player: give one of " + all_syntax());
+}
+
+std::vector<PlayerKind> player_kinds() {
+  std::vector<PlayerKind> kinds;
+  for (const Kind& kind : kKinds) kinds.push_back({kind.syntax, kind.meaning});
+  return kinds;
+}
+
+}  // namespace match

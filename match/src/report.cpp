@@ -1,0 +1,315 @@
+#include "match/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+#include "foosball/playability.h"
+
+namespace match {
+namespace {
+
+using foosball::kTeams;
+using foosball::Statistics;
+using Judgment = Figure::Judgment;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct Goal {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  const char* text = "";
+};
+Goal at_most(double high, const char* text) {
+  return {.high = high, .text = text};
+}
+Goal at_least(double low, const char* text) {
+  return {.low = low, .text = text};
+}
+
+class List {
+ public:
+  explicit List(std::string section) : section_(std::move(section)) {}
+  void add(const char* name, double value, const char* unit) {
+    figures.push_back({section_, name, value, unit, "", Judgment::none});
+  }
+  void add(const char* name, double value, const char* unit, const Goal& goal) {
+    const Judgment judgment = std::isnan(value)                         ? Judgment::unknown
+                              : value >= goal.low && value <= goal.high ? Judgment::pass
+                                                                        : Judgment::falls_short;
+    figures.push_back({section_, name, value, unit, goal.text, judgment});
+  }
+  std::vector<Figure> figures;
+
+ private:
+  std::string section_;
+};
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? kNone : static_cast<double>(part) / static_cast<double>(whole);
+}
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return 100.0 * ratio(part, whole);
+}
+template <class Counts>
+std::uint64_t sum(const Counts& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+double minutes(std::uint64_t ticks) {
+  return static_cast<double>(ticks) * foosball::kTick / 60.0;
+}
+double per_minute(std::uint64_t count, std::uint64_t ticks) {
+  return ticks == 0 ? kNone : static_cast<double>(count) / minutes(ticks);
+}
+template <class Histogram>
+double quantile(const Histogram& histogram, double fraction) {
+  return histogram.count() == 0 ? kNone : histogram.quantile(fraction);
+}
+
+void add_goals(List& list, const Statistics& s) {
+  const std::uint64_t goals = sum(s.goals);
+  list.add("goals a minute of play", per_minute(goals, s.play_ticks), "");
+  list.add("own goals by swing, of all goals", percent(sum(s.own_goals_swing), goals), "%",
+           at_most(3.0, "below 3"));
+  list.add("own goals by deflection, of all goals", percent(sum(s.own_goals_deflected), goals),
+           "%");
+  const std::uint64_t served = sum(s.goals_of_server) + sum(s.goals_of_receiver);
+  list.add("the server scores next", percent(sum(s.goals_of_server), served), "%",
+           {48.0, 52.0, "48 to 52"});
+}
+
+void add_hands(List& list, const Statistics& s) {
+  for (int team = 0; team < kTeams; ++team) {
+    const auto& moving = s.moving_ticks[team];
+    list.add(
+        team == 0 ? "team 0 moves 3 rods or more at once" : "team 1 moves 3 rods or more at once",
+        percent(moving[3] + moving[4], sum(moving)), "% of play", at_most(0.5, "none (two hands)"));
+  }
+  const double hand_seconds = static_cast<double>(sum(s.hand_ticks)) * foosball::kTick;
+  const double slide = static_cast<double>(sum(s.slide_reversals)) / hand_seconds;
+  const double swing = static_cast<double>(sum(s.swing_reversals)) / hand_seconds;
+  list.add("reversals a rod and second", slide + swing, "1/s", at_most(2.0, "at most 2"));
+  list.add("  of the slide", slide, "1/s");
+  list.add("  of the swing", swing, "1/s");
+  list.add("spins beyond a turn", per_minute(sum(s.spins), s.play_ticks), "a minute",
+           at_most(0.0, "none"));
+}
+
+void add_ball(List& list, const Statistics& s) {
+  list.add("hop, median", 1e3 * quantile(s.hop_height, 0.5), "mm", {20.0, 45.0, "30 (20 to 45)"});
+  list.add("hop, 90th percentile", 1e3 * quantile(s.hop_height, 0.9), "mm",
+           {80.0, 160.0, "120 (80 to 160)"});
+  list.add("bounce, height after to before, median", 100.0 * quantile(s.bounce_ratio, 0.5), "%");
+  list.add("balls out", per_minute(s.balls_out, s.play_ticks), "a minute",
+           at_most(1.0, "at most 1"));
+  list.add("nobody can reach the ball", percent(s.unreachable_ticks, s.ball_ticks), "% of ball",
+           at_most(10.0, "below 10"));
+  list.add("  longest", static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
+           at_most(6.0, "at most 6 (dead ball)"));
+  list.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball");
+  list.add("longest stuck", static_cast<double>(s.longest_stuck_ticks) * foosball::kTick, "s",
+           at_most(6.1, "at most 6 (dead ball)"));
+  list.add("dead balls", per_minute(s.dead_balls, s.play_ticks), "a minute",
+           at_most(1.0, "below 1"));
+}
+
+void add_play(List& list, const Statistics& s) {
+  list.add("touches", per_minute(sum(s.touches), s.play_ticks), "a minute");
+  list.add("passes", per_minute(sum(s.passes), s.play_ticks), "a minute");
+  list.add("shots", per_minute(sum(s.shots), s.play_ticks), "a minute");
+  list.add("  speed, median", quantile(s.shot_speed, 0.5), "m/s");
+  list.add("  speed, 99th percentile", quantile(s.shot_speed, 0.99), "m/s");
+  list.add("  on target", percent(sum(s.shots_on_target), sum(s.shots)), "%");
+  list.add("saves", per_minute(sum(s.saves), s.play_ticks), "a minute");
+  list.add("rally, median changes of side", quantile(s.rally, 0.5), "");
+  list.add("possession of team 0", percent(s.possession_ticks[0], sum(s.possession_ticks)), "%");
+  const std::uint64_t decided = sum(s.wins);
+  list.add("length of a match, median", quantile(s.length, 0.5), "s of play");
+  list.add("changes of lead", ratio(s.lead_changes, s.matches()), "a match");
+  list.add("matches not decided in time", percent(s.undecided, s.matches()), "%");
+  list.add("team 1 wins", percent(s.wins[1], decided), "%");
+  const double n = static_cast<double>(decided);
+  const double z = n > 0 ? (static_cast<double>(s.wins[1]) - 0.5 * n) / std::sqrt(0.25 * n) : kNone;
+  list.add("  from chance", z, "z", {-2.0, 2.0, "-2 to 2"});
+}
+
+std::string format(double value) {
+  if (std::isnan(value)) return "-";
+  char text[40];
+  const double size = std::fabs(value);
+  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
+  return text;
+}
+
+const char* word(Judgment judgment) {
+  switch (judgment) {
+    case Judgment::none:
+      return "";
+    case Judgment::pass:
+      return "pass";
+    case Judgment::falls_short:
+      return "short";
+    case Judgment::unknown:
+      return "no data";
+  }
+  return "";
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() >= width ? text : text + std::string(width - text.size(), ' ');
+}
+std::string right(const std::string& text, std::size_t width) {
+  return text.size() >= width ? text : std::string(width - text.size(), ' ') + text;
+}
+
+std::string escaped(const std::string& text, bool json) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '"')
+      out += json ? "\\\"" : "\"\"";
+    else if (c == '\\' && json)
+      out += "\\\\";
+    else
+      out += c;
+  }
+  return '"' + out + '"';
+}
+
+}  // namespace
+
+std::vector<Figure> figures_of(const std::string& section, const Statistics& statistics) {
+  List list(section);
+  add_goals(list, statistics);
+  add_hands(list, statistics);
+  add_ball(list, statistics);
+  add_play(list, statistics);
+  const foosball::Playability p = foosball::playability_of(statistics);
+  list.add("playability", p.total, "of 1");
+  return list.figures;
+}
+
+std::string as_table(const std::vector<Figure>& figures) {
+  std::string text, section;
+  for (const Figure& f : figures) {
+    if (f.section != section) text += (text.empty() ? "" : "\n") + f.section + "\n";
+    section = f.section;
+    std::string line = "  " + padded(f.name, 44) + right(format(f.value), 8) + " " +
+                       padded(f.unit, 11) + padded(f.goal, 24) + word(f.judgment);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string as_csv(const std::vector<Figure>& figures) {
+  std::string text = "section,figure,value,unit,goal,judgment\n";
+  for (const Figure& f : figures) {
+    text += escaped(f.section, false) + ',' + escaped(f.name, false) + ',' +
+            (std::isnan(f.value) ? "" : std::to_string(f.value)) + ',' + escaped(f.unit, false) +
+            ',' + escaped(f.goal, false) + ',' + word(f.judgment) + '\n';
+  }
+  return text;
+}
+
+std::string as_json(const std::vector<Figure>& figures) {
+  std::string text = "[\n";
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const Figure& f = figures[i];
+    text += "  {\"section\": " + escaped(f.section, true) +
+            ", \"figure\": " + escaped(f.name, true) +
+            ", \"value\": " + (std::isnan(f.value) ? "null" : std::to_string(f.value)) +
+            ", \"unit\": " + escaped(f.unit, true) + ", \"goal\": " + escaped(f.goal, true) +
+            ", \"judgment\": \"" + word(f.judgment) + "\"}" + (i + 1 < figures.size() ? "," : "") +
+            "\n";
+  }
+  return text + "]\n";
+}
+
+// --- the report ----------------------------------------------------------------------------------
+
+namespace {
+
+enum Part { kMain, kPaper, kPassive, kSpinner, kOneRod, kTall, kSmall, kParts };
+
+}  // namespace
+
+std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
+  SeriesDesc base;
+  base.players = {plan.home, plan.away};
+  base.layout = plan.layout;
+  base.seed = plan.seed;
+  base.max_ticks = plan.max_ticks;
+  base.max_games = plan.matches;
+  std::vector<SeriesDesc> series(kParts, base);
+  series[kPaper].layout = plan.layout == foosball::Layout::paper ? foosball::Layout::tournament
+                                                                 : foosball::Layout::paper;
+  series[kPassive].players[1] = "idle";
+  series[kPassive].max_games = std::min<std::uint64_t>(plan.matches, 8);  // they are long
+  series[kSpinner].players = {"spinner", plan.home};
+  series[kOneRod].players = {"one-rod:" + plan.home, plan.away};
+  for (const Part part : {kTall, kSmall}) {
+    series[part].draw_characters = false;
+    series[part].characters = {part == kTall ? 0 : 2, 1};
+  }
+  return series;
+}
+
+std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Series>& series) {
+  const auto players = [&](Part part) {
+    const SeriesDesc& desc = series[part].desc();
+    return desc.players[0] + " against " + desc.players[1] + ", " +
+           std::to_string(series[part].taken()) + " matches" +
+           (desc.layout == foosball::Layout::paper ? ", paper layout" : ", tournament layout");
+  };
+  (void)plan;
+  std::vector<Figure> all = figures_of(players(kMain), series[kMain].statistics());
+  const auto append = [&](List& list) {
+    all.insert(all.end(), list.figures.begin(), list.figures.end());
+  };
+  List paper(players(kPaper));
+  for (Figure& f : figures_of(players(kPaper), series[kPaper].statistics())) {
+    if (f.name == "the server scores next" || f.name == "team 1 wins" ||
+        f.name == "  from chance" || f.name == "nobody can reach the ball" ||
+        f.name == "own goals by swing, of all goals") {
+      paper.figures.push_back(f);
+    }
+  }
+  append(paper);
+
+  List passive(players(kPassive));
+  const Statistics& s = series[kPassive].statistics();
+  passive.add("minutes of play", minutes(s.play_ticks), "");
+  passive.add("goals", static_cast<double>(sum(s.goals)), "");
+  passive.add("goals a minute", per_minute(sum(s.goals), s.play_ticks), "",
+              at_least(1.0, "at least 1"));
+  passive.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball",
+              at_most(30.0, "below 30"));
+  append(passive);
+
+  const auto score = [&](Part part) { return 100.0 * mean_score(series[part].pairs()); };
+  const auto error = [&](Part part) { return 100.0 * score_error(series[part].pairs()); };
+  List spinner(players(kSpinner));
+  spinner.add("points of the spinner", score(kSpinner), "%", at_most(35.0, "at most 35"));
+  spinner.add("  standard error", error(kSpinner), "%");
+  append(spinner);
+  List one(players(kOneRod));
+  one.add("points of the player with one rod", score(kOneRod), "%", at_least(45.0, "half"));
+  one.add("  standard error", error(kOneRod), "%");
+  append(one);
+  List characters("characters, " + series[kTall].desc().players[0] + " against " +
+                  series[kTall].desc().players[1] + ", " + std::to_string(series[kTall].taken()) +
+                  " matches each");
+  for (const Part part : {kTall, kSmall}) {
+    const auto& c = series[part].desc().characters;
+    const std::string name = std::string(foosball::character_spec(c[0]).name) + " against " +
+                             foosball::character_spec(c[1]).name;
+    characters.add(name.c_str(), score(part), "% points", {40.0, 60.0, "40 to 60"});
+    characters.add("  standard error", error(part), "%");
+  }
+  append(characters);
+  return all;
+}
+
+}  // namespace match

@@ -1,0 +1,102 @@
+#include "match/sequential.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace match {
+namespace {
+
+using Frequencies = std::array<double, 5>;
+
+double points(std::size_t outcome) {
+  return 0.25 * static_cast<double>(outcome);
+}
+
+// Nearest distribution to p of mean s, as factors p_i / pk_i = 1 + t (a_i - s). The sum falls with
+// t between the two poles, so that bisection finds its root.
+double tilt(const Frequencies& p, double s) {
+  double low = -1.0 / (1.0 - s), high = 1.0 / s;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.5 * (low + high);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double a = points(k) - s;
+      sum += p[k] * a / (1.0 + t * a);
+    }
+    (sum > 0.0 ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double score_of_elo(double elo) {
+  return 1.0 / (1.0 + std::pow(10.0, -elo / 400.0));
+}
+
+double elo_of_score(double score) {
+  return -400.0 * std::log10(1.0 / score - 1.0);
+}
+
+std::uint64_t pair_count(const PairCounts& pairs) {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t count : pairs) sum += count;
+  return sum;
+}
+
+double mean_score(const PairCounts& pairs) {
+  const std::uint64_t n = pair_count(pairs);
+  if (n == 0) return 0.5;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) sum += points(i) * static_cast<double>(pairs[i]);
+  return sum / static_cast<double>(n);
+}
+
+double score_error(const PairCounts& pairs) {
+  const double n = static_cast<double>(pair_count(pairs));
+  if (n < 2.0) return 0.5;
+  const double mean = mean_score(pairs);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    sum += static_cast<double>(pairs[i]) * (points(i) - mean) * (points(i) - mean);
+  }
+  return std::sqrt(sum / (n - 1.0) / n);
+}
+
+double log_likelihood_ratio(const PairCounts& pairs, double score0, double score1) {
+  const double n = static_cast<double>(pair_count(pairs));
+  if (n == 0.0) return 0.0;
+  // Outcomes not seen yet count as 0.001 of one: without them no distribution of the other mean
+  // may exist.
+  Frequencies p{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p[i] = std::max(static_cast<double>(pairs[i]), 1e-3);
+    sum += p[i];
+  }
+  for (double& frequency : p) frequency /= sum;
+  const double t0 = tilt(p, score0), t1 = tilt(p, score1);
+  double ratio = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double f0 = 1.0 + t0 * (points(i) - score0), f1 = 1.0 + t1 * (points(i) - score1);
+    ratio += p[i] * std::log(f0 / f1);
+  }
+  return sum * ratio;
+}
+
+double SequentialTest::lower_bound() const {
+  return std::log(beta / (1.0 - alpha));
+}
+
+double SequentialTest::upper_bound() const {
+  return std::log((1.0 - beta) / alpha);
+}
+
+Verdict SequentialTest::verdict(const PairCounts& pairs) const {
+  const double ratio = log_likelihood_ratio(pairs, score0, score1);
+  return ratio >= upper_bound()   ? Verdict::h1
+         : ratio <= lower_bound() ? Verdict::h0
+                                  : Verdict::open;
+}
+
+}  // namespace match

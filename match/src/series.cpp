@@ -1,0 +1,74 @@
+#include "match/series.h"
+
+#include <algorithm>
+
+namespace match {
+
+std::string SeriesDesc::text() const {
+  std::string text = players[0] + " - " + players[1];
+  text += layout == foosball::Layout::paper ? ", paper" : ", tournament";
+  text += ", seed " + std::to_string(seed) + ", " + std::to_string(max_ticks) + " ticks, " +
+          std::to_string(max_games) + " games, characters ";
+  text += draw_characters ? std::string("drawn")
+                          : std::to_string(characters[0]) + "/" + std::to_string(characters[1]);
+  const auto add = [&](const char* name, const std::optional<SequentialTest>& t) {
+    if (!t) return;
+    text += std::string(", ") + name;
+    for (const double value : {t->score0, t->score1, t->alpha, t->beta}) {
+      text += ' ';
+      text += std::to_string(value);
+    }
+  };
+  add("test", test);
+  add("band", band);
+  return text;
+}
+
+GameDesc Series::game(std::uint64_t index) const {
+  const std::size_t first = index % 2;  // the team of the first player
+  GameDesc game;
+  game.players[first] = desc_.players[0];
+  game.players[1 - first] = desc_.players[1];
+  game.layout = desc_.layout;
+  game.seed = desc_.seed + index / 2;
+  game.variant = static_cast<int>(first);
+  game.max_ticks = desc_.max_ticks;
+  if (desc_.draw_characters) {
+    game.characters = drawn_characters(game.seed);
+  } else {
+    game.characters[first] = desc_.characters[0];
+    game.characters[1 - first] = desc_.characters[1];
+  }
+  return game;
+}
+
+void Series::take(const GameResult& result) {
+  const int half_points = result.half_points(static_cast<int>(taken_ % 2));
+  ++games_[static_cast<std::size_t>(2 - half_points)];
+  statistics_.merge(result.statistics);
+  digest_ = mix_seed(digest_ ^ result.state_hash);
+  if (taken_ % 2 == 0) {
+    first_of_pair_ = half_points;
+  } else {
+    ++pairs_[static_cast<std::size_t>(first_of_pair_ + half_points)];
+  }
+  ++taken_;
+}
+
+bool Series::decided() const {
+  return taken_ >= desc_.max_games || (taken_ % 2 == 0 && verdict() != Verdict::open);
+}
+
+Verdict Series::verdict() const {
+  if (desc_.test) return desc_.test->verdict(pairs_);
+  if (!desc_.band) return Verdict::open;
+  SequentialTest one_side = *desc_.band;
+  one_side.alpha *= 0.5;
+  PairCounts mirrored = pairs_;
+  std::reverse(mirrored.begin(), mirrored.end());
+  const Verdict first = one_side.verdict(pairs_), second = one_side.verdict(mirrored);
+  if (first == Verdict::h1 || second == Verdict::h1) return Verdict::h1;
+  return first == Verdict::h0 && second == Verdict::h0 ? Verdict::h0 : Verdict::open;
+}
+
+}  // namespace match

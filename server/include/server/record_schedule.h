@@ -1,0 +1,50 @@
+// What goes into a match's journal, and when: the header, every tick's inputs, a hash each second,
+// a keyframe every 10 s, the end. Where it goes is the sink's affair: a file of the server, or
+// memory.
+#pragma once
+
+#include "foosball/match.h"
+#include "wire/journal.h"
+
+namespace server {
+
+// Sink: void add(const wire::JournalEntry&). It must outlive the schedule.
+template <class Sink>
+class RecordSchedule {
+ public:
+  static constexpr std::uint64_t kHashTicks = 1'000;
+  static constexpr std::uint64_t kKeyframeTicks = 10'000;
+
+  RecordSchedule(Sink& sink, const wire::JournalHeader& header) : sink_(sink) {
+    std::get<wire::JournalTick>(tick_entry_).commands.reserve(wire::kMaxJournalCommands);
+    std::get<wire::JournalKeyframe>(keyframe_entry_).snapshot.reserve(wire::kMaxKeyframe);
+    sink_.add(header);
+  }
+
+  // After the match was stepped with the tick.
+  void add(const wire::JournalTick& tick, const foosball::Match& match) {
+    std::get<wire::JournalTick>(tick_entry_) = tick;
+    sink_.add(tick_entry_);
+    ++ticks_;
+    if (ticks_ % kHashTicks == 0) sink_.add(wire::JournalHash{ticks_, match.state_hash()});
+    if (ticks_ % kKeyframeTicks == 0) {
+      auto& keyframe = std::get<wire::JournalKeyframe>(keyframe_entry_);
+      keyframe.tick = ticks_;
+      keyframe.snapshot.clear();
+      match.snapshot(keyframe.snapshot);
+      sink_.add(keyframe_entry_);
+    }
+  }
+  void finish(const foosball::Match& match) {
+    sink_.add(wire::JournalEnd{ticks_, match.state_hash()});
+  }
+
+ private:
+  Sink& sink_;
+  std::uint64_t ticks_ = 0;
+  // Kept from tick to tick for their memory.
+  wire::JournalEntry tick_entry_{wire::JournalTick{}};
+  wire::JournalEntry keyframe_entry_{wire::JournalKeyframe{}};
+};
+
+}  // namespace server
