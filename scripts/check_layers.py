@@ -63,6 +63,7 @@ LAYERS = {
     'foosball/include/foosball/rod_motion.h': 'table',
     'foosball/include/foosball/table.h': 'table',
     'tools/': 'tools',
+    'tools/video/': 'video',
     'benchmarks/': 'benchmarks',
     'tests/': 'tests',
 }
@@ -99,6 +100,8 @@ MAY_USE = {
     'client': {ENGINE_FACE, 'os', 'draw', 'table', 'wire', 'device-frame', 'hand'},
     # Has its worlds in its own process; knows of no match and no wire.
     'sandbox': {ENGINE_FACE, 'os', 'draw', 'scenes'},
+    # A recording drawn as the client draws it: here, and only here, server and client meet.
+    'video': {ENGINE_FACE, 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'server', 'client'},
     'tools': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
     'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',

@@ -2,7 +2,8 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make the Debian package), bench (the
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make the Debian package),
+# video (recordings as videos), bench (the
 # engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
 # WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
@@ -42,6 +43,7 @@ check  clang-format          formatting
 check  clang-tidy            static checks
 check  doxygen               the engine's headers as pages: what their comments say must be well formed
 check  shellcheck            static checks of the scripts
+check  ffmpeg                writes and measures videos of recordings
 check  dpkg-dev              the libraries that the Debian package depends on
 check  systemd               verifies the service that the package installs
 check  libgtest-dev          the tests
@@ -53,6 +55,7 @@ check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
 check  libelf-dev            simavr reads the firmware through it
+video  ffmpeg                writes the videos of ./play --video
 deb    dpkg-dev              the libraries that the Debian package depends on
 bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
 bench  libdart-dev           DART, another one to compare with

@@ -10,6 +10,8 @@ bool is_hit(foosball::EventKind kind) {
          kind == foosball::EventKind::field_hit;
 }
 
+}  // namespace
+
 wire::EventSnapshot to_wire(const foosball::Event& event, std::uint32_t id) {
   wire::EventSnapshot out;
   out.id = id;
@@ -22,8 +24,6 @@ wire::EventSnapshot to_wire(const foosball::Event& event, std::uint32_t id) {
                static_cast<float>(event.point.z)};
   return out;
 }
-
-}  // namespace
 
 // A free slot; else, for what is no hit, that of the oldest hit; else none.
 EventRepeater::Slot* EventRepeater::place_for(foosball::EventKind kind) {

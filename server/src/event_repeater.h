@@ -12,6 +12,8 @@
 
 namespace server {
 
+wire::EventSnapshot to_wire(const foosball::Event& event, std::uint32_t id);
+
 class EventRepeater {
  public:
   static constexpr int kRepeats = 8;

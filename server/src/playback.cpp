@@ -45,6 +45,15 @@ bool Playback::holds_a_tick() const {
   return false;
 }
 
+std::uint64_t Playback::total_ticks() const {
+  wire::JournalReader reader(file_);
+  std::uint64_t ticks = 0;
+  while (const auto entry = reader.next()) {
+    ticks += std::holds_alternative<wire::JournalTick>(*entry) ? 1 : 0;
+  }
+  return ticks;
+}
+
 const wire::JournalTick* Playback::next(const foosball::Match& match) {
   while (auto entry = reader_.next()) {
     if (auto* tick = std::get_if<wire::JournalTick>(&*entry)) {

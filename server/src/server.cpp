@@ -197,13 +197,10 @@ void Server::Impl::gather_live(std::int64_t now_us) {
 // --------------------------------------------------------------------------------
 
 void Server::Impl::put_drivers(wire::Snapshot& out) const {
+  if (options.replay) return put_replay_drivers(next, out);
   for (int rod = 0; rod < foosball::kRods; ++rod) {
-    const bool live = next.rods[rod].live;
-    const auto status = options.replay ? live ? cabinet::RodStatus::live : cabinet::RodStatus::held
-                                       : desk.rods()[rod].status;
-    const auto driver = options.replay ? RodDriver::replay : desk.driver(rod);
-    out.rods[rod].status = static_cast<std::uint8_t>(status);
-    out.rods[rod].source = static_cast<std::uint8_t>(driver);
+    out.rods[rod].status = static_cast<std::uint8_t>(desk.rods()[rod].status);
+    out.rods[rod].source = static_cast<std::uint8_t>(desk.driver(rod));
   }
 }
 

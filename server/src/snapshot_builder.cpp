@@ -1,5 +1,7 @@
 #include "snapshot_builder.h"
 
+#include "wire/enums.h"
+
 namespace server {
 namespace {
 
@@ -72,6 +74,14 @@ void build_snapshot(const foosball::MatchView& view, wire::Snapshot& snapshot) {
   put_ball(view, snapshot.ball);
   put_rods(view, snapshot);
   put_men(view, snapshot);
+}
+
+void put_replay_drivers(const wire::JournalTick& tick, wire::Snapshot& snapshot) {
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const auto status = tick.rods[rod].live ? wire::RodStatus::live : wire::RodStatus::held;
+    snapshot.rods[rod].status = wire::number(status);
+    snapshot.rods[rod].source = wire::number(wire::RodSource::replay);
+  }
 }
 
 }  // namespace server

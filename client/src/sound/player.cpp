@@ -2,6 +2,7 @@
 
 #include <AL/al.h>
 #include <AL/alc.h>
+#include <AL/alext.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -47,6 +48,7 @@ struct SoundPlayer::Impl {
   std::array<ALuint, kLoops> loops{};
   std::size_t next = 0;
   bool made = false;
+  LPALCRENDERSAMPLESSOFT render = nullptr;  // of a player that is offline
 
   ~Impl() {
     if (made) {
@@ -73,7 +75,31 @@ tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::open() {
     return tl::unexpected(std::string(
         "No audio device could be opened: playing on without sound (--mute says so beforehand)."));
   }
-  impl->context = alcCreateContext(impl->device, nullptr);
+  return prepare(std::move(impl), nullptr);
+}
+
+tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::open_offline() {
+  auto impl = std::make_unique<Impl>();
+  const auto open_loopback = reinterpret_cast<LPALCLOOPBACKOPENDEVICESOFT>(
+      alcGetProcAddress(nullptr, "alcLoopbackOpenDeviceSOFT"));
+  impl->render =
+      reinterpret_cast<LPALCRENDERSAMPLESSOFT>(alcGetProcAddress(nullptr, "alcRenderSamplesSOFT"));
+  if (open_loopback != nullptr && impl->render != nullptr) impl->device = open_loopback(nullptr);
+  if (impl->device == nullptr)
+    return tl::unexpected(std::string("This OpenAL cannot render sound into a file."));
+  constexpr std::array<int, 7> kStereo{ALC_FORMAT_CHANNELS_SOFT,
+                                       ALC_STEREO_SOFT,
+                                       ALC_FORMAT_TYPE_SOFT,
+                                       ALC_SHORT_SOFT,
+                                       ALC_FREQUENCY,
+                                       kSampleRate,
+                                       0};
+  return prepare(std::move(impl), kStereo.data());
+}
+
+tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::prepare(
+    std::unique_ptr<Impl> impl, const int* attributes) {
+  impl->context = alcCreateContext(impl->device, attributes);
   if (impl->context == nullptr || !alcMakeContextCurrent(impl->context)) {
     return tl::unexpected(
         std::string("The audio device gives no OpenAL context: playing on without sound."));
@@ -97,6 +123,12 @@ tl::expected<std::unique_ptr<SoundPlayer>, std::string> SoundPlayer::open() {
   if (alGetError() != AL_NO_ERROR)
     return tl::unexpected(std::string("OpenAL has no room for the sounds: playing on without."));
   return std::unique_ptr<SoundPlayer>(new SoundPlayer(std::move(impl)));
+}
+
+std::vector<std::int16_t> SoundPlayer::render(int moments) {
+  std::vector<std::int16_t> samples(2 * static_cast<std::size_t>(moments));
+  impl_->render(impl_->device, samples.data(), moments);
+  return samples;
 }
 
 void SoundPlayer::set_listener(const glm::vec3& eye, const glm::vec3& at) {

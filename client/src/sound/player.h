@@ -1,10 +1,12 @@
 // Plays the sounds where they happen, through OpenAL.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "sound/synth.h"
 
@@ -14,7 +16,13 @@ class SoundPlayer {
  public:
   // The error says why there is no sound; the game goes on without.
   static tl::expected<std::unique_ptr<SoundPlayer>, std::string> open();
+  // Heard by nobody: what would be is handed out by render(), as fast as it is asked for.
+  static tl::expected<std::unique_ptr<SoundPlayer>, std::string> open_offline();
   ~SoundPlayer();
+
+  // The next so many moments of the sound, kSampleRate a second, left and right in turn.
+  // Precondition: made by open_offline().
+  std::vector<std::int16_t> render(int moments);
 
   void set_listener(const glm::vec3& eye, const glm::vec3& at);
   void set_volume(float volume);  // 0..1, of everything
@@ -26,6 +34,8 @@ class SoundPlayer {
  private:
   struct Impl;
   explicit SoundPlayer(std::unique_ptr<Impl> impl);
+  static tl::expected<std::unique_ptr<SoundPlayer>, std::string> prepare(std::unique_ptr<Impl> impl,
+                                                                         const int* attributes);
   std::unique_ptr<Impl> impl_;
 };
 

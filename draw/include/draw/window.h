@@ -15,6 +15,7 @@ struct WindowOptions {
   bool fullscreen = false;
   std::string title = "Virtual Physics";
   std::string otherwise = "ask for no window";  // what to do without a display
+  bool visible = true;                          // false: for pictures that are read back
 };
 
 struct WindowError {

@@ -38,6 +38,7 @@ class Playback {
   Verdict verdict() const;
   std::string verdict_sentence() const;
   std::uint64_t ticks() const { return ticks_; }  // given so far
+  std::uint64_t total_ticks() const;              // of the recording; reads all of it
   std::uint64_t hashes_checked() const { return checked_; }
 
  private:

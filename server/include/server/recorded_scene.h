@@ -1,0 +1,46 @@
+// A recorded match as what a renderer sees of it, without sockets and without a clock: tick by
+// tick, as fast as it is asked for. For programs that draw a recording, such as
+// space-foosball-video.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "foosball/match.h"
+#include "server/playback.h"
+#include "wire/snapshot.h"
+
+namespace server {
+
+class RecordedScene {
+ public:
+  // The error is a sentence that names the file: see Playback::open.
+  static tl::expected<RecordedScene, std::string> open(const std::string& path);
+
+  // Steps the match until so many ticks of the recording are played; false when it is over before.
+  bool advance_to(std::uint64_t tick);
+
+  // The scene after the last tick. Its events are all that happened since take_events() was last
+  // called, each once; there may be more than one datagram holds.
+  const wire::Snapshot& snapshot() const { return snapshot_; }
+  std::vector<wire::EventSnapshot> take_events();
+
+  std::uint64_t ticks() const { return playback_->ticks(); }
+  std::uint64_t total_ticks() const { return total_ticks_; }  // of the recording
+  const Playback& playback() const { return *playback_; }
+
+ private:
+  RecordedScene(std::unique_ptr<Playback> playback, foosball::Match match);
+
+  std::unique_ptr<Playback> playback_;
+  foosball::Match match_;
+  wire::Snapshot snapshot_;
+  std::vector<wire::EventSnapshot> events_;
+  std::uint32_t last_event_ = 0;
+  std::uint64_t total_ticks_;
+};
+
+}  // namespace server

@@ -1,0 +1,63 @@
+// The picture of a match at moments of its own time: what the game's window would show, drawn frame
+// by frame without a clock.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "app/effects.h"
+#include "app/match_story.h"
+#include "app/view_motion.h"
+#include "draw/image.h"
+#include "draw/window.h"
+#include "render/hud.h"
+#include "render/scene.h"
+
+namespace video {
+
+// What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
+class Staging {
+ public:
+  explicit Staging(int team) : team_(team) {}
+
+  // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
+  void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
+               client::SoundPlayer* sounds);
+  client::Camera camera(const glm::ivec2& size) const;
+  client::Particles& particles() { return particles_; }
+
+ private:
+  int team_;
+  client::MatchStory story_;
+  client::Effects effects_;
+  client::Particles particles_;
+  client::ViewMotion motion_;
+  client::CameraView view_;
+};
+
+struct FilmOptions {
+  glm::ivec2 size{1280, 720};
+  draw::Quality quality = draw::Quality::high;
+};
+
+class Film {
+ public:
+  // Opens a window that nobody sees. The error is a sentence.
+  static tl::expected<std::unique_ptr<Film>, draw::WindowError> open(const FilmOptions& options);
+
+  // time [s] since the film began.
+  draw::Image frame(const wire::Snapshot& state, Staging& staging, float time);
+
+ private:
+  Film(const FilmOptions& options, draw::Window window, std::unique_ptr<client::Scene> scene,
+       client::UiBatch ui);
+
+  FilmOptions options_;
+  draw::Window window_;  // first: what is drawn with must go before it
+  std::unique_ptr<client::Scene> scene_;
+  client::UiBatch ui_;
+};
+
+}  // namespace video

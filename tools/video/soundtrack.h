@@ -1,0 +1,30 @@
+// What is heard of a recording, from one moment to another, as samples in a file without a name.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "os/file_descriptor.h"
+#include "server/recorded_scene.h"
+
+namespace video {
+
+// The ticks of a recording that a video shows, frame by frame. Frame i shows the scene after
+// tick(i + 1).
+struct Span {
+  std::uint64_t from = 0, end = 0;  // [ticks]
+  std::uint64_t frames_per_second = 60;
+
+  std::uint64_t frames() const;
+  std::uint64_t tick(std::uint64_t frame) const { return from + frame * 1000 / frames_per_second; }
+};
+
+// Plays the recording through once, which takes a hundredth of its time. The samples are 16 bit,
+// stereo, client::kSampleRate a second, and lie in the file from its beginning. The error is a
+// sentence: of a system whose OpenAL cannot do it, or of a lack of room.
+tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& scene,
+                                                         const Span& span, int team,
+                                                         const glm::ivec2& size);
+
+}  // namespace video
