@@ -387,10 +387,7 @@ void Match::Impl::refresh_view() {
 }
 
 vp::Expected<void> Match::Impl::restore(std::span<const std::byte> bytes) {
-  auto saved = load_match(desc, bytes);
-  if (!saved) return tl::unexpected(std::move(saved).error());
-  state = saved->state;
-  world = std::move(saved->world);
+  if (auto result = load_match(desc, bytes, state, world); !result) return result;
   events.clear();
   refresh_view();
   return {};

@@ -42,23 +42,28 @@ void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld
   world.snapshot(bytes);
 }
 
-vp::Expected<SavedMatch> load_match(const MatchDesc& desc, std::span<const std::byte> bytes) {
+vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> bytes,
+                              MatchState& state, std::unique_ptr<TableWorld>& world) {
   ByteReader reader(bytes);
   std::uint64_t magic = 0;
   MatchDesc saved_desc;
-  SavedMatch saved;
-  visit_head(reader, magic, saved_desc, saved.state);
+  MatchState saved;
+  visit_head(reader, magic, saved_desc, saved);
   if (!reader.ok() || magic != kMagic) {
     return refuse("These bytes are not a saved match of this version.");
   }
   if (saved_desc.layout != desc.layout || !(saved_desc.rules == desc.rules)) {
     return refuse("The saved match has another table or other rules; create the match with those.");
   }
-  saved.world = std::make_unique<TableWorld>(desc.layout, saved.state.built, saved.state.first);
-  if (auto result = saved.world->restore(reader.rest()); !result) {
-    return tl::unexpected(std::move(result).error());
+  if (saved.built == state.built && saved.first == state.first) {
+    if (auto result = world->restore(reader.rest()); !result) return result;
+  } else {
+    auto rebuilt = std::make_unique<TableWorld>(desc.layout, saved.built, saved.first);
+    if (auto result = rebuilt->restore(reader.rest()); !result) return result;
+    world = std::move(rebuilt);
   }
-  return saved;
+  state = saved;
+  return {};
 }
 
 // Over the head's bytes and those of the world's hash.

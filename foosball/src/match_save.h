@@ -13,16 +13,14 @@
 
 namespace foosball {
 
-struct SavedMatch {
-  MatchState state;
-  std::unique_ptr<TableWorld> world;
-};
-
 void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world,
                 std::vector<std::byte>& bytes);
 
-// Refuses bytes that are not a saved match, or one of another table or other rules than desc.
-vp::Expected<SavedMatch> load_match(const MatchDesc& desc, std::span<const std::byte> bytes);
+// Refuses bytes that are not a saved match, or one of another table or other rules than desc; state
+// and world are then as they were. A world of the same men is restored where it is; for others
+// another takes its place.
+vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> bytes,
+                              MatchState& state, std::unique_ptr<TableWorld>& world);
 
 std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world);
 

@@ -82,11 +82,12 @@ class MatchTest : public testing::Test {
   void arrange(const std::function<void(MatchState&, TableWorld&)>& change) {
     std::vector<std::byte> bytes;
     match->snapshot(bytes);
-    auto saved = load_match(desc, bytes);
-    ASSERT_TRUE(saved);
-    change(saved->state, *saved->world);
+    MatchState state;
+    auto world = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
+    ASSERT_TRUE(load_match(desc, bytes, state, world));
+    change(state, *world);
     bytes.clear();
-    save_match(desc, saved->state, *saved->world, bytes);
+    save_match(desc, state, *world, bytes);
     ASSERT_TRUE(match->restore(bytes));
   }
   // A ball on its way, that two men have touched.

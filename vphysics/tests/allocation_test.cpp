@@ -275,6 +275,34 @@ TEST(Step, WithContinuousBodiesOfAnyShapeAllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
+// What goes back again and again, as look-ahead does, takes no memory for it: the world and what it
+// has read change places.
+TEST(Restore, AllocatesNothingOnceWarm) {
+  World world;
+  Random random(57);
+  const Material m{0.4, 0.3};
+  add_ground(world, m);
+  add_rod(world, 0.2, 0.09, 3, 0.15, m);
+  add_ball(world, {0, 0, 0.05}, {3, 2, 0}, m);
+  for (int i = 0; i < 12; ++i) {
+    add_dynamic(world, {.shape = Box{{0.05, 0.04, 0.03}},
+                        .material = m,
+                        .pose = SE3(random.rotation(), random.in_cube(0.2) + Vec3{-1, 0, 0.5})});
+  }
+  for (int i = 0; i < 800; ++i) must(world.step(0.001));
+  std::vector<std::byte> start;
+  world.snapshot(start);
+  long during = 0;
+  for (int round = 0; round < 6; ++round) {
+    for (int i = 0; i < 20; ++i) must(world.step(0.001));
+    const long before = g_allocations;
+    const bool restored = world.restore(start).has_value();
+    if (round > 3) during += g_allocations - before;
+    ASSERT_TRUE(restored);
+  }
+  EXPECT_EQ(during, 0);
+}
+
 // Every call beside the dynamics, on a tree with every joint.
 TEST(TreeAlgorithms, AllocateNothing) {
   Random random(52);

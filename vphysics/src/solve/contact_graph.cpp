@@ -20,7 +20,7 @@ std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) 
 }
 
 template <int P>
-void clear_lane(ContactBlock<P>& block, int lane) {
+const ContactBlock<P>& empty_block() {
   static const ContactBlock<P> kEmpty = [] {
     ContactBlock<P> empty;
     std::memset(static_cast<void*>(&empty), 0, sizeof empty);
@@ -30,7 +30,12 @@ void clear_lane(ContactBlock<P>& block, int lane) {
     }
     return empty;
   }();
-  copy_lane(kEmpty, 0, block, lane);
+  return kEmpty;
+}
+
+template <int P>
+void clear_lane(ContactBlock<P>& block, int lane) {
+  copy_lane(empty_block<P>(), 0, block, lane);
 }
 
 }  // namespace
@@ -55,6 +60,22 @@ void ContactGraph::reserve(std::size_t bodies) {
       of<4>(region, c).blocks.reserve(blocks);
     }
   }
+}
+
+void ContactGraph::clear() {
+  const auto empty = [](auto& colours) {
+    for (auto& colour : colours) {
+      colour.blocks.clear();
+      colour.lanes = 0;
+    }
+  };
+  for (std::size_t region = 0; region < regions_in_use_; ++region) {
+    empty(regions_[region].ones);
+    empty(regions_[region].fours);
+    regions_[region].in_use = 0;
+  }
+  regions_in_use_ = 1;
+  std::fill(taken_.begin(), taken_.end(), 0);
 }
 
 int ContactGraph::free_colour(const End& a, const End& b) const {
@@ -121,11 +142,11 @@ void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, P
   const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
   if (block == colour.blocks.size()) {
     if (block == colour.blocks.capacity()) make_room<P>(place);
-    colour.blocks.emplace_back();
-    for (int l = 0; l < kLanes; ++l) clear_lane(colour.blocks.back(), l);
+    colour.blocks.push_back(empty_block<P>());
+  } else {
+    clear_lane(colour.blocks[block], lane);  // passes write into empty lanes, too
   }
   ContactBlock<P>& to = colour.blocks[block];
-  clear_lane(to, lane);
   to.a.lane[lane] = a.row;
   to.b.lane[lane] = b.row;
   to.contact.lane[lane] = contact;

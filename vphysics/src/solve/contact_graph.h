@@ -128,6 +128,8 @@ class ContactGraph {
     if (count > regions_.size()) regions_.resize(count);
     regions_in_use_ = count;
   }
+  // No lanes and no regions but kBetween; memory stays.
+  void clear();
   // Room for rows; and for the first contacts of so many bodies, so that a busy step need not take
   // it from the heap.
   void resize(std::size_t rows) { taken_.resize(rows); }

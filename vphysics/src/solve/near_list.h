@@ -44,6 +44,12 @@ class NearList {
   // Returns the contact whose lane has now this index, or kNoContact.
   std::uint32_t remove(std::uint32_t index);
 
+  // Keeps its memory.
+  void clear() {
+    blocks_.clear();
+    lanes_ = 0;
+  }
+
   std::uint32_t size() const { return lanes_; }
   std::span<NearBlock> blocks() { return blocks_; }
   NearBlock& block(std::uint32_t index) { return blocks_[index / kLanes]; }

@@ -4,7 +4,19 @@
 
 namespace vp {
 
+void World::Impl::ContactState::clear() {
+  pool_.clear();
+  free_.clear();
+  near_.clear();
+  parked_near_.clear();
+  points_in_lanes_ = 0;
+  graph_.clear();
+  region_axes_.clear();
+  region_age_ = 0.0;
+}
+
 void World::Impl::ContactState::read(Reader& in) {
+  clear();
   world_.finder.read(in);
   in.check(world_.finder.incoming_fits());
   bodies_.assign(world_.bodies.size(), {});
@@ -238,6 +250,7 @@ void World::Impl::ContactState::adopt() {
     Body& body = world_.bodies[i];
     const OfBody& from = bodies_[i];
     body.rested = from.rested;
+    if (body.asleep != from.asleep || body.region != from.region) world_.lists_are_stale = true;
     body.asleep = from.asleep;
     body.rest_time = from.rest_time;
     if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);
@@ -251,13 +264,13 @@ void World::Impl::ContactState::adopt() {
   world_.free_contacts.swap(free_);
   std::swap(world_.near_list, near_);
   std::swap(world_.parked_near, parked_near_);
-  world_.lists_are_stale = true;
   world_.points_in_lanes = points_in_lanes_;
   world_.stale_contacts.clear();
   for (std::uint32_t i = 0; i < world_.contact_pool.size(); ++i) {
     const Contact& c = world_.contact_pool[i];
     if (c.alive && c.stale && !c.parked) world_.stale_contacts.push_back(i);
   }
+  if (world_.graph.regions() != graph_.regions()) world_.lists_are_stale = true;
   std::swap(world_.graph, graph_);
   world_.region_count = static_cast<std::uint16_t>(world_.graph.regions() - 1);
   world_.region_axes.swap(region_axes_);

@@ -21,7 +21,7 @@
 
 namespace vp {
 
-// Read from bytes, checked, and not yet the world's.
+// Read from bytes, checked, and not yet the world's. Kept for its memory: adopt() swaps.
 class World::Impl::ContactState {
  public:
   explicit ContactState(World::Impl& world) : world_(world) {}
@@ -37,6 +37,7 @@ class World::Impl::ContactState {
     std::uint32_t first_edge = kNone, lanes = 0;
     std::uint16_t region = solve::kBetween;
   };
+  void clear();
   void read_body(Reader& in, OfBody& body);
   void read_contact(Reader& in, Contact& contact, bool is_part);
   void read_pool(Reader& in);

@@ -263,6 +263,10 @@ struct World::Impl {
   // is fixed are as old.
   bool candidates_are_stale = true;
 
+  // --- of restore(); kept for its capacity
+  struct Incoming;
+  std::shared_ptr<Incoming> incoming;  // none before the first
+
   // --- scratch of a step; kept for its capacity
   std::vector<std::uint32_t> leavers;  // of their kept bounds
   std::vector<collide::ProxyPair> new_pairs;
@@ -551,8 +555,9 @@ struct World::Impl {
                                     const QueryFilter& filter);
   bool is_younger(const QueryHit& hit, const QueryHit& other) const;
 
-  // snapshot.cpp, contact_state.h
+  // snapshot.cpp, restore.cpp, contact_state.h
   class ContactState;
+  void adopt(Incoming& incoming);
   template <class Sink>
   void write_contacts(Sink& sink) const;
   template <class Sink>
@@ -580,6 +585,9 @@ bool should_meet(const Collider& a, const Collider& b);
 BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index);
 ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t index);
 // Mixes a word into a digest.
-std::uint64_t mixed(std::uint64_t digest, std::uint64_t word);
+inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
+  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
+  return digest ^ (digest >> 29);
+}
 
 }  // namespace vp

@@ -12,6 +12,9 @@
 
 namespace vp {
 
+inline constexpr std::uint64_t kSnapshotMagic = 0x31534359'48505650u;  // "PVPHYCS1"
+inline constexpr std::uint64_t kSnapshotFormat = 11;
+
 template <class Sink>
 void put(Sink& sink, double x) {
   sink.word(std::bit_cast<std::uint64_t>(x));
@@ -31,7 +34,7 @@ void put_two(Sink& sink, float high, float low) {
   put_two(sink, std::bit_cast<std::uint32_t>(high), std::bit_cast<std::uint32_t>(low));
 }
 
-// Reads words; out of bytes or out of range makes it fail for good.
+// Reads words and digests them; out of bytes or out of range makes it fail for good.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -44,6 +47,7 @@ class Reader {
     }
     std::memcpy(&w, bytes_.data(), sizeof w);
     bytes_ = bytes_.subspan(sizeof w);
+    digest_ = mixed(digest_, w);
     return w;
   }
   double number() {
@@ -91,9 +95,12 @@ class Reader {
   void check(bool condition) { ok_ = ok_ && condition; }
   bool ok() const { return ok_; }
   bool at_end() const { return bytes_.empty(); }
+  // Of all words so far, as a snapshot's last word has it.
+  std::uint64_t digest() const { return digest_; }
 
  private:
   std::span<const std::byte> bytes_;
+  std::uint64_t digest_ = kSnapshotMagic;
   bool ok_ = true;
 };
 

@@ -34,11 +34,6 @@ double size_of(const collide::Geometry& g) {
 
 }  // namespace
 
-std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
-  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
-  return digest ^ (digest >> 29);
-}
-
 BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index) {
   return {index + 1, bodies[index].generation};
 }

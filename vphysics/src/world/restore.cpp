@@ -1,0 +1,298 @@
+// Back to a state that snapshot() wrote (snapshot.cpp, whose head tells the words).
+//
+// Two phases: everything is read into Incoming and checked there, then the world takes it over, and
+// nothing of that can fail. Incoming stays with the world: what was the world's goes there in
+// exchange, so that going back again takes no memory. What can be derived is kept where the state
+// that it follows from is the same: poses of colliders, trees of the broad phase, lists of bodies.
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "world/contact_state.h"
+#include "world/recorded_call.h"
+
+namespace vp {
+namespace {
+
+// What of a body changes.
+struct BodyState {
+  SE3 T;
+  Vec3 w, v;
+  se3 prescribed;
+};
+// What of a degree of freedom changes.
+struct DofState {
+  double v = 0.0;
+  JointDrive drive;
+  double drive_impulse = 0.0;
+};
+// What of a joint changes.
+struct JointState {
+  double turned[2] = {};
+  SE3 start[2];
+  JointDrive drives[6];
+  double impulse[6] = {}, stop[6] = {};
+};
+
+SE3 read_pose(Reader& in) {
+  const Vec3 cx = in.vector(), cy = in.vector(), cz = in.vector(), p = in.vector();
+  const SE3 T({cx, cy, cz}, p);
+  in.check(is_pose(T));
+  return T;
+}
+
+void read(Reader& in, BodyState& state) {
+  state.T = read_pose(in);
+  state.w = in.vector();
+  state.v = in.vector();
+  state.prescribed.w = in.vector();
+  state.prescribed.v = in.vector();
+}
+
+void read(Reader& in, const JointDof& dof, DofState& state) {
+  state.v = in.bounded();
+  JointDrive& d = state.drive;
+  d.position = in.bounded();
+  d.velocity = in.bounded();
+  d.stiffness = in.number();
+  d.damping = in.number();
+  d.max_force = in.number();
+  in.check(!problem_with(d).has_value() && (dof.coordinate >= 0 || d.stiffness == 0.0));
+  state.drive_impulse = in.number();
+}
+
+void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
+  r.key = in.word();
+  const std::uint64_t both = in.word(), flags = in.word();
+  r.a = static_cast<std::uint32_t>(both >> 32);
+  r.b = static_cast<std::uint32_t>(both);
+  r.count = static_cast<std::uint32_t>(flags >> 32);
+  r.touching = (flags & 1u) != 0;
+  r.part = static_cast<std::uint32_t>(flags) >> 1;
+  in.check(r.count <= collide::kMaxPoints && !(r.touching && r.part > 0));
+  const bool exist = r.a < colliders.size() && r.b < colliders.size() && r.a != r.b &&
+                     colliders[r.a].alive && colliders[r.b].alive;
+  in.check(exist && make_pair(colliders, r.a, r.b).key == r.key &&
+           colliders[r.a].serial < colliders[r.b].serial);
+  if (!in.ok()) return;
+  in.check(r.part == 0 || has_parts(colliders[r.a].geometry, colliders[r.b].geometry));
+  r.rolling = in.vector();
+  for (PairPoint& p : r.points) {
+    const std::uint64_t feature = in.word();
+    in.check(feature <= 0xffffffffu);
+    p.feature = static_cast<std::uint32_t>(feature);
+    p.normal_impulse = in.bounded();
+    in.check(p.normal_impulse >= 0.0);
+    p.friction = in.vector();
+    p.position = in.vector();
+  }
+}
+
+ColliderId read_id(Reader& in, const std::vector<Collider>& colliders) {
+  const std::uint64_t w = in.word();
+  const ColliderId id{static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
+  in.check(id.index >= 1 && id.index <= colliders.size() && id.generation >= 1 &&
+           id.generation <= colliders[id.index - 1].generation);
+  return id;
+}
+
+void read(Reader& in, const std::vector<Collider>& colliders, DestroyedPair& pair) {
+  pair.a = read_id(in, colliders);
+  pair.b = read_id(in, colliders);
+  const std::uint64_t sensor = in.word();
+  in.check(sensor <= 1 && pair.a != pair.b);
+  pair.sensor = sensor != 0;
+}
+
+JointState read(Reader& in, const BodyJoint& joint) {
+  JointState state;
+  for (double& x : state.turned) x = in.bounded();
+  if (joint.law.form == JointLaw::Form::gear) {
+    for (SE3& T : state.start) T = read_pose(in);
+  }
+  for (int i = 0; i < 6; ++i) {
+    if (joint.law.form == JointLaw::Form::axes) {
+      JointDrive& d = state.drives[i];
+      for (double* x : {&d.position, &d.velocity, &d.stiffness, &d.damping, &d.max_force})
+        *x = in.number();
+      const bool held = joint.law.axes[i].motion == AxisMotion::locked;
+      in.check(!problem_with(d).has_value() && !(held && d.max_force > 0.0));
+    }
+    state.impulse[i] = in.number();
+    state.stop[i] = in.number();
+  }
+  return state;
+}
+void adopt(BodyJoint& joint, const JointState& state) {
+  std::copy_n(state.turned, 2, joint.turned);
+  joint.block = {};
+  joint.laid_out_for = 0.0;
+  joint.force = joint.torque = {};
+  const bool axes = joint.law.form == JointLaw::Form::axes;
+  if (joint.law.form == JointLaw::Form::gear) std::copy_n(state.start, 2, joint.start);
+  for (int i = 0; i < 6; ++i) {
+    if (axes) joint.law.axes[i].drive = state.drives[i];
+    solve::JointRow6& row = joint.block.rows[joint.block.count++];
+    row.slot = static_cast<std::uint8_t>(i);
+    row.impulse = state.impulse[i];
+    row.stop = state.stop[i];
+  }
+}
+
+bool same_bits(const SE3& a, const SE3& b) {
+  const auto same = [](const Vec3& x, const Vec3& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  const Mat3 &A = a.rotation(), &B = b.rotation();
+  return same(a.position(), b.position()) && same(A.cx, B.cx) && same(A.cy, B.cy) &&
+         same(A.cz, B.cz);
+}
+
+tl::unexpected<Error> bad(const char* message) {
+  return tl::make_unexpected(Error{Errc::bad_data, message});
+}
+
+std::uint64_t digest_of(std::span<const std::byte> bytes) {
+  Reader in(bytes);
+  while (!in.at_end()) (void)in.word();
+  return in.digest();
+}
+
+}  // namespace
+
+// Read, checked, and not yet the world's.
+struct World::Impl::Incoming {
+  explicit Incoming(Impl& of) : world(of), contacts(of) {}
+
+  // The problem, or null.
+  const char* read(Reader& in);
+  void read_joints(Reader& in);
+  void read_records(Reader& in, std::size_t count, std::size_t destroyed_count);
+
+  Impl& world;
+  double sub_step_before = 0.0, push_length = 0.0;
+  std::vector<BodyState> bodies;  // that are no links
+  std::vector<double> q;          // of all articulations, one after the other, and so:
+  std::vector<DofState> dofs;
+  std::vector<PairRecord> records;
+  std::vector<DestroyedPair> destroyed_pairs;
+  std::vector<JointState> joints;  // that are alive
+  ContactState contacts;
+};
+
+const char* World::Impl::Incoming::read(Reader& in) {
+  if (in.word() != kSnapshotMagic || in.word() != kSnapshotFormat) {
+    return "restore: not a snapshot of this version; take a new one";
+  }
+  if (in.word() != world.structure || in.word() != world.bodies.size() ||
+      in.word() != world.articulations.size()) {
+    return "restore: a snapshot of another world; build this one by the same sequence of calls";
+  }
+  constexpr std::size_t kRecord = 38, kPair = 3;  // words
+  const std::size_t count = in.count(kRecord), destroyed_count = in.count(kPair);
+  if (!in.ok()) return "restore: more contacts announced than bytes follow";
+
+  sub_step_before = in.bounded();
+  push_length = in.bounded();
+  in.check(sub_step_before >= 0.0 && push_length >= 0.0);
+  bodies.clear();
+  for (const Body& body : world.bodies) {
+    if (!body.is_link) vp::read(in, bodies.emplace_back());
+  }
+  read_joints(in);
+  read_records(in, count, destroyed_count);
+  joints.clear();
+  for (const BodyJoint& joint : world.joints) {
+    if (joint.alive && in.ok()) joints.push_back(vp::read(in, joint));
+  }
+  if (in.ok()) contacts.read(in);
+  const bool whole = in.ok() && in.at_end();
+  return whole ? nullptr : "restore: a value is out of range; the bytes are damaged";
+}
+
+void World::Impl::Incoming::read_joints(Reader& in) {
+  q.clear();
+  dofs.clear();
+  for (const Articulation& art : world.articulations) {
+    const std::size_t first = q.size();
+    for (std::size_t i = 0; i < art.q.size(); ++i) q.push_back(in.bounded());
+    for (const JointDof& dof : art.dofs) vp::read(in, dof, dofs.emplace_back());
+    in.check(has_unit_quaternions(art.model(), std::span(q).subspan(first)));
+  }
+}
+
+void World::Impl::Incoming::read_records(Reader& in, std::size_t count,
+                                         std::size_t destroyed_count) {
+  records.resize(count);
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    vp::read(in, world.colliders, records[i]);
+    const auto place = [&](std::size_t k) { return std::pair(records[k].key, records[k].part); };
+    in.check(i == 0 || place(i - 1) < place(i));
+  }
+  destroyed_pairs.resize(destroyed_count);
+  for (std::size_t i = 0; i < destroyed_count && in.ok(); ++i) {
+    vp::read(in, world.colliders, destroyed_pairs[i]);
+  }
+}
+
+void World::Impl::adopt(Incoming& from) {
+  auto state = from.bodies.cbegin();
+  for (Body& body : bodies) {
+    if (body.is_link) continue;
+    if (!same_bits(body.T, state->T)) {
+      body.T = state->T;
+      body.moved();
+      // Swept pairs have found what is fixed where it was.
+      if (body.motion == Motion::fixed) lists_are_stale = true;
+    }
+    body.w = state->w;
+    body.v = state->v;
+    body.prescribed = state->prescribed;
+    ++state;
+  }
+  auto q = from.q.cbegin();
+  auto dof = from.dofs.cbegin();
+  for (Articulation& art : articulations) {
+    for (double& x : art.q) x = *q++;
+    for (std::size_t i = 0; i < art.v.size(); ++i, ++dof) {
+      art.v[i] = dof->v;
+      art.dofs[i].drive = dof->drive;
+      art.dofs[i].drive_impulse = dof->drive_impulse;
+    }
+    art.refresh();
+    follow(art);
+  }
+  auto joint_state = from.joints.cbegin();
+  for (BodyJoint& joint : joints) {
+    if (joint.alive) vp::adopt(joint, *joint_state++);
+  }
+  from.contacts.adopt();
+  sub_step_before = from.sub_step_before;
+  push_length = from.push_length;
+  ready_for_queries = false;
+  records.swap(from.records);
+  destroyed_pairs.swap(from.destroyed_pairs);
+  events.clear();
+  counters = {};
+  sub_steps_taken = 0;
+}
+
+Expected<void> World::restore(std::span<const std::byte> bytes) {
+  constexpr std::size_t kHeader = 7 * sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
+  if (bytes.size() < kHeader + kTail || bytes.size() % sizeof(std::uint64_t) != 0) {
+    return bad("restore: too short to be a snapshot; hand in what snapshot() wrote");
+  }
+  if (!impl_->incoming) impl_->incoming = std::make_shared<Impl::Incoming>(*impl_);
+  const std::span<const std::byte> words = bytes.first(bytes.size() - kTail);
+  std::uint64_t digest = 0;
+  std::memcpy(&digest, bytes.data() + words.size(), sizeof digest);
+  Reader in(words);
+  const char* problem = impl_->incoming->read(in);
+  if (problem != nullptr ? digest_of(words) != digest : in.digest() != digest) {
+    return bad("restore: the checksum is wrong; the bytes are damaged");
+  }
+  if (problem != nullptr) return bad(problem);
+  impl_->adopt(*impl_->incoming);
+  if (impl_->recorder) impl_->log({calls::Restore{{bytes.begin(), bytes.end()}}});
+  return {};
+}
+
+}  // namespace vp
