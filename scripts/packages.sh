@@ -29,10 +29,12 @@ build  libglm-dev            vectors and matrices of the renderer
 build  libstb-dev            fonts and PNG files
 build  libimgui-dev          the sandbox's panel
 build  libopenal-dev         sound
+build  gettext               the client's sentences in other languages
 play   libegl1               EGL at run time
 play   libgles2              OpenGL ES at run time
 play   libgl1-mesa-dri       OpenGL drivers, and the software one where there is no GPU
 play   fonts-dejavu-core     the letters on the screen
+play   fonts-nanum           Hangul on the screen
 play   xauth                 who may draw on that display: xvfb-run asks it
 play   xvfb                  a display for machines without one
 check  git                   which files a change touches

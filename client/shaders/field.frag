@@ -52,8 +52,10 @@ void main() {
   if (u_ball.w > 0.0) {
     float height = max(u_ball.z - u_ball.w, 0.0);
     float radius = u_ball.w * (1.05 + 5.0 * height);
-    float d = length(p - u_ball.xy) / radius;
-    contact = 1.0 - 0.72 / (1.0 + 22.0 * height) * (1.0 - smoothstep(0.15, 1.15, d));
+    // It lies away from the lamp: the higher the ball, the further from its shadow.
+    vec2 shadow = u_ball.xy - height / u_key_direction.z * u_key_direction.xy;
+    float d = length(p - shadow) / radius;
+    contact = 1.0 - 0.74 / (1.0 + 9.0 * height) * (1.0 - smoothstep(0.15, 1.15, d));
   }
   vec3 c = shade(s, v_position, vec3(0.0, 0.0, 1.0), v_shadow, occlusion) * contact;
   // A soft lane of light lies under the rod in hand.

@@ -1,12 +1,15 @@
-// Glyphs from a distance field, and panels with rounded corners from their distance.
+// Glyphs from a distance field, pictures, and panels with rounded corners from their distance.
 in vec2 v_uv;
 in vec4 v_colour;
 flat in vec4 v_shape;
 uniform sampler2D u_glyphs;
+uniform sampler2D u_pictures;
 out vec4 o_colour;
 
 void main() {
-  if (v_shape.x <= 0.0) {
+  if (v_shape.x < -0.5) {
+    o_colour = v_colour * texture(u_pictures, v_uv);
+  } else if (v_shape.x <= 0.0) {
     float distance = texture(u_glyphs, v_uv).r - 0.5;
     float blur = v_shape.y;
     float body = smoothstep(-blur, blur, distance);

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "app/frame_meter.h"
-#include "app/match_story.h"
 #include "app/options.h"
 #include "app/view_motion.h"
+#include "core/match_story.h"
 #include "render/particles.h"
 #include "render/table_mesh.h"
 #include "scripted_scene.h"

@@ -100,7 +100,7 @@ class Figures : public ::testing::TestWithParam<std::tuple<int, float>> {};
 TEST_P(Figures, AreClosedSolidsThatFillTheBoxesOfThePhysics) {
   const auto [character, detail] = GetParam();
   const auto boxes = foosball::man_boxes(character);
-  const MeshData mesh = figure_mesh(boxes, 0.008f, detail);
+  const MeshData mesh = figure_mesh(boxes, 0.008f, figure_look(character, 1, true), detail);
   expect_sound_triangles(mesh);
   expect_closed(mesh);
   glm::vec3 box_low(1e9f), box_high(-1e9f), low(1e9f), high(-1e9f);
@@ -134,7 +134,9 @@ TEST_P(Figures, FeetAndLegsStayInsideTheirBoxes) {
     half_width = static_cast<float>(box.half_extents.y);
     half_depth = static_cast<float>(box.half_extents.x);
   }
-  for (const MeshVertex& v : figure_mesh(foosball::man_boxes(character), 0.008f, detail).vertices) {
+  for (const MeshVertex& v :
+       figure_mesh(foosball::man_boxes(character), 0.008f, figure_look(character, 1, true), detail)
+           .vertices) {
     if (v.position.z > foot_top) continue;
     EXPECT_LE(std::abs(v.position.y), half_width + 1e-5f);
     EXPECT_LE(std::abs(v.position.x), half_depth + 1e-5f);

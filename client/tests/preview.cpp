@@ -1,7 +1,8 @@
 // For whoever works on the picture: draws scripted moments without a server and writes them as PNG.
-//   client_preview DIRECTORY [low|high] [WxH]
+//   client_preview DIRECTORY [low|high] [WxH] [en|de|ko]
 #include <GLES3/gl3.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -11,6 +12,7 @@
 #include "draw/image.h"
 #include "render/hud.h"
 #include "render/scene.h"
+#include "render/translate.h"
 #include "scripted_scene.h"
 
 namespace client {
@@ -21,13 +23,49 @@ struct Shot {
   double seconds;
   std::uint8_t screen;
   int team;
+  View view = View::seat;
 };
-constexpr Shot kShots[] = {
-    {"logo", 0.4, 0, 0},   {"selection", 1.0, 1, 0}, {"play-1", 0.35, 2, 0}, {"play-2", 1.62, 2, 1},
-    {"play-3", 2.4, 2, 0}, {"ceremony", 0.7, 3, 0},  {"end", 1.0, 4, 0},     {"lost", 3.0, 2, 0},
-    {"held", 4.1, 2, 0},   {"pause", 3.3, 2, 0},     {"help", 4.6, 2, 1}};
+constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
+                           {"selection", 1.0, 1, 0},
+                           {"play-1", 0.35, 2, 0},
+                           {"play-2", 1.62, 2, 1},
+                           {"play-3", 2.4, 2, 0},
+                           {"ceremony", 0.7, 3, 0},
+                           {"end", 1.0, 4, 0},
+                           {"lost", 3.0, 2, 0},
+                           {"held", 4.1, 2, 0},
+                           {"pause", 3.3, 2, 0},
+                           {"help", 4.6, 2, 1},
+                           {"settings", 4.6, 2, 0},
+                           {"above-logo", 0.4, 0, 0, View::above},
+                           {"above-selection", 1.0, 1, 0, View::above},
+                           {"above-play", 1.62, 2, 0, View::above},
+                           {"above-ceremony", 0.9, 3, 1, View::above},
+                           {"above-end", 1.0, 4, 0, View::above},
+                           {"above-settings", 4.6, 2, 0, View::above},
+                           {"above-hidden-rods", 2.4, 2, 0, View::above},
+                           {"follow", 2.4, 2, 0, View::follow},
+                           {"spectator", 0.35, 2, -1, View::spectator},
+                           {"distinct", 2.4, 2, 0}};
 
-int run(const std::string& directory, draw::Quality quality, const glm::ivec2& size) {
+Camera camera_of(const Shot& shot, const wire::Snapshot& state, const glm::ivec2& size) {
+  CameraView view{.team = std::max(shot.team, 0), .closeness = shot.screen == 1 ? 0.62f : 0.0f};
+  const auto& ball = state.ball.position;
+  switch (shot.view) {
+    case View::above:
+      return above_camera(foosball::table_spec(foosball::Layout::tournament), view.team, size);
+    case View::follow:
+      return follow_camera(view, {ball[0], ball[1], ball[2]}, size);
+    case View::spectator:
+      return spectator_camera(view, size);
+    case View::seat:
+      break;
+  }
+  return player_camera(view, size);
+}
+
+int run(const std::string& directory, draw::Quality quality, const glm::ivec2& size,
+        const std::string& language) {
   auto window = Window::open({.size = size, .title = "preview"});
   if (!window) {
     std::fprintf(stderr, "%s\n", window.error().sentence.c_str());
@@ -38,7 +76,8 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
   auto scene = Scene::create(quality);
   glFinish();
   const double scene_done = cpu();
-  auto font = Font::load();
+  use_language(language, PREVIEW_CATALOGUES);
+  auto font = Font::load({}, catalogue_file());
   const double font_done = cpu();
   auto ui = font ? UiBatch::create(std::move(*font)) : tl::unexpected(font.error());
   if (!scene || !ui) {
@@ -46,6 +85,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
                  ui ? "" : ui.error().c_str());
     return 1;
   }
+  ui->set_pictures((*scene)->portraits(), Scene::portrait_cells());
   glFinish();
   std::printf("set up: scene %.0f ms, font %.0f ms of CPU time\n", 1e3 * (scene_done - begin),
               1e3 * (font_done - scene_done));
@@ -55,13 +95,33 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     state.ball_in_play = shot.screen == 2;
     state.confirmed = {true, false};
     if (std::strcmp(shot.name, "held") == 0) state.rods[3].status = state.rods[5].status = 2;
-    const SceneView view{
-        player_camera({.team = shot.team, .closeness = shot.screen == 1 ? 0.62f : 0.0f}, size),
-        shot.screen == 2 ? (shot.team == 0 ? 3 : 4) : -1, 1.0f};
+    if (shot.screen >= 3) {
+      state.ball.position = {0.66f, 0.03f, 0.0173f};
+      state.ball.linear_velocity = {0, 0, 0};
+    }
+    const std::string name = shot.name;
+    SceneView view;
+    view.camera = camera_of(shot, state, size);
+    view.active_rod = shot.screen == 2 && shot.team >= 0 ? (shot.team == 0 ? 3 : 4) : -1;
+    view.time = 1.0f;
+    view.hide_rods = name == "above-hidden-rods";
+    view.distinct_teams = name == "distinct";
     HudState hud;
     hud.state = &state;
     hud.camera = view.camera;
     hud.viewer_team = shot.team;
+    hud.active_rod = view.active_rod;
+    hud.view = shot.view;
+    hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .own_goal = false, .speed = 7.4f};
+    if (name == "above-ceremony")
+      hud.goal = {.team = 0, .scorer_rod = 6, .scorer_man = 0, .own_goal = true, .speed = 2.1f};
+    hud.replay = name == "ceremony";
+    hud.statistics = {TeamStatistics{14, 6, 0, 9.3f, 71.0f}, TeamStatistics{9, 11, 1, 7.8f, 54.0f}};
+    if (name.ends_with("settings")) {
+      SettingsMenu menu;
+      hud.menu = menu.rows(Settings{});
+      hud.menu_row = 4;
+    }
     if (std::strcmp(shot.name, "lost") == 0) {
       hud.connection_message = "Physics server lost: waiting at 127.0.0.1:4750";
       hud.connection_detail = "The scene stands as it was last heard.";
@@ -113,5 +173,5 @@ int main(int argc, char** argv) {
       argc > 2 && std::strcmp(argv[2], "low") == 0 ? draw::Quality::low : draw::Quality::high;
   glm::ivec2 size{1280, 720};
   if (argc > 3) std::sscanf(argv[3], "%dx%d", &size.x, &size.y);
-  return client::run(argc > 1 ? argv[1] : ".", quality, size);
+  return client::run(argc > 1 ? argv[1] : ".", quality, size, argc > 4 ? argv[4] : "en");
 }

@@ -36,6 +36,7 @@ class PlayerInput {
   const std::vector<wire::Wish>& wishes() const { return wishes_; }
   int active_rod() const { return hand_.active_rod(); }
   bool automatic() const { return automatic_; }
+  void set_automatic(bool on) { automatic_ = on; }
 
  private:
   void move(const InputEvents& events, const wire::Snapshot& scene);

@@ -1,7 +1,9 @@
 #include "app/app.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -13,15 +15,27 @@
 #include "app/window.h"
 #include "client/player_input.h"
 #include "client/rod_prediction.h"
+#include "client/settings_menu.h"
+#include "core/replay_reel.h"
 #include "draw/image.h"
 #include "os/clock.h"
 #include "render/hud.h"
 #include "render/scene.h"
+#include "render/translate.h"
 
 namespace client {
 namespace {
 
 volatile std::sig_atomic_t asked_to_leave = 0;
+
+constexpr std::int64_t kProblemsShownUs = 12'000'000;  // of the settings file
+
+// Beside the program, as built and as installed.
+std::string catalogue_directory() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (program.parent_path().parent_path() / "share" / "locale").string();
+}
 
 class App {
  public:
@@ -33,6 +47,14 @@ class App {
 
  private:
   std::string use_quality(draw::Quality quality);
+  std::string use_texts();
+  std::optional<draw::Quality> wanted_quality() const;
+  void read_settings();
+  void apply_settings();
+  void change_settings();
+  void take_menu_input(const InputEvents& events);
+  void turn_view();
+  void play_reel(std::int64_t now);
   void hear(std::int64_t now);
   void follow_connection();
   void say_when_in_step(std::int64_t now);
@@ -40,6 +62,7 @@ class App {
   void take_input(std::int64_t now);
   void predict(std::int64_t now);
   void draw(float dt);
+  std::array<float, 8> rod_shift() const;
   HudState hud(const Camera& camera) const;
   void judge_quality();
   std::string take_screenshot();
@@ -67,6 +90,14 @@ class App {
   SceneSample sample_;
   wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
   bool show_help_ = false;
+  Settings settings_;
+  SettingsMenu menu_;
+  MenuHand menu_hand_;
+  std::vector<std::string> problems_;  // of the settings file
+  std::string language_;               // in use
+  ReplayReel reel_;
+  std::uint8_t screen_before_ = 0;
+  bool replay_ = false;
   ConnectionStatus status_;
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
@@ -84,19 +115,18 @@ std::string App::start(int& exit_code) {
   if (!window) return window.error().sentence;
   window_ = std::move(*window);
   exit_code = 1;
-  auto font = Font::load(options_.font_directory);
-  if (!font) return font.error();
-  auto ui = UiBatch::create(std::move(*font));
-  if (!ui) return ui.error();
-  ui_ = std::move(*ui);
+  read_settings();
+  if (const std::string error = use_texts(); !error.empty()) return error;
   const draw::Quality guess =
       window_->draws_in_software() ? draw::Quality::low : draw::Quality::high;
   log_info("drawing with " + window_->renderer());
-  if (std::string error = use_quality(options_.quality.value_or(guess)); !error.empty())
+  if (std::string error = use_quality(wanted_quality().value_or(guess)); !error.empty())
     return error;
+  window_->set_keys(settings_.keys);
   if (!options_.mute) {
     if (auto sounds = SoundPlayer::open()) {
       sounds_ = std::move(*sounds);
+      sounds_->set_volume(settings_.volume);
     } else {
       log_warning(sounds.error());
     }
@@ -116,8 +146,98 @@ std::string App::use_quality(draw::Quality quality) {
   auto scene = Scene::create(quality);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
+  ui_->set_pictures(scene_->portraits(), Scene::portrait_cells());
   log_info(std::string("quality ") + (quality == draw::Quality::high ? "high" : "low"));
   return {};
+}
+
+// The command line goes before the settings; none: by what the machine can do.
+std::optional<draw::Quality> App::wanted_quality() const {
+  if (options_.quality) return options_.quality;
+  switch (settings_.quality) {
+    case QualityChoice::low:
+      return draw::Quality::low;
+    case QualityChoice::high:
+      return draw::Quality::high;
+    case QualityChoice::automatic:
+      break;
+  }
+  return std::nullopt;
+}
+
+// The language's catalogue, and the letters that it needs.
+std::string App::use_texts() {
+  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
+  language_ = kCodes[static_cast<std::size_t>(settings_.language)];
+  use_language(language_, catalogue_directory());
+  auto font = Font::load(options_.font_directory, catalogue_file());
+  if (!font) return font.error();
+  auto ui = UiBatch::create(std::move(*font));
+  if (!ui) return ui.error();
+  ui_ = std::move(*ui);
+  if (scene_) ui_->set_pictures(scene_->portraits(), Scene::portrait_cells());
+  return {};
+}
+
+void App::read_settings() {
+  ReadSettings read = load_settings(settings_path());
+  settings_ = read.settings;
+  if (options_.view) settings_.view = *options_.view;
+  problems_ = std::move(read.problems);
+  for (const std::string& problem : problems_) log_warning(problem);
+}
+
+void App::apply_settings() {
+  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
+  if (language_ != kCodes[static_cast<std::size_t>(settings_.language)]) {
+    if (const std::string error = use_texts(); !error.empty()) log_warning(error);
+  }
+  if (sounds_) sounds_->set_volume(settings_.volume);
+  if (const auto quality = wanted_quality(); quality && *quality != scene_->quality()) {
+    if (const std::string error = use_quality(*quality); !error.empty()) log_warning(error);
+  }
+  window_->set_keys(settings_.keys);
+  if (player_) player_->set_automatic(settings_.automatic_rod);
+}
+
+void App::change_settings() {
+  apply_settings();
+  if (const auto saved = save_settings(settings_, settings_path()); !saved)
+    log_warning(saved.error());
+}
+
+void App::take_menu_input(const InputEvents& events) {
+  const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
+  const int team = player_ ? status_.welcome.team : -1;
+  const MenuSteps steps = menu_hand_.steps(events, scene, team);
+  // A key that is waited for is no step.
+  if (menu_.step(menu_.waits_for_key() ? MenuSteps{.back = events.back} : steps, events.any_key,
+                 settings_))
+    change_settings();
+}
+
+void App::turn_view() {
+  settings_.view = static_cast<View>((static_cast<int>(settings_.view) + 1) % kViews);
+  change_settings();
+}
+
+// Records the play, and shows a goal again while its ceremony lasts.
+void App::play_reel(std::int64_t now) {
+  const auto screen = static_cast<wire::Screen>(drawn_.screen);
+  const bool ceremony = screen == wire::Screen::ceremony || screen == wire::Screen::end;
+  if (ceremony && screen_before_ == number(wire::Screen::play)) reel_.mark_goal(now);
+  if (screen == wire::Screen::play && screen_before_ != drawn_.screen) reel_.clear();
+  screen_before_ = drawn_.screen;
+  replay_ = ceremony && reel_.showing(now);
+  if (!replay_) {
+    if (!drawn_.paused) reel_.record(drawn_, now);
+    return;
+  }
+  const wire::Snapshot again = reel_.scene(now);
+  drawn_.ball = again.ball;
+  drawn_.ball_in_play = true;
+  drawn_.rods = again.rods;
+  drawn_.men = again.men;
 }
 
 void App::follow_connection() {
@@ -140,6 +260,7 @@ void App::follow_connection() {
   if (status_.welcome.team < foosball::kTeams) {
     player_ = std::make_unique<PlayerInput>(status_.welcome.session, status_.welcome.team,
                                             static_cast<foosball::Layout>(status_.welcome.layout));
+    player_->set_automatic(settings_.automatic_rod);
     prediction_ = std::make_unique<RodPrediction>(
         status_.welcome.team, static_cast<foosball::Layout>(status_.welcome.layout));
   }
@@ -161,10 +282,23 @@ void App::hear(std::int64_t now) {
 }
 
 void App::take_input(std::int64_t now) {
-  const InputEvents events = window_->poll();
+  InputEvents events = window_->poll();
+  const bool asked = events.presses[index_of(Action::settings)] % 2 != 0;
+  if (menu_.open()) {
+    take_menu_input(events);
+    events = {};  // the rods stay as they are
+  } else if (asked) {
+    menu_.toggle();
+    menu_hand_.restart();
+  } else if (events.back) {
+    window_->close();
+  }
   if (events.toggle_help) show_help_ = !show_help_;
+  if (events.presses[index_of(Action::camera)] % 2 != 0) turn_view();
+  if (replay_ && (events.push || events.pad_push)) reel_.skip();
   if (!player_) return;
   player_->update(events, sample_.any ? &sample_.state : nullptr, now);
+  if (events.toggle_automatic) settings_.automatic_rod = player_->automatic();
   if (!player_->begun()) return;
   connection_->drive(player_->session(), player_->rods());
   for (const wire::Wish& wish : player_->wishes()) connection_->wish(player_->session(), wish);
@@ -179,6 +313,11 @@ void App::predict(std::int64_t now) {
   prediction_->apply(drawn_);
 }
 
+// Handles outside the screen have their own places only where the screen lies in the table.
+std::array<float, 8> App::rod_shift() const {
+  return settings_.view == View::above ? settings_.handle_offset : std::array<float, 8>{};
+}
+
 HudState App::hud(const Camera& camera) const {
   HudState hud;
   hud.state = sample_.any ? &drawn_ : nullptr;
@@ -187,6 +326,17 @@ HudState App::hud(const Camera& camera) const {
   hud.mouse_free = !window_->captured();
   hud.show_help = show_help_;
   hud.automatic_rod = player_ && player_->automatic();
+  hud.active_rod = player_ && !replay_ ? player_->active_rod() : -1;
+  hud.view = settings_.view;
+  hud.text_scale = settings_.text_scale;
+  hud.still = settings_.reduced_flashes;
+  hud.replay = replay_;
+  hud.rod_shift = rod_shift();
+  hud.goal = story_.last_goal();
+  hud.statistics = story_.statistics();
+  if (menu_.open()) hud.menu = menu_.rows(settings_);
+  hud.menu_row = menu_.row();
+  if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
   switch (status_.link) {
@@ -216,9 +366,16 @@ void App::draw(float dt) {
   size_ = glm::max(window_->size(), 1);
   SceneView view;
   view.time = static_cast<float>(seconds_);
-  view.active_rod = player_ ? player_->active_rod() : -1;
-  view.camera = player_camera(
-      motion_.step(sample_.any ? &drawn_ : nullptr, player_ ? status_.welcome.team : 0, dt), size_);
+  view.active_rod = player_ && !replay_ ? player_->active_rod() : -1;
+  view.hide_rods = settings_.hide_rods;
+  view.reduced_flashes = settings_.reduced_flashes;
+  view.distinct_teams = settings_.distinct_teams;
+  view.rod_shift = rod_shift();
+  const float shake = settings_.reduced_shake ? 0.0f : effects_.shake();
+  motion_.step(sample_.any ? &drawn_ : nullptr, player_ ? status_.welcome.team : 0, dt, shake);
+  view.camera = motion_.camera(settings_.view, size_);
+  particles_.set_reduced(settings_.reduced_flashes);
+  shift_scene(drawn_, view.rod_shift);
   static const wire::Snapshot kNothing;
   const wire::Snapshot& state = sample_.any ? drawn_ : kNothing;
   const bool moves = !state.paused && status_.link == Link::joined;
@@ -234,7 +391,7 @@ void App::draw(float dt) {
 }
 
 void App::judge_quality() {
-  if (options_.quality || scene_->quality() == draw::Quality::low || !meter_.too_slow()) return;
+  if (wanted_quality() || scene_->quality() == draw::Quality::low || !meter_.too_slow()) return;
   log_info("high quality is too slow here");
   meter_.restart_judgement();
   if (const std::string error = use_quality(draw::Quality::low); !error.empty()) {
@@ -246,7 +403,7 @@ void App::judge_quality() {
 // A picture is worth a slow frame: it is drawn in high quality, unless another was asked for.
 std::string App::take_screenshot() {
   const draw::Quality usual = scene_->quality();
-  const bool better = !options_.quality && usual != draw::Quality::high;
+  const bool better = !wanted_quality() && usual != draw::Quality::high;
   if (better) {
     if (std::string error = use_quality(draw::Quality::high); !error.empty()) return error;
     draw(0.0f);
@@ -299,7 +456,9 @@ int App::loop() {
     const std::int64_t input_us = os::monotonic_us();
     take_input(input_us);
     predict(input_us);
+    play_reel(input_us);
     draw(dt);
+    window_->look_at_pad();
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
@@ -309,6 +468,7 @@ int App::loop() {
     }
     drawing = 1e-6 * static_cast<double>(os::monotonic_us() - began - picture_us);
     window_->swap();
+    window_->look_at_pad();
     if (scene_is_current() && !sample_.starving) say_when_in_step(os::monotonic_us());
     meter_.end(os::monotonic_us());
     judge_quality();

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "app/match_story.h"
+#include "core/match_story.h"
 #include "render/particles.h"
 #include "sound/player.h"
 #include "wire/snapshot.h"

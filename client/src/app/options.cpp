@@ -33,7 +33,7 @@ tl::expected<void, std::string> parse_server(const std::string& text, Connection
 tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* argv) {
   Options options;
   std::string server = "127.0.0.1:" + std::to_string(kDefaultPort), team = "0", size = "1280x720",
-              quality = "auto";
+              quality = "auto", view;
   CLI::App cli(
       "Space Foosball: the renderer. Draws what the physics server simulates, and sends it your "
       "hands.",
@@ -56,6 +56,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.add_option("--quality", quality, "low, high or auto (by the frame rate reached)")
       ->capture_default_str()
       ->check(CLI::IsMember({"low", "high", "auto"}));
+  cli.add_option("--view", view,
+                 "seat, above (a cabinet's screen), follow or spectator, instead of the settings'")
+      ->check(CLI::IsMember({"seat", "above", "follow", "spectator"}));
   cli.add_flag("--mute", options.mute, "no sound");
   cli.add_flag("--fps", options.show_fps, "show the frame rate");
   cli.add_option("--stats-file", options.stats_file, "write figures as JSON to FILE at the end");
@@ -65,8 +68,10 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.footer(
       "Exit codes: 0 done, 1 failed, 2 bad option, 4 no display.\n"
       "Keys: 1-4 choose a rod, wheel next rod, Tab nearest rod, arrows or WASD slide and spin,\n"
-      "Space pushes (starts, confirms), P pauses, F1 or H shows the keys, Esc releases the mouse,\n"
-      "again Esc leaves.");
+      "Space pushes (starts, confirms), P pauses, C changes the camera, F2 or O opens the "
+      "settings,\n"
+      "F1 or H shows the keys, Esc releases the mouse, again Esc leaves. Settings are kept in\n"
+      "$XDG_CONFIG_HOME/space-foosball/client.conf, or ~/.config/space-foosball/client.conf.");
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   if (const auto good = parse_server(server, options.connection); !good)
     return tl::unexpected(draw::refuse(good.error()));
@@ -83,6 +88,12 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   }
   options.connection.team =
       team == "watch" ? wire::kWatchOnly : static_cast<std::uint8_t>(team == "1");
+  if (!view.empty()) {
+    for (int i = 0; i < kViews; ++i) {
+      constexpr std::array<const char*, kViews> kNames{"seat", "above", "follow", "spectator"};
+      if (view == kNames[static_cast<std::size_t>(i)]) options.view = static_cast<View>(i);
+    }
+  }
   if (quality != "auto")
     options.quality = quality == "high" ? draw::Quality::high : draw::Quality::low;
   return options;

@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 
 #include "client/connection.h"
+#include "client/settings.h"
 #include "draw/command_line.h"
 #include "draw/quality.h"
 
@@ -16,6 +17,7 @@ struct Options {
   ConnectionOptions connection;
   glm::ivec2 size{1280, 720};
   bool fullscreen = false;
+  std::optional<View> view;  // none: as the settings say
   bool mute = false;
   bool show_fps = false;
   bool until_server_ends = false;        // leave when the server says good-bye, else wait for it

@@ -10,11 +10,14 @@
 namespace client {
 namespace {
 
+constexpr float kMostShake = 0.006f;  // [m] of the eye
+constexpr float kFollowS = 0.35f;     // [s] to close 63% of the way to the ball
 constexpr float kSettle = 1.1f;  // [s] to close most of the way to where the camera wants to be
 
 }  // namespace
 
-CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt) {
+CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt, float shake) {
+  time_ += dt;
   const auto screen = scene != nullptr ? static_cast<ScreenKind>(scene->screen) : ScreenKind::logo;
   CameraView wanted;
   if (screen == ScreenKind::logo) {
@@ -34,7 +37,31 @@ CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt) {
   view_.orbit += share * (wanted.orbit - view_.orbit);
   view_.closeness += share * (wanted.closeness - view_.closeness);
   view_.lean += share * (wanted.lean - view_.lean);
+  view_.shake =
+      kMostShake * shake *
+      glm::vec3(std::sin(61.0f * time_), std::sin(47.0f * time_), std::sin(73.0f * time_));
+  if (scene != nullptr && scene->ball_in_play) {
+    const auto& at = scene->ball.position;
+    ball_ += (1.0f - std::exp(-dt / kFollowS)) * (glm::vec3(at[0], at[1], 0.0f) - ball_);
+  }
   return view_;
+}
+
+Camera ViewMotion::camera(View view, const glm::ivec2& screen) const {
+  CameraView turned = view_;
+  switch (view) {
+    case View::above:
+      return above_camera(foosball::table_spec(view_.layout), view_.team, screen);
+    case View::follow:
+      return view_.closeness > 0.2f ? player_camera(view_, screen)
+                                    : follow_camera(view_, ball_, screen);
+    case View::spectator:
+      turned.orbit = 0.05f * time_;
+      return spectator_camera(turned, screen);
+    case View::seat:
+      break;
+  }
+  return player_camera(view_, screen);
 }
 
 }  // namespace client

@@ -25,6 +25,12 @@ constexpr float kNearDistance = 1.07f;   // [m] at the aspect below; narrower wi
 constexpr float kNearGaze = 0.06f;       // [m] before the middle
 constexpr float kNearAspect = 16.0f / 9.0f;
 
+// Nearer to the play than the seat; and from the stand, lower than a player sees it.
+constexpr float kFollowElevation = 0.95f;     // [rad]
+constexpr float kFollowDistance = 1.45f;      // [m]
+constexpr float kSpectatorElevation = 0.55f;  // [rad]
+constexpr float kSpectatorDistance = 3.1f;    // [m]
+
 struct Stand {
   float distance;  // of the eye from where it looks at the field [m]
   float gaze;      // how far before the middle that is [m]
@@ -73,6 +79,20 @@ Stand whole_table(const foosball::TableSpec& table, float aspect) {
   return {distance, -(eye.x + distance * forward.x)};
 }
 
+float aspect_of(const glm::ivec2& screen) {
+  return static_cast<float>(std::max(screen.x, 1)) / static_cast<float>(std::max(screen.y, 1));
+}
+
+Camera looking(const glm::vec3& eye, const glm::vec3& target, const glm::vec3& up,
+               const glm::mat4& projection) {
+  Camera camera;
+  camera.eye = eye;
+  camera.view = glm::lookAt(eye, target, up);
+  camera.projection = projection;
+  camera.view_projection = projection * camera.view;
+  return camera;
+}
+
 }  // namespace
 
 glm::vec3 Camera::project(const glm::vec3& world, const glm::ivec2& screen) const {
@@ -82,8 +102,7 @@ glm::vec3 Camera::project(const glm::vec3& world, const glm::ivec2& screen) cons
 }
 
 Camera player_camera(const CameraView& view, const glm::ivec2& screen) {
-  const float aspect =
-      static_cast<float>(std::max(screen.x, 1)) / static_cast<float>(std::max(screen.y, 1));
+  const float aspect = aspect_of(screen);
   const Stand whole = whole_table(foosball::table_spec(view.layout), aspect);
   const float near = kNearDistance * std::max(1.0f, kNearAspect / aspect);
   const float distance = glm::mix(whole.distance, near, view.closeness);
@@ -92,14 +111,47 @@ Camera player_camera(const CameraView& view, const glm::ivec2& screen) {
   const float toward = view.team == 1 ? 1.0f : -1.0f;
   const float side = toward * glm::half_pi<float>() + view.orbit;
   const glm::vec3 target{view.lean.x, view.lean.y + toward * gaze, 0.0f};
-  Camera camera;
-  camera.eye =
+  const glm::vec3 eye =
       target + distance * glm::vec3(std::cos(elevation) * std::cos(side),
                                     std::cos(elevation) * std::sin(side), std::sin(elevation));
-  camera.view = glm::lookAt(camera.eye, target, glm::vec3(0, 0, 1));
-  camera.projection = glm::perspective(kFieldOfView, aspect, 0.15f, 12.0f);
-  camera.view_projection = camera.projection * camera.view;
-  return camera;
+  return looking(eye + view.shake, target, glm::vec3(0, 0, 1),
+                 glm::perspective(kFieldOfView, aspect, 0.15f, 12.0f));
+}
+
+Camera above_camera(const foosball::TableSpec& table, int team, const glm::ivec2& screen) {
+  constexpr float kEdge = 0.004f;  // [m] of the rim around the field
+  const float aspect = aspect_of(screen);
+  const auto half_x = static_cast<float>(0.5 * table.length) + kGoalMouth;
+  const float half_y = static_cast<float>(0.5 * table.width) + kEdge;
+  const float half_height = std::max(half_y, half_x / aspect);
+  const glm::vec3 up{0.0f, team == 1 ? -1.0f : 1.0f, 0.0f};
+  return looking({0, 0, 2.0f}, glm::vec3(0), up,
+                 glm::ortho(-aspect * half_height, aspect * half_height, -half_height, half_height,
+                            0.5f, 4.0f));
+}
+
+Camera follow_camera(const CameraView& view, const glm::vec3& ball, const glm::ivec2& screen) {
+  const float aspect = aspect_of(screen), toward = view.team == 1 ? 1.0f : -1.0f;
+  // Never so far to the side that the own rods leave the picture.
+  const glm::vec3 target{0.72f * ball.x, 0.35f * ball.y, 0.0f};
+  const float distance = kFollowDistance * std::max(1.0f, kNearAspect / aspect);
+  const glm::vec3 eye = target + distance * glm::vec3(0.0f, toward * std::cos(kFollowElevation),
+                                                      std::sin(kFollowElevation));
+  return looking(eye + view.shake, target, glm::vec3(0, 0, 1),
+                 glm::perspective(kFieldOfView, aspect, 0.15f, 12.0f));
+}
+
+Camera spectator_camera(const CameraView& view, const glm::ivec2& screen) {
+  const float aspect = aspect_of(screen);
+  const float distance = kSpectatorDistance * std::max(1.0f, kNearAspect / aspect);
+  const float side = -glm::half_pi<float>() + 0.9f * std::sin(view.orbit);
+  const glm::vec3 target{0.0f, 0.0f, 0.02f};
+  const glm::vec3 eye =
+      target + distance * glm::vec3(std::cos(kSpectatorElevation) * std::cos(side),
+                                    std::cos(kSpectatorElevation) * std::sin(side),
+                                    std::sin(kSpectatorElevation));
+  return looking(eye, target, glm::vec3(0, 0, 1),
+                 glm::perspective(kFieldOfView, aspect, 0.15f, 12.0f));
 }
 
 }  // namespace client

@@ -84,28 +84,116 @@ void add_arms(MeshBuilder& b, const PartExtent& t) {
   }
 }
 
-void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso) {
+void add_crest(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, int crest) {
+  const glm::vec2 along =
+      crest == 0 ? glm::vec2(0.72f * r.x, 0.22f * r.y) : glm::vec2(0.22f * r.x, 0.85f * r.y);
+  const auto ring = [&](float z, float share) {
+    return LoftRing{{at.x - 0.1f * r.x, at.y, at.z + z * r.z}, share * along, 2.5f};
+  };
+  b.paint(kSuit);  // in the team's colour, seen from above
+  b.loft(std::array{ring(0.72f, 1.0f), ring(0.98f, 0.8f), ring(1.07f, 0.5f)}, 12);
+}
+
+void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const FigureLook& look) {
+  b.paint({look.accent, 0.15f, 0.35f, 0.1f, 0.0f});
+  const float wide = r.y;
+  switch (look.headgear) {
+    case Headgear::helmet:
+      break;
+    case Headgear::antenna:  // two rods with a bulb
+      for (const float side : {-1.0f, 1.0f}) {
+        b.rounded_box({at.x - 0.3f * r.x, at.y + side * 0.75f * wide, at.z + 0.95f * r.z},
+                      {0.0011f, 0.0011f, 0.0060f}, 0.0004f, 1);
+        b.ellipsoid({at.x - 0.3f * r.x, at.y + side * 0.75f * wide, at.z + 0.95f * r.z + 0.0066f},
+                    glm::vec3(0.0022f), 8, 6);
+      }
+      break;
+    case Headgear::cap:  // a peak over the eyes
+      b.rounded_box({at.x + 0.95f * r.x, at.y, at.z + 0.42f * r.z},
+                    {0.50f * r.x, 0.78f * wide, 0.0014f}, 0.0006f, 1);
+      break;
+    case Headgear::horns:
+      for (const float side : {-1.0f, 1.0f}) {
+        const auto ring = [&](float up, float out, float half) {
+          return LoftRing{{at.x, at.y + side * out * wide, at.z + up * r.z}, glm::vec2(half), 2.0f};
+        };
+        b.loft(std::array{ring(0.30f, 0.85f, 0.0028f), ring(0.75f, 1.15f, 0.0020f),
+                          ring(1.30f, 1.05f, 0.0006f)},
+               8);
+      }
+      break;
+    case Headgear::hood:  // falls down the back
+      b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.05f * r.z},
+                  {0.95f * r.x, 1.08f * wide, 1.02f * r.z}, 14, 10);
+      break;
+    case Headgear::bubble:  // a ring around the glass
+      b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.05f * r.x, 0.0016f, 14, 6);
+      break;
+  }
+}
+
+void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const FigureLook& look) {
+  if (look.face == FaceKind::visor) {
+    b.paint(kVisor);
+    b.ellipsoid({at.x + 0.42f * r.x, at.y, at.z + 0.02f * r.z},
+                {0.70f * r.x, 0.80f * r.y, 0.60f * r.z}, 16, 10);
+    return;
+  }
+  b.paint({look.skin, 0.0f, 0.55f, 0.0f, 0.0f});
+  b.ellipsoid({at.x + 0.36f * r.x, at.y, at.z - 0.04f * r.z},
+              {0.74f * r.x, 0.80f * r.y, 0.72f * r.z}, 14, 10);
+  const float front = at.x + 1.02f * r.x;
+  for (const float side : {-1.0f, 1.0f}) {
+    const glm::vec3 eye{front, at.y + side * 0.32f * r.y, at.z + 0.10f * r.z};
+    if (look.face == FaceKind::goggles) {
+      b.paint({{0.05f, 0.30f, 0.42f}, 0.0f, 0.12f, 0.6f, 0.0f});
+      b.ellipsoid(eye, {0.22f * r.x, 0.30f * r.y, 0.26f * r.z}, 8, 6);
+      continue;
+    }
+    b.paint({glm::vec3(0.92f), 0.0f, 0.4f, 0.0f, 0.0f});
+    b.ellipsoid(eye, {0.16f * r.x, 0.23f * r.y, 0.22f * r.z}, 8, 6);
+    b.paint({glm::vec3(0.015f), 0.0f, 0.3f, 0.0f, 0.0f});
+    b.ellipsoid(eye + glm::vec3(0.12f * r.x, 0, 0), {0.10f * r.x, 0.11f * r.y, 0.12f * r.z}, 8, 6);
+  }
+  if (look.face == FaceKind::beard) {
+    b.paint({glm::vec3(0.16f, 0.07f, 0.025f), 0.0f, 0.8f, 0.0f, 0.0f});
+    b.ellipsoid({at.x + 0.62f * r.x, at.y, at.z - 0.62f * r.z},
+                {0.50f * r.x, 0.62f * r.y, 0.42f * r.z}, 10, 8);
+  } else {
+    b.paint({glm::vec3(0.25f, 0.05f, 0.04f), 0.0f, 0.5f, 0.0f, 0.0f});  // mouth
+    b.ellipsoid({front - 0.02f * r.x, at.y, at.z - 0.38f * r.z},
+                {0.10f * r.x, 0.28f * r.y, 0.08f * r.z}, 8, 6);
+  }
+}
+
+void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
+              const FigureLook& look) {
   const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
-  b.paint(kHelmet);
+  b.paint(look.headgear == Headgear::cap ? Paint{look.accent, 0.5f, 0.5f, 0.0f, 0.0f} : kHelmet);
   b.ellipsoid(head.centre, r, 20, 14);
-  b.paint(kSuit);  // crest in the team's colour, seen from above
-  b.loft(
-      std::array{LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 0.72f * r.z},
-                          {0.72f * r.x, 0.22f * r.y},
-                          2.5f},
-                 LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 0.98f * r.z},
-                          {0.56f * r.x, 0.20f * r.y},
-                          2.5f},
-                 LoftRing{{head.centre.x - 0.1f * r.x, head.centre.y, head.centre.z + 1.07f * r.z},
-                          {0.34f * r.x, 0.12f * r.y},
-                          2.5f}},
-      12);
-  b.paint(kVisor);
-  b.ellipsoid({head.centre.x + 0.42f * r.x, head.centre.y, head.centre.z + 0.02f * r.z},
-              {0.70f * r.x, 0.80f * r.y, 0.60f * r.z}, 16, 10);
+  add_headgear(b, head.centre, r, look);
+  add_crest(b, head.centre, r, look.crest);
+  add_face(b, head.centre, r, look);
   if (!b.fine()) return;
   b.paint(kSteel);
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
+}
+
+// Hoops of white around chest and thighs: a pattern that needs no colour.
+void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg) {
+  b.paint({glm::vec3(0.92f), 0.0f, 0.5f, 0.0f, 0.0f});
+  const auto hoop = [&](const glm::vec3& centre, const glm::vec2& half, float height) {
+    b.loft(std::array{LoftRing{centre - glm::vec3(0, 0, 0.5f * height), half, 2.8f},
+                      LoftRing{centre + glm::vec3(0, 0, 0.5f * height), half, 2.8f}},
+           14);
+  };
+  const float h = 2.0f * torso.half.z;
+  for (const float share : {0.42f, 0.72f}) {
+    hoop({torso.centre.x, torso.centre.y, torso.bottom() + share * h},
+         {0.93f * torso.half.x, 0.92f * torso.half.y}, 0.0035f);
+  }
+  hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.3f * leg.half.z},
+       {1.0f * leg.half.x, 1.0f * leg.half.y}, 0.0035f);
 }
 
 void add_legs(MeshBuilder& b, const PartExtent& leg, const PartExtent& torso,
@@ -145,13 +233,30 @@ void add_foot(MeshBuilder& b, const PartExtent& foot) {
 
 }  // namespace
 
-MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius, float detail) {
+FigureLook figure_look(int character, int team, bool stripes) {
+  static const std::array<FigureLook, 6> kLooks{{
+      {Headgear::antenna, FaceKind::eyes, {0.62f, 0.40f, 0.26f}, {0.85f, 0.70f, 0.10f}},
+      {Headgear::helmet, FaceKind::visor, {0.45f, 0.26f, 0.16f}, {0.80f, 0.82f, 0.85f}},
+      {Headgear::horns, FaceKind::beard, {0.70f, 0.46f, 0.34f}, {0.55f, 0.36f, 0.16f}},
+      {Headgear::cap, FaceKind::goggles, {0.28f, 0.15f, 0.09f}, {0.12f, 0.55f, 0.30f}},
+      {Headgear::hood, FaceKind::eyes, {0.30f, 0.55f, 0.30f}, {0.35f, 0.12f, 0.50f}},
+      {Headgear::bubble, FaceKind::goggles, {0.75f, 0.52f, 0.42f}, {0.85f, 0.25f, 0.45f}},
+  }};
+  FigureLook look = kLooks[static_cast<std::size_t>(character) % kLooks.size()];
+  look.crest = team;
+  look.stripes = stripes && team == 1;
+  return look;
+}
+
+MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,
+                     const FigureLook& look, float detail) {
   const PartExtent torso = extent_of(boxes, Part::torso), head = extent_of(boxes, Part::head);
   const PartExtent leg = extent_of(boxes, Part::leg), foot = extent_of(boxes, Part::foot);
   MeshBuilder b(detail);
   add_torso(b, torso);
   add_arms(b, torso);
-  add_head(b, head, torso);
+  add_head(b, head, torso, look);
+  if (look.stripes) add_stripes(b, torso, leg);
   add_legs(b, leg, torso, foot);
   add_foot(b, foot);
   // The clamp on the rod, as wide as the man, so that no box of the physics is left unseen.

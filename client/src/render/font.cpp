@@ -28,8 +28,8 @@ std::vector<std::uint32_t> wanted_characters() {
   std::vector<std::uint32_t> codes;
   for (std::uint32_t c = 0x20; c < 0x7F; ++c) codes.push_back(c);
   for (std::uint32_t c = 0xA1; c <= 0xFF; ++c) codes.push_back(c);
-  for (const std::uint32_t c :
-       {0x2013u, 0x2014u, 0x2019u, 0x2026u, 0x2190u, 0x2191u, 0x2192u, 0x2193u, 0x25CFu, 0x25CBu}) {
+  for (const std::uint32_t c : {0x2013u, 0x2014u, 0x2019u, 0x2026u, 0x2190u, 0x2191u, 0x2192u,
+                                0x2193u, 0x25CFu, 0x25CBu, 0x25B2u, 0x25BCu, 0x25C6u}) {
     codes.push_back(c);
   }
   return codes;
@@ -61,18 +61,43 @@ std::uint32_t next_character(std::string_view& utf8) {
   return code;
 }
 
-tl::expected<Font, std::string> Font::load(const std::string& directory) {
-  return load_from(draw::font_directories(directory));
+tl::expected<Font, std::string> Font::load(const std::string& directory,
+                                           const std::string& catalogue) {
+  auto font = load_from(draw::font_directories(directory));
+  if (font && !catalogue.empty()) font->add_hangul(catalogue);
+  return font;
+}
+
+// Each syllable that the catalogue has, once.
+void Font::add_hangul(const std::string& catalogue) {
+  const std::vector<unsigned char> bytes = read_all(catalogue);
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::vector<std::uint32_t> codes;
+  while (!text.empty()) {
+    const std::uint32_t code = next_character(text);
+    if (code >= 0xAC00 && code <= 0xD7A3) codes.push_back(code);
+  }
+  for (const std::uint32_t code : {0xD55Cu, 0xAD6Du, 0xC5B4u}) codes.push_back(code);
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  const std::string directory = "/usr/share/fonts/truetype/nanum/";
+  add_face(Face::regular, directory + "NanumGothic.ttf", codes);
+  add_face(Face::bold, directory + "NanumGothicBold.ttf", codes);
+  finish_atlas();
+}
+
+void Font::finish_atlas() {
+  atlas_size_.y = cursor_.y + row_height_;
+  atlas_.resize(static_cast<std::size_t>(atlas_size_.x) * static_cast<std::size_t>(atlas_size_.y));
 }
 
 tl::expected<Font, std::string> Font::load_from(const std::vector<std::string>& directories) {
   for (const std::string& place : directories) {
     Font font;
-    if (!font.add_face(Face::regular, place + "/" + kFiles[0])) continue;
-    if (!font.add_face(Face::bold, place + "/" + kFiles[1])) continue;
-    font.atlas_size_.y = font.cursor_.y + font.row_height_;
-    font.atlas_.resize(static_cast<std::size_t>(font.atlas_size_.x) *
-                       static_cast<std::size_t>(font.atlas_size_.y));
+    const auto codes = wanted_characters();
+    if (!font.add_face(Face::regular, place + "/" + kFiles[0], codes)) continue;
+    if (!font.add_face(Face::bold, place + "/" + kFiles[1], codes)) continue;
+    font.finish_atlas();
     return font;
   }
   return tl::unexpected(draw::no_font());
@@ -110,14 +135,14 @@ void Font::add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& 
   cursor_.x += w + 1;
 }
 
-bool Font::add_face(Face face, const std::string& path) {
+bool Font::add_face(Face face, const std::string& path, const std::vector<std::uint32_t>& codes) {
   const std::vector<unsigned char> file = read_all(path);
   stbtt_fontinfo info;
   if (file.empty() ||
       !stbtt_InitFont(&info, file.data(), stbtt_GetFontOffsetForIndex(file.data(), 0)))
     return false;
   const float scale = stbtt_ScaleForMappingEmToPixels(&info, kOversize * kGlyphSize);
-  for (const std::uint32_t code : wanted_characters()) {
+  for (const std::uint32_t code : codes) {
     const int index = stbtt_FindGlyphIndex(&info, static_cast<int>(code));
     if (index == 0) continue;
     Glyph glyph;

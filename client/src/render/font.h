@@ -38,8 +38,11 @@ struct TextStyle {
 class Font {
  public:
   // Looks for DejaVu Sans where Debian, other systems and the page keep it; directory, if not
-  // empty, is looked into first. The error says which package to install.
-  static tl::expected<Font, std::string> load(const std::string& directory = {});
+  // empty, is looked into first. The error says which package to install. catalogue: a
+  // translation's file; its Hangul is taken from Nanum Gothic, and shows as '?' where that is not
+  // installed.
+  static tl::expected<Font, std::string> load(const std::string& directory = {},
+                                              const std::string& catalogue = {});
   // The same, in these places only.
   static tl::expected<Font, std::string> load_from(const std::vector<std::string>& directories);
 
@@ -58,7 +61,9 @@ class Font {
   using Glyphs = std::unordered_map<std::uint32_t, Glyph>;
   const Glyph& find(Face face, std::uint32_t code) const;
   void add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& glyph);
-  bool add_face(Face face, const std::string& path);
+  bool add_face(Face face, const std::string& path, const std::vector<std::uint32_t>& codes);
+  void add_hangul(const std::string& catalogue);
+  void finish_atlas();
 
   std::array<Glyphs, 2> faces_;
   std::vector<std::uint8_t> atlas_;

@@ -7,12 +7,16 @@
 #include "foosball/table.h"
 #include "render/hud_screens.h"
 #include "render/table_mesh.h"
+#include "render/translate.h"
 
 namespace client {
 namespace {
 
-void draw_score(const HudPen& pen, const wire::Snapshot& state) {
-  const float y = 14.0f, half = 196.0f, height = 62.0f;
+// The board's upper edge is at y.
+void draw_score(const HudPen& whole, const wire::Snapshot& state, bool at_the_bottom) {
+  const HudPen pen = whole.fitting(204.0f, 90.0f);
+  const float half = 196.0f, height = 62.0f;
+  const float y = at_the_bottom ? pen.bottom - height - 6.0f : 14.0f;
   pen.panel({-half, y}, {half, y + height}, 14.0f, kPanel);
   for (int team = 0; team < 2; ++team) {
     // The left of the board is the left of the picture: a viewer of team 1 sees the table turned.
@@ -21,12 +25,13 @@ void draw_score(const HudPen& pen, const wire::Snapshot& state) {
     const std::string score = std::to_string(state.score[t]);
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
-    pen.text(kTeamNames[t], {Face::bold, 19.0f, 0.08f, Align::centre}, {side * 137.0f, y + 31.0f},
-             kTeamInk[t]);
+    pen.text(std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]),
+             {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + 31.0f}, kTeamInk[t],
+             0.55f, 108.0f);
     const auto& spec =
         foosball::character_spec(std::min<int>(state.character[t], foosball::kCharacters - 1));
-    pen.text(spec.name, {Face::regular, 11.5f, 0.01f, Align::centre}, {side * 137.0f, y + 49.0f},
-             kFaint);
+    pen.text(tr(spec.name), {Face::regular, 11.5f, 0.01f, Align::centre},
+             {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
   char clock[32];
   const int seconds = std::max(0, static_cast<int>(std::min(state.play_seconds, 35999.0f)));
@@ -47,7 +52,8 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
         {std::clamp(p.x, 50.0f * pen.scale, static_cast<float>(screen.x) - 50.0f * pen.scale),
          std::clamp(p.y, 100.0f * pen.scale, static_cast<float>(screen.y) - 60.0f * pen.scale)});
     pen.panel(at + glm::vec2(-31, -12), at + glm::vec2(31, 11), 6.0f, {0.22f, 0.15f, 0.02f, 0.88f});
-    pen.text("HELD", {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning);
+    pen.text(tr("HELD"), {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning,
+             0.55f, 58.0f);
   }
 }
 
@@ -69,22 +75,24 @@ void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   for (std::size_t i = 0; i < shown; ++i) {
     const std::string& text = hud.notices[hud.notices.size() - 1 - i];
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
-    const float half = 0.5f * pen.width(text, style) + 16.0f;
+    const float half = std::min(0.5f * pen.width(text, style) + 16.0f, pen.half_width - 4.0f);
     pen.panel({-half, y - 20.0f}, {half, y + 8.0f}, 9.0f, {0.20f, 0.13f, 0.02f, 0.86f});
     pen.text(text, style, {0.0f, y}, kWarning);
     y -= 34.0f;
   }
 }
 
-void draw_connection(const HudPen& pen, const HudState& hud) {
+void draw_connection(const HudPen& whole, const HudState& hud) {
   const TextStyle style{Face::bold, 25.0f, 0.0f, Align::centre};
-  const float half = std::max(280.0f, 0.5f * pen.width(hud.connection_message, style) + 34.0f);
+  const TextStyle small{Face::regular, 16.0f, 0.0f, Align::centre};
+  const float half = std::max({280.0f, 0.5f * whole.width(hud.connection_message, style) + 34.0f,
+                               0.5f * whole.width(hud.connection_detail, small) + 24.0f});
+  const HudPen pen = whole.fitting(half + 6.0f, 200.0f);
   const float y = 0.42f * pen.bottom;
   pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.03f, 0.04f, 0.07f, 0.90f});
   pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.95f, 0.65f, 0.20f, 0.75f}, 1.5f);
   pen.text(hud.connection_message, style, {0.0f, y}, kWarning);
-  pen.text(hud.connection_detail, {Face::regular, 16.0f, 0.0f, Align::centre}, {0.0f, y + 30.0f},
-           kInk);
+  pen.text(hud.connection_detail, small, {0.0f, y + 30.0f}, kInk);
 }
 
 void draw_corner_texts(const HudPen& pen, const HudState& hud) {
@@ -97,23 +105,24 @@ void draw_corner_texts(const HudPen& pen, const HudState& hud) {
              kFaint);
   }
   if (hud.starving && hud.connection_message.empty()) {
-    pen.text("no news from the physics server", {Face::regular, 13.0f, 0.0f, Align::right},
+    pen.text(tr("no news from the physics server"), {Face::regular, 13.0f, 0.0f, Align::right},
              {pen.half_width - 16.0f, 46.0f}, kWarning);
   }
   // Who has not joined yet, or is refused, is no watcher.
   if (hud.viewer_team < 0 && hud.connection_message.empty())
-    pen.text("watching", small, {x, 26.0f}, kFaint);
-  if (hud.automatic_rod) pen.text("automatic rod (Tab)", small, {x, 26.0f}, kFaint);
+    pen.text(tr("watching"), small, {x, 26.0f}, kFaint);
+  if (hud.automatic_rod) pen.text(tr("automatic rod (Tab)"), small, {x, 26.0f}, kFaint);
   if (hud.mouse_free && hud.viewer_team >= 0)
-    pen.text("mouse released: click to play, F1 for the keys, Esc to leave", small, {x, 46.0f},
+    pen.text(tr("mouse released: click to play, F1 for the keys, Esc to leave"), small, {x, 46.0f},
              kFaint);
 }
 
 void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   const wire::Snapshot& state = *hud.state;
+  const bool above = hud.view == View::above;
   switch (static_cast<ScreenKind>(state.screen)) {
     case ScreenKind::logo:
-      draw_logo(pen, state, hud.viewer_team < 0);
+      draw_logo(pen, state, hud.viewer_team < 0, hud.still);
       return;
     case ScreenKind::selection:
       draw_selection(pen, state, hud.viewer_team);
@@ -121,26 +130,45 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
     case ScreenKind::play:
       break;
     case ScreenKind::ceremony:
-      draw_ceremony(pen, state);
+      draw_ceremony(pen, state, hud.goal, hud.replay, hud.still);
       break;
     case ScreenKind::end:
-      draw_end(pen, state);
+      draw_end(pen, state, hud.statistics);
       break;
   }
-  draw_score(pen, state);
-  draw_held_rods(pen, hud, screen);
+  draw_score(pen, state, above);
+  if (!above) draw_held_rods(pen, hud, screen);
   if (state.paused) draw_paused(pen);
+}
+
+// All that one side of the table reads.
+void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+  if (hud.state != nullptr) draw_match(pen, hud, screen);
+  draw_corner_texts(pen, hud);
+  const float help_height = draw_help(pen, hud);
+  draw_notices(pen, hud, hud.view == View::above ? std::max(help_height, 74.0f) : help_height);
+  if (!hud.connection_message.empty()) draw_connection(pen, hud);
+  if (!hud.menu.empty()) draw_settings(pen, hud.menu, hud.menu_row);
 }
 
 }  // namespace
 
 void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
-  const HudPen pen(ui, screen, hud.viewer_team != 1);
-  if (hud.state != nullptr) draw_match(pen, hud, screen);
-  draw_corner_texts(pen, hud);
-  const float help_height = draw_help(pen, hud);
-  draw_notices(pen, hud, help_height);
-  if (!hud.connection_message.empty()) draw_connection(pen, hud);
+  const bool left = hud.viewer_team != 1;
+  const glm::vec2 size(screen);
+  const HudPen whole(ui, {{0.0f, 0.0f}, size}, left, hud.text_scale);
+  if (hud.state != nullptr && hud.state->screen == number(wire::Screen::play))
+    draw_active_rod(whole, hud, screen);
+  if (hud.view != View::above) {
+    draw_for_reader(whole, hud, screen);
+  } else {
+    // The lower half for this side, the upper for the other, whose left is our right.
+    const HudRegion lower{{0.0f, 0.5f * size.y}, {size.x, 0.5f * size.y}};
+    draw_for_reader(HudPen(ui, lower, left, 1.35f * hud.text_scale), hud, screen);
+    ui.turn(size);
+    draw_for_reader(HudPen(ui, lower, !left, 1.35f * hud.text_scale), hud, screen);
+    ui.turn(glm::vec2(0.0f));
+  }
   ui.flush(screen);
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "client/settings_menu.h"
+#include "core/match_story.h"
 #include "render/camera.h"
 #include "render/ui_batch.h"
 #include "wire/enums.h"
@@ -28,8 +30,23 @@ struct HudState {
   bool show_help = false;            // all keys, over whatever is shown
   bool automatic_rod = false;
   float fps = 0.0f;  // 0: not shown
+  int active_rod = -1;
+  View view = View::seat;
+  float text_scale = 1.0f;
+  bool still = false;   // nothing pulses or grows
+  bool replay = false;  // what is seen is the goal again
+  std::array<float, 8> rod_shift{};
+  GoalStory goal;
+  std::array<TeamStatistics, 2> statistics;
+  std::vector<MenuRow> menu;  // the settings screen; empty: closed
+  int menu_row = 0;
 };
 
+class HudPen;
+void draw_settings(const HudPen& pen, const std::vector<MenuRow>& rows, int chosen);
+void draw_active_rod(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
+
+// From above it is written twice, for both long sides, the upper turned round.
 void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen);
 
 }  // namespace client

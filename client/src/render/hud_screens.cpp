@@ -2,41 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "foosball/table.h"
 #include "render/hud.h"
+#include "render/translate.h"
 
 namespace client {
-
-HudPen::HudPen(UiBatch& ui, const glm::ivec2& screen, bool team_0_on_the_left)
-    : scale(std::max(0.35f, std::min(static_cast<float>(screen.y) / 720.0f,
-                                     static_cast<float>(screen.x) / 900.0f))),
-      half_width(0.5f * static_cast<float>(screen.x) / scale),
-      bottom(static_cast<float>(screen.y) / scale),
-      left_is_team_0(team_0_on_the_left),
-      ui_(ui),
-      middle_(0.5f * static_cast<float>(screen.x)) {}
-
-glm::vec2 HudPen::to_pixels(const glm::vec2& at) const {
-  return {middle_ + at.x * scale, at.y * scale};
-}
-
-glm::vec2 HudPen::from_pixels(const glm::vec2& pixel) const {
-  return {(pixel.x - middle_) / scale, pixel.y / scale};
-}
-
-void HudPen::text(std::string_view utf8, TextStyle style, const glm::vec2& at, const Colour& colour,
-                  float glow) const {
-  style.size *= scale;
-  ui_.text(utf8, style, to_pixels(at), colour, glow);
-}
-
-void HudPen::panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
-                   float outline) const {
-  ui_.panel(to_pixels(low), to_pixels(high), corner * scale, colour, outline * scale);
-}
 
 namespace {
 
@@ -46,42 +21,50 @@ struct KeyHelp {
   const char* keys;
   const char* meaning;
 };
-constexpr std::array<KeyHelp, 10> kAllKeys{
-    {{"Mouse", "forward and back slides, sideways spins"},
-     {"1 2 3 4", "take goalie, defence, midfield, attack"},
-     {"Wheel", "next rod"},
-     {"Tab", "rod nearest to the ball by itself"},
-     {"Arrows, WASD", "slide and spin by keys"},
-     {"Gamepad", "sticks slide and spin, shoulders change rod"},
-     {"Space, click", "push: begin, confirm"},
-     {"P", "pause"},
-     {"F1, H", "show or hide the keys"},
-     {"Esc", "release the mouse; again: leave"}}};
-constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3", "or"},
-                                                 {"wheel, arrows", "choose"},
-                                                 {"Space, click", "confirm"},
-                                                 {"F1", "all keys"}}};
-constexpr std::array<KeyHelp, 3> kPauseKeys{
-    {{"P", "play on"}, {"F1", "all keys"}, {"Esc", "release the mouse; again: leave"}}};
+constexpr std::array<KeyHelp, 12> kAllKeys{
+    {{N_("Mouse"), N_("forward and back slides, sideways spins")},
+     {"1 2 3 4", N_("take goalie, defence, midfield, attack")},
+     {N_("Wheel, Q E"), N_("next rod")},
+     {"Tab", N_("rod nearest to the ball by itself")},
+     {N_("Arrows, WASD"), N_("slide and spin by keys")},
+     {N_("Gamepad"), N_("sticks slide and spin, shoulders change rod")},
+     {N_("Space, click"), N_("push: begin, confirm")},
+     {"P", N_("pause")},
+     {"C", N_("camera: seat, above, follow, spectator")},
+     {"F2, O", N_("settings")},
+     {"F1, H", N_("show or hide the keys")},
+     {"Esc", N_("release the mouse; again: leave")}}};
+constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3", N_("or")},
+                                                 {N_("wheel, arrows"), N_("choose")},
+                                                 {N_("Space, click"), N_("confirm")},
+                                                 {"F1", N_("all keys")}}};
+constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
+                                             {"F1", N_("all keys")},
+                                             {"F2", N_("settings")},
+                                             {"Esc", N_("release the mouse; again: leave")}}};
 
 // One line at the bottom of the screen; how high it stands.
-float draw_key_line(const HudPen& pen, std::span<const KeyHelp> line) {
+float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line) {
   const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
   const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
   const float within = 7.0f, between = 24.0f;
   float width = -between;
-  for (const KeyHelp& key : line)
-    width += pen.width(key.keys, bold) + within + pen.width(key.meaning, regular) + between;
-  const float half = 0.5f * width + 20.0f, y = pen.bottom - 24.0f;
+  for (const KeyHelp& key : line) {
+    width +=
+        whole.width(tr(key.keys), bold) + within + whole.width(tr(key.meaning), regular) + between;
+  }
+  const float half = 0.5f * width + 20.0f;
+  const HudPen pen = whole.fitting(half, 60.0f);
+  const float y = pen.bottom - 24.0f;
   pen.panel({-half, y - 22.0f}, {half, y + 10.0f}, 10.0f, kPanel);
   float x = -0.5f * width;
   for (const KeyHelp& key : line) {
-    pen.text(key.keys, bold, {x, y}, kInk);
-    x += pen.width(key.keys, bold) + within;
-    pen.text(key.meaning, regular, {x, y}, kFaint);
-    x += pen.width(key.meaning, regular) + between;
+    pen.text(tr(key.keys), bold, {x, y}, kInk);
+    x += pen.width(tr(key.keys), bold) + within;
+    pen.text(tr(key.meaning), regular, {x, y}, kFaint);
+    x += pen.width(tr(key.meaning), regular) + between;
   }
-  return 38.0f;
+  return 38.0f * pen.scale / whole.scale;
 }
 
 std::string capitalised(std::string text) {
@@ -112,45 +95,75 @@ Traits traits_of(int character) {
           among([](const Spec& s) { return -s.mass; })};
 }
 
-void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at,
+void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float width,
                 const Colour& colour) {
-  pen.text(name, {Face::regular, 12.5f, 0.0f, Align::left}, at, kFaint);
-  const glm::vec2 low = at + glm::vec2(58.0f, -8.0f);
-  pen.panel(low, low + glm::vec2(84.0f, 7.0f), 3.5f, {0.25f, 0.30f, 0.36f, 0.8f});
-  pen.panel(low, low + glm::vec2(84.0f * (0.25f + 0.75f * share), 7.0f), 3.5f, colour);
+  pen.text(name, {Face::regular, 12.5f, 0.0f, Align::left}, at, kFaint, 0.55f, 56.0f);
+  const glm::vec2 low = at + glm::vec2(60.0f, -8.0f);
+  pen.panel(low, low + glm::vec2(width, 7.0f), 3.5f, {0.25f, 0.30f, 0.36f, 0.8f});
+  pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), 7.0f), 3.5f, colour);
 }
 
-void draw_character(const HudPen& pen, int character, const glm::vec2& at, float width, bool chosen,
-                    const Colour& colour) {
-  const glm::vec2 high = at + glm::vec2(width, 104.0f);
-  pen.panel(at, high, 12.0f,
+// The portrait, the name, and what the character is good at.
+void draw_character(const HudPen& pen, int character, int team, const glm::vec2& low,
+                    const glm::vec2& size, bool chosen) {
+  const auto& colour = kTeamInk[static_cast<std::size_t>(team)];
+  const glm::vec2 high = low + size;
+  pen.panel(low, high, 12.0f,
             chosen ? Colour{0.07f, 0.10f, 0.15f, 0.92f} : Colour{0.03f, 0.045f, 0.07f, 0.72f});
-  if (chosen) pen.panel(at, high, 12.0f, colour, 2.0f);
-  pen.text(capitalised(foosball::character_spec(character).name),
-           {Face::bold, 18.0f, 0.0f, Align::left}, at + glm::vec2(18, 28), chosen ? kInk : kFaint);
+  const float tall = size.y - 8.0f, wide = 0.8f * tall;
+  pen.picture(character, team, low + 4.0f, low + 4.0f + glm::vec2(wide, tall));
+  if (chosen) pen.panel(low, high, 12.0f, colour, 2.0f);
+  const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
+  const float room = size.x - wide - 20.0f;
+  pen.text(capitalised(tr(foosball::character_spec(character).name)),
+           {Face::bold, 18.0f, 0.0f, Align::left}, text + glm::vec2(0.0f, 0.28f * size.y),
+           chosen ? kInk : kFaint, 0.55f, room);
   const Traits traits = traits_of(character);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
-  draw_trait(pen, "attack", traits.reach, at + glm::vec2(18, 52), bar);
-  draw_trait(pen, "defence", traits.guard, at + glm::vec2(18, 71), bar);
-  draw_trait(pen, "agility", traits.agility, at + glm::vec2(18, 90), bar);
+  const float bars = std::max(room - 60.0f, 10.0f);
+  draw_trait(pen, tr("attack"), traits.reach, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar);
+  draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar);
+  draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar);
+}
+
+std::string named_team(std::size_t team) {
+  return std::string(kTeamMark[team]).append(" ").append(kTeamNames[team]);
 }
 
 }  // namespace
 
-float draw_all_keys(const HudPen& pen) {
-  constexpr std::size_t kRows = kAllKeys.size() / 2;
-  const float height = 28.0f * static_cast<float>(kRows) + 28.0f, half = 478.0f;
-  const float top = pen.bottom - 22.0f - height;
+std::string line_name(int layout, int rod) {
+  constexpr std::array<const char*, 4> kLines{N_("Goalie"), N_("Defence"), N_("Midfield"),
+                                              N_("Attack")};
+  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(layout));
+  const auto& spec = table.rods[static_cast<std::size_t>(std::clamp(rod, 0, foosball::kRods - 1))];
+  return tr(kLines[static_cast<std::size_t>(spec.line)]);
+}
+
+// In two columns where there is room, else in one; smaller where even that is too wide.
+float draw_all_keys(const HudPen& whole) {
+  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
+  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
+  float keys = 0.0f, meaning = 0.0f;
+  for (const KeyHelp& key : kAllKeys) {
+    keys = std::max(keys, whole.width(tr(key.keys), bold));
+    meaning = std::max(meaning, whole.width(tr(key.meaning), regular));
+  }
+  const float column = keys + 14.0f + meaning, between = 34.0f;
+  const bool two = whole.half_width > column + 0.5f * between + 26.0f;
+  const std::size_t columns = two ? 2 : 1, rows = kAllKeys.size() / columns;
+  const float half = 0.5f * (two ? 2.0f * column + between : column) + 24.0f;
+  const float height = 26.0f * static_cast<float>(rows) + 26.0f;
+  const HudPen pen = whole.fitting(half + 4.0f, height + 40.0f);
+  const float top = pen.bottom - 18.0f - height;
   pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
-    const float x = i % 2 == 0 ? -half + 26.0f : 30.0f;
-    const std::size_t row = i / 2;
-    const float y = top + 33.0f + 28.0f * static_cast<float>(row);
-    pen.text(kAllKeys[i].keys, {Face::bold, 14.0f, 0.0f, Align::left}, {x, y}, kInk);
-    pen.text(kAllKeys[i].meaning, {Face::regular, 14.0f, 0.0f, Align::left}, {x + 128.0f, y},
-             kFaint);
+    const float x = -half + 24.0f + (i % columns == 0 ? 0.0f : column + between);
+    const float y = top + 31.0f + 26.0f * static_cast<float>(i / columns);
+    pen.text(tr(kAllKeys[i].keys), bold, {x, y}, kInk);
+    pen.text(tr(kAllKeys[i].meaning), regular, {x + keys + 14.0f, y}, kFaint);
   }
-  return height + 20.0f;
+  return (height + 18.0f) * pen.scale / whole.scale;
 }
 
 float draw_keys_of_selection(const HudPen& pen) {
@@ -161,80 +174,153 @@ float draw_keys_of_pause(const HudPen& pen) {
   return draw_key_line(pen, kPauseKeys);
 }
 
-void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches) {
-  pen.panel({-pen.half_width, 0.0f}, {pen.half_width, pen.bottom}, 0.0f, kVeil);
+void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, bool still) {
+  whole.panel({-whole.half_width, 0.0f}, {whole.half_width, whole.bottom}, 0.0f, kVeil);
+  const HudPen pen = whole.fitting(400.0f, 250.0f);
   pen.text("SPACE", {Face::bold, 40.0f, 0.62f, Align::centre}, {12.0f, 92.0f},
            {0.62f, 0.84f, 1.0f, 1.0f}, 0.8f);
   pen.text("FOOSBALL", {Face::bold, 92.0f, 0.06f, Align::centre}, {0.0f, 176.0f},
            {0.97f, 0.98f, 1.0f, 1.0f}, 0.8f);
   pen.panel({-262.0f, 194.0f}, {-6.0f, 198.0f}, 2.0f, kTeamInk[pen.left_is_team_0 ? 0 : 1]);
   pen.panel({6.0f, 194.0f}, {262.0f, 198.0f}, 2.0f, kTeamInk[pen.left_is_team_0 ? 1 : 0]);
-  const float pulse = 0.70f + 0.30f * std::sin(3.0f * state.screen_seconds);
-  const char* call =
-      watches ? "waiting for a player to push a rod" : "Push a rod to begin: click, Space or Enter";
+  const float pulse = still ? 1.0f : 0.70f + 0.30f * std::sin(3.0f * state.screen_seconds);
+  const char* call = watches ? tr("waiting for a player to push a rod")
+                             : tr("Push a rod to begin: click, Space or Enter");
   pen.text(call, {Face::regular, 21.0f, 0.01f, Align::centre}, {0.0f, 236.0f},
            {0.92f, 0.96f, 1.0f, pulse}, 0.8f);
 }
 
-void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team) {
-  pen.panel({-236.0f, 22.0f}, {236.0f, 104.0f}, 14.0f, kPanel);
-  pen.text("CHOOSE YOUR CREW", {Face::bold, 32.0f, 0.10f, Align::centre}, {0.0f, 62.0f}, kInk,
-           0.8f);
-  pen.text("spin a rod to choose, push it to confirm", {Face::regular, 16.0f, 0.0f, Align::centre},
-           {0.0f, 90.0f}, kFaint, 0.8f);
+// Each team's characters on its side, as many as fit below one another.
+void draw_selection(const HudPen& whole, const wire::Snapshot& state, int viewer_team) {
+  constexpr auto kCount = static_cast<float>(foosball::kCharacters);
+  const HudPen pen = whole.fitting(450.0f, 660.0f);
+  pen.panel({-200.0f, 16.0f}, {200.0f, 88.0f}, 14.0f, kPanel);
+  pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f}, kInk,
+           0.8f, 370.0f);
+  pen.text(tr("spin a rod to choose, push it to confirm"),
+           {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, 76.0f}, kFaint, 0.8f, 370.0f);
+  const float width = std::min(262.0f, pen.half_width - 160.0f), top = 108.0f, low = 606.0f;
+  const float between = 6.0f;
+  const float height = std::min(118.0f, (low - top - 78.0f) / kCount - between);
   for (int team = 0; team < 2; ++team) {
     const auto t = static_cast<std::size_t>(team);
-    const float width = 184.0f;
-    const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 36.0f
-                                                      : pen.half_width - 36.0f - width;
-    pen.panel({x - 14.0f, 108.0f}, {x + width + 14.0f, 546.0f}, 16.0f, kVeil);
-    pen.text(kTeamNames[t], {Face::bold, 26.0f, 0.08f, Align::left}, {x + 2.0f, 142.0f},
-             kTeamInk[t]);
+    const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 24.0f
+                                                      : pen.half_width - 24.0f - width;
+    const float end = top + 46.0f + kCount * (height + between);
+    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 36.0f}, 16.0f, kVeil);
+    pen.text(named_team(t), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
+             kTeamInk[t], 0.55f, width - 70.0f);
     if (team == viewer_team)
-      pen.text("you", {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, 142.0f}, kInk);
+      pen.text(tr("you"), {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, top + 34.0f},
+               kInk);
     for (int c = 0; c < foosball::kCharacters; ++c) {
-      draw_character(pen, c, {x, 158.0f + 116.0f * static_cast<float>(c)}, width,
-                     state.character[t] == c, kTeamInk[t]);
+      draw_character(pen, c, team, {x, top + 46.0f + (height + between) * static_cast<float>(c)},
+                     {width, height}, state.character[t] == c);
     }
-    const float y = 158.0f + 116.0f * foosball::kCharacters + 22.0f;
-    const char* status = state.confirmed[t] ? "READY" : "choosing ...";
-    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, y},
-             state.confirmed[t] ? kTeamInk[t] : kFaint);
+    const char* status = state.confirmed[t] ? tr("READY") : tr("choosing ...");
+    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 20.0f},
+             state.confirmed[t] ? kTeamInk[t] : kFaint, 0.55f, width);
   }
 }
 
-void draw_ceremony(const HudPen& pen, const wire::Snapshot& state) {
+void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const GoalStory& goal,
+                   bool replay, bool still) {
+  const HudPen pen = whole.fitting(430.0f, 180.0f);
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
-  const float t = state.screen_seconds;
-  const float grow = 1.0f + 0.35f * std::exp(-7.0f * t);
-  const float y = 0.40f * pen.bottom;
-  pen.panel({-pen.half_width, y - 92.0f}, {pen.half_width, y + 66.0f}, 0.0f,
-            {0.02f, 0.03f, 0.05f, 0.55f});
-  pen.text("GOAL", {Face::bold, 120.0f * grow, 0.16f, Align::centre}, {8.0f, y + 14.0f},
-           kTeamInk[team], 0.8f);
-  const std::string line = std::string(kTeamNames[team]) + " scores";
-  pen.text(line, {Face::regular, 24.0f, 0.02f, Align::centre}, {0.0f, y + 50.0f}, kInk, 0.8f);
+  const float grow = still ? 0.0f : 0.25f * std::exp(-7.0f * state.screen_seconds);
+  const float top = 84.0f, high = 78.0f;
+  const Colour& ink = kTeamInk[team];
+  pen.panel({-pen.half_width, top}, {pen.half_width, top + high}, 0.0f,
+            {0.25f * ink.r, 0.25f * ink.g, 0.25f * ink.b, 0.80f});
+  for (const float y : {top, top + high - 4.0f})
+    pen.panel({-pen.half_width, y}, {pen.half_width, y + 4.0f}, 0.0f, ink);
+  const char* call = goal.own_goal ? tr("OWN GOAL") : tr("GOAL");
+  pen.text(call, {Face::bold, 52.0f * (1.0f + grow), 0.14f, Align::right}, {-20.0f, top + 58.0f},
+           ink, 0.8f, 380.0f);
+  std::string who;
+  if (goal.scorer_rod >= 0) {
+    const std::size_t of = goal.own_goal ? 1 - team : team;
+    char speed[32];
+    std::snprintf(speed, sizeof speed, ", %.1f m/s", static_cast<double>(goal.speed));
+    who = named_team(of) + ", " + line_name(state.layout, goal.scorer_rod) + " " +
+          std::to_string(goal.scorer_man + 1) + speed;
+  }
+  const std::string line = tr("Goal for") + std::string(" ") + named_team(team);
+  pen.text(line, {Face::bold, 22.0f, 0.02f, Align::left}, {10.0f, top + 34.0f}, kInk, 0.8f, 400.0f);
+  pen.text(who, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk, 0.8f,
+           400.0f);
+  if (!replay) return;
+  pen.panel({-pen.half_width + 16.0f, top + high + 10.0f},
+            {-pen.half_width + 236.0f, top + high + 42.0f}, 8.0f, kPanel);
+  pen.text(tr("SLOW MOTION - push to go on"), {Face::bold, 14.0f, 0.02f, Align::centre},
+           {-pen.half_width + 126.0f, top + high + 31.0f}, kWarning, 0.55f, 206.0f);
 }
 
-void draw_end(const HudPen& pen, const wire::Snapshot& state) {
+namespace {
+
+struct EndRow {
+  const char* name;
+  std::array<std::string, 2> values;  // by team
+};
+
+std::vector<EndRow> end_rows(const std::array<TeamStatistics, 2>& s) {
+  const auto both = [&](auto value) { return std::array{value(s[0]), value(s[1])}; };
+  const float played = std::max(s[0].possession + s[1].possession, 1e-3f);
+  const auto fixed = [](float number, const char* unit) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f %s", static_cast<double>(number), unit);
+    return std::string(text);
+  };
+  return {
+      {tr("shots"), both([](const TeamStatistics& t) { return std::to_string(t.shots); })},
+      {tr("saves"), both([](const TeamStatistics& t) { return std::to_string(t.saves); })},
+      {tr("fastest shot"),
+       both([&](const TeamStatistics& t) { return fixed(t.fastest_shot, "m/s"); })},
+      {tr("possession"), both([&](const TeamStatistics& t) {
+         return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
+       })},
+      {tr("own goals"), both([](const TeamStatistics& t) { return std::to_string(t.own_goals); })}};
+}
+
+}  // namespace
+
+void draw_end(const HudPen& whole, const wire::Snapshot& state,
+              const std::array<TeamStatistics, 2>& statistics) {
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
-  const float y = 0.38f * pen.bottom;
-  pen.panel({-300.0f, y - 84.0f}, {300.0f, y + 96.0f}, 20.0f, {0.03f, 0.045f, 0.07f, 0.84f});
-  pen.panel({-300.0f, y - 84.0f}, {300.0f, y + 96.0f}, 20.0f, kTeamInk[team], 2.0f);
-  pen.text(std::string(kTeamNames[team]) + " WINS", {Face::bold, 58.0f, 0.05f, Align::centre},
-           {0.0f, y - 14.0f}, kTeamInk[team], 0.8f);
-  const std::size_t left = pen.left_is_team_0 ? 0 : 1;
+  const std::vector<EndRow> rows = end_rows(statistics);
+  const float half = 310.0f, height = 210.0f + 28.0f * static_cast<float>(rows.size());
+  const HudPen pen = whole.fitting(half + 10.0f, height + 120.0f);
+  const float top = 0.5f * (pen.bottom - height);
+  pen.panel({-half, top}, {half, top + height}, 20.0f, {0.03f, 0.045f, 0.07f, 0.86f});
+  pen.panel({-half, top}, {half, top + height}, 20.0f, kTeamInk[team], 2.0f);
+  pen.text(named_team(team) + " " + tr("WINS"), {Face::bold, 50.0f, 0.04f, Align::centre},
+           {0.0f, top + 62.0f}, kTeamInk[team], 0.8f, 2.0f * half - 40.0f);
+  const std::size_t left = pen.left_is_team_0 ? 0 : 1, right = 1 - left;
   const std::string score =
-      std::to_string(state.score[left]) + " : " + std::to_string(state.score[1 - left]);
-  pen.text(score, {Face::bold, 40.0f, 0.05f, Align::centre}, {0.0f, y + 38.0f}, kInk);
-  pen.text("push a rod to play again", {Face::regular, 17.0f, 0.0f, Align::centre},
-           {0.0f, y + 74.0f}, kFaint);
+      std::to_string(state.score[left]) + " : " + std::to_string(state.score[right]);
+  pen.text(score, {Face::bold, 44.0f, 0.05f, Align::centre}, {0.0f, top + 116.0f}, kInk);
+  for (const auto& [at, of] : {std::pair(-1.0f, left), std::pair(1.0f, right)}) {
+    pen.text(named_team(of), {Face::bold, 19.0f, 0.04f, Align::centre}, {at * 200.0f, top + 112.0f},
+             kTeamInk[of], 0.55f, 190.0f);
+  }
+  float y = top + 156.0f;
+  for (const EndRow& row : rows) {
+    pen.text(row.name, {Face::regular, 16.0f, 0.0f, Align::centre}, {0.0f, y}, kFaint, 0.55f,
+             220.0f);
+    pen.text(row.values[left], {Face::bold, 17.0f, 0.0f, Align::centre}, {-200.0f, y}, kInk);
+    pen.text(row.values[right], {Face::bold, 17.0f, 0.0f, Align::centre}, {200.0f, y}, kInk);
+    y += 28.0f;
+  }
+  pen.text(tr("push a rod to play again"), {Face::regular, 17.0f, 0.0f, Align::centre},
+           {0.0f, top + height - 20.0f}, kFaint, 0.55f, 2.0f * half - 40.0f);
 }
 
-void draw_paused(const HudPen& pen) {
+void draw_paused(const HudPen& whole) {
+  const HudPen pen = whole.fitting(190.0f, 200.0f);
   const float y = 0.42f * pen.bottom;
   pen.panel({-170.0f, y - 42.0f}, {170.0f, y + 32.0f}, 16.0f, {0.03f, 0.045f, 0.07f, 0.84f});
-  pen.text("PAUSED", {Face::bold, 38.0f, 0.16f, Align::centre}, {4.0f, y + 9.0f}, kInk);
+  pen.text(tr("PAUSED"), {Face::bold, 38.0f, 0.16f, Align::centre}, {4.0f, y + 9.0f}, kInk, 0.55f,
+           310.0f);
 }
 
 }  // namespace client

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
+#include "core/match_story.h"
 #include "render/ui_batch.h"
 #include "wire/snapshot.h"
 
@@ -15,37 +17,56 @@ inline const Colour kWarning{1.0f, 0.80f, 0.36f, 1.0f};
 inline const Colour kPanel{0.030f, 0.045f, 0.070f, 0.74f};
 inline const std::array<Colour, 2> kTeamInk{Colour{1.0f, 0.60f, 0.22f, 1.0f},
                                             Colour{0.42f, 0.74f, 1.0f, 1.0f}};
+// Beside a team's name: told apart without colours.
+inline constexpr std::array<const char*, 2> kTeamMark{"●", "▲"};
 
-// Writes in units of a 720-line screen, x from its middle, y from its top.
+// Part of the screen that a pen writes in [px], from the top left.
+struct HudRegion {
+  glm::vec2 low{0.0f}, size{1.0f};
+};
+
+// Writes in units of a 720-line screen, x from the region's middle, y from its top. What is too
+// wide for the region becomes smaller, never cut.
 class HudPen {
  public:
-  HudPen(UiBatch& ui, const glm::ivec2& screen, bool team_0_on_the_left);
+  HudPen(UiBatch& ui, const HudRegion& region, bool team_0_on_the_left, float text_scale = 1.0f);
 
+  // In units; a line wider than max_width (the region's, if 0) is written smaller.
   void text(std::string_view utf8, TextStyle style, const glm::vec2& at, const Colour& colour,
-            float glow = 0.55f) const;
+            float glow = 0.55f, float max_width = 0.0f) const;
   void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
              float outline = 0.0f) const;
+  void picture(int column, int row, const glm::vec2& low, const glm::vec2& high) const;
   float width(std::string_view utf8, const TextStyle& style) const {
     return ui_.font().width(utf8, style);
   }
   glm::vec2 from_pixels(const glm::vec2& pixel) const;
+  // The same pen, smaller, so that a block of this half width and height fits into the region.
+  HudPen fitting(float half_width, float height) const;
 
   float scale;       // pixels a unit
-  float half_width;  // of the screen, in units
+  float half_width;  // of the region, in units
   float bottom;
   bool left_is_team_0;
 
  private:
+  void rescale(float pixels_a_unit);
   glm::vec2 to_pixels(const glm::vec2& at) const;
   UiBatch& ui_;
-  float middle_;
+  HudRegion region_;
 };
 
-void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches);
+void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, bool still);
 void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team);
-void draw_ceremony(const HudPen& pen, const wire::Snapshot& state);
-void draw_end(const HudPen& pen, const wire::Snapshot& state);
+// A band at the upper edge: the field stays free. own goals and the scorer are named.
+void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
+                   bool replay, bool still);
+void draw_end(const HudPen& pen, const wire::Snapshot& state,
+              const std::array<TeamStatistics, 2>& statistics);
 void draw_paused(const HudPen& pen);
+
+// "4 attack"... in the person's language: of a rod by its line.
+std::string line_name(int layout, int rod);
 
 // What the keys do, at the bottom of the screen; how high it stands.
 float draw_all_keys(const HudPen& pen);

@@ -40,10 +40,10 @@ void Particles::spark(Material material, const glm::vec3& at, const glm::vec3& t
     const glm::vec3 scatter{uniform(), uniform(), 0.45f + 0.55f * uniform()};
     const float speed = (0.20f + 1.7f * power) * (0.55f + 0.45f * uniform());
     // The strongest hits have a hot core; the rest is of the team's or the material's colour.
-    const bool hot = !reduced_ && power > 0.35f && i % 4 == 0;
+    const bool hot = !reduced_ && power > 0.35f && i % 6 == 0;
     const float hue = 0.5f + 0.5f * uniform();
     const glm::vec3 light =
-        hot ? power * kHot : own * (0.55f + 0.75f * hue) + 0.10f * power * hue * kHot;
+        hot ? 0.6f * power * kHot : own * (0.30f + 0.50f * hue) + 0.05f * power * hue * kHot;
     add({at, speed * (scatter + 0.9f * towards), light,
          (0.0026f + 0.0024f * power) * (1.0f + 0.4f * uniform()), 0.0f,
          (0.26f + 0.30f * power) * (1.0f + 0.35f * uniform()), -3.2f, 1.6f});
@@ -68,7 +68,7 @@ void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float r
   const float speed = glm::length(velocity);
   if (speed < 1.2f) return;
   const float fade = std::clamp((speed - 1.2f) / 6.0f, 0.0f, 1.0f);
-  const glm::vec3 light = (reduced_ ? 0.35f : 1.0f) * fade *
+  const glm::vec3 light = (reduced_ ? 0.12f : 0.30f) * fade *
                           glm::mix(0.9f * colour, 0.5f * (colour + kHot), fade * fade);
   const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, 12);
   for (int i = 0; i < beads; ++i) {

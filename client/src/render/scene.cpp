@@ -62,7 +62,35 @@ const glm::mat4 kTextureFromClip{
 float Scene::drawn_ball_radius(const foosball::TableSpec& table, float height) {
   const auto radius = static_cast<float>(table.ball_radius);
   const float above = std::max(height - radius, 0.0f);
-  return radius * (1.0f + std::min(1.6f * above, 0.45f));
+  return radius * (1.0f + kMostBallGrowth * (1.0f - std::exp(-above / kBallGrowthHeight)));
+}
+
+bool ball_is_seen(const wire::Snapshot& state) {
+  constexpr float kParked = 0.5f;  // [m]: above it the server keeps a ball that is nowhere
+  const bool scored =
+      state.screen == number(wire::Screen::ceremony) || state.screen == number(wire::Screen::end);
+  return state.ball_in_play || (scored && state.ball.position[2] < kParked);
+}
+
+void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift) {
+  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
+  for (wire::ManState& man : state.men)
+    man.body.position[0] += rod_shift[std::min<std::size_t>(man.rod, 7)];
+  // Between two rods by both, beyond the outermost by less and less up to the goal line.
+  const auto line = static_cast<float>(0.5 * table.length);
+  float from = -line, shift_from = 0.0f;
+  const float x = std::clamp(state.ball.position[0], -line, line);
+  for (std::size_t rod = 0; rod <= rod_shift.size(); ++rod) {
+    const float to = rod < rod_shift.size() ? static_cast<float>(table.rods[rod].x) : line;
+    const float shift_to = rod < rod_shift.size() ? rod_shift[rod] : 0.0f;
+    if (x <= to) {
+      const float share = (x - from) / (to - from);
+      state.ball.position[0] += shift_from + share * (shift_to - shift_from);
+      return;
+    }
+    from = to;
+    shift_from = shift_to;
+  }
 }
 
 tl::expected<std::unique_ptr<Scene>, std::string> Scene::create(draw::Quality quality) {
@@ -108,12 +136,7 @@ std::string Scene::build_programs() {
 
 void Scene::build_static_meshes() {
   const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
-  const auto rod_radius =
-      static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
-  for (std::size_t c = 0; c < kKinds; ++c) {
-    figure_meshes_[c] =
-        GpuMesh(figure_mesh(foosball::man_boxes(static_cast<int>(c)), rod_radius, detail));
-  }
+  build_figures(stripes_);
   MeshBuilder ball(detail);
   ball.ellipsoid(glm::vec3(0), glm::vec3(1), 32, 20);
   ball_mesh_ = GpuMesh(ball.take());
@@ -127,6 +150,19 @@ void Scene::build_static_meshes() {
   glEnableVertexAttribArray(0);
   glEnableVertexAttribArray(1);
   glBindVertexArray(0);
+}
+
+void Scene::build_figures(bool stripes) {
+  stripes_ = stripes;
+  const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
+  const auto rod_radius =
+      static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    const int team = static_cast<int>(kind / foosball::kCharacters);
+    const int character = static_cast<int>(kind % foosball::kCharacters);
+    figure_meshes_[kind] = GpuMesh(figure_mesh(foosball::man_boxes(character), rod_radius,
+                                               figure_look(character, team, stripes), detail));
+  }
 }
 
 void Scene::use_layout(foosball::Layout layout) {
@@ -148,7 +184,7 @@ void Scene::use_layout(foosball::Layout layout) {
 void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) {
   const auto glow = [&](std::size_t rod) {
     if (static_cast<int>(rod) != view.active_rod) return 0.0f;
-    return 0.30f + 0.08f * std::sin(4.0f * view.time);
+    return 0.30f + (view.reduced_flashes ? 0.0f : 0.08f * std::sin(4.0f * view.time));
   };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
@@ -159,7 +195,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
     const foosball::RodSpec& spec = table_->rods[rod];
     glm::mat4 m = glm::rotate(glm::mat4(1.0f), state.rods[rod].angle, glm::vec3(0, 1, 0));
-    m[3] = {static_cast<float>(spec.x), state.rods[rod].slide,
+    m[3] = {static_cast<float>(spec.x) + view.rod_shift[rod], state.rods[rod].slide,
             static_cast<float>(table_->rod_height), 1.0f};
     rod_meshes_[rod].set_instances(std::array{make_instance(m, tint(rod), glow(rod))});
   }
@@ -169,7 +205,9 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   for (const wire::ManState& man : state.men) {
     const std::size_t rod = std::min<std::size_t>(man.rod, foosball::kRods - 1);
     const auto team = static_cast<std::size_t>(table_->rods[rod].team);
-    const std::size_t kind = std::min<std::size_t>(state.character[team], kKinds - 1);
+    const std::size_t kind =
+        team * foosball::kCharacters +
+        std::min<std::size_t>(state.character[team], foosball::kCharacters - 1);
     const glm::mat4 m = team == 1 ? pose(man.body) * kFacingBack : pose(man.body);
     men_[kind].push_back(make_instance(m, tint(rod), glow(rod)));
   }
@@ -179,7 +217,9 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
 // All that stands on the field or around it.
 void Scene::draw_standing() const {
   rim_mesh_.draw();
-  for (const GpuMesh& rod : rod_meshes_) rod.draw();
+  if (!rods_hidden_) {
+    for (const GpuMesh& rod : rod_meshes_) rod.draw();
+  }
   for (const GpuMesh& figures : figure_meshes_) figures.draw();
 }
 
@@ -215,11 +255,13 @@ void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const
   field_.set("u_team_lamp[0]", kTeamLamp[0]);
   field_.set("u_team_lamp[1]", kTeamLamp[1]);
   const auto radius = static_cast<float>(table_->ball_radius);
-  field_.set("u_ball", glm::vec4(vec(state.ball.position), state.ball_in_play ? radius : 0.0f));
+  field_.set("u_ball", glm::vec4(vec(state.ball.position), ball_is_seen(state) ? radius : 0.0f));
   glm::vec4 lane(0.0f);
   if (view.active_rod >= 0 && view.active_rod < foosball::kRods) {
-    lane = {static_cast<float>(table_->rods[static_cast<std::size_t>(view.active_rod)].x),
-            0.85f + 0.15f * std::sin(4.0f * view.time), 0.0f, 0.0f};
+    const auto rod = static_cast<std::size_t>(view.active_rod);
+    const float pulse = view.reduced_flashes ? 0.0f : 0.15f * std::sin(4.0f * view.time);
+    lane = {static_cast<float>(table_->rods[rod].x) + view.rod_shift[rod], 0.85f + pulse, 0.0f,
+            0.0f};
   }
   field_.set("u_active_rod", lane);
   // Over the reflections that are there already; its alpha is their share.
@@ -244,10 +286,102 @@ void Scene::draw_reflections(const wire::Snapshot& state, const SceneView& view)
 }
 
 void Scene::draw_ball(const wire::Snapshot& state) const {
-  if (!state.ball_in_play) return;
+  if (!ball_is_seen(state)) return;
   const float radius = drawn_ball_radius(*table_, state.ball.position[2]);
   ball_.set("u_model", pose(state.ball) * glm::scale(glm::mat4(1.0f), glm::vec3(radius)));
   ball_mesh_.draw();
+}
+
+// Men and rods that stand between the eye and the ball let it be seen: of their pixels before the
+// ball two in three are left out (solid.frag). A drawn ball is found by its place on the target.
+void Scene::see_through(const wire::Snapshot& state, const Camera& camera, const glm::ivec2& size) {
+  solid_.use();
+  glm::vec4 disc(0.0f);
+  if (ball_is_seen(state)) {
+    const glm::vec3 at = vec(state.ball.position);
+    const float radius = drawn_ball_radius(*table_, at.z);
+    const glm::vec4 clip = camera.view_projection * glm::vec4(at, 1.0f);
+    const glm::vec3 near = camera.project(at, size);
+    const float pixels =
+        0.5f * static_cast<float>(size.y) * camera.projection[1][1] * radius / clip.w;
+    disc = {near.x, static_cast<float>(size.y) - near.y, 1.12f * pixels,
+            0.5f + 0.5f * clip.z / clip.w};
+  }
+  solid_.set("u_see_through", disc);
+}
+
+GLuint Scene::portraits() {
+  if (portraits_) return portraits_->texture();
+  constexpr glm::ivec2 kCell{160, 200};  // [px]
+  auto program = draw::Program::build(shader_source, {"lighting.glsl", "solid.glsl", "solid.vert"},
+                                      {"common.glsl", "lighting.glsl", "solid.glsl", "solid.frag"},
+                                      draw::Quality::low);  // writes what the screen shows
+  if (!program) return 0;
+  shadow_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  portraits_.emplace(
+      draw::TargetDesc{.size = kCell * portrait_cells(), .format = GL_RGBA8, .depth = true});
+  portraits_->bind();
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  draw::bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
+  draw::bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
+  // Head and chest, a little from the side, from below the brow.
+  Camera camera;
+  camera.eye = {0.30f, -0.12f, 0.05f};
+  camera.view = glm::lookAt(camera.eye, glm::vec3(0.0f, 0.0f, 0.016f), glm::vec3(0, 0, 1));
+  camera.projection = glm::perspective(0.245f, 0.8f, 0.05f, 2.0f);
+  camera.view_projection = camera.projection * camera.view;
+  light(*program, camera, 0.0f);
+  program->set("u_see_through", glm::vec4(0.0f));
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    const auto team = static_cast<int>(kind / foosball::kCharacters);
+    const auto character = static_cast<int>(kind % foosball::kCharacters);
+    glViewport(character * kCell.x, team * kCell.y, kCell.x, kCell.y);
+    GpuMesh figure(figure_mesh(foosball::man_boxes(character), 0.008f,
+                               figure_look(character, team, stripes_), 1.0f));
+    figure.set_instances(std::array{
+        make_instance(glm::mat4(1.0f), kTeamColour[static_cast<std::size_t>(team)], 0.15f)});
+    figure.draw();
+  }
+  glDisable(GL_CULL_FACE);
+  return portraits_->texture();
+}
+
+float Scene::ball_visibility(const wire::Snapshot& state, const SceneView& view,
+                             const glm::ivec2& screen) {
+  if (!ball_is_seen(state)) return 1.0f;
+  use_layout(static_cast<foosball::Layout>(state.layout));
+  post_.resize(screen);
+  place_instances(state, view);
+  rods_hidden_ = view.hide_rods;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_CULL_FACE);
+  const draw::Target target({.size = screen, .format = GL_RGBA8, .depth = true});
+  const auto lit_pixels = [&](bool between) {
+    target.bind();
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (between) {
+      light(solid_, view.camera, 0.0f);
+      see_through(state, view.camera, screen);
+      draw_standing();
+      glClear(GL_COLOR_BUFFER_BIT);
+    }
+    light(ball_, view.camera, 0.0f);
+    draw_ball(state);
+    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(screen.x * screen.y) * 4);
+    glReadPixels(0, 0, screen.x, screen.y, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    int count = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += 4)
+      count += pixels[i] + pixels[i + 1] + pixels[i + 2] > 12;
+    return count;
+  };
+  const int all = lit_pixels(false);
+  return all == 0 ? 1.0f : static_cast<float>(lit_pixels(true)) / static_cast<float>(all);
 }
 
 void Scene::draw_glass(const SceneView& view) const {
@@ -291,6 +425,8 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
                  const glm::ivec2& screen) {
   use_layout(static_cast<foosball::Layout>(state.layout));
   post_.resize(screen);
+  if (view.distinct_teams != stripes_) build_figures(view.distinct_teams);
+  rods_hidden_ = view.hide_rods;
   place_instances(state, view);
   load_particles(particles);
   glEnable(GL_DEPTH_TEST);
@@ -305,7 +441,9 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   draw::bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
   draw_reflections(state, view);
   light(solid_, view.camera, 0.0f);
+  see_through(state, view.camera, post_.scene().size());
   draw_standing();
+  solid_.set("u_see_through", glm::vec4(0.0f));
   light(ball_, view.camera, 0.0f);
   draw_ball(state);
   draw_field(state, view);

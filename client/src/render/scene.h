@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -21,7 +22,23 @@ struct SceneView {
   Camera camera;
   int active_rod = -1;  // lit up; -1: none
   float time = 0.0f;    // [s], for twinkling and pulses
+  bool hide_rods = false;
+  bool reduced_flashes = false;      // nothing pulses
+  bool distinct_teams = false;       // team 1 wears stripes
+  std::array<float, 8> rod_shift{};  // along x, of what is drawn [m]: see shift_scene()
 };
+
+// The ball is drawn larger with height (paper, section 5: "a sense of height cues"), by the height
+// that the snapshot has: a hop of 30 mm by a quarter, never to more than 1 + kMostBallGrowth.
+inline constexpr float kMostBallGrowth = 0.9f;
+inline constexpr float kBallGrowthHeight = 0.090f;  // [m] at which 63% of the growth is reached
+
+// Moves rods, men and ball along x, so that each rod meets its handle outside the screen; the ball
+// goes with the rods next to it, so that what touches still touches.
+void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift);
+
+// A scored ball lies in the goal until the next serve, a ball out of play is nowhere.
+bool ball_is_seen(const wire::Snapshot& state);
 
 class Scene {
  public:
@@ -33,17 +50,29 @@ class Scene {
   void draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
             const glm::ivec2& screen);
 
-  // The radius the ball is drawn with: a little larger when high (paper, section 5).
+  // Each character in either team's colours: columns by character, rows by team, with transparency
+  // around. Drawn once; the texture lives as long as the scene.
+  GLuint portraits();
+  static glm::ivec2 portrait_cells() { return {foosball::kCharacters, foosball::kTeams}; }
+
+  // How much of the ball is seen between men and rods, 0..1; draws over the target. 1 if there is
+  // no ball.
+  float ball_visibility(const wire::Snapshot& state, const SceneView& view,
+                        const glm::ivec2& screen);
+
+  // The radius the ball is drawn with at that height of its centre [m].
   static float drawn_ball_radius(const foosball::TableSpec& table, float height);
 
  private:
   explicit Scene(draw::Quality quality) : quality_(quality) {}
   std::string build_programs();
   void build_static_meshes();
+  void build_figures(bool stripes);
   void use_layout(foosball::Layout layout);
   void place_instances(const wire::Snapshot& state, const SceneView& view);
   void draw_shadows() const;
   void draw_standing() const;
+  void see_through(const wire::Snapshot& state, const Camera& camera, const glm::ivec2& size);
   void draw_reflections(const wire::Snapshot& state, const SceneView& view);
   void draw_field(const wire::Snapshot& state, const SceneView& view) const;
   void draw_ball(const wire::Snapshot& state) const;
@@ -53,7 +82,8 @@ class Scene {
   void light(const draw::Program& program, const Camera& camera, float fade) const;
 
   static constexpr std::size_t kFigures = foosball::kTeams;
-  static constexpr std::size_t kKinds = foosball::kCharacters;
+  // Team 1 wears another crest, and stripes if asked for: a mesh for each team's each character.
+  static constexpr std::size_t kKinds = foosball::kTeams * foosball::kCharacters;
 
   draw::Quality quality_;
   const foosball::TableSpec* table_ = nullptr;
@@ -62,9 +92,11 @@ class Scene {
   Post post_;
   draw::ShadowTarget shadow_;
   glm::mat4 light_matrix_{1.0f};
+  std::optional<draw::Target> portraits_;
   GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
-  std::array<GpuMesh, kKinds> figure_meshes_;  // by character; both teams' men may share one
+  std::array<GpuMesh, kKinds> figure_meshes_;  // by team, then character
+  bool stripes_ = false, rods_hidden_ = false;
   std::array<std::vector<Instance>, kKinds> men_;
   draw::GlVertexArray particle_array_;
   draw::GlBuffer particle_buffer_;

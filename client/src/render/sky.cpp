@@ -116,6 +116,12 @@ void Sky::draw(const Camera& camera, float pixel_scale, float time) const {
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 
+  const bool perspective = camera.projection[3][3] == 0.0f;  // stars have no place without
+  if (!perspective) {
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    return;
+  }
   star_.use();
   star_.set("u_view_projection", camera.projection * glm::mat4(glm::mat3(camera.view)));
   star_.set("u_pixel_scale", pixel_scale);

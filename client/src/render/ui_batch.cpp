@@ -42,9 +42,14 @@ tl::expected<UiBatch, std::string> UiBatch::create(Font font) {
 
 void UiBatch::quad(const glm::vec2& low, const glm::vec2& high, const glm::vec2& uv_low,
                    const glm::vec2& uv_high, const Colour& colour, const glm::vec4& shape) {
-  const Vertex a{low, uv_low, colour, shape}, c{high, uv_high, colour, shape};
-  const Vertex b{{high.x, low.y}, {uv_high.x, uv_low.y}, colour, shape};
-  const Vertex d{{low.x, high.y}, {uv_low.x, uv_high.y}, colour, shape};
+  const bool turned = turned_about_.x > 0.0f;
+  const auto at = [&](float x, float y) {
+    return turned ? turned_about_ - glm::vec2(x, y) : glm::vec2(x, y);
+  };
+  const Vertex a{at(low.x, low.y), uv_low, colour, shape},
+      c{at(high.x, high.y), uv_high, colour, shape};
+  const Vertex b{at(high.x, low.y), {uv_high.x, uv_low.y}, colour, shape};
+  const Vertex d{at(low.x, high.y), {uv_low.x, uv_high.y}, colour, shape};
   vertices_.insert(vertices_.end(), {a, b, c, a, c, d});
 }
 
@@ -62,6 +67,19 @@ void UiBatch::panel(const glm::vec2& low, const glm::vec2& high, float corner, c
   quad(low, high, -half, half, colour, {std::max(corner, 0.01f), half.x, half.y, outline});
 }
 
+void UiBatch::set_pictures(GLuint texture, const glm::ivec2& cells) {
+  pictures_ = texture;
+  picture_cells_ = cells;
+}
+
+void UiBatch::picture(int column, int row, const glm::vec2& low, const glm::vec2& high) {
+  if (pictures_ == 0) return;
+  const glm::vec2 cell = 1.0f / glm::vec2(picture_cells_);
+  const glm::vec2 uv{static_cast<float>(column) * cell.x, static_cast<float>(row) * cell.y};
+  // The texture's rows run upwards.
+  quad(low, high, {uv.x, uv.y + cell.y}, {uv.x + cell.x, uv.y}, Colour(1.0f), {-1.0f, 0, 0, 0});
+}
+
 void UiBatch::flush(const glm::ivec2& screen) {
   if (!vertices_.empty()) {
     glDisable(GL_DEPTH_TEST);
@@ -70,6 +88,8 @@ void UiBatch::flush(const glm::ivec2& screen) {
     program_.use();
     program_.set("u_screen", glm::vec2(screen));
     program_.set("u_glyphs", 0);
+    program_.set("u_pictures", 1);
+    draw::bind_texture(1, GL_TEXTURE_2D, pictures_ != 0 ? pictures_ : atlas_.get());
     draw::bind_texture(0, GL_TEXTURE_2D, atlas_.get());
     glBindVertexArray(array_.get());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.get());

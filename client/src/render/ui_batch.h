@@ -26,6 +26,12 @@ class UiBatch {
             const Colour& colour, float glow = 0.55f);
   void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
              float outline = 0.0f);
+  // Portraits, in cells: column by character, row by team. None until set.
+  void set_pictures(GLuint texture, const glm::ivec2& cells);
+  void picture(int column, int row, const glm::vec2& low, const glm::vec2& high);
+  // From now on everything is turned by half a turn about the middle of a screen of this size, for
+  // whoever sits opposite; zero: no longer.
+  void turn(const glm::vec2& screen) { turned_about_ = screen; }
   // Draws to the bound framebuffer and forgets.
   void flush(const glm::ivec2& screen);
 
@@ -43,6 +49,9 @@ class UiBatch {
   draw::GlVertexArray array_;
   draw::GlBuffer buffer_;
   std::vector<Vertex> vertices_;
+  GLuint pictures_ = 0;
+  glm::ivec2 picture_cells_{1, 1};
+  glm::vec2 turned_about_{0.0f};
 };
 
 }  // namespace client

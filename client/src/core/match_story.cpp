@@ -1,4 +1,4 @@
-#include "app/match_story.h"
+#include "core/match_story.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,62 @@
+// The settings screen as rows that are chosen and changed by steps: from keys, mouse, gamepad or
+// rods, which MenuSteps makes alike. No drawing here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client/input_events.h"
+#include "client/settings.h"
+#include "wire/snapshot.h"
+
+namespace client {
+
+struct MenuRow {
+  std::string label, value;  // English; the screen translates
+  bool translate_value = true;
+  int number = 0;  // after the label; 0: none
+};
+
+// One step at a time: what a person asks of a menu in a frame.
+struct MenuSteps {
+  int down = 0, right = 0;  // negative: up, left
+  bool confirm = false, back = false;
+};
+
+// Turns a frame's events into steps: arrows, wheel, mouse motion, and a team's rods: any of them
+// spun by kSpinStep goes to the next row, slid by kSlideStep changes the value.
+class MenuHand {
+ public:
+  static constexpr double kMouseStep = 60.0;  // [px]
+  static constexpr double kSpinStep = 0.7;    // [rad]
+  static constexpr double kSlideStep = 0.04;  // [m]
+  // scene: null while there is none; team: -1 for who has no rods.
+  MenuSteps steps(const InputEvents& events, const wire::Snapshot* scene, int team);
+  void restart();
+
+ private:
+  double mouse_down_ = 0.0, mouse_right_ = 0.0;
+  bool rods_known_ = false;
+  std::array<double, 8> slide_{}, angle_{};
+};
+
+class SettingsMenu {
+ public:
+  bool open() const { return open_; }
+  void toggle();
+  int row() const { return row_; }
+  bool waits_for_key() const { return open_ && waits_; }
+  std::vector<MenuRow> rows(const Settings& settings) const;
+  // key: pressed in this frame, 0: none; for a row of the controls that waits for one.
+  // True if the settings changed.
+  bool step(const MenuSteps& steps, int key, Settings& settings);
+
+ private:
+  bool change(int way, Settings& settings);
+  bool bind(int key, Settings& settings);
+
+  bool open_ = false, waits_ = false;
+  int row_ = 0;
+};
+
+}  // namespace client

@@ -1,0 +1,30 @@
+#!/usr/bin/env python3
+"""Every sentence that the client translates is in every catalogue, and no catalogue has an empty one.
+
+  client/tests/translations_test.py CLIENT_DIRECTORY
+"""
+import re
+import sys
+from pathlib import Path
+
+client = Path(sys.argv[1])
+sentences = set()
+for source in list((client / 'src').rglob('*.cpp')):
+    # Adjacent string literals are one sentence.
+    for call in re.findall(r'\b(?:tr|N_)\(((?:\s*"(?:[^"\\]|\\.)*")+)\s*\)', source.read_text(encoding='utf-8')):
+        sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', call)))
+if len(sentences) < 60:
+    sys.exit(f'only {len(sentences)} sentences found: has the way they are marked changed?')
+catalogues = sorted((client / 'po').glob('*.po'))
+if len(catalogues) < 2:
+    sys.exit('catalogues are missing')
+bad = 0
+for catalogue in catalogues:
+    text = catalogue.read_text(encoding='utf-8')
+    pairs = dict(re.findall(r'^msgid "((?:[^"\\]|\\.)*)"\nmsgstr "((?:[^"\\]|\\.)*)"', text, re.M))
+    for sentence in sorted(sentences):
+        if not pairs.get(sentence):
+            print(f'{catalogue.name}: no translation of "{sentence}"')
+            bad += 1
+print(f'{len(sentences)} sentences, {bad} missing')
+sys.exit(bad != 0)
