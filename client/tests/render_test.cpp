@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 
@@ -10,6 +12,7 @@
 #include "draw/image.h"
 #include "render/hud.h"
 #include "render/scene.h"
+#include "render/translate.h"
 #include "scripted_scene.h"
 
 namespace client {
@@ -271,6 +274,119 @@ TEST_P(RenderTest, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingForThe
   EXPECT_TRUE(told(2, true, false));
   EXPECT_FALSE(told(2, false, false)) << "the view of the play is free";
   EXPECT_TRUE(told(2, false, true));
+}
+
+// Every screen, in windows of every shape, in each language, at the largest text: nothing reaches
+// over an edge (but for the soft rim of a letter).
+TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  constexpr float kRim = 6.0f;  // [px]
+  SettingsMenu menu;
+  for (const char* language : {"en", "de", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    for (const glm::ivec2 size : {glm::ivec2(480, 640), glm::ivec2(640, 360), glm::ivec2(320, 240),
+                                  glm::ivec2(3840, 600), glm::ivec2(1280, 720)}) {
+      for (int shown = 0; shown < 5 * 2 * 4; ++shown) {
+        wire::Snapshot state = scripted_play(0.35);
+        state.screen = static_cast<std::uint8_t>(shown % 5);
+        HudState hud;
+        hud.state = &state;
+        hud.view = shown / 5 % 2 == 0 ? View::seat : View::above;
+        hud.camera = player_camera({}, size);
+        hud.viewer_team = 0;
+        hud.text_scale = kTextScale[1];
+        hud.goal = {.team = 1, .scorer_rod = 6, .scorer_man = 1, .own_goal = true, .speed = 12.3f};
+        hud.replay = true;
+        hud.mouse_free = true;
+        hud.starving = true;
+        const int more = shown / 10;
+        hud.show_help = more == 1;
+        state.paused = more == 2;
+        hud.notices = {
+            "the cabinet at /dev/ttyACM0 was unplugged: its rods 4 and 6 hold where they are"};
+        if (more == 2) {
+          hud.connection_message = "Waiting for the physics server at table.example.org:7531";
+          hud.connection_detail =
+              "It answers nothing: start it with ./play --server, or name another.";
+        }
+        if (more == 3) hud.menu = menu.rows(Settings{});
+        draw_hud(words, hud, size);
+        const UiBatch::Bounds& b = words.bounds();
+        EXPECT_GT(b.low.x, -kRim) << language << " " << size.x << "x" << size.y << " " << shown;
+        EXPECT_GT(b.low.y, -kRim) << language << " " << size.x << "x" << size.y << " " << shown;
+        EXPECT_LT(b.high.x, static_cast<float>(size.x) + kRim)
+            << language << " " << size.x << "x" << size.y << " " << shown;
+        EXPECT_LT(b.high.y, static_cast<float>(size.y) + kRim)
+            << language << " " << size.x << "x" << size.y << " " << shown;
+      }
+    }
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+// Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
+// for longer than 0.3 s, in any view that is meant for play.
+TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {
+  constexpr double kStep = 0.05;
+  constexpr glm::ivec2 kPicture{640, 360};
+  for (const auto& [name, team, kind] :
+       {std::tuple("seat of team 0", 0, View::seat), std::tuple("seat of team 1", 1, View::seat),
+        std::tuple("above", 0, View::above), std::tuple("follow", 0, View::follow)}) {
+    double hidden = 0.0, longest = 0.0, least = 1.0;
+    for (double t = 0.0; t < 12.0; t += kStep) {
+      wire::Snapshot state = scripted_play(t);
+      // Half of the time on the field's surface, where feet hide most.
+      if (std::fmod(t, 2.0) < 1.0) state.ball.position[2] = 0.0173f;
+      SceneView view;
+      const auto& at = state.ball.position;
+      view.camera =
+          kind == View::above
+              ? above_camera(foosball::table_spec(foosball::Layout::tournament), team, kPicture)
+          : kind == View::follow ? follow_camera({.team = team}, {at[0], at[1], at[2]}, kPicture)
+                                 : player_camera({.team = team}, kPicture);
+      const float seen = scene->ball_visibility(state, view, kPicture);
+      least = std::min<double>(least, seen);
+      hidden = seen < 0.5f ? hidden + kStep : 0.0;
+      longest = std::max(longest, hidden);
+    }
+    std::printf("%s: least %.0f %% of the ball seen, below half for %.2f s at most\n", name,
+                100.0 * least, longest);
+    EXPECT_LE(longest, 0.3) << name;
+  }
+}
+
+TEST_P(RenderTest, TheBallLooksLargerWithHeightAndLiesInTheGoalAfterIt) {
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  const auto radius = static_cast<float>(table.ball_radius);
+  EXPECT_EQ(Scene::drawn_ball_radius(table, radius), radius);
+  EXPECT_GT(Scene::drawn_ball_radius(table, radius + 0.030f), 1.2f * radius);
+  EXPECT_LT(Scene::drawn_ball_radius(table, 5.0f), (1.001f + kMostBallGrowth) * radius);
+  wire::Snapshot state = scripted_play(0.35);
+  state.screen = 3;
+  state.ball_in_play = false;
+  state.ball.position = {0.655f, 0.03f, radius};
+  wire::Snapshot parked = state;
+  parked.ball.position = {0, 0, 1.0f};
+  EXPECT_TRUE(ball_is_seen(state));
+  EXPECT_FALSE(ball_is_seen(parked));
+  camera = above_camera(table, 0, kSize);
+  EXPECT_GT(changed(draw(state), draw(parked), pixel_of(state.ball.position), 12), 60);
+}
+
+TEST_P(RenderTest, HandlesOutsideTheScreenShiftRodsWithTheirMenAndTheBall) {
+  std::array<float, 8> shift{};
+  shift[3] = 0.02f;
+  wire::Snapshot state = scripted_play(0.35);
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  state.ball.position[0] = static_cast<float>(table.rods[3].x);
+  const wire::Snapshot before = state;
+  shift_scene(state, shift);
+  EXPECT_NEAR(state.ball.position[0], before.ball.position[0] + 0.02f, 1e-6);
+  for (std::size_t i = 0; i < state.men.size(); ++i) {
+    EXPECT_NEAR(state.men[i].body.position[0] - before.men[i].body.position[0],
+                state.men[i].rod == 3 ? 0.02f : 0.0f, 1e-6);
+  }
 }
 
 TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {

@@ -27,9 +27,9 @@ constexpr float kNearAspect = 16.0f / 9.0f;
 
 // Nearer to the play than the seat; and from the stand, lower than a player sees it.
 constexpr float kFollowElevation = 0.95f;     // [rad]
-constexpr float kFollowDistance = 1.45f;      // [m]
+constexpr float kFollowDistance = 1.7f;       // [m]
 constexpr float kSpectatorElevation = 0.55f;  // [rad]
-constexpr float kSpectatorDistance = 3.1f;    // [m]
+constexpr float kSpectatorDistance = 2.5f;    // [m]
 
 struct Stand {
   float distance;  // of the eye from where it looks at the field [m]

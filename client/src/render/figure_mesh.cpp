@@ -188,12 +188,12 @@ void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg)
            14);
   };
   const float h = 2.0f * torso.half.z;
-  for (const float share : {0.42f, 0.72f}) {
+  for (const float share : {0.28f, 0.55f, 0.82f}) {
     hoop({torso.centre.x, torso.centre.y, torso.bottom() + share * h},
-         {0.93f * torso.half.x, 0.92f * torso.half.y}, 0.0035f);
+         {0.93f * torso.half.x, 0.92f * torso.half.y}, 0.0055f);
   }
   hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.3f * leg.half.z},
-       {1.0f * leg.half.x, 1.0f * leg.half.y}, 0.0035f);
+       {1.0f * leg.half.x, 1.0f * leg.half.y}, 0.0055f);
 }
 
 void add_legs(MeshBuilder& b, const PartExtent& leg, const PartExtent& torso,

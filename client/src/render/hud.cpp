@@ -130,7 +130,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
     case ScreenKind::play:
       break;
     case ScreenKind::ceremony:
-      draw_ceremony(pen, state, hud.goal, hud.replay, hud.still);
+      draw_ceremony(pen, state, hud.goal, hud.replay, hud.still, above);
       break;
     case ScreenKind::end:
       draw_end(pen, state, hud.statistics);

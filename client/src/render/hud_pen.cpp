@@ -24,6 +24,13 @@ HudPen HudPen::fitting(float wanted_half_width, float height) const {
   return smaller;
 }
 
+HudPen HudPen::readable(float pixels_a_unit, float wanted_half_width) const {
+  HudPen larger = *this;
+  const float widest = 0.5f * region_.size.x / wanted_half_width;
+  larger.rescale(std::max(scale, std::min(pixels_a_unit, widest)));
+  return larger;
+}
+
 glm::vec2 HudPen::to_pixels(const glm::vec2& at) const {
   return {region_.low.x + 0.5f * region_.size.x + at.x * scale, region_.low.y + at.y * scale};
 }

@@ -224,11 +224,11 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state, int viewer
 }
 
 void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const GoalStory& goal,
-                   bool replay, bool still) {
+                   bool replay, bool still, bool at_the_bottom) {
   const HudPen pen = whole.fitting(430.0f, 180.0f);
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
   const float grow = still ? 0.0f : 0.25f * std::exp(-7.0f * state.screen_seconds);
-  const float top = 84.0f, high = 78.0f;
+  const float high = 78.0f, top = at_the_bottom ? pen.bottom - high - 74.0f : 84.0f;
   const Colour& ink = kTeamInk[team];
   pen.panel({-pen.half_width, top}, {pen.half_width, top + high}, 0.0f,
             {0.25f * ink.r, 0.25f * ink.g, 0.25f * ink.b, 0.80f});
@@ -250,10 +250,10 @@ void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const GoalS
   pen.text(who, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk, 0.8f,
            400.0f);
   if (!replay) return;
-  pen.panel({-pen.half_width + 16.0f, top + high + 10.0f},
-            {-pen.half_width + 236.0f, top + high + 42.0f}, 8.0f, kPanel);
+  const float y = at_the_bottom ? top - 42.0f : top + high + 10.0f;
+  pen.panel({-pen.half_width + 16.0f, y}, {-pen.half_width + 236.0f, y + 32.0f}, 8.0f, kPanel);
   pen.text(tr("SLOW MOTION - push to go on"), {Face::bold, 14.0f, 0.02f, Align::centre},
-           {-pen.half_width + 126.0f, top + high + 31.0f}, kWarning, 0.55f, 206.0f);
+           {-pen.half_width + 126.0f, y + 21.0f}, kWarning, 0.55f, 206.0f);
 }
 
 namespace {

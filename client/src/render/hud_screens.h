@@ -44,6 +44,9 @@ class HudPen {
   // The same pen, smaller, so that a block of this half width and height fits into the region.
   HudPen fitting(float half_width, float height) const;
 
+  // The same pen, larger if a unit has fewer pixels, as far as this half width still fits.
+  HudPen readable(float pixels_a_unit, float wanted_half_width) const;
+
   float scale;       // pixels a unit
   float half_width;  // of the region, in units
   float bottom;
@@ -58,9 +61,9 @@ class HudPen {
 
 void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, bool still);
 void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team);
-// A band at the upper edge: the field stays free. own goals and the scorer are named.
+// A band at the upper edge, or the lower: the field stays free. Own goals and the scorer are named.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
-                   bool replay, bool still);
+                   bool replay, bool still, bool at_the_bottom);
 void draw_end(const HudPen& pen, const wire::Snapshot& state,
               const std::array<TeamStatistics, 2>& statistics);
 void draw_paused(const HudPen& pen);

@@ -11,9 +11,9 @@ namespace client {
 
 void draw_settings(const HudPen& whole, const std::vector<MenuRow>& rows, int chosen) {
   const float half = 330.0f, line = 27.0f;
-  const HudPen pen = whole.fitting(half + 10.0f, 420.0f);
-  const float room = pen.bottom - 150.0f;
-  const int shown = std::clamp(static_cast<int>(room / line), 5, static_cast<int>(rows.size()));
+  const HudPen pen = whole.fitting(half + 10.0f, 420.0f).readable(0.62f, half + 10.0f);
+  const float room = pen.bottom - 112.0f;
+  const int shown = std::clamp(static_cast<int>(room / line), 3, static_cast<int>(rows.size()));
   const float height = 96.0f + line * static_cast<float>(shown);
   const float top = std::max(8.0f, 0.5f * (pen.bottom - height));
   pen.panel({-half, top}, {half, top + height}, 16.0f, {0.03f, 0.045f, 0.07f, 0.93f});

@@ -1,6 +1,7 @@
 #include "render/ui_batch.h"
 
 #include <cstddef>
+#include <glm/common.hpp>
 
 #include "draw/target.h"
 #include "render/shaders.h"
@@ -81,6 +82,11 @@ void UiBatch::picture(int column, int row, const glm::vec2& low, const glm::vec2
 }
 
 void UiBatch::flush(const glm::ivec2& screen) {
+  bounds_ = {glm::vec2(1e9f), glm::vec2(-1e9f)};
+  for (const Vertex& vertex : vertices_) {
+    bounds_.low = glm::min(bounds_.low, vertex.position);
+    bounds_.high = glm::max(bounds_.high, vertex.position);
+  }
   if (!vertices_.empty()) {
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);

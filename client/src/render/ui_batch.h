@@ -32,6 +32,11 @@ class UiBatch {
   // From now on everything is turned by half a turn about the middle of a screen of this size, for
   // whoever sits opposite; zero: no longer.
   void turn(const glm::vec2& screen) { turned_about_ = screen; }
+  // What the last flush() wrote reached from low to high [px].
+  struct Bounds {
+    glm::vec2 low{0.0f}, high{0.0f};
+  };
+  const Bounds& bounds() const { return bounds_; }
   // Draws to the bound framebuffer and forgets.
   void flush(const glm::ivec2& screen);
 
@@ -49,6 +54,7 @@ class UiBatch {
   draw::GlVertexArray array_;
   draw::GlBuffer buffer_;
   std::vector<Vertex> vertices_;
+  Bounds bounds_;
   GLuint pictures_ = 0;
   glm::ivec2 picture_cells_{1, 1};
   glm::vec2 turned_about_{0.0f};
