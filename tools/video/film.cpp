@@ -27,7 +27,9 @@ tl::expected<std::unique_ptr<Film>, draw::WindowError> Film::open(const FilmOpti
 
 Film::Film(const FilmOptions& options, draw::Window window, std::unique_ptr<client::Scene> scene,
            client::UiBatch ui)
-    : options_(options), window_(std::move(window)), scene_(std::move(scene)), ui_(std::move(ui)) {}
+    : options_(options), window_(std::move(window)), scene_(std::move(scene)), ui_(std::move(ui)) {
+  ui_.set_pictures(scene_->portraits(), client::Scene::portrait_cells());
+}
 
 void Staging::advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events,
                       float dt, client::SoundPlayer* sounds) {
@@ -49,6 +51,8 @@ draw::Image Film::frame(const wire::Snapshot& state, Staging& staging, float tim
   client::HudState hud;
   hud.state = &state;
   hud.camera = view.camera;
+  hud.goal = staging.story().last_goal();
+  hud.statistics = staging.story().statistics();
   client::draw_hud(ui_, hud, options_.size);
   return draw::read_pixels(options_.size);
 }

@@ -8,8 +8,8 @@
 #include <tl/expected.hpp>
 
 #include "app/effects.h"
-#include "app/match_story.h"
 #include "app/view_motion.h"
+#include "core/match_story.h"
 #include "draw/image.h"
 #include "draw/window.h"
 #include "render/hud.h"
@@ -27,6 +27,7 @@ class Staging {
                client::SoundPlayer* sounds);
   client::Camera camera(const glm::ivec2& size) const;
   client::Particles& particles() { return particles_; }
+  const client::MatchStory& story() const { return story_; }
 
  private:
   int team_;
