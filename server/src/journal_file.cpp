@@ -3,30 +3,54 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <span>
+
+#include "os/file_descriptor.h"
+#include "server/byte_ring.h"
 
 namespace server {
 namespace {
 
+using Clock = std::chrono::steady_clock;  // when to sync; decides nothing of the match
+
 bool begins_as_a_recording(const std::string& path) {
-  const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   std::array<std::byte, 256> start;  // a header is 49 bytes
   const ssize_t size = file ? ::read(file.get(), start.data(), start.size()) : -1;
   if (size <= 0) return false;
-  wire::JournalReader reader({start.data(), static_cast<std::size_t>(size)});
+  const std::span<const std::byte> bytes(start.data(), static_cast<std::size_t>(size));
+  if (wire::other_journal_format(bytes)) return true;
+  wire::JournalReader reader(bytes);
   const auto entry = reader.next();
   return entry && std::holds_alternative<wire::JournalHeader>(*entry);
+}
+
+std::string errno_text(int number) {
+  return std::strerror(number);
+}
+
+// Empty, or why it must not be written. File systems without locks have none to ask for.
+std::string lock(int file) {
+  if (::flock(file, LOCK_EX | LOCK_NB) == 0) return {};
+  if (errno != EWOULDBLOCK) return {};
+  return "another server is writing it; choose another name, or end that server";
 }
 
 // Makes the file an empty one. Empty, or why it must stay as it is and what to do.
 std::string objection(int file, const JournalFileOptions& options) {
   struct stat about {};
-  if (::fstat(file, &about) != 0) return std::string(std::strerror(errno)) + "; try again";
+  if (::fstat(file, &about) != 0) return errno_text(errno) + "; try again";
+  if (S_ISCHR(about.st_mode)) return {};  // as /dev/null is, which any number may write
+  if (std::string why = lock(file); !why.empty()) return why;
   if (!S_ISREG(about.st_mode) || about.st_size == 0) return {};
   if (!begins_as_a_recording(options.path)) {
     return "there is a file of that name that is no recording; choose another name";
@@ -34,35 +58,182 @@ std::string objection(int file, const JournalFileOptions& options) {
   if (!options.overwrite) {
     return "there is a recording already; choose another name, remove it, or give --overwrite";
   }
-  if (::ftruncate(file, 0) != 0) return std::string(std::strerror(errno)) + "; remove the old one";
+  if (::ftruncate(file, 0) != 0) return errno_text(errno) + "; remove the old one";
   return {};
 }
 
 }  // namespace
 
-tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
-    const JournalFileOptions& options) {
-  os::FileDescriptor file(::open(options.path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
-  if (!file) {
-    return tl::unexpected("cannot record to " + options.path + ": " + std::strerror(errno) +
-                          "; choose a file in a folder that can be written");
+// The file and the thread's side of it.
+class JournalFile::Writer {
+ public:
+  Writer(const JournalFileOptions& options, os::FileDescriptor file, os::FileDescriptor wake)
+      : options_(options),
+        file_(std::move(file)),
+        wake_(std::move(wake)),
+        ring_(options.ring_bytes) {}
+
+  enum class Failure : int { none, ring_full, write_failed, stalled };
+
+  // Tick thread.
+  bool write(std::span<const std::byte> bytes) { return ring_.write(bytes); }
+  void close() {
+    closing_.store(true, std::memory_order_release);
+    signal();
   }
-  if (const std::string why = objection(file.get(), options); !why.empty()) {
-    return tl::unexpected("cannot record to " + options.path + ": " + why);
+  // An eventfd's counter cannot be full with this many writes, so the call never waits.
+  void signal() {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t ignored = ::write(wake_.get(), &one, sizeof one);
   }
-  os::FileDescriptor wake(::eventfd(0, EFD_CLOEXEC));
-  if (!wake) return tl::unexpected("cannot record: " + std::string(std::strerror(errno)));
-  return std::unique_ptr<JournalFile>(new JournalFile(options, std::move(file), std::move(wake)));
+
+  // Any thread.
+  void fail(Failure failure, int error_number) {
+    error_number_.store(error_number, std::memory_order_relaxed);
+    Failure none = Failure::none;
+    failure_.compare_exchange_strong(none, failure, std::memory_order_acq_rel);
+  }
+  bool failed() const { return failure_.load(std::memory_order_acquire) != Failure::none; }
+  std::string problem() const;
+  std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
+
+  // The journal's thread.
+  void run();
+
+ private:
+  bool drain();
+  bool wait_writable();
+  void wait_for_work();
+  bool sync();
+
+  const JournalFileOptions options_;
+  const os::FileDescriptor file_, wake_;
+  ByteRing ring_;
+  std::atomic<std::uint64_t> written_{0};
+  std::atomic<Failure> failure_{Failure::none};
+  std::atomic<int> error_number_{0};
+  std::atomic<bool> closing_{false};
+  // The thread's own.
+  bool unsynced_ = false;
+  Clock::time_point synced_ = Clock::now();
+};
+
+std::string JournalFile::Writer::problem() const {
+  const std::string begin = "recording to " + options_.path + " ended early: ";
+  switch (failure_.load(std::memory_order_acquire)) {
+    case Failure::none:
+      return {};
+    case Failure::ring_full:
+      return begin + "the disk is too slow; play goes on";
+    case Failure::write_failed:
+      return begin + errno_text(error_number_.load(std::memory_order_relaxed)) + "; play goes on";
+    case Failure::stalled:
+      return begin + "the disk, or the pipe's reader, did not take the rest in time";
+  }
+  return {};
 }
 
-JournalFile::JournalFile(const JournalFileOptions& options, os::FileDescriptor file,
-                         os::FileDescriptor wake)
-    : path_(options.path),
-      file_(std::move(file)),
-      wake_(std::move(wake)),
-      ring_(options.ring_bytes),
-      thread_([this] { write_loop(); }) {
+void JournalFile::Writer::run() {
+  while (true) {
+    const bool closing = closing_.load(std::memory_order_acquire);
+    if (!drain()) return;
+    const bool due = Clock::now() - synced_ >= options_.sync_period;
+    if ((closing || (unsynced_ && due)) && !sync()) return;
+    if (closing) return;
+    wait_for_work();
+  }
+}
+
+// Until something was written, or what was written must be synced.
+void JournalFile::Writer::wait_for_work() {
+  int timeout_ms = -1;
+  if (unsynced_) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(synced_ + options_.sync_period - Clock::now());
+    timeout_ms = static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 1'000'000));
+  }
+  pollfd ready{wake_.get(), POLLIN, 0};
+  if (::poll(&ready, 1, timeout_ms) <= 0) return;
+  std::uint64_t count = 0;
+  [[maybe_unused]] const ssize_t ignored = ::read(wake_.get(), &count, sizeof count);
+}
+
+// False if the disk failed. A pipe or a device has no disk to wait for: EINVAL.
+bool JournalFile::Writer::sync() {
+  const bool ok = ::fdatasync(file_.get()) == 0 || errno == EINVAL;
+  if (!ok) fail(Failure::write_failed, errno);
+  unsynced_ = false;
+  synced_ = Clock::now();
+  return ok;
+}
+
+// A pipe is full: until its reader takes something. False when it has not until the end.
+bool JournalFile::Writer::wait_writable() {
+  constexpr int kLook_ms = 20;  // at whether the end has come meanwhile
+  std::optional<Clock::time_point> closing_since;
+  while (true) {
+    pollfd ready{file_.get(), POLLOUT, 0};
+    if (::poll(&ready, 1, kLook_ms) != 0) return true;  // write() says what is wrong, if anything
+    if (!closing_.load(std::memory_order_acquire)) continue;
+    const auto now = Clock::now();
+    if (!closing_since) closing_since = now;
+    if (now - *closing_since < options_.close_patience) continue;
+    fail(Failure::stalled, 0);
+    return false;
+  }
+}
+
+// False when the file can take no more. A record cut in two by that is where its reader stops.
+bool JournalFile::Writer::drain() {
+  for (auto piece = ring_.peek(); !piece.empty(); piece = ring_.peek()) {
+    const ssize_t size = ::write(file_.get(), piece.data(), piece.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && errno == EAGAIN) {
+      if (!wait_writable()) return false;
+      continue;
+    }
+    if (size <= 0) {
+      fail(Failure::write_failed, errno);
+      return false;
+    }
+    ring_.consume(static_cast<std::size_t>(size));
+    written_.fetch_add(static_cast<std::uint64_t>(size), std::memory_order_relaxed);
+    unsynced_ = true;
+  }
+  return true;
+}
+
+// --- the tick's side
+// -----------------------------------------------------------------------------
+
+// O_NONBLOCK: a pipe without a reader is refused, a full one waited for by poll(), which can be
+// ended. Of files it says nothing.
+tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
+    const JournalFileOptions& options) {
+  constexpr mode_t kMode = 0666;  // less what the umask says
+  const auto refused = [&](const std::string& why) {
+    return tl::unexpected("cannot record to " + options.path + ": " + why);
+  };
+  os::FileDescriptor file(
+      ::open(options.path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, kMode));
+  if (!file && errno == ENXIO) return refused("nobody reads this pipe; start its reader first");
+  if (!file) return refused(errno_text(errno) + "; choose a file in a folder that can be written");
+  if (const std::string why = objection(file.get(), options); !why.empty()) return refused(why);
+  os::FileDescriptor wake(::eventfd(0, EFD_CLOEXEC));
+  if (!wake) return tl::unexpected("cannot record: " + errno_text(errno));
+  return std::unique_ptr<JournalFile>(new JournalFile(
+      options, std::make_shared<Writer>(options, std::move(file), std::move(wake))));
+}
+
+JournalFile::JournalFile(const JournalFileOptions& options, std::shared_ptr<Writer> writer)
+    : close_patience_(options.close_patience), writer_(std::move(writer)) {
   encoded_.reserve(std::size_t{2} << 20);
+  std::promise<void> end;
+  ended_ = end.get_future();
+  thread_ = std::thread([writer = writer_, end = std::move(end)]() mutable {
+    writer->run();
+    end.set_value();
+  });
 }
 
 JournalFile::~JournalFile() {
@@ -80,80 +251,40 @@ void JournalFile::add(const wire::JournalEntry& entry) {
 
 void JournalFile::push() {
   if (encoded_.empty()) return;
-  if (ring_.write(encoded_)) {
-    signal();
+  if (writer_->write(encoded_)) {
+    writer_->signal();
   } else {
     ++dropped_;
-    fail(Failure::ring_full, 0);
+    writer_->fail(Writer::Failure::ring_full, 0);
   }
   encoded_.clear();
 }
 
+// The thread gives a full pipe close_patience; a call of the system that does not return is left
+// alone after twice that, with what it needs.
 void JournalFile::close() {
   if (!thread_.joinable()) return;
   if (!failed()) {
     encoder_.flush(encoded_);
     push();
   }
-  closing_.store(true, std::memory_order_release);
-  signal();
-  thread_.join();
-}
-
-// An eventfd's counter cannot be full with this many writes, so the call never waits.
-void JournalFile::signal() {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t ignored = ::write(wake_.get(), &one, sizeof one);
-}
-
-void JournalFile::fail(Failure failure, int error_number) {
-  error_number_.store(error_number, std::memory_order_relaxed);
-  Failure none = Failure::none;
-  failure_.compare_exchange_strong(none, failure, std::memory_order_acq_rel);
+  writer_->close();
+  if (ended_.wait_for(2 * close_patience_) == std::future_status::ready) {
+    thread_.join();
+  } else {
+    writer_->fail(Writer::Failure::stalled, 0);
+    thread_.detach();
+  }
 }
 
 std::string JournalFile::problem() const {
-  switch (failure_.load(std::memory_order_acquire)) {
-    case Failure::none:
-      return {};
-    case Failure::ring_full:
-      return "recording to " + path_ + " ended early: the disk is too slow; play goes on";
-    case Failure::write_failed:
-      return "recording to " + path_ +
-             " ended early: " + std::strerror(error_number_.load(std::memory_order_relaxed)) +
-             "; play goes on";
-  }
-  return {};
+  return writer_->problem();
 }
-
-void JournalFile::write_loop() {
-  while (true) {
-    const bool closing = closing_.load(std::memory_order_acquire);
-    if (!drain()) return;
-    if (closing) return sync();
-    std::uint64_t count = 0;
-    [[maybe_unused]] const ssize_t ignored = ::read(wake_.get(), &count, sizeof count);
-  }
+bool JournalFile::failed() const {
+  return writer_->failed();
 }
-
-// A pipe or a device has no disk to wait for: EINVAL.
-void JournalFile::sync() {
-  if (::fdatasync(file_.get()) != 0 && errno != EINVAL) fail(Failure::write_failed, errno);
-}
-
-// False when the file can take no more. A record cut in two by that is where its reader stops.
-bool JournalFile::drain() {
-  for (auto piece = ring_.peek(); !piece.empty(); piece = ring_.peek()) {
-    const ssize_t size = ::write(file_.get(), piece.data(), piece.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) {
-      fail(Failure::write_failed, errno);
-      return false;
-    }
-    ring_.consume(static_cast<std::size_t>(size));
-    written_.fetch_add(static_cast<std::uint64_t>(size), std::memory_order_relaxed);
-  }
-  return true;
+std::uint64_t JournalFile::bytes_written() const {
+  return writer_->written();
 }
 
 }  // namespace server

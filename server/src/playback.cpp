@@ -14,6 +14,12 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::open(const std::s
 
 tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
     std::vector<std::byte> file, const std::string& name) {
+  if (const auto format = wire::other_journal_format(file)) {
+    return tl::unexpected(name + " was recorded by another release: it needs one that reads " +
+                          "recordings of " + wire::to_text(*format) + ", this one reads " +
+                          wire::to_text(wire::journal_format()) +
+                          "; replay it with the release that recorded it");
+  }
   std::unique_ptr<Playback> playback(new Playback(std::move(file), name));
   const auto first = playback->reader_.next();
   const auto* header = first ? std::get_if<wire::JournalHeader>(&*first) : nullptr;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "lockstep.h"
+#include "os/file_descriptor.h"
 #include "process.h"
 
 namespace server {
@@ -233,6 +234,36 @@ TEST(ServerProgram, FailsWhenItsRecordingEndedEarly) {
   EXPECT_EQ(full.wait(), 1);
   EXPECT_NE(full.output().find("recording to /dev/full ended early"), std::string::npos)
       << full.output();
+}
+
+// Its reader is there, and takes nothing.
+TEST(ServerProgram, EndsOnSigtermThoughNobodyReadsItsRecording) {
+  const std::string path = temp_path("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const os::FileDescriptor reader(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  ASSERT_GE(::fcntl(reader.get(), F_SETPIPE_SZ, 4096), 4096);
+  RunningServer server({"--team0", "computer", "--team1", "computer", "--record", path});
+  ProbeClient watcher(server.port());  // the control port answers meanwhile
+  ASSERT_TRUE(watcher.join());
+  while (const auto snapshot = watcher.snapshot()) {
+    if (snapshot->tick > 1'000) break;  // of both computers' rods: more than the pipe takes
+  }
+  server->kill(SIGTERM);
+  EXPECT_EQ(server->wait(), 1);
+  EXPECT_NE(server->output().find("ended early"), std::string::npos) << server->output();
+  std::remove(path.c_str());
+}
+
+TEST(ServerProgram, SaysThatAnotherServerWritesTheRecording) {
+  const std::string path = temp_path("both.sfr");
+  RunningServer server({"--record", path});
+  Process second(serve({"--port", "0", "--record", path, "--overwrite"}));
+  EXPECT_EQ(second.wait(), 2);
+  EXPECT_NE(second.output().find("another server is writing it"), std::string::npos)
+      << second.output();
+  server->kill(SIGTERM);
+  EXPECT_EQ(server->wait(), 0);
+  std::remove(path.c_str());
 }
 
 TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {

@@ -1,25 +1,30 @@
 // Recording and replay: the same bits, what is cut short, what differs, what cannot be written.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 
 #include "journal_file.h"
 #include "lockstep.h"
+#include "os/file_descriptor.h"
 #include "wire/read_file.h"
 
 namespace {
 
 std::atomic<int> fdatasyncs{0};
-std::atomic<bool> disk_fails{false};
+std::atomic<bool> disk_fails{false}, disk_hangs{false};
 
 }  // namespace
 
-// In place of the C library's, in this program: counted, and failing on demand.
+// In place of the C library's, in this program: counted, failing or not returning on demand.
 extern "C" int fdatasync(int fd) {
   ++fdatasyncs;
+  disk_hangs.wait(true);
   if (!disk_fails) return static_cast<int>(::syscall(SYS_fdatasync, fd));
   errno = EIO;
   return -1;
@@ -27,6 +32,8 @@ extern "C" int fdatasync(int fd) {
 
 namespace server {
 namespace {
+
+using namespace std::chrono_literals;
 
 struct Recorded {
   std::string path;
@@ -175,6 +182,45 @@ TEST(Recording, RefusesAFileThatIsNoRecording) {
   EXPECT_FALSE(Playback::open("/nowhere/at/all"));
 }
 
+// Bit by bit, as of IEEE 802.3.
+std::uint32_t crc32(std::span<const std::byte> bytes) {
+  std::uint32_t crc = ~0u;
+  for (const std::byte b : bytes) {
+    crc ^= std::to_integer<std::uint32_t>(b);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1u) != 0 ? 0xEDB88320u : 0u);
+  }
+  return ~crc;
+}
+
+// Another layout hash, or another version, and the checksum that goes with it.
+TEST(Recording, OfAnotherReleaseSaysWhichFormatItNeeds) {
+  const Recorded live = record(10);
+  const std::vector<std::byte> whole = contents(live.path);
+  ASSERT_FALSE(wire::other_journal_format(whole));
+  for (const std::size_t at : {13u, 15u}) {  // of the version, of the layout's hash
+    std::vector<std::byte> other = whole;
+    other[at] ^= std::byte{0x55};
+    EXPECT_FALSE(wire::other_journal_format(other)) << "damaged, not of another release";
+    const std::size_t size = std::to_integer<std::size_t>(other[0]);
+    const std::uint32_t crc = crc32(std::span(other).subspan(8, size));
+    for (std::size_t i = 0; i < 4; ++i) other[4 + i] = static_cast<std::byte>(crc >> 8 * i);
+    const auto format = wire::other_journal_format(other);
+    ASSERT_TRUE(format);
+    const auto opened = Playback::from_bytes(other, "old.sfr");
+    ASSERT_FALSE(opened);
+    for (const auto& f : {*format, wire::journal_format()}) {
+      EXPECT_NE(opened.error().find(wire::to_text(f)), std::string::npos) << opened.error();
+    }
+    // It is a recording all the same: --overwrite may replace it, and nothing else does.
+    std::ofstream(live.path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(other.data()),
+               static_cast<std::streamsize>(other.size()));
+    EXPECT_NE(JournalFile::create({.path = live.path}).error().find("--overwrite"),
+              std::string::npos);
+  }
+  std::remove(live.path.c_str());
+}
+
 std::vector<std::byte> journal(const std::vector<wire::JournalEntry>& entries) {
   wire::JournalEncoder encoder;
   std::vector<std::byte> out;
@@ -266,6 +312,105 @@ TEST(JournalFile, WaitsForTheDiskAtItsEndAndSaysWhenThatFails) {
     EXPECT_EQ(file->problem().find("ended early: Input/output error") != std::string::npos, fails)
         << file->problem();
   }
+  std::remove(path.c_str());
+}
+
+TEST(JournalFile, HasTheDiskTakeItAgainAndAgainWhileItIsWritten) {
+  const std::string path = temp_path("often.sfr");
+  auto file = JournalFile::create({.path = path, .sync_period = 1ms}).value();
+  file->add(wire::JournalHeader{});
+  fdatasyncs = 0;
+  const auto until = std::chrono::steady_clock::now() + 20s;
+  std::uint64_t tick = 0;
+  while (fdatasyncs < 5 && std::chrono::steady_clock::now() < until) {
+    file->add(wire::JournalTick{tick++, {}, {}});
+  }
+  EXPECT_GE(fdatasyncs, 5) << "and it is not closed yet";
+  file->close();
+  EXPECT_EQ(file->problem(), "");
+  std::remove(path.c_str());
+}
+
+TEST(JournalFile, LeavesTheDiskAloneBetweenTwoPeriods) {
+  const std::string path = temp_path("seldom.sfr");
+  auto file = JournalFile::create({.path = path, .sync_period = 1h}).value();
+  fdatasyncs = 0;
+  file->add(wire::JournalHeader{});
+  for (std::uint64_t tick = 0; tick < 1000; ++tick) file->add(wire::JournalTick{tick, {}, {}});
+  file->close();
+  EXPECT_EQ(fdatasyncs, 1) << "at its end alone";
+  std::remove(path.c_str());
+}
+
+TEST(JournalFile, IsWrittenByOneServerOnly) {
+  const std::string path = temp_path("twice.sfr");
+  auto first = JournalFile::create({.path = path}).value();
+  for (const bool overwrite : {false, true}) {
+    const auto second = JournalFile::create({.path = path, .overwrite = overwrite});
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().find("another server is writing it"), std::string::npos);
+  }
+  first->add(wire::JournalHeader{});
+  first->close();
+  EXPECT_EQ(first->problem(), "");
+  EXPECT_FALSE(contents(path).empty());
+  first.reset();
+  EXPECT_TRUE(JournalFile::create({.path = path, .overwrite = true})) << "the lock goes with it";
+  std::remove(path.c_str());
+}
+
+TEST(JournalFile, IsReadableForWhomTheUmaskSays) {
+  const std::string path = temp_path("mode.sfr");
+  const mode_t before = ::umask(0);
+  for (const mode_t mask : {0022u, 0077u, 0002u}) {
+    ::umask(mask);
+    auto file = JournalFile::create({.path = path}).value();
+    struct stat about {};
+    EXPECT_EQ(::stat(path.c_str(), &about), 0);
+    EXPECT_EQ(about.st_mode & 0777u, 0666u & ~mask);
+    file.reset();
+    std::remove(path.c_str());
+  }
+  ::umask(before);
+}
+
+TEST(JournalFile, RefusesAPipeThatNobodyReads) {
+  const std::string path = temp_path("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const auto file = JournalFile::create({.path = path});
+  ASSERT_FALSE(file);
+  EXPECT_NE(file.error().find("nobody reads this pipe"), std::string::npos) << file.error();
+  std::remove(path.c_str());
+}
+
+// Its reader is there and takes nothing: 64 KiB fit, then it is full. The end has a bound.
+TEST(JournalFile, EndsInTimeThoughItsPipeIsFull) {
+  const std::string path = temp_path("full_pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const os::FileDescriptor reader(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  auto file = JournalFile::create({.path = path, .close_patience = 50ms}).value();
+  file->add(wire::JournalHeader{});
+  file->add(wire::JournalKeyframe{0, std::vector<std::byte>(300'000)});
+  const auto before = std::chrono::steady_clock::now();
+  file->close();
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 5s);
+  EXPECT_NE(file->problem().find("did not take the rest in time"), std::string::npos);
+  std::remove(path.c_str());
+}
+
+// A call of the system that does not return, as of a network's file system without its network.
+TEST(JournalFile, EndsInTimeThoughTheDiskHangs) {
+  const std::string path = temp_path("hangs.sfr");
+  auto file = JournalFile::create({.path = path, .close_patience = 20ms}).value();
+  file->add(wire::JournalHeader{});
+  disk_hangs = true;
+  const auto before = std::chrono::steady_clock::now();
+  file->close();
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 5s);
+  EXPECT_NE(file->problem().find("did not take the rest in time"), std::string::npos);
+  file.reset();
+  disk_hangs = false;
+  disk_hangs.notify_all();
   std::remove(path.c_str());
 }
 

@@ -1,4 +1,5 @@
 #include <array>
+#include <cstdio>
 #include <limits>
 
 #include "codec.h"
@@ -70,6 +71,34 @@ std::uint32_t journal_layout_hash() {
     return layout_hash(all);
   }();
   return hash;
+}
+
+JournalFormat journal_format() {
+  return {static_cast<std::uint16_t>(kJournalVersion), journal_layout_hash()};
+}
+
+std::string to_text(const JournalFormat& format) {
+  std::array<char, 48> text;
+  std::snprintf(text.data(), text.size(), "version %u, layout %08x", unsigned{format.version},
+                unsigned{format.layout_hash});
+  return text.data();
+}
+
+// Kind, magic, version and layout hash begin every header, in every version: 1 + 4 + 2 + 4 bytes.
+std::optional<JournalFormat> other_journal_format(std::span<const std::byte> file) {
+  constexpr std::size_t kIdentity = 11;
+  if (file.size() < kRecordHead + kIdentity) return std::nullopt;
+  const std::size_t size = get32(file);
+  const auto rest = file.subspan(kRecordHead);
+  if (size < kIdentity || size > rest.size() || crc32(rest.first(size)) != get32(file.subspan(4)) ||
+      rest[0] != static_cast<std::byte>(JournalKind::header) ||
+      get32(rest.subspan(1)) != kJournalMagic) {
+    return std::nullopt;
+  }
+  const auto version = static_cast<std::uint16_t>(get32(rest.subspan(5)) & 0xffffu);
+  const JournalFormat format{version, get32(rest.subspan(7))};
+  if (format == journal_format()) return std::nullopt;
+  return format;
 }
 
 std::nullopt_t JournalReader::fail(const std::string& what) {

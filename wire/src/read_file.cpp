@@ -1,13 +1,27 @@
 #include "wire/read_file.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
 namespace wire {
+namespace {
 
+// What a pipe's writer may take until its next bytes.
+constexpr int kPatience_ms = 10'000;
+
+struct File {
+  int descriptor;
+  ~File() { ::close(descriptor); }
+};
+
+}  // namespace
+
+// Never waits for ever: a pipe is opened whether or not anybody writes it.
 tl::expected<std::vector<std::byte>, std::string> read_file(const std::string& path,
                                                             std::size_t max_bytes) {
   const auto error = [&](const std::string& what) { return tl::unexpected(path + ": " + what); };
@@ -15,25 +29,31 @@ tl::expected<std::vector<std::byte>, std::string> read_file(const std::string& p
     return error(std::string("cannot be ") + verb + " (" + std::strerror(errno) +
                  "); check its name and permissions.");
   };
-  const auto close = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
-  if (!file) return system_error("opened");
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) return system_error("opened");
+  const File file{descriptor};
 
   // Read until the end rather than ask for the size: a pipe or a device has none.
   constexpr std::size_t kChunk = 1 << 16;
   std::vector<std::byte> bytes;
-  for (std::size_t got = 1; got > 0;) {
+  while (true) {
+    pollfd ready{file.descriptor, POLLIN, 0};
+    const int polled = ::poll(&ready, 1, kPatience_ms);
+    if (polled < 0 && errno == EINTR) continue;
+    if (polled < 0) return system_error("read");
+    if (polled == 0) return error("nothing came for 10 s; check who writes it.");
     const std::size_t size = bytes.size();
     bytes.resize(size + kChunk);
-    got = std::fread(bytes.data() + size, 1, kChunk, file.get());
-    bytes.resize(size + got);
+    const ssize_t got = ::read(file.descriptor, bytes.data() + size, kChunk);
+    bytes.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (got < 0) return system_error("read");
+    if (got == 0) return bytes;
     if (bytes.size() > max_bytes) {
       return error("larger than " + std::to_string(max_bytes) +
                    " bytes; it is not what is expected here.");
     }
   }
-  if (std::ferror(file.get())) return system_error("read");
-  return bytes;
 }
 
 }  // namespace wire

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -37,6 +40,18 @@ TEST(ReadFile, AMissingFileAndADirectoryAreNamedInTheError) {
     EXPECT_TRUE(bytes.error().starts_with(path + ": ")) << bytes.error();
     EXPECT_TRUE(bytes.error().ends_with(".")) << bytes.error();
   }
+}
+
+// As from a shell's <(command).
+TEST(ReadFile, APipeIsReadToItsEnd) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  ASSERT_EQ(::write(ends[1], "abc", 3), 3);
+  ::close(ends[1]);
+  const auto bytes = read_file("/dev/fd/" + std::to_string(ends[0]), 10);
+  ::close(ends[0]);
+  ASSERT_TRUE(bytes.has_value()) << bytes.error();
+  EXPECT_EQ(bytes->size(), 3u);
 }
 
 TEST(ReadFile, AnEndlessDeviceIsCutAtTheCap) {

@@ -95,6 +95,18 @@ struct JournalTickChange {
   std::vector<JournalCommand> commands;
 };
 
+// What a recording must be of to be read: a program knows one format.
+struct JournalFormat {
+  std::uint16_t version = 0;
+  std::uint32_t layout_hash = 0;  // of all the journal's tables
+  bool operator==(const JournalFormat&) const = default;
+};
+JournalFormat journal_format();
+// "version 1, layout 0123abcd"
+std::string to_text(const JournalFormat& format);
+// The format of a file that begins with a whole header, if that is another one than this program's.
+std::optional<JournalFormat> other_journal_format(std::span<const std::byte> file);
+
 // Encodes entries to bytes ready to append to a file. Ticks are coded as changes against the tick
 // before and gathered in records of up to kJournalBatch; any other entry, and flush(), closes the
 // open record.
