@@ -21,6 +21,7 @@ class ByteWriter {
     out_.push_back(static_cast<std::byte>(x));
   }
   void flag(const bool& x) { choice(x, 2); }
+  void man(const int& x, int end) { choice(x + 1, end + 1); }
   void count(const std::uint64_t& x) {
     for (int i = 0; i < 8; ++i) out_.push_back(static_cast<std::byte>(x >> (8 * i)));
   }
@@ -45,6 +46,12 @@ class ByteReader {
     if (require(value < end)) x = static_cast<T>(value);
   }
   void flag(bool& x) { choice(x, 2); }
+  // An index in [0, end), or -1 for none.
+  void man(int& x, int end) {
+    int above = 0;
+    choice(above, end + 1);
+    x = above - 1;
+  }
   void count(std::uint64_t& x) { x = take(8); }
   // A number in [low, high]; NaN is an error.
   void real(double& x, double low, double high) {

@@ -7,17 +7,38 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x33'30'4d'42'46'53;  // "SFBM03"
+constexpr std::uint64_t kMagic = 0x34'30'4d'42'46'53;  // "SFBM04"
+
+template <class Archive, class R>
+void visit_rules(Archive& archive, R& rules) {
+  archive.choice(rules.set, kRuleSets);
+  archive.choice(rules.goals_to_win, kMaxScore + 1);
+  archive.choice(rules.max_goals, kMaxScore + 1);
+  archive.choice(rules.lead, kMaxScore + 1);
+  archive.choice(rules.sets_to_win, kMaxSets + 1);
+  archive.real(rules.match_seconds, 0.0, kMaxDuration);
+  archive.flag(rules.golden_goal);
+  archive.flag(rules.change_sides);
+  archive.real(rules.dead_ball_seconds, 0.0, kMaxDuration);
+  archive.real(rules.still_seconds, 0.0, kMaxDuration);
+  archive.real(rules.possession_midfield_seconds, 0.0, kMaxDuration);
+  archive.real(rules.possession_seconds, 0.0, kMaxDuration);
+  archive.choice(rules.time_outs, kMaxCount + 1);
+  archive.real(rules.time_out_seconds, 0.0, kMaxDuration);
+  archive.choice(rules.spin, kSpinRules);
+  archive.flag(rules.jarring);
+  archive.real(rules.ceremony_seconds, 0.0, kMaxDuration);
+  archive.real(rules.end_seconds, 0.0, kMaxDuration);
+  archive.real(rules.idle_seconds, 0.0, kMaxDuration);
+  archive.real(rules.attract_seconds, 0.0, kMaxDuration);
+}
 
 template <class Archive, class Count, class Desc, class State>
 void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
   archive.count(magic);
   archive.choice(desc.layout, kLayouts);
-  archive.choice(desc.rules.goals_to_win, kMaxScore + 1);
-  archive.choice(desc.rules.max_goals, kMaxScore + 1);
-  archive.real(desc.rules.dead_ball_seconds, 0.0, kMaxDuration);
-  archive.real(desc.rules.ceremony_seconds, 0.0, kMaxDuration);
-  archive.real(desc.rules.end_seconds, 0.0, kMaxDuration);
+  archive.choice(desc.mode, kModes);
+  visit_rules(archive, desc.rules);
   MatchState::visit(archive, state);
 }
 
@@ -52,8 +73,10 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
   if (!reader.ok() || magic != kMagic) {
     return refuse("These bytes are not a saved match of this version.");
   }
-  if (saved_desc.layout != desc.layout || !(saved_desc.rules == desc.rules)) {
-    return refuse("The saved match has another table or other rules; create the match with those.");
+  if (saved_desc.layout != desc.layout || saved_desc.mode != desc.mode ||
+      !(saved_desc.rules == desc.rules)) {
+    return refuse(
+        "The saved match has another table, mode or other rules; create the match with those.");
   }
   if (saved.built == state.built && saved.first == state.first) {
     if (auto result = world->restore(reader.rest()); !result) return result;

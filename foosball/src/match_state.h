@@ -6,86 +6,202 @@
 
 #include "foosball/match.h"
 #include "gestures.h"
+#include "idle_watch.h"
 #include "referee.h"
+#include "spin_watch.h"
 
 namespace foosball {
+
+// A score that fits a byte and no match reaches.
+inline constexpr int kMaxScore = 99;
+inline constexpr int kMaxSets = 9;
+inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counted no further
+inline constexpr double kMaxDuration = 3600.0;  // [s]
+// A rod turned further than this [rad] has been held by nobody: two million revolutions.
+inline constexpr double kMaxAngle = 1e7;
+
+// A man's touch of the ball.
+struct Touch {
+  int rod = 0, man = 0;
+  std::uint64_t tick = 0;  // MatchState::tick at its beginning
+  bool any = false;        // since the ball was put in play
+
+  template <class Archive, class Self>
+  static void visit(Archive& archive, Self& self) {
+    archive.choice(self.rod, kRods);
+    archive.choice(self.man, kMaxMenOnRod);
+    archive.count(self.tick);
+    archive.flag(self.any);
+  }
+};
+
+// What the score is made of.
+struct Tally {
+  std::array<int, kTeams> score{};      // goals in this set
+  std::array<int, kTeams> sets{};       // won
+  std::array<int, kTeams> time_outs{};  // taken in this set
+  std::array<int, kTeams> jars{};       // in the match
+  std::uint64_t set_ticks = 0;          // of play in this set
+  bool golden_goal = false;             // the next goal decides
+  bool set_over = false;                // at a ceremony: a new set follows
+
+  template <class Archive, class Self>
+  static void visit(Archive& archive, Self& self) {
+    for (int team = 0; team < kTeams; ++team) {
+      archive.choice(self.score[team], kMaxScore + 1);
+      archive.choice(self.sets[team], kMaxSets + 1);
+      archive.choice(self.time_outs[team], kMaxCount + 1);
+      archive.choice(self.jars[team], kMaxCount + 1);
+    }
+    archive.count(self.set_ticks);
+    archive.flag(self.golden_goal);
+    archive.flag(self.set_over);
+  }
+};
 
 struct MatchState {
   std::uint64_t tick = 0;
   Screen screen = Screen::logo;
   bool paused = false;
-  std::array<int, kTeams> score{};
+  Tally tally;
   std::array<int, kTeams> character{1, 1};
   std::array<int, kTeams> built{1, 1};  // the characters that the world was made with
   int first = 0;  // the team whose side the world was made from: who served first (table_world.h)
   std::array<bool, kTeams> confirmed{};
+  std::array<bool, kTeams> computer{};  // plays the team
+  bool attract = false;
+  int rung = 0;  // of the ladder
   std::uint64_t screen_ticks = 0;
   std::uint64_t play_ticks = 0;
   int last_scorer = 0;
+  IdleWatch idle;
 
   // The ball.
   bool ball_in_play = false;
-  bool ball_parked = true;     // else it lies where it is: in play, or in the goal it went into
-  int serve_rod = 0;           // the rod at which the ball is to be put in play, and
-  std::uint64_t serve_in = 0;  // after how many ticks; counts while the ball is not in play
-  int last_server = 0;         // team
-  int last_toucher = 0;        // team
-  bool served = false;         // from a midfield: two men must touch before a goal counts
-  std::uint64_t touched = 0;   // men that touched since the ball was put in play: bit rod * 5 + man
-  BallTouches touching;        // the parts of men in contact with the ball now
-  DeadBallWatch dead_ball;
+  bool ball_parked = true;        // else it lies where it is: in play, or in the goal it went into
+  bool ball_in_goal = false;      // it has scored, or is about to (review_ticks)
+  int serve_rod = 0;              // the rod at which the ball is to be put in play,
+  int serve_man = -1;             // the man, or -1: the middle one; and
+  std::uint64_t serve_in = 0;     // after how many ticks; counts while the ball is not in play
+  std::uint64_t serve_waits = 0;  // ticks for which men have filled the place
+  int last_server = 0;            // team
+  int last_toucher = 0;           // team
+  bool served = false;            // from a midfield: two men must touch before a goal counts
+  std::uint64_t touched = 0;  // men that touched since the ball was put in play: bit rod * 5 + man
+  BallTouches touching;       // the parts of men in contact with the ball now
+  Touch touch;                // the last
+  std::array<Touch, kTeams> touch_of{};  // the last of each team
+  bool shot_pending = false;             // it has not been told whether that was a shot
+  BallWatch watch;
+  std::uint64_t review_ticks = 0;  // for so long the goal waits for the rod that shot to stop
+
+  // Stops.
+  std::uint64_t time_out_left = 0;  // ticks; 0: none
+  int time_out_team = 0;
+  std::array<bool, kTeams> ready{};  // in a time-out: wants to go on
+  bool fouled = false;
+  Foul last_foul{};
+  int last_foul_team = 0;
+
+  // What was last seen.
+  Shot last_goal, last_shot;
+  bool last_goal_own = false;
+  int feed_rod = 3, feed_man = -1;  // training: where the ball is served
 
   // The rods: where each is held while no hand is on it.
   std::array<RodTarget, kRods> hold{};
   std::array<RodGestures, kRods> gestures{};
+  std::array<SpinWatch, kRods> spins{};
+  std::array<bool, kRods> beyond{};  // the hand has pushed the rod against its stop
 
   std::uint64_t random = 0;
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self);
+
+ private:
+  template <class Archive, class Self>
+  static void visit_ball(Archive& archive, Self& self);
+  template <class Archive, class Self>
+  static void visit_stops(Archive& archive, Self& self);
 };
 
-// A score that fits a byte and no match reaches.
-inline constexpr int kMaxScore = 99;
-inline constexpr double kMaxDuration = 3600.0;  // [s]
-// A rod turned further than this [rad] has been held by nobody: two million revolutions.
-inline constexpr double kMaxAngle = 1e7;
+template <class Archive, class S>
+void visit_shot(Archive& archive, S& shot) {
+  archive.choice(shot.team, kTeams);
+  archive.choice(shot.rod, kRods);
+  archive.choice(shot.man, kMaxMenOnRod);
+  archive.real(shot.speed, 0.0, 1e4);
+  archive.real(shot.angle, -7.0, 7.0);
+}
 
 template <class Archive, class Self>
 void MatchState::visit(Archive& archive, Self& self) {
   archive.count(self.tick);
   archive.choice(self.screen, kScreens);
   archive.flag(self.paused);
+  Tally::visit(archive, self.tally);
   for (int team = 0; team < kTeams; ++team) {
-    archive.choice(self.score[team], kMaxScore + 1);
     archive.choice(self.character[team], kCharacters);
     archive.choice(self.built[team], kCharacters);
     archive.flag(self.confirmed[team]);
+    archive.flag(self.computer[team]);
   }
   archive.choice(self.first, kTeams);
+  archive.flag(self.attract);
+  archive.choice(self.rung, kLadderRungs);
   archive.count(self.screen_ticks);
   archive.count(self.play_ticks);
   archive.choice(self.last_scorer, kTeams);
-
-  archive.flag(self.ball_in_play);
-  archive.flag(self.ball_parked);
-  archive.choice(self.serve_rod, kRods);
-  archive.count(self.serve_in);
-  archive.choice(self.last_server, kTeams);
-  archive.choice(self.last_toucher, kTeams);
-  archive.flag(self.served);
-  archive.count(self.touched);
-  BallTouches::visit(archive, self.touching);
-  DeadBallWatch::visit(archive, self.dead_ball);
-
+  IdleWatch::visit(archive, self.idle);
+  visit_ball(archive, self);
+  visit_stops(archive, self);
   for (int rod = 0; rod < kRods; ++rod) {
     auto& hold = self.hold[rod];
     archive.flag(hold.live);
     archive.real(hold.slide, -1.0, 1.0);
     archive.real(hold.angle, -2.0 * kMaxAngle, 2.0 * kMaxAngle);
     RodGestures::visit(archive, self.gestures[rod]);
+    SpinWatch::visit(archive, self.spins[rod]);
+    archive.flag(self.beyond[rod]);
   }
   archive.count(self.random);
+}
+
+template <class Archive, class Self>
+void MatchState::visit_ball(Archive& archive, Self& self) {
+  archive.flag(self.ball_in_play);
+  archive.flag(self.ball_parked);
+  archive.flag(self.ball_in_goal);
+  archive.choice(self.serve_rod, kRods);
+  archive.man(self.serve_man, kMaxMenOnRod);
+  archive.count(self.serve_in);
+  archive.count(self.serve_waits);
+  archive.choice(self.last_server, kTeams);
+  archive.choice(self.last_toucher, kTeams);
+  archive.flag(self.served);
+  archive.count(self.touched);
+  BallTouches::visit(archive, self.touching);
+  Touch::visit(archive, self.touch);
+  for (auto& touch : self.touch_of) Touch::visit(archive, touch);
+  archive.flag(self.shot_pending);
+  BallWatch::visit(archive, self.watch);
+  archive.count(self.review_ticks);
+}
+
+template <class Archive, class Self>
+void MatchState::visit_stops(Archive& archive, Self& self) {
+  archive.count(self.time_out_left);
+  archive.choice(self.time_out_team, kTeams);
+  for (auto& ready : self.ready) archive.flag(ready);
+  archive.flag(self.fouled);
+  archive.choice(self.last_foul, kFouls);
+  archive.choice(self.last_foul_team, kTeams);
+  visit_shot(archive, self.last_goal);
+  visit_shot(archive, self.last_shot);
+  archive.flag(self.last_goal_own);
+  archive.choice(self.feed_rod, kRods);
+  archive.man(self.feed_man, kMaxMenOnRod);
 }
 
 }  // namespace foosball

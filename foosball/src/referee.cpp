@@ -1,5 +1,6 @@
 #include "referee.h"
 
+#include <bit>
 #include <cmath>
 
 namespace foosball {
@@ -7,14 +8,9 @@ namespace {
 
 // A ball that stays within this distance is almost at rest, or rocks to and fro between two men.
 constexpr double kHere = 0.08;  // [m]
-
-// ITSF: how long a ball may be held on the 5-rod and on any other.
-constexpr double kPossessionMidfield = 10.0;  // [s]
-constexpr double kPossession = 15.0;          // [s]
-
-// How far fore and aft of its axis a man can touch a resting ball: the foot at 40 degrees reaches
-// 54 mm, its edge then 30 mm above the field, where the ball is still 12 mm thick on each side.
-constexpr double kReach = 0.060;  // [m]
+// A ball slower than this out of everybody's reach has stopped its motion (8).
+constexpr double kStopped = 0.02;        // [m/s]
+constexpr double kStoppedSeconds = 1.0;  // so long, that the eye has seen it
 
 double seconds(std::uint64_t ticks) {
   return static_cast<double>(ticks) * kTick;
@@ -24,11 +20,16 @@ bool in_goal(const TableSpec& table, const vp::Vec3& ball) {
   return std::fabs(ball.y) < 0.5 * table.goal_width && ball.z < table.goal_height && ball.z > 0.0;
 }
 
-bool midfield_holds(const TableSpec& table, double x) {
-  for (const RodSpec& rod : table.rods) {
-    if (rod.line == Line::midfield && std::fabs(x - rod.x) < kReach) return true;
-  }
-  return false;
+// The goalie's rod and the defence are one place of possession (24).
+int place_of(const RodSpec& rod) {
+  const Line line = rod.line == Line::goalie ? Line::defence : rod.line;
+  return rod.team * 4 + static_cast<int>(line);
+}
+
+// Between the goal of the team and its defence, whence a ball has not been advanced (24.1).
+bool behind_defence(const TableSpec& table, int team, double x) {
+  const int rod = rods_of_team(table, team)[static_cast<std::size_t>(Line::defence)];
+  return attack_sign(team) * (x - table.rods[rod].x) < 0.0;
 }
 
 }  // namespace
@@ -45,12 +46,14 @@ bool out_of_table(const TableSpec& table, const vp::Vec3& ball) {
   return !in_goal(table, ball) || std::fabs(ball.x) > 0.5 * table.length + table.goal_depth;
 }
 
-std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& score) {
+std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& score, bool last_set,
+                          bool time_over) {
   const int leader = score[0] >= score[1] ? 0 : 1;
   const int lead = score[leader] - score[opponent(leader)];
-  const bool by_two = score[leader] >= rules.goals_to_win && lead >= 2;
+  const int needed = last_set ? rules.lead : 1;
+  const bool enough = score[leader] >= rules.goals_to_win && lead >= needed;
   const bool at_most = score[leader] >= rules.max_goals && lead >= 1;
-  return by_two || at_most ? std::optional(leader) : std::nullopt;
+  return enough || at_most || (time_over && lead >= 1) ? std::optional(leader) : std::nullopt;
 }
 
 int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server) {
@@ -63,19 +66,49 @@ int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server) {
   return (last_server == 0 ? rods0 : rods1)[kMidfield];
 }
 
-void DeadBallWatch::reset(const vp::Vec3& ball) {
-  anchor_ = ball;
-  ticks_here_ = 0;
-  ticks_untouched_ = 0;
+int rod_after_possession(const TableSpec& table, int team, Line line) {
+  const Line to = line == Line::attack ? Line::defence : Line::midfield;
+  return rods_of_team(table, opponent(team))[static_cast<std::size_t>(to)];
 }
 
-bool DeadBallWatch::update(const TableSpec& table, const Rules& rules, const vp::Vec3& ball,
-                           bool touched) {
-  if (vp::norm(ball - anchor_) > kHere) reset(ball);
-  ++ticks_here_;
-  ticks_untouched_ = touched ? 0 : ticks_untouched_ + 1;
-  const double possession = midfield_holds(table, ball.x) ? kPossessionMidfield : kPossession;
-  return seconds(ticks_untouched_) >= rules.dead_ball_seconds || seconds(ticks_here_) >= possession;
+void BallWatch::reset(const vp::Vec3& ball) {
+  *this = {};
+  anchor_ = ball;
+}
+
+BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
+                                     const Sight& sight) {
+  in_reach_ = sight.rods_in_reach != 0;
+  if (in_reach_) {
+    const int rod = std::countr_zero(sight.rods_in_reach);
+    const bool advanced =
+        rod_ == kRods || left_ || place_of(table.rods[rod]) != place_of(table.rods[rod_]);
+    if (advanced) ticks_possessed_ = 0;
+    rod_ = rod;
+    left_ = false;
+    ++ticks_possessed_;
+    ticks_unreached_ = 0;
+  } else {
+    left_ = left_ || rod_ == kRods || !behind_defence(table, table.rods[rod_].team, sight.ball.x);
+    ++ticks_unreached_;
+  }
+  if (vp::norm(sight.ball - anchor_) > kHere) {
+    anchor_ = sight.ball;
+    ticks_untouched_ = 0;
+  }
+  ticks_untouched_ = sight.touched ? 0 : ticks_untouched_ + 1;
+
+  const bool stopped = !in_reach_ && vp::norm(sight.velocity) < kStopped;
+  ticks_stopped_ = stopped ? ticks_stopped_ + 1 : 0;
+  if (!in_reach_) {
+    const bool dead = seconds(ticks_stopped_) >= kStoppedSeconds ||
+                      seconds(ticks_unreached_) >= rules.dead_ball_seconds;
+    return dead ? Verdict::dead : Verdict::alive;
+  }
+  const bool midfield = table.rods[rod_].line == Line::midfield;
+  const double limit = midfield ? rules.possession_midfield_seconds : rules.possession_seconds;
+  const bool still = rules.still_seconds > 0.0 && seconds(ticks_untouched_) >= rules.still_seconds;
+  return still || seconds(ticks_possessed_) >= limit ? Verdict::held : Verdict::alive;
 }
 
 }  // namespace foosball

@@ -20,12 +20,18 @@ std::optional<int> goal_by(const TableSpec& table, const vp::Vec3& ball);
 // The ball's centre is over a wall, beyond it, or below the field, and not in a goal.
 bool out_of_table(const TableSpec& table, const vp::Vec3& ball);
 
-// To goals_to_win, by two; the first to max_goals wins in any case.
-std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& score);
+// Of a set (2): to goals_to_win, in the last possible set by rules.lead; the first to max_goals
+// wins in any case. Once the time is over, whoever leads.
+std::optional<int> winner(const Rules& rules, const std::array<int, kTeams>& score, bool last_set,
+                          bool time_over);
 
-// Where a dead ball is put back: at the nearest defence; between the midfields it is served again,
-// by the team that served last.
+// Where a dead ball is put back (8.1, 8.2): at the nearest defence; between the midfields it is
+// served again, by the team that served last.
 int rod_for_dead_ball(const TableSpec& table, double ball_x, int last_server);
+
+// Where the ball goes that the team held too long with a rod of this line (24.3): from the attack
+// to the opponent's defence, from elsewhere to the opponent's midfield.
+int rod_after_possession(const TableSpec& table, int team, Line line);
 
 // Which parts of men touch the ball, by part and not by count: a contact whose beginning or end was
 // not seen (the ball was put elsewhere) leaves nothing wrong about the others.
@@ -48,27 +54,54 @@ class BallTouches {
   std::array<std::uint64_t, kManParts> parts_{};  // bit rod * 5 + man
 };
 
-// Watches for a ball that nobody plays on.
-class DeadBallWatch {
+// Watches for a ball that nobody can reach, that nobody plays on, or that somebody holds too long.
+class BallWatch {
  public:
+  enum class Verdict {
+    alive,
+    dead,  // out of everybody's reach (8)
+    held,  // one rod has had it for too long (24), or it lies still within its reach
+  };
+  struct Sight {
+    vp::Vec3 ball, velocity;
+    std::uint8_t rods_in_reach = 0;
+    bool touched = false;  // by a man
+  };
+
   void reset(const vp::Vec3& ball);
-  // One tick; true when the ball is dead: it has stayed where it is, and no man has touched it for
-  // rules.dead_ball_seconds or one has held it longer than a possession may last.
-  bool update(const TableSpec& table, const Rules& rules, const vp::Vec3& ball, bool touched);
+  // One tick. What ends a count ends it for good: after a verdict the caller resets.
+  Verdict update(const TableSpec& table, const Rules& rules, const Sight& sight);
+  // Time of possession begins anew (17).
+  void restart_possession() { ticks_possessed_ = ticks_untouched_ = 0; }
+
+  // The rod within whose reach the ball is or was last; none since the last reset: nothing.
+  std::optional<int> rod() const { return rod_ < kRods ? std::optional<int>(rod_) : std::nullopt; }
+  bool in_reach() const { return in_reach_; }
+  std::uint64_t ticks_possessed() const { return ticks_possessed_; }
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
     archive.real(self.anchor_.x, -10.0, 10.0);
     archive.real(self.anchor_.y, -10.0, 10.0);
     archive.real(self.anchor_.z, -10.0, 10.0);
-    archive.count(self.ticks_here_);
+    archive.choice(self.rod_, kRods + 1);
+    archive.flag(self.in_reach_);
+    archive.flag(self.left_);
+    archive.count(self.ticks_possessed_);
+    archive.count(self.ticks_unreached_);
+    archive.count(self.ticks_stopped_);
     archive.count(self.ticks_untouched_);
   }
 
  private:
-  vp::Vec3 anchor_;                    // the ball has stayed near this point ...
-  std::uint64_t ticks_here_ = 0;       // ... for so long,
-  std::uint64_t ticks_untouched_ = 0;  // and for so long no man has touched it
+  vp::Vec3 anchor_;                    // the ball has stayed near this point
+  int rod_ = kRods;                    // of possession; kRods: none yet
+  bool in_reach_ = false;              // now
+  bool left_ = false;                  // the ball has left rod_ since
+  std::uint64_t ticks_possessed_ = 0;  // by rod_
+  std::uint64_t ticks_unreached_ = 0;  // out of everybody's reach
+  std::uint64_t ticks_stopped_ = 0;    // out of everybody's reach and not moving
+  std::uint64_t ticks_untouched_ = 0;  // near anchor_ and touched by no man
 };
 
 }  // namespace foosball

@@ -77,21 +77,6 @@ struct Collect {
 
 // --- geometry ------------------------------------------------------------------------------------
 
-bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball) {
-  const RodSpec& spec = table.rods[rod];
-  const CharacterSpec& c = character_spec(character);
-  const double dx = ball.x - spec.x, dz = ball.z - table.rod_height;
-  const double r = table.ball_radius;
-  const double foot = std::sqrt(squared(c.foot_reach) + squared(0.5 * c.foot_depth));
-  const double in_plane = dx * dx + dz * dz;
-  if (in_plane > squared(foot + r)) return false;
-  // The nearest man, slid as far towards the ball as he can.
-  const double beside = std::fabs(ball.y - man_offset(spec, man_nearest(spec, ball.y)));
-  const double gap = std::max(0.0, beside - spec.slide_limit - 0.5 * c.foot_width);
-  if (gap >= r) return false;
-  return in_plane <= squared(foot + std::sqrt(r * r - gap * gap));
-}
-
 double ground_height(const TableSpec& table, double x, double y) {
   const double inside = (0.5 * table.length - std::fabs(x)) + (0.5 * table.width - std::fabs(y));
   return inside < table.corner_size ? table.corner_rise * (1.0 - inside / table.corner_size) : 0.0;

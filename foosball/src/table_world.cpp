@@ -259,6 +259,17 @@ void TableWorld::park_ball() {
   set_ball(Vec3{0.0, 0.0, 1.0}, Vec3{});
 }
 
+void TableWorld::keep_ball_in_goal() {
+  const BallState now = ball();
+  const vp::Vec3 p = now.pose.position();
+  const double side = p.x < 0.0 ? -1.0 : 1.0;
+  const double line = 0.5 * table_.length + table_.ball_radius + 1e-4;
+  if (side * p.x >= line) return;
+  vp::Vec3 v = now.velocity;
+  if (side * v.x < 0.0) v.x = 0.0;
+  set_ball({side * line, p.y, p.z}, v);
+}
+
 bool TableWorld::free_for_ball(const Vec3& position) const {
   constexpr double kAir = 0.001;
   found_.clear();

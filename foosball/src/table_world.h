@@ -63,6 +63,8 @@ class TableWorld {
   void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
   // Out of everything's way, at rest, for this step.
   void park_ball();
+  // A ball that has passed the goal line comes back to it no further than its own radius.
+  void keep_ball_in_goal();
   // Nothing but the field would touch a ball here.
   bool free_for_ball(const vp::Vec3& position) const;
 

@@ -27,6 +27,14 @@ inline constexpr double kGravity = 14.0;  // [m/s^2]
 inline constexpr double kSagFrom = 0.050;         // from the rod's axis [m]
 inline constexpr double kSagAcceleration = 0.25;  // [m/s^2]
 
+// Where the ball is put in play, ahead of the rod's axis [m]. A foot's half depth, the ball's
+// radius and some 6 mm of air at the rods that restart play.
+inline constexpr double kRestartAhead = 0.034;
+// At the midfield that serves. The measure: with equal players the server scores next in half of
+// the cases. Further ahead and the opponent's midfield has the first shot; behind the men, the
+// server.
+inline constexpr double kServeAhead = 0.034;
+
 // --- a strong hand on each rod -------------------------------------------------------------------
 
 // The hand and handle move with the rod. More, and a foot is heavier than its ball by far but slow.

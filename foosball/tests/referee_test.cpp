@@ -1,6 +1,10 @@
 #include "../src/referee.h"
 
+#include "foosball/reach.h"
+
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace foosball {
 namespace {
@@ -32,22 +36,32 @@ TEST(OutOfTable, IsOverAWallOrBelowTheFieldButNotInAGoal) {
   EXPECT_TRUE(out_of_table(table, {0, 0, -0.001}));
 }
 
-TEST(Winner, NeedsFiveGoalsAndTwoMoreThanTheOtherButNeverMoreThanEight) {
-  const Rules rules;
-  EXPECT_EQ(winner(rules, {4, 0}), std::nullopt);
-  EXPECT_EQ(winner(rules, {5, 3}), 0);
-  EXPECT_EQ(winner(rules, {4, 5}), std::nullopt);
-  EXPECT_EQ(winner(rules, {4, 6}), 1);
-  EXPECT_EQ(winner(rules, {6, 7}), std::nullopt);
-  EXPECT_EQ(winner(rules, {7, 7}), std::nullopt);
-  EXPECT_EQ(winner(rules, {7, 8}), 1) << "the most there is";
+TEST(Itsf2, TheLastSetNeedsFiveGoalsAndTwoMoreThanTheOtherButNeverMoreThanEight) {
+  const Rules rules = itsf_rules(1);
+  const auto last = [&](int a, int b) { return winner(rules, {a, b}, true, false); };
+  EXPECT_EQ(last(4, 0), std::nullopt);
+  EXPECT_EQ(last(5, 3), 0);
+  EXPECT_EQ(last(4, 5), std::nullopt);
+  EXPECT_EQ(last(4, 6), 1);
+  EXPECT_EQ(last(6, 7), std::nullopt);
+  EXPECT_EQ(last(7, 7), std::nullopt);
+  EXPECT_EQ(last(7, 8), 1) << "the most there is";
 }
 
-TEST(Winner, WithOneGoalAtMostIsTheFirstToScore) {
-  Rules rules;
-  rules.goals_to_win = rules.max_goals = 1;
-  EXPECT_EQ(winner(rules, {0, 0}), std::nullopt);
-  EXPECT_EQ(winner(rules, {0, 1}), 1);
+TEST(Itsf2, AnEarlierSetIsWonByTheFirstToFive) {
+  const Rules rules = itsf_rules(3);
+  EXPECT_EQ(winner(rules, {4, 4}, false, false), std::nullopt);
+  EXPECT_EQ(winner(rules, {5, 4}, false, false), 0);
+}
+
+TEST(Winner, InArcadeIsTheFirstToFive) {
+  EXPECT_EQ(winner(arcade_rules(), {4, 4}, true, false), std::nullopt);
+  EXPECT_EQ(winner(arcade_rules(), {4, 5}, true, false), 1);
+}
+
+TEST(Winner, WhenTheTimeIsOverIsWhoeverLeads) {
+  EXPECT_EQ(winner(arcade_rules(), {2, 1}, true, true), 0);
+  EXPECT_EQ(winner(arcade_rules(), {2, 2}, true, true), std::nullopt);
 }
 
 TEST(DeadBallPlace, IsTheNearestDefenceOrTheServersMidfieldBetweenTheMidfields) {
@@ -82,42 +96,93 @@ TEST(BallTouches, APartThatBeganTwiceEndsOnce) {
   EXPECT_FALSE(touches.any());
 }
 
-// Ticks until the watch calls a ball at rest dead, at most limit.
-int ticks_until_dead(const vp::Vec3& ball, bool touched, int limit) {
-  DeadBallWatch watch;
-  watch.reset(ball);
+TEST(Itsf24, TheBallHeldTooLongGoesFromTheAttackToTheDefenceElseToTheMidfieldOfTheOpponent) {
+  for (int team = 0; team < kTeams; ++team) {
+    for (const Line line : {Line::goalie, Line::defence, Line::midfield, Line::attack}) {
+      const RodSpec& to = table.rods[rod_after_possession(table, team, line)];
+      EXPECT_EQ(to.team, 1 - team);
+      EXPECT_EQ(to.line, line == Line::attack ? Line::defence : Line::midfield);
+    }
+  }
+}
+
+struct Called {
+  BallWatch::Verdict verdict = BallWatch::Verdict::alive;
+  int tick = 0;
+};
+
+// What the watch calls first of a ball that moves as told, and when.
+template <class Path>
+Called call(const Rules& rules, Path path, int limit, bool touched = false) {
+  BallWatch watch;
+  watch.reset(path(0));
   for (int tick = 1; tick <= limit; ++tick) {
-    if (watch.update(table, Rules{}, ball, touched)) return tick;
+    BallWatch::Sight sight{.ball = path(tick),
+                           .velocity = (1.0 / kTick) * (path(tick) - path(tick - 1))};
+    sight.rods_in_reach = rods_in_reach(table, {1, 1}, sight.ball);
+    sight.touched = touched;
+    const auto verdict = watch.update(table, rules, sight);
+    if (verdict != BallWatch::Verdict::alive) return {verdict, tick};
   }
-  return limit + 1;
+  return {};
+}
+auto resting(double x, double y) {
+  return [=](int) { return vp::Vec3{x, y, table.ball_radius}; };
 }
 
-TEST(DeadBall, IsCalledAfterSixSecondsUntouchedAtRest) {
-  EXPECT_NEAR(ticks_until_dead({0.0, 0.1, 0.0173}, false, 20000), 6000, 1);
+TEST(Itsf8, ABallThatHasStoppedOutOfReachIsDeadAfterASecond) {
+  const Called called = call(itsf_rules(), resting(0.0, 0.1), 20000);
+  EXPECT_EQ(called.verdict, BallWatch::Verdict::dead);
+  EXPECT_NEAR(called.tick, 1000, 1);
 }
 
-TEST(DeadBall, AHeldBallHasTenSecondsOnTheMidfieldAndFifteenElsewhere) {
-  EXPECT_NEAR(ticks_until_dead({-0.075, 0.0, 0.0173}, true, 20000), 10000, 1);
-  EXPECT_NEAR(ticks_until_dead({-0.375, 0.0, 0.0173}, true, 20000), 15000, 1);
+TEST(Itsf8, ABallThatMovesOutOfReachIsDeadAfterTheTimeOfTheRules) {
+  const auto rolling = [](int tick) { return vp::Vec3{0.0, 0.02 * std::sin(0.01 * tick), 0.0173}; };
+  const Called called = call(itsf_rules(), rolling, 20000);
+  EXPECT_EQ(called.verdict, BallWatch::Verdict::dead);
+  EXPECT_NEAR(called.tick, 1e3 * itsf_rules().dead_ball_seconds, 1);
 }
 
-TEST(DeadBall, ABallThatKeepsGoingToAndFroIsAlive) {
-  DeadBallWatch watch;
-  watch.reset({});
-  for (int tick = 0; tick < 60000; ++tick) {
-    const double x = (tick / 4000) % 2 == 0 ? 0.3 : -0.3;
-    ASSERT_FALSE(watch.update(table, Rules{}, {x, 0.0, 0.0173}, false)) << tick;
+TEST(Itsf24, AHeldBallHasTenSecondsOnTheMidfieldAndFifteenElsewhere) {
+  for (const bool touched : {false, true}) {
+    const Called midfield = call(itsf_rules(), resting(-0.075, 0.0), 20000, touched);
+    EXPECT_EQ(midfield.verdict, BallWatch::Verdict::held);
+    EXPECT_NEAR(midfield.tick, 10000, 1);
+    const Called defence = call(itsf_rules(), resting(-0.375, 0.0), 20000, touched);
+    EXPECT_EQ(defence.verdict, BallWatch::Verdict::held);
+    EXPECT_NEAR(defence.tick, 15000, 1);
   }
 }
 
-TEST(DeadBall, ATouchGivesSixSecondsMore) {
-  DeadBallWatch watch;
-  watch.reset({0.225, 0.0, 0.0173});
-  int dead_at = 0;
-  for (int tick = 1; tick <= 20000 && dead_at == 0; ++tick) {
-    if (watch.update(table, Rules{}, {0.225, 0.0, 0.0173}, tick == 5000)) dead_at = tick;
-  }
-  EXPECT_NEAR(dead_at, 11000, 1);
+TEST(Itsf24, DribblingDoesNotStopTheClock) {
+  const auto dribble = [](int tick) {
+    return vp::Vec3{0.225, 0.2 * std::sin(0.004 * tick), table.ball_radius};
+  };
+  EXPECT_NEAR(call(itsf_rules(), dribble, 20000, true).tick, 15000, 1);
+}
+
+TEST(Itsf24, GoalieAndDefenceAreOnePlaceOfPossession) {
+  // To and fro between the two rods, out of reach of both in between.
+  const auto pass = [](int tick) {
+    return vp::Vec3{-0.45 + 0.06 * std::sin(0.004 * tick), 0.0, table.ball_radius};
+  };
+  const Called called = call(itsf_rules(), pass, 40000, true);
+  EXPECT_EQ(called.verdict, BallWatch::Verdict::held);
+  EXPECT_LT(called.tick, 25000);
+}
+
+TEST(Itsf24, ABallThatHasLeftTheRodIsANewPossession) {
+  const auto leaves = [](int tick) {
+    const bool away = tick % 9000 > 8500;
+    return vp::Vec3{away ? -0.15 : -0.075, 0.0, table.ball_radius};
+  };
+  EXPECT_EQ(call(itsf_rules(), leaves, 40000, true).verdict, BallWatch::Verdict::alive);
+}
+
+TEST(ArcadeStillBall, IsTakenAfterFiveSecondsUntouchedWithinReach) {
+  const Called called = call(arcade_rules(), resting(-0.375, 0.0), 20000);
+  EXPECT_EQ(called.verdict, BallWatch::Verdict::held);
+  EXPECT_NEAR(called.tick, 5000, 1);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "foosball/rod_motion.h"
+#include "foosball/rules.h"
 #include "foosball/table.h"
 #include "vphysics/error.h"
 #include "vphysics/lie.h"
@@ -23,18 +24,30 @@ namespace foosball {
 
 using RodTargets = std::array<RodTarget, kRods>;
 
-// Wishes of a client, applied at the start of a tick if the screen allows them.
+// Requests of a client and news from the server, applied at the start of a tick if the screen
+// allows them.
 struct Command {
   enum class Kind : std::uint8_t {
     push,              // as a rod pushed: starts, confirms, goes on
     choose_character,  // team, value = character
     pause,             // value 1 on, 0 off
     restart,           // back to the logo
+    time_out,          // team asks for one
+    feed,              // training: team, value = feed_value(): serve to that man from now on
+    seat,              // from the server: team, value 1: a computer plays it, 0: people do
+    touch,             // from the server: a hand has moved a rod while computers show a match
   };
   Kind kind;
   std::uint8_t team = 0;
   std::uint8_t value = 0;
 };
+inline constexpr int kCommandKinds = 8;
+
+// Command::value of a feed: 0 <= man < kMaxMenOnRod.
+constexpr std::uint8_t feed_value(Line line, int man) {
+  return static_cast<std::uint8_t>(static_cast<int>(line) * 8 + man);
+}
+inline constexpr int kFeedValues = 32;
 
 struct TickInput {
   RodTargets rods;
@@ -45,48 +58,62 @@ enum class Screen : std::uint8_t { logo, selection, play, ceremony, end };
 inline constexpr int kScreens = 5;
 
 enum class EventKind : std::uint8_t {
-  man_hit,    // value = impulse [N s]
-  wall_hit,   // value = impulse
-  field_hit,  // value = impulse
-  goal,       // team scored
-  serve,
-  dead_ball,  // no man reached the ball in time: served again
-  ball_out,   // left the table
-  screen,     // value = the new Screen
-  match_won,  // team won
+  man_hit,      // value = impulse [N s]
+  wall_hit,     // value = impulse
+  field_hit,    // value = impulse
+  goal,         // team scored; rod and man are credited with it; own; value = ball's speed [m/s]
+  serve,        // team; rod and man before whom the ball lies
+  dead_ball,    // within nobody's reach
+  ball_out,     // left the table; team touched it last
+  screen,       // value = the new Screen
+  match_won,    // team won
+  shot,         // rod and man; value = ball's speed [m/s], angle
+  foul,         // team's; value = Foul
+  time_out,     // team's begins
+  set_won,      // team won a set, not the match
+  match_drawn,  // the time is over
 };
-inline constexpr int kEventKinds = 9;
+inline constexpr int kEventKinds = 14;
 
 struct Event {
   EventKind kind;
-  std::uint8_t team = 0;  // of the man or the goal
-  std::uint8_t rod = 0;   // man_hit
-  std::uint8_t man = 0;   // man_hit
+  std::uint8_t team = 0;  // of the man, the goal or the foul
+  std::uint8_t rod = 0;
+  std::uint8_t man = 0;
   double value = 0.0;
   vp::Vec3 point;  // in the table's frame (foosball/table.h) [m]: a hit's contact, else the ball
+  double angle = 0.0;  // shot, goal: of the ball's way from straight ahead for rod's team, seen
+                       // from above, counter-clockwise positive [rad]
+  bool own = false;    // goal: by a man of the team that conceded
 };
 inline constexpr std::size_t kMaxEventsPerStep = 128;  // MatchView::events_dropped counts the rest
-
-struct Rules {
-  int goals_to_win = 5;  // "to 5, last game by two, max 8" (ITSF)
-  int max_goals = 8;
-  double dead_ball_seconds = 6.0;  // without a touch and almost at rest
-  double ceremony_seconds = 2.5;
-  double end_seconds = 6.0;
-
-  bool operator==(const Rules&) const = default;
-};
 
 struct MatchDesc {
   Layout layout = Layout::tournament;
   std::uint64_t seed = 1;
   Rules rules;
+  Mode mode = Mode::match;
+};
+
+// The challenge of a day: date as a number such as 20261122. The same match for everybody.
+MatchDesc challenge_of(std::uint32_t date, Layout layout);
+
+// A ball sent off slower is a pass or a dribble.
+inline constexpr double kShotSpeed = 4.0;  // [m/s]
+
+// A ball that a man has sent off.
+struct Shot {
+  int team = 0, rod = 0, man = 0;
+  double speed = 0.0;  // [m/s]
+  double angle = 0.0;  // as Event::angle
 };
 
 // All that a renderer or a player may see.
 struct MatchView {
   std::uint64_t tick = 0;
   Layout layout{};
+  Mode mode{};
+  RuleSet rule_set{};
   Screen screen{};
   bool paused = false;
   std::array<int, kTeams> score{};
@@ -95,6 +122,26 @@ struct MatchView {
   double screen_seconds = 0.0;           // since the screen came up [s]
   double play_seconds = 0.0;             // match clock [s]
   int last_scorer = 0;                   // team, on ceremony and end
+  Shot last_goal;                        // who is credited with it, and the ball's speed
+  bool last_goal_own = false;            // by a man of the team that conceded
+  Shot last_shot;
+  std::array<int, kTeams> sets{};            // won
+  std::array<int, kTeams> time_outs_left{};  // in this set
+  double time_out_seconds = 0.0;             // left of a time-out; 0: none
+  int time_out_team = 0;                     // that asked for it
+  bool timed = false;
+  double seconds_left = 0.0;        // of a timed set
+  bool golden_goal = false;         // the next goal decides
+  int next_server = 0;              // team that has the ball next, or had it last
+  bool fouled = false;              // since the last goal or serve:
+  Foul last_foul{};                 // why,
+  int last_foul_team = 0;           // and whose
+  int possession_team = 0;          // within whose reach the ball is or was last
+  double possession_seconds = 0.0;  // for so long
+  std::array<bool, kTeams> computer{};
+  bool attract = false;       // nobody plays: computers show a match
+  int rung = 0;               // ladder: 0 .. kLadderRungs - 1
+  bool ball_visible = false;  // in play, or in the goal it went into
   bool ball_in_play = false;
   vp::Vec3 ball_position, ball_velocity;  // table's frame [m], [m/s]
   vp::SE3 ball_pose;                      // T_table_ball
@@ -108,9 +155,9 @@ struct MatchView {
 
 class Match {
  public:
-  // Refuses with Errc::invalid_argument what cannot be played: a layout that is none, goals not
-  // 1 <= goals_to_win <= max_goals <= 99, a duration that is not above 0 and at most 3600 s (NaN
-  // included). Any seed will do.
+  // Refuses with Errc::invalid_argument what cannot be played: a layout, mode or rule that is none,
+  // goals not 1 <= goals_to_win <= max_goals <= 99, sets not 1 .. 9, a duration that is negative,
+  // above 3600 s or NaN, or 0 where 0 has no meaning. Any seed will do.
   static vp::Expected<Match> create(const MatchDesc& desc);
   ~Match();
   Match(Match&&) noexcept;

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "foosball/match.h"
+#include "foosball/reach.h"
 
 namespace foosball {
 
@@ -118,12 +119,6 @@ struct Statistics {
 
 inline constexpr double kStillSpeed = 0.02;     // [m/s]
 inline constexpr double kStuckDistance = 0.08;  // as the referee's for a dead ball [m]
-inline constexpr double kShotSpeed = 4.0;       // [m/s]
-
-// Whether any man of the rod could touch the ball, were his rod at its best slide and angle: the
-// solid that his foot sweeps, a cylinder about the rod's axis, meets the ball. Source: TableSpec
-// and CharacterSpec alone. 0 <= rod < kRods.
-bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball);
 
 // Height of the ground under a point of the field, which the corners raise [m].
 double ground_height(const TableSpec& table, double x, double y);

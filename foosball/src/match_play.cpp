@@ -1,0 +1,323 @@
+// The ball and the referee: touches, shots, goals, fouls, and where the ball is put back. Articles
+// are those of the ITSF rule book (2016); docs/rules.md says what is judged and what differs.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "foosball/reach.h"
+#include "match_impl.h"
+#include "tuning.h"
+
+namespace foosball {
+namespace {
+
+constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
+// So long men may fill every place for the ball before the other side has it.
+constexpr double kServeWait = 5.0;  // [s]
+// A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.
+constexpr double kLeastHit = 0.003;  // [N s]
+// A ball that a defender touches so soon after an attacker goes on as a deflected shot.
+constexpr double kDeflection = 0.3;  // [s]
+// A goal waits so long at most for the rod that shot to stop or to have gone round (15).
+constexpr double kReview = 0.3;  // [s]
+// A hand that reaches the rod's stop faster slams it (16.3).
+constexpr double kSlam = 2.5;           // [m/s]
+constexpr int kJarsUntilTechnical = 2;  // (16.4)
+
+Event shot_event(EventKind kind, const Shot& shot, const vp::Vec3& ball) {
+  return {.kind = kind,
+          .team = static_cast<std::uint8_t>(shot.team),
+          .rod = static_cast<std::uint8_t>(shot.rod),
+          .man = static_cast<std::uint8_t>(shot.man),
+          .value = shot.speed,
+          .point = ball,
+          .angle = shot.angle};
+}
+
+Shot shot_by(const TableSpec& table, const Touch& touch, const vp::Vec3& velocity) {
+  const int team = table.rods[touch.rod].team;
+  const double s = attack_sign(team);
+  return {team, touch.rod, touch.man, vp::norm(velocity),
+          vp::arc_tangent(s * velocity.y, s * velocity.x)};
+}
+
+}  // namespace
+
+// --- what the ball meets -------------------------------------------------------------------------
+
+void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
+  if (!state.ball_in_play) return;
+  note_contacts(velocity_before);
+  note_shot();
+  judge_ball();
+}
+
+void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
+  // A ball pressed against something has contacts without end, and none of them is a hit.
+  const vp::Vec3 change = world->ball().velocity - velocity_before;
+  const bool felt = table().ball_mass * vp::norm(change) >= kLeastHit;
+  for (const vp::ContactEvent& event : world->contacts()) {
+    const BallContact contact = ball_contact(event);
+    const Tag& other = contact.other;
+    const bool man = other.what == Tag::What::man;
+    const int team = man ? table().rods[other.rod].team : 0;
+    if (man) {
+      state.touching.set(other.rod, other.man, other.part,
+                         contact.kind != vp::ContactEvent::Kind::end);
+      note_touch(other.rod, other.man);
+    }
+    if (!felt || contact.kind != vp::ContactEvent::Kind::hit) continue;
+    const EventKind kind = man                             ? EventKind::man_hit
+                           : other.what == Tag::What::wall ? EventKind::wall_hit
+                                                           : EventKind::field_hit;
+    emit(Event{.kind = kind,
+               .team = static_cast<std::uint8_t>(team),
+               .rod = other.rod,
+               .man = other.man,
+               .value = contact.impulse,
+               .point = contact.point});
+  }
+}
+
+void Match::Impl::note_touch(int rod, int man) {
+  const int team = table().rods[rod].team;
+  state.touched |= std::uint64_t{1} << (rod * kMaxMenOnRod + man);
+  state.last_toucher = team;
+  state.touch = {rod, man, state.tick, true};
+  state.touch_of[team] = state.touch;
+  state.shot_pending = true;
+}
+
+// Once no man touches the ball any more, its speed tells a shot.
+void Match::Impl::note_shot() {
+  if (!state.shot_pending || state.touching.any()) return;
+  state.shot_pending = false;
+  const BallState ball = world->ball();
+  if (vp::norm(ball.velocity) < kShotSpeed) return;
+  state.last_shot = shot_by(table(), state.touch, ball.velocity);
+  emit(shot_event(EventKind::shot, state.last_shot, ball.pose.position()));
+}
+
+// --- conduct of the rods -------------------------------------------------------------------------
+
+void Match::Impl::watch_rods(const RodTargets& hands) {
+  for (int rod = 0; rod < kRods; ++rod) {
+    const bool touches = state.ball_in_play && state.touch.any && state.touch.rod == rod &&
+                         state.touch.tick == state.tick;
+    state.spins[rod].update(world->rod(rod).angle, touches);
+    if (rules().jarring && hands[rod].live) judge_jarring(rod, hands[rod]);
+  }
+}
+
+// (16, 17) The table does not shake here: what is judged is the hand that drives a rod against its
+// stop while the opponent has the ball. His time of possession begins anew; from the third time on
+// he has a shot.
+void Match::Impl::judge_jarring(int rod, const RodTarget& hand) {
+  const RodSpec& spec = table().rods[rod];
+  const auto holder = state.watch.rod();
+  const bool beyond = std::fabs(hand.slide) > spec.slide_limit;
+  const bool slams = beyond && !state.beyond[rod] &&
+                     (hand.slide < 0.0 ? -hand.slide_rate : hand.slide_rate) > kSlam;
+  state.beyond[rod] = beyond;
+  if (!slams || !state.ball_in_play || !state.watch.in_reach() || !holder) return;
+  if (table().rods[*holder].team == spec.team) return;
+  int& jars = state.tally.jars[spec.team];
+  jars = std::min(jars + 1, kMaxCount);
+  if (jars <= kJarsUntilTechnical) {
+    foul(Foul::jarring, spec.team);
+    state.watch.restart_possession();
+  } else {
+    foul(Foul::technical, spec.team);
+    serve_from(rod_of(opponent(spec.team), Line::attack), kServeDelay);
+  }
+}
+
+void Match::Impl::foul(Foul reason, int team) {
+  state.fouled = true;
+  state.last_foul = reason;
+  state.last_foul_team = team;
+  emit(EventKind::foul, team, static_cast<double>(reason));
+}
+
+// --- judging the ball ----------------------------------------------------------------------------
+
+void Match::Impl::judge_ball() {
+  const vp::Vec3 ball = world->ball().pose.position();
+  if (const auto scorer = goal_by(table(), ball)) return judge_goal(*scorer);
+  if (state.ball_in_goal) return;     // reviewed, and held in the goal
+  if (out_of_table(table(), ball)) {  // (7.3)
+    emit(EventKind::ball_out, state.last_toucher);
+    if (mode() == Mode::training) return serve_again();
+    return serve_from(rod_of(opponent(state.last_toucher), Line::defence), kServeDelay);
+  }
+  if (judge_spin()) return;
+  judge_possession();
+}
+
+// (15.1) Play stops when a spin has struck the ball; the opponent, who may choose, always serves.
+bool Match::Impl::judge_spin() {
+  if (rules().spin != SpinRule::loss || !state.touch.any) return false;
+  if (!state.spins[state.touch.rod].spun()) return false;
+  const int team = table().rods[state.touch.rod].team;
+  foul(Foul::spin, team);
+  serve_from(rod_of(opponent(team), Line::midfield), kServeDelay);
+  return true;
+}
+
+void Match::Impl::judge_possession() {
+  const BallState ball = world->ball();
+  BallWatch::Sight sight{.ball = ball.pose.position(), .velocity = ball.velocity};
+  sight.rods_in_reach = rods_in_reach(table(), state.built, sight.ball);
+  sight.touched = state.touching.any() || (state.touch.any && state.touch.tick == state.tick);
+  const auto verdict = state.watch.update(table(), rules(), sight);
+  if (verdict == BallWatch::Verdict::alive) return;
+  if (mode() == Mode::training) return serve_again();
+  if (verdict == BallWatch::Verdict::dead) {
+    emit(EventKind::dead_ball);
+    return serve_from(rod_for_dead_ball(table(), sight.ball.x, state.last_server), kServeDelay);
+  }
+  const RodSpec& holder = table().rods[*state.watch.rod()];
+  foul(Foul::possession, holder.team);
+  serve_from(rod_after_possession(table(), holder.team, holder.line), kServeDelay);
+}
+
+// The man to whom a goal of the team is credited: its last, where a defender only deflected his
+// shot; else whoever touched the ball last.
+Touch Match::Impl::credited(int scorer) const {
+  const Touch& last = state.touch;
+  const Touch& theirs = state.touch_of[scorer];
+  if (!last.any || table().rods[last.rod].team == scorer) return last;
+  const bool deflected = theirs.any && last.tick - theirs.tick <= to_ticks(kDeflection);
+  return deflected ? theirs : last;
+}
+
+// A ball in the goal: a goal at once, unless it may have come from a spin (15).
+void Match::Impl::judge_goal(int scorer) {
+  if (state.served && std::popcount(state.touched) < 2) {  // (4.2.2)
+    foul(Foul::serve, state.last_server);
+    return serve_from(rod_of(opponent(state.last_server), Line::midfield), kServeDelay);
+  }
+  const Touch by = credited(scorer);
+  const SpinWatch& spin = state.spins[by.rod];
+  const bool own = by.any && table().rods[by.rod].team != scorer;
+  if (rules().spin == SpinRule::allowed || own || !by.any) return score_goal(scorer, by);
+  state.ball_in_goal = true;
+  if (spin.spun()) {
+    foul(Foul::spin, scorer);
+    const Line line = rules().spin == SpinRule::loss ? Line::midfield : Line::defence;
+    return serve_from(rod_of(opponent(scorer), line), kServeDelay);
+  }
+  if (!spin.follows_through() || ++state.review_ticks > to_ticks(kReview)) score_goal(scorer, by);
+}
+
+void Match::Impl::score_goal(int scorer, const Touch& by) {
+  const BallState ball = world->ball();
+  int& goals = state.tally.score[scorer];
+  goals = std::min(goals + 1, kMaxScore);
+  state.last_scorer = scorer;
+  state.last_goal = shot_by(table(), by, ball.velocity);
+  // While the goal was reviewed the ball came to rest: then its shot tells the speed.
+  if (state.review_ticks > 0) state.last_goal.speed = state.last_shot.speed;
+  state.last_goal_own = by.any && state.last_goal.team != scorer;
+  state.ball_in_play = false;
+  state.ball_in_goal = true;
+  state.fouled = false;
+  Event goal = shot_event(EventKind::goal, state.last_goal, ball.pose.position());
+  goal.team = static_cast<std::uint8_t>(scorer);
+  goal.own = state.last_goal_own;
+  emit(goal);
+  if (mode() == Mode::training) return enter(Screen::ceremony);
+  const auto winner =
+      foosball::winner(rules(), state.tally.score, last_set(), state.tally.golden_goal);
+  if (winner) return finish_set(*winner);
+  enter(Screen::ceremony);
+}
+
+void Match::Impl::finish_set(int winner) {
+  state.last_scorer = winner;
+  if (++state.tally.sets[winner] >= rules().sets_to_win) {
+    emit(EventKind::match_won, winner);
+    return enter(Screen::end);
+  }
+  emit(EventKind::set_won, winner);
+  state.tally.set_over = true;
+  enter(Screen::ceremony);
+}
+
+void Match::Impl::finish_undecided() {
+  emit(EventKind::match_drawn);
+  enter(Screen::end);
+}
+
+// --- putting the ball in play --------------------------------------------------------------------
+
+void Match::Impl::serve_from(int rod, double delay, int man) {
+  state.ball_in_play = false;
+  state.ball_in_goal = false;
+  state.ball_parked = true;
+  state.serve_rod = rod;
+  state.serve_man = man;
+  state.serve_in = to_ticks(delay);
+  state.serve_waits = 0;
+}
+
+// Training: to the man who was asked for.
+void Match::Impl::serve_again() {
+  serve_from(state.feed_rod, kServeDelay, state.feed_man);
+}
+
+// Puts the ball in front of a man, as soon as there is a place that no man fills. A side that
+// leaves none loses the ball.
+void Match::Impl::put_in_play() {
+  const RodSpec& rod = table().rods[state.serve_rod];
+  const int man = state.serve_man >= 0 && state.serve_man < rod.men
+                      ? state.serve_man
+                      : (rod.team == 0 ? rod.men / 2 : rod.men - 1 - rod.men / 2);
+  vp::Vec3 place;
+  if (!find_place(state.serve_rod, man, place)) {
+    if (++state.serve_waits < to_ticks(kServeWait)) return;
+    foul(Foul::serve, rod.team);
+    return serve_from(rod_of(opponent(rod.team), Line::midfield), kServeDelay);
+  }
+  world->set_ball(place, vp::Vec3{});
+  state.ball_in_play = true;
+  state.ball_parked = false;
+  state.ball_in_goal = false;
+  state.served = rod.line == Line::midfield && mode() != Mode::training;
+  if (rod.line == Line::midfield) state.last_server = rod.team;
+  state.last_toucher = rod.team;
+  state.touched = 0;
+  state.touching.clear();
+  state.touch = {};
+  state.touch_of = {};
+  state.shot_pending = false;
+  state.review_ticks = 0;
+  state.watch.reset(place);
+  emit(Event{.kind = EventKind::serve,
+             .team = static_cast<std::uint8_t>(rod.team),
+             .rod = static_cast<std::uint8_t>(state.serve_rod),
+             .man = static_cast<std::uint8_t>(man),
+             .point = place});
+}
+
+bool Match::Impl::find_place(int rod_index, int man, vp::Vec3& place) {
+  const RodSpec& rod = table().rods[rod_index];
+  // Then further off, then beside.
+  constexpr double kFurther[] = {0.0, 0.008, 0.016};
+  constexpr double kBeside[] = {0.0, 0.03, -0.03, 0.06, -0.06};
+  const double first = rod.line == Line::midfield ? tuning::kServeAhead : tuning::kRestartAhead;
+  const double forward = attack_sign(rod.team);
+  const double slide = world->rod(rod_index).slide;
+  for (const double beside : kBeside) {
+    for (const double further : kFurther) {
+      const double ahead = first + std::copysign(further, first);
+      place = {rod.x + forward * ahead, man_offset(rod, man) + slide + forward * beside,
+               table().ball_radius};
+      const double to_wall = 0.5 * table().width - table().ball_radius - 0.002;
+      if (std::fabs(place.y) <= to_wall && world->free_for_ball(place)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace foosball

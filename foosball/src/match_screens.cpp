@@ -1,0 +1,254 @@
+// The screens and the modes: what leads from one to the next.
+#include <algorithm>
+#include <utility>
+
+#include "match_impl.h"
+#include "random.h"
+
+namespace foosball {
+namespace {
+
+constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
+// A push in the same breath as the goal is the end of the shot, not a wish to go on.
+constexpr double kCeremonyAtLeast = 0.5;  // [s]
+
+}  // namespace
+
+void Match::Impl::run_screen() {
+  ++state.screen_ticks;
+  switch (state.screen) {
+    case Screen::logo:
+    case Screen::selection:
+      break;
+    case Screen::play:
+      run_play();
+      break;
+    case Screen::ceremony:
+      if (state.screen_ticks >= to_ticks(rules().ceremony_seconds)) {
+        start_play(opponent(state.last_scorer));
+      }
+      break;
+    case Screen::end:
+      if (state.screen_ticks >= to_ticks(rules().end_seconds)) go_on_after_end();
+      break;
+  }
+}
+
+void Match::Impl::run_play() {
+  if (state.time_out_left > 0) return run_time_out();
+  ++state.play_ticks;
+  ++state.tally.set_ticks;
+  const std::uint64_t limit = to_ticks(rules().match_seconds);
+  const bool time_over = limit > 0 && state.tally.set_ticks >= limit && !state.ball_in_goal;
+  if (time_over && !state.tally.golden_goal && mode() != Mode::training) {
+    if (const auto winner = foosball::winner(rules(), state.tally.score, last_set(), true)) {
+      return finish_set(*winner);
+    }
+    if (!rules().golden_goal) return finish_undecided();
+    state.tally.golden_goal = true;
+  }
+  if (state.ball_in_play) return;
+  if (state.serve_in > 0) {
+    --state.serve_in;
+  } else {
+    put_in_play();
+  }
+}
+
+// (9.1) Ends after its time, or as soon as both sides push.
+void Match::Impl::run_time_out() {
+  --state.time_out_left;
+  if (state.ready[0] && state.ready[1]) state.time_out_left = 0;
+}
+
+// (9) Between balls either side may, else the one that has the ball. (10) The ball is then put in
+// play again at the rod that had it.
+void Match::Impl::ask_time_out(int team) {
+  if (state.screen != Screen::play || state.time_out_left > 0 || state.attract ||
+      state.ball_in_goal) {
+    return;
+  }
+  const auto holder = state.watch.rod();
+  const bool has_ball =
+      state.ball_in_play && state.watch.in_reach() && holder && table().rods[*holder].team == team;
+  int& taken = state.tally.time_outs[team];
+  if (state.ball_in_play && !has_ball) return foul(Foul::time_out, team);  // (9.6.1)
+  if (taken >= rules().time_outs) {                                        // (9.8)
+    foul(Foul::time_out, team);
+    if (has_ball) serve_from(rod_of(opponent(team), Line::midfield), kServeDelay);
+    return;
+  }
+  ++taken;
+  state.time_out_left = to_ticks(rules().time_out_seconds);
+  state.time_out_team = team;
+  state.ready = {state.computer[0], state.computer[1]};
+  if (has_ball) serve_from(*holder, kServeDelay);
+  reset_gestures();
+  emit(EventKind::time_out, team);
+}
+
+void Match::Impl::feed(int team, int value) {
+  if (mode() != Mode::training || value >= kFeedValues) return;
+  const int rod = rod_of(team, static_cast<Line>(value / 8));
+  const int man = value % 8;
+  if (man >= table().rods[rod].men) return;
+  state.feed_rod = rod;
+  state.feed_man = man;
+  if (state.screen == Screen::play) serve_again();
+}
+
+void Match::Impl::read_gestures() {
+  for (int rod = 0; rod < kRods; ++rod) {
+    const int team = table().rods[rod].team;
+    const Gesture gesture = state.gestures[rod].update(team, world->rod(rod));
+    if (state.attract) continue;  // the computers' rods; a hand is told by the server
+    if (gesture.turn != 0) {
+      choose(team, (state.character[team] + gesture.turn + kCharacters) % kCharacters);
+    }
+    if (gesture.push) push(team);
+  }
+}
+
+void Match::Impl::push(int team) {
+  const bool long_enough = state.screen_ticks >= to_ticks(kCeremonyAtLeast);
+  switch (state.screen) {
+    case Screen::logo:
+      enter(Screen::selection);
+      if (mode() == Mode::challenge) start_match();
+      break;
+    case Screen::selection:
+      state.confirmed[team] = true;
+      if (mode() == Mode::training) state.confirmed = {true, true};
+      if (state.confirmed[0] && state.confirmed[1]) start_match();
+      break;
+    case Screen::play:
+      if (state.time_out_left > 0) state.ready[team] = true;
+      break;
+    case Screen::ceremony:
+      if (long_enough) start_play(opponent(state.last_scorer));
+      break;
+    case Screen::end:
+      if (long_enough) go_on_after_end();
+      break;
+  }
+}
+
+void Match::Impl::choose(int team, int character) {
+  if (state.screen == Screen::selection && !state.confirmed[team]) {
+    state.character[team] = character;
+  }
+}
+
+void Match::Impl::enter(Screen screen) {
+  state.screen = screen;
+  state.screen_ticks = 0;
+  state.time_out_left = 0;
+  if (screen == Screen::logo || screen == Screen::selection) {
+    state.ball_in_play = state.ball_in_goal = false;
+    state.ball_parked = true;
+    state.tally = {};
+    state.confirmed = {};
+    state.play_ticks = 0;
+    state.fouled = false;
+  }
+  if (screen == Screen::ceremony || screen == Screen::end) {
+    state.ball_in_play = false;
+    state.ball_parked = !state.ball_in_goal;  // else it stays to be seen where it scored
+  }
+  if (screen == Screen::logo) {
+    state.attract = false;
+    state.rung = 0;
+    state.idle.reset();
+  }
+  reset_gestures();
+  emit(EventKind::screen, 0, static_cast<double>(screen));
+}
+
+// --- matches -------------------------------------------------------------------------------------
+
+int Match::Impl::dice(int n) {
+  Random random(0);
+  random.set_state(state.random);
+  const int result = random.below(n);
+  state.random = random.state();
+  return result;
+}
+
+// From the selection: a new match, the serve decided by lot (3).
+void Match::Impl::start_match() {
+  if (mode() == Mode::challenge) state.random = Random(desc.seed).state();
+  if (mode() == Mode::challenge || state.attract) {
+    for (int& character : state.character) character = dice(kCharacters);
+  }
+  const int server = dice(kTeams);
+  state.tally = {};
+  state.last_server = server;
+  state.first = server;
+  state.last_shot = state.last_goal = {};
+  rebuild_world();
+  start_play(server);
+}
+
+// Nobody is there: two computers play until a hand touches a rod.
+void Match::Impl::show_match() {
+  enter(Screen::selection);
+  state.attract = true;
+  start_match();
+}
+
+// From the ceremony: the side that conceded serves (5), in a new set the one that lost the last.
+void Match::Impl::start_play(int server) {
+  if (state.tally.set_over) {
+    new_set();
+    if (rules().change_sides) server = opponent(server);
+  }
+  state.fouled = false;
+  enter(Screen::play);
+  if (mode() == Mode::training) return serve_again();
+  serve_from(rod_of(server, Line::midfield), kServeDelay);
+}
+
+// (13) Where sides are changed the players walk round the table: what belongs to them goes along.
+void Match::Impl::new_set() {
+  Tally next;
+  next.sets = state.tally.sets;
+  next.jars = state.tally.jars;
+  if (rules().change_sides) {
+    std::swap(next.sets[0], next.sets[1]);
+    std::swap(next.jars[0], next.jars[1]);
+    std::swap(state.character[0], state.character[1]);
+    rebuild_world();
+  }
+  state.tally = next;
+}
+
+// The side that people play; the first, where it is not told.
+int Match::Impl::person() const {
+  return state.computer[0] && !state.computer[1] ? 1 : 0;
+}
+
+void Match::Impl::go_on_after_end() {
+  const bool climbs = mode() == Mode::ladder && !state.attract &&
+                      state.tally.sets[person()] >= rules().sets_to_win &&
+                      state.rung + 1 < kLadderRungs;
+  if (!climbs) return enter(Screen::logo);
+  ++state.rung;
+  enter(Screen::selection);
+}
+
+// The men take on the chosen characters; the rods stay as they are in the hands that hold them.
+void Match::Impl::rebuild_world() {
+  state.built = state.character;
+  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
+  for (int rod = 0; rod < kRods; ++rod) rebuilt->set_rod(rod, world->rod(rod));
+  world = std::move(rebuilt);
+}
+
+void Match::Impl::reset_gestures() {
+  for (int rod = 0; rod < kRods; ++rod) {
+    state.gestures[rod].reset(world->rod(rod));
+    state.spins[rod].reset(world->rod(rod).angle);
+  }
+}
+
+}  // namespace foosball

@@ -1,0 +1,46 @@
+#include "foosball/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foosball {
+namespace {
+
+double squared(double x) {
+  return x * x;
+}
+
+int man_nearest(const RodSpec& rod, double y) {
+  if (rod.men == 1) return 0;
+  const double man = y / rod.spacing + 0.5 * (rod.men - 1);
+  return static_cast<int>(std::lround(std::clamp(man, 0.0, rod.men - 1.0)));
+}
+
+}  // namespace
+
+bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball) {
+  const RodSpec& spec = table.rods[rod];
+  const CharacterSpec& c = character_spec(character);
+  const double dx = ball.x - spec.x, dz = ball.z - table.rod_height;
+  const double r = table.ball_radius;
+  const double foot = std::sqrt(squared(c.foot_reach) + squared(0.5 * c.foot_depth));
+  const double in_plane = dx * dx + dz * dz;
+  if (in_plane > squared(foot + r)) return false;
+  // The nearest man, slid as far towards the ball as he can.
+  const double beside = std::fabs(ball.y - man_offset(spec, man_nearest(spec, ball.y)));
+  const double gap = std::max(0.0, beside - spec.slide_limit - 0.5 * c.foot_width);
+  if (gap >= r) return false;
+  return in_plane <= squared(foot + std::sqrt(r * r - gap * gap));
+}
+
+std::uint8_t rods_in_reach(const TableSpec& table, const std::array<int, kTeams>& characters,
+                           const vp::Vec3& ball) {
+  std::uint8_t rods = 0;
+  for (int rod = 0; rod < kRods; ++rod) {
+    const bool reaches = can_reach(table, rod, characters[table.rods[rod].team], ball);
+    rods |= static_cast<std::uint8_t>((reaches ? 1u : 0u) << rod);
+  }
+  return rods;
+}
+
+}  // namespace foosball

@@ -1,0 +1,46 @@
+#include "spin_watch.h"
+
+#include <cmath>
+
+#include "vphysics/lie.h"
+
+namespace foosball {
+namespace {
+
+constexpr double kRevolution = 2.0 * vp::kPi;
+// A rod that springs back by less still turns the same way [rad].
+constexpr double kBack = 0.3;
+
+}  // namespace
+
+void SpinWatch::reset(double angle) {
+  *this = {};
+  from_ = furthest_ = angle;
+}
+
+void SpinWatch::update(double angle, bool touches) {
+  const double under_way = furthest_ != from_ ? furthest_ - from_ : angle - furthest_;
+  const double way = under_way >= 0.0 ? 1.0 : -1.0;
+  const double ahead = way * (angle - furthest_);
+  if (ahead > 1e-4) {
+    furthest_ = angle;
+    still_ticks_ = 0;
+  } else {
+    ++still_ticks_;
+  }
+  // Turned back, or stopped: a new turn begins.
+  if (ahead < -kBack || still_ticks_ >= kStopTicks) {
+    from_ = ahead < -kBack ? furthest_ : angle;
+    furthest_ = angle;
+    if (!touches) struck_ = false;
+  }
+  if (touches) {
+    struck_ = true;
+    struck_at_ = angle;
+    spun_ = std::fabs(angle - from_) > kRevolution;
+  } else if (struck_ && std::fabs(angle - struck_at_) > kRevolution) {
+    spun_ = true;
+  }
+}
+
+}  // namespace foosball

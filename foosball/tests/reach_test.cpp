@@ -1,0 +1,69 @@
+#include "foosball/reach.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "../src/table_world.h"
+
+namespace foosball {
+namespace {
+
+const std::array<int, kTeams> kAverage{1, 1};
+
+TEST(Reach, NoBallIsWithinReachOfTwoRods) {
+  for (int layout = 0; layout < kLayouts; ++layout) {
+    const TableSpec& table = table_spec(static_cast<Layout>(layout));
+    for (double x = -0.6; x <= 0.6; x += 0.003) {
+      for (double y = -0.32; y <= 0.32; y += 0.02) {
+        for (int character = 0; character < kCharacters; ++character) {
+          const auto rods = rods_in_reach(table, {character, character}, {x, y, 0.0173});
+          ASSERT_LE(std::popcount(rods), 1) << x << " " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST(Reach, TheStripMidwayBetweenTwoRodsIsOutOfReach) {
+  const TableSpec& table = table_spec(Layout::tournament);
+  EXPECT_EQ(rods_in_reach(table, kAverage, {0.0, 0.0, 0.0173}), 0);
+  EXPECT_EQ(rods_in_reach(table, kAverage, {0.075, 0.0, 0.0173}), 1 << 4);
+}
+
+TEST(Reach, TheLoneGoalieDoesNotReachTheCorners) {
+  const TableSpec& table = table_spec(Layout::tournament);
+  EXPECT_EQ(rods_in_reach(table, kAverage, {-0.525, 0.26, 0.0173}), 1);
+  EXPECT_EQ(rods_in_reach(table, kAverage, {-0.525, 0.31, 0.0173}), 0);
+}
+
+// The formula against the men themselves: a foot swung past a ball that is kept in its place meets
+// it where the formula has it within reach, to 2 mm.
+TEST(Reach, IsWhereASwungFootMeetsTheBall) {
+  const TableSpec& table = table_spec(Layout::tournament);
+  constexpr int kRod = 2;
+  for (int character = 0; character < kCharacters; ++character) {
+    double reach = 0.0;
+    while (
+        can_reach(table, kRod, character, {table.rods[kRod].x - reach, 0.0, table.ball_radius})) {
+      reach += 1e-4;
+    }
+    for (const double d : {reach - 0.002, reach + 0.002}) {
+      TableWorld world(Layout::tournament, {character, character});
+      bool met = false;
+      for (int tick = 0; tick < 1000; ++tick) {
+        world.set_ball({table.rods[kRod].x - d, 0.0, table.ball_radius}, {});
+        world.drive(kRod, {.angle = -1.0 + 0.0025 * tick, .live = true});  // feet come to -x
+        world.step();
+        for (const vp::ContactEvent& event : world.contacts()) {
+          met = met || ball_contact(event).other.what == Tag::What::man;
+        }
+      }
+      EXPECT_EQ(met, d < reach) << character << " at " << d;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace foosball
