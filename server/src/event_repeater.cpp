@@ -22,6 +22,8 @@ wire::EventSnapshot to_wire(const foosball::Event& event, std::uint32_t id) {
   out.value = static_cast<float>(event.value);
   out.point = {static_cast<float>(event.point.x), static_cast<float>(event.point.y),
                static_cast<float>(event.point.z)};
+  out.angle = static_cast<float>(event.angle);
+  out.own = event.own;
   return out;
 }
 

@@ -24,6 +24,12 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
   const auto first = playback->reader_.next();
   const auto* header = first ? std::get_if<wire::JournalHeader>(&*first) : nullptr;
   if (header == nullptr) {
+    if (const unsigned version = playback->reader_.other_version(); version != 0) {
+      return tl::unexpected(name + " was recorded by another release (format " +
+                            std::to_string(version) + ", this one plays format " +
+                            std::to_string(wire::JournalHeader{}.version) +
+                            "): replay it with the release that recorded it");
+    }
     const std::string& problem = playback->reader_.problem();
     return tl::unexpected(name + " is no recorded match" +
                           (problem.empty() ? "" : " (" + problem + ")") +

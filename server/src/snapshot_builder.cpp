@@ -55,6 +55,39 @@ void put_ball(const foosball::MatchView& view, wire::PoseVelocity& out) {
   out.angular_velocity = to_wire(view.ball_spin);
 }
 
+wire::ShotSnapshot to_wire(const foosball::Shot& shot) {
+  return {static_cast<std::uint8_t>(shot.team), static_cast<std::uint8_t>(shot.rod),
+          static_cast<std::uint8_t>(shot.man), static_cast<float>(shot.speed),
+          static_cast<float>(shot.angle)};
+}
+
+void put_rules(const foosball::MatchView& view, wire::Snapshot& out) {
+  out.mode = static_cast<std::uint8_t>(view.mode);
+  out.rule_set = static_cast<std::uint8_t>(view.rule_set);
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    out.sets[team] = static_cast<std::uint8_t>(view.sets[team]);
+    out.time_outs_left[team] = static_cast<std::uint8_t>(view.time_outs_left[team]);
+    out.computer[team] = view.computer[team];
+  }
+  out.time_out_seconds = static_cast<float>(view.time_out_seconds);
+  out.time_out_team = static_cast<std::uint8_t>(view.time_out_team);
+  out.timed = view.timed;
+  out.golden_goal = view.golden_goal;
+  out.seconds_left = static_cast<float>(view.seconds_left);
+  out.next_server = static_cast<std::uint8_t>(view.next_server);
+  out.fouled = view.fouled;
+  out.last_foul = static_cast<std::uint8_t>(view.last_foul);
+  out.last_foul_team = static_cast<std::uint8_t>(view.last_foul_team);
+  out.possession_team = static_cast<std::uint8_t>(view.possession_team);
+  out.possession_seconds = static_cast<float>(view.possession_seconds);
+  out.attract = view.attract;
+  out.rung = static_cast<std::uint8_t>(view.rung);
+  out.ball_visible = view.ball_visible;
+  out.last_goal = to_wire(view.last_goal);
+  out.last_goal_own = view.last_goal_own;
+  out.last_shot = to_wire(view.last_shot);
+}
+
 }  // namespace
 
 void build_snapshot(const foosball::MatchView& view, wire::Snapshot& snapshot) {
@@ -71,6 +104,7 @@ void build_snapshot(const foosball::MatchView& view, wire::Snapshot& snapshot) {
   snapshot.last_scorer = static_cast<std::uint8_t>(view.last_scorer);
   snapshot.screen_seconds = static_cast<float>(view.screen_seconds);
   snapshot.play_seconds = static_cast<float>(view.play_seconds);
+  put_rules(view, snapshot);
   put_ball(view, snapshot.ball);
   put_rods(view, snapshot);
   put_men(view, snapshot);

@@ -2,24 +2,34 @@
 
 #include <algorithm>
 
+#include "wire/limits.h"
+
 namespace server {
 namespace {
 
-constexpr auto kCommandKinds = static_cast<std::uint8_t>(foosball::Command::Kind::restart) + 1;
+// The kinds after it are the server's own.
+constexpr auto kWishKinds = static_cast<std::uint8_t>(foosball::Command::Kind::feed) + 1;
+static_assert(kWishKinds == wire::kWishKindCount);
 
 }  // namespace
 
 bool well_formed(const wire::Wish& wish) {
   using Kind = foosball::Command::Kind;
-  if (wish.kind >= kCommandKinds || wish.team >= foosball::kTeams) return false;
+  if (wish.kind >= kWishKinds || wish.team >= foosball::kTeams) return false;
   switch (static_cast<Kind>(wish.kind)) {
     case Kind::choose_character:
       return wish.value < foosball::kCharacters;
     case Kind::pause:
       return wish.value <= 1;
+    case Kind::feed:
+      return wish.value < foosball::kFeedValues;
     case Kind::push:
     case Kind::restart:
+    case Kind::time_out:
       return true;
+    case Kind::seat:
+    case Kind::touch:
+      return false;
   }
   return false;
 }

@@ -87,7 +87,7 @@ bool take(const fb::Refusal& t, Refusal& m) {
 }
 bool take(const fb::Wish& t, Wish& m) {
   m = {t.kind(), t.team(), t.value()};
-  return m.kind < kCommandKindCount && m.team < kTeamCount;
+  return m.kind < kWishKindCount && m.team < kTeamCount;
 }
 bool take(const fb::Ping& t, Ping& m) {
   m.id = t.id();

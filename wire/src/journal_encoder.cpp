@@ -9,7 +9,7 @@
 namespace wire {
 namespace {
 
-// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 11 bits, and of any payload
+// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 12 bits, and of any payload
 // but a keyframe.
 constexpr std::size_t kSmallPayload = 512;
 
@@ -103,7 +103,11 @@ bool JournalEncoder::add(const JournalEntry& entry, std::vector<std::byte>& out)
 
   std::array<std::byte, kSmallPayload> scratch;
   if (const auto* header = std::get_if<JournalHeader>(&entry)) {
-    if (header->version != kJournalVersion || header->layout >= kLayoutCount) return false;
+    if (header->version != kJournalVersion || header->layout >= kLayoutCount ||
+        header->mode >= kModeCount || header->rule_set >= kRuleSetCount ||
+        header->spin >= kSpinRuleCount) {
+      return false;
+    }
     const auto describe = [](auto& codec, auto& h) { describe_journal_header(codec, h); };
     append_record(out, encode(scratch, describe, *header));
     started_ = true;

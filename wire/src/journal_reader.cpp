@@ -160,6 +160,17 @@ std::optional<JournalEntry> JournalReader::read_tick() {
   return tick;
 }
 
+// A header begins with kind, magic and version in every release.
+bool JournalReader::of_another_release() {
+  constexpr std::size_t kBegin = 7;
+  if (record_.size() < kBegin || get32(record_.subspan(1)) != kJournalMagic) return false;
+  const unsigned version =
+      std::to_integer<unsigned>(record_[5]) | std::to_integer<unsigned>(record_[6]) << 8;
+  if (version == kJournalVersion) return false;
+  other_version_ = version;
+  return true;
+}
+
 std::optional<JournalEntry> JournalReader::read_entry() {
   const auto kind = static_cast<JournalKind>(record_[0]);
   if (ended_) return fail("comes after the end");
@@ -176,6 +187,7 @@ std::optional<JournalEntry> JournalReader::read_entry() {
   };
   switch (kind) {
     case JournalKind::header: {
+      if (of_another_release()) return fail("recorded by another release");
       auto entry =
           read_whole(JournalHeader{}, [](auto& d, auto& h) { describe_journal_header(d, h); });
       started_ = entry.has_value();

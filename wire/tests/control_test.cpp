@@ -158,7 +158,7 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
     return status == Status::broken;
   };
   EXPECT_FALSE(refused(fb::Message::Wish, fb::CreateWish(b, 3, 1, 255)));
-  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 4, 0, 0))) << "kind";
+  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 6, 0, 0))) << "kind";
   EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 0, 2, 0))) << "team";
   EXPECT_TRUE(refused(fb::Message::Hello, fb::CreateHelloDirect(b, 1, 1, "a", 1, 2))) << "team";
   EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 0, 0, 0, "", 0)))

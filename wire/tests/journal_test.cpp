@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "crc32.h"
 #include "samples.h"
 #include "wire/description.h"
 
@@ -139,12 +140,23 @@ TEST(Journal, AHugeLengthIsRefusedWithoutReadingOn) {
   EXPECT_NE(read_all(bytes).problem.find("4294967295"), std::string::npos);
 }
 
+TEST(Journal, AFileOfAnotherReleaseIsToldByItsFormat) {
+  samples::Bytes file = samples::encoded({JournalHeader{}});
+  file[8 + 5] = std::byte{1};  // the version, behind the record's head, kind and magic
+  const std::uint32_t crc = crc32(std::span(file).subspan(8));
+  for (std::size_t i = 0; i < 4; ++i) file[4 + i] = static_cast<std::byte>(crc >> 8 * i);
+  JournalReader reader(file);
+  EXPECT_FALSE(reader.next().has_value());
+  EXPECT_EQ(reader.other_version(), 1U);
+  EXPECT_EQ(reader.problem(), "record at byte 0: recorded by another release");
+}
+
 TEST(Journal, TheEncoderRefusesWhatTheReaderWould) {
   JournalEncoder encoder;
   Bytes out;
   EXPECT_FALSE(encoder.add(JournalTick{}, out)) << "no header";
-  EXPECT_FALSE(encoder.add(JournalHeader{2}, out)) << "version";
-  EXPECT_FALSE(encoder.add(JournalHeader{1, 7}, out)) << "layout";
+  EXPECT_FALSE(encoder.add(JournalHeader{1}, out)) << "version";
+  EXPECT_FALSE(encoder.add(JournalHeader{2, 7}, out)) << "layout";
   EXPECT_TRUE(out.empty());
   EXPECT_TRUE(encoder.add(JournalHeader{}, out));
   EXPECT_FALSE(encoder.add(JournalHeader{}, out)) << "a second header";

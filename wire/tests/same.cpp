@@ -61,8 +61,11 @@ auto tied(const Bye& m) {
   return std::tie(m.reason);
 }
 auto tied(const JournalHeader& e) {
-  return std::tie(e.version, e.layout, e.seed, e.goals_to_win, e.max_goals, e.dead_ball_ms,
-                  e.ceremony_ms, e.end_ms);
+  return std::tie(e.version, e.layout, e.seed, e.mode, e.rule_set, e.goals_to_win, e.max_goals,
+                  e.lead, e.sets_to_win, e.match_ms, e.golden_goal, e.change_sides, e.jarring,
+                  e.spin, e.time_outs, e.time_out_ms, e.dead_ball_ms, e.still_ms,
+                  e.possession_midfield_ms, e.possession_ms, e.ceremony_ms, e.end_ms, e.idle_ms,
+                  e.attract_ms);
 }
 auto tied(const JournalTick& e) {
   return std::tie(e.tick, e.rods, e.commands);

@@ -41,6 +41,12 @@ PoseVelocity plain_pose(float seed) {
   return pose;
 }
 
+ShotSnapshot random_shot(std::mt19937_64& random) {
+  return {below<std::uint8_t>(random, kTeamCount), below<std::uint8_t>(random, kRods),
+          below<std::uint8_t>(random, kMenOnRod), static_cast<float>(30 + uniform(random, 30)),
+          static_cast<float>(uniform(random, 3.0))};
+}
+
 Snapshot random_head(std::mt19937_64& random) {
   Snapshot s;
   s.session = random();
@@ -56,6 +62,28 @@ Snapshot random_head(std::mt19937_64& random) {
                  below<std::uint8_t>(random, kCharacterCount)};
   s.confirmed = {random() % 2 == 0, random() % 2 == 0};
   s.last_scorer = below<std::uint8_t>(random, kTeamCount);
+  s.mode = below<std::uint8_t>(random, kModeCount);
+  s.rule_set = below<std::uint8_t>(random, kRuleSetCount);
+  s.sets = {below<std::uint8_t>(random, 10), below<std::uint8_t>(random, 10)};
+  s.time_outs_left = {below<std::uint8_t>(random, 256), below<std::uint8_t>(random, 256)};
+  s.time_out_seconds = static_cast<float>(30 + uniform(random, 30));
+  s.time_out_team = below<std::uint8_t>(random, kTeamCount);
+  s.timed = random() % 2;
+  s.golden_goal = random() % 2;
+  s.seconds_left = static_cast<float>(2000 + uniform(random, 1600));
+  s.next_server = below<std::uint8_t>(random, kTeamCount);
+  s.fouled = random() % 2;
+  s.last_foul = below<std::uint8_t>(random, kFoulCount);
+  s.last_foul_team = below<std::uint8_t>(random, kTeamCount);
+  s.possession_team = below<std::uint8_t>(random, kTeamCount);
+  s.possession_seconds = static_cast<float>(10 + uniform(random, 10));
+  s.computer = {random() % 2 == 0, random() % 2 == 0};
+  s.attract = random() % 2;
+  s.rung = below<std::uint8_t>(random, kRungCount);
+  s.ball_visible = random() % 2;
+  s.last_goal = random_shot(random);
+  s.last_goal_own = random() % 2;
+  s.last_shot = random_shot(random);
   s.screen_seconds = static_cast<float>(8000 + uniform(random, 8000));
   s.play_seconds = static_cast<float>(8000 + uniform(random, 8000));
   s.ball = random_pose(random, 2000);
@@ -105,6 +133,22 @@ Snapshot snapshot() {
   s.character = {2, 1};
   s.confirmed = {true, false};
   s.last_scorer = 1;
+  s.mode = 3;
+  s.rule_set = 1;
+  s.sets = {1, 2};
+  s.time_outs_left = {2, 1};
+  s.time_out_seconds = 12.5F;
+  s.time_out_team = 1;
+  s.timed = s.fouled = s.last_goal_own = s.ball_visible = true;
+  s.seconds_left = 75.25F;
+  s.next_server = 1;
+  s.last_foul = 2;
+  s.last_foul_team = 1;
+  s.possession_seconds = 3.5F;
+  s.computer = {false, true};
+  s.rung = 4;
+  s.last_goal = {1, 5, 2, 7.5F, 0.25F};
+  s.last_shot = {0, 2, 1, 9.25F, -0.125F};
   s.screen_seconds = 12.5F;
   s.play_seconds = 99.25F;
   s.ball = plain_pose(0.5F);
@@ -118,7 +162,7 @@ Snapshot snapshot() {
                  static_cast<std::uint8_t>(i % kRodSourceCount)};
   }
   s.men = {{0, 0, plain_pose(1.0F)}, {7, 4, plain_pose(-1.0F)}};
-  s.events = {{77, 0, 1, 5, 3, 0.125F, {0.25F, -0.5F, 0.017F}}};
+  s.events = {{77, 3, 1, 5, 3, 0.125F, {0.25F, -0.5F, 0.017F}, 0.5F, true}};
   return s;
 }
 
@@ -147,7 +191,14 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
 }
 
 std::vector<JournalEntry> journal() {
-  std::vector<JournalEntry> entries{JournalHeader{1, 1, 42, 5, 8, 6000, 2500, 6000}};
+  std::vector<JournalEntry> entries{JournalHeader{.layout = 1,
+                                                  .seed = 42,
+                                                  .mode = 2,
+                                                  .rule_set = 1,
+                                                  .sets_to_win = 3,
+                                                  .match_ms = 120'000,
+                                                  .change_sides = true,
+                                                  .spin = 2}};
   JournalTick tick;
   tick.rods[3] = {400'000, -1'570'796, 2'000'000, -31'416, true};
   tick.commands = {{0, 1, 0}, {1, 0, 2}};
@@ -194,7 +245,9 @@ Snapshot random_snapshot(std::mt19937_64& random, bool full) {
     event.team = below<std::uint8_t>(random, kTeamCount);
     event.rod = below<std::uint8_t>(random, kRods);
     event.man = below<std::uint8_t>(random, kMenOnRod);
-    event.value = static_cast<float>(uniform(random, 7.9));
+    event.value = static_cast<float>(uniform(random, 60));
+    event.angle = static_cast<float>(uniform(random, 3.0));
+    event.own = random() % 2;
     for (float& v : event.point) v = static_cast<float>(uniform(random, 1.99));
   }
   return s;
@@ -216,7 +269,8 @@ InputDatagram random_input(std::mt19937_64& random) {
 }
 
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
-  std::vector<JournalEntry> entries{JournalHeader{1, 0, random(), 5, 8, 1, 2, 3}};
+  std::vector<JournalEntry> entries{
+      JournalHeader{.seed = random(), .dead_ball_ms = 1, .ceremony_ms = 2, .end_ms = 3}};
   JournalTick tick;
   for (; tick.tick < static_cast<std::uint64_t>(ticks); ++tick.tick) {
     for (JournalRod& rod : tick.rods) rod = random_rod(random, rod);

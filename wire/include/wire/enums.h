@@ -20,10 +20,36 @@ enum class EventKind : std::uint8_t {
   ball_out = 6,
   screen = 7,
   match_won = 8,
+  shot = 9,
+  foul = 10,
+  time_out = 11,
+  set_won = 12,
+  match_drawn = 13,
 };
 
-// Wish::kind and JournalCommand::kind.
-enum class WishKind : std::uint8_t { push = 0, choose_character = 1, pause = 2, restart = 3 };
+// Snapshot::rule_set, mode, last_foul, and EventSnapshot::value of a foul.
+enum class RuleSet : std::uint8_t { arcade = 0, itsf = 1 };
+enum class Mode : std::uint8_t { match = 0, training = 1, challenge = 2, ladder = 3 };
+enum class Foul : std::uint8_t {
+  possession = 0,
+  spin = 1,
+  jarring = 2,
+  technical = 3,
+  time_out = 4,
+  serve = 5,
+};
+
+// Wish::kind and JournalCommand::kind; seat and touch come from the server alone.
+enum class WishKind : std::uint8_t {
+  push = 0,
+  choose_character = 1,
+  pause = 2,
+  restart = 3,
+  time_out = 4,
+  feed = 5,
+  seat = 6,
+  touch = 7,
+};
 
 // RodSnapshot::status.
 enum class RodStatus : std::uint8_t { absent = 0, live = 1, held = 2 };

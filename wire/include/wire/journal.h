@@ -51,11 +51,18 @@ struct JournalCommand {
 };
 
 struct JournalHeader {
-  std::uint16_t version = 1;
+  std::uint16_t version = 2;
   std::uint8_t layout = 0;
   std::uint64_t seed = 0;
-  std::uint32_t goals_to_win = 5, max_goals = 8;
-  std::uint32_t dead_ball_ms = 6000, ceremony_ms = 2500, end_ms = 6000;
+  std::uint8_t mode = 0, rule_set = 0;  // Mode, RuleSet (wire/enums.h)
+  std::uint32_t goals_to_win = 5, max_goals = 8, lead = 1, sets_to_win = 1;
+  std::uint32_t match_ms = 0;
+  bool golden_goal = true, change_sides = false, jarring = false;
+  std::uint8_t spin = 1;  // foosball::SpinRule
+  std::uint32_t time_outs = 2, time_out_ms = 30000;
+  std::uint32_t dead_ball_ms = 2000, still_ms = 5000;
+  std::uint32_t possession_midfield_ms = 10000, possession_ms = 15000;
+  std::uint32_t ceremony_ms = 2500, end_ms = 6000, idle_ms = 60000, attract_ms = 30000;
 };
 
 struct JournalTick {
@@ -143,12 +150,15 @@ class JournalReader {
   // Empty after a clean end; else what was wrong and at which byte. A file that stops between two
   // records is clean, though play was cut off: no JournalEnd came.
   const std::string& problem() const { return problem_; }
+  // The file's format, where it is one of another release; else 0.
+  unsigned other_version() const { return other_version_; }
 
  private:
   std::nullopt_t fail(const std::string& what);
   std::string open_record();
   std::optional<JournalEntry> read_entry();
   std::optional<JournalEntry> read_tick();
+  bool of_another_release();
   template <class Entry, class Describe>
   std::optional<JournalEntry> read_whole(Entry entry, Describe describe);
 
@@ -160,6 +170,7 @@ class JournalReader {
   std::array<JournalRod, 8> previous_{};
   std::uint64_t next_tick_ = 0;
   bool started_ = false, ended_ = false;
+  unsigned other_version_ = 0;
   std::string problem_;
 };
 

@@ -14,7 +14,7 @@
 namespace wire {
 
 inline constexpr std::uint64_t kJournalMagic = 0x4C4A4653;  // "SFJL"
-inline constexpr std::uint64_t kJournalVersion = 1;
+inline constexpr std::uint64_t kJournalVersion = 2;
 
 // First byte of each payload.
 enum class JournalKind : std::uint8_t { header = 1, ticks = 2, hash = 3, keyframe = 4, end = 5 };
@@ -39,11 +39,31 @@ void describe_journal_header(Codec& codec, H& h) {
   codec.layout_hash(LayoutHash{"layout_hash", "of all the journal's tables"});
   codec.integer(Integer{"layout", 8, kLayoutCount - 1, "", "0 paper, 1 tournament"}, h.layout);
   codec.integer(Integer{"seed", 64, std::numeric_limits<std::uint64_t>::max(), "", ""}, h.seed);
+  codec.integer(
+      Integer{"mode", 8, kModeCount - 1, "", "0 match, 1 training, 2 challenge, 3 ladder"}, h.mode);
+  codec.integer(Integer{"rule_set", 8, kRuleSetCount - 1, "", "0 arcade, 1 ITSF"}, h.rule_set);
+  codec.integer(
+      Integer{"spin", 8, kSpinRuleCount - 1, "", "0 allowed, 1 void goal, 2 loss of ball"}, h.spin);
   codec.integer(Integer{"goals_to_win", 32, kAny32, "", ""}, h.goals_to_win);
   codec.integer(Integer{"max_goals", 32, kAny32, "", ""}, h.max_goals);
-  codec.integer(Integer{"dead_ball_ms", 32, kAny32, "ms", ""}, h.dead_ball_ms);
+  codec.integer(Integer{"lead", 32, kAny32, "", "in the last set"}, h.lead);
+  codec.integer(Integer{"sets_to_win", 32, kAny32, "", ""}, h.sets_to_win);
+  codec.integer(Integer{"match_ms", 32, kAny32, "ms", "of a set; 0: no limit"}, h.match_ms);
+  codec.integer(Integer{"time_outs", 32, kAny32, "", "of a team in a set"}, h.time_outs);
+  codec.integer(Integer{"time_out_ms", 32, kAny32, "ms", ""}, h.time_out_ms);
+  codec.integer(Integer{"dead_ball_ms", 32, kAny32, "ms", "out of reach"}, h.dead_ball_ms);
+  codec.integer(Integer{"still_ms", 32, kAny32, "ms", "within reach, untouched; 0: not judged"},
+                h.still_ms);
+  codec.integer(Integer{"possession_midfield_ms", 32, kAny32, "ms", ""}, h.possession_midfield_ms);
+  codec.integer(Integer{"possession_ms", 32, kAny32, "ms", "elsewhere"}, h.possession_ms);
   codec.integer(Integer{"ceremony_ms", 32, kAny32, "ms", ""}, h.ceremony_ms);
   codec.integer(Integer{"end_ms", 32, kAny32, "ms", ""}, h.end_ms);
+  codec.integer(Integer{"idle_ms", 32, kAny32, "ms", "0: never"}, h.idle_ms);
+  codec.integer(Integer{"attract_ms", 32, kAny32, "ms", "0: never"}, h.attract_ms);
+  codec.flag(Flag{"golden_goal", ""}, h.golden_goal);
+  codec.flag(Flag{"change_sides", ""}, h.change_sides);
+  codec.flag(Flag{"jarring", "is judged"}, h.jarring);
+  codec.align();
 }
 
 template <class Codec, class H>
@@ -70,8 +90,9 @@ void describe_journal_tick(Codec& codec, T& tick) {
   });
   codec.list(List{"commands", 7, kMaxJournalCommands, "in the order they were applied"},
              tick.commands, [&](auto& command) {
-               codec.integer(Integer{"kind", 2, kCommandKindCount - 1, "",
-                                     "0 push, 1 choose character, 2 pause, 3 restart"},
+               codec.integer(Integer{"kind", 3, kCommandKindCount - 1, "",
+                                     "0 push, 1 choose character, 2 pause, 3 restart, 4 time-out, "
+                                     "5 feed, 6 seat, 7 touch"},
                              command.kind);
                codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
                codec.integer(Integer{"value", 8, 255, "", ""}, command.value);

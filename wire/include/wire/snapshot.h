@@ -44,6 +44,15 @@ struct EventSnapshot {
   std::uint8_t team = 0, rod = 0, man = 0;
   float value = 0;
   std::array<float, 3> point{};
+  float angle = 0;   // of a shot or a goal's ball [rad]
+  bool own = false;  // goal
+};
+
+// A ball that a man sent off.
+struct ShotSnapshot {
+  std::uint8_t team = 0, rod = 0, man = 0;
+  float speed = 0;  // [m/s]
+  float angle = 0;  // from straight ahead for the team, counter-clockwise positive [rad]
 };
 
 struct Snapshot {
@@ -57,6 +66,24 @@ struct Snapshot {
   std::array<std::uint8_t, 2> character{};
   std::array<bool, 2> confirmed{};
   std::uint8_t last_scorer = 0;
+  std::uint8_t mode = 0, rule_set = 0;  // Mode, RuleSet (wire/enums.h)
+  std::array<std::uint8_t, 2> sets{};   // won
+  std::array<std::uint8_t, 2> time_outs_left{};
+  float time_out_seconds = 0;  // left of a time-out; 0: none
+  std::uint8_t time_out_team = 0;
+  bool timed = false, golden_goal = false;
+  float seconds_left = 0;        // of a timed set
+  std::uint8_t next_server = 0;  // team
+  bool fouled = false;           // since the last goal: why, and whose
+  std::uint8_t last_foul = 0, last_foul_team = 0;
+  std::uint8_t possession_team = 0;
+  float possession_seconds = 0;
+  std::array<bool, 2> computer{};  // plays the team
+  bool attract = false;            // nobody plays: computers show a match
+  std::uint8_t rung = 0;           // of the ladder
+  bool ball_visible = false;       // in play, or in the goal it went into
+  ShotSnapshot last_goal, last_shot;
+  bool last_goal_own = false;
   float screen_seconds = 0, play_seconds = 0;
   PoseVelocity ball;
   std::array<RodSnapshot, kRods> rods{};

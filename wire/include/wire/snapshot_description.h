@@ -10,7 +10,7 @@
 namespace wire {
 
 inline constexpr std::uint64_t kSnapshotMagic = 0x4E534653;  // "SFSN"
-inline constexpr std::uint64_t kSnapshotVersion = 2;
+inline constexpr std::uint64_t kSnapshotVersion = 3;
 
 // 15 um over +-2 m: a table is 1.2 m long, and a ball that left it is of no interest further out.
 inline constexpr Fixed kPosition{"position", 18, 0x1p-16, "m", "x, y, z in the world"};
@@ -50,20 +50,80 @@ void describe_man(Codec& codec, Man& man) {
   describe_pose(codec, man.body, kManSpin);
 }
 
+inline constexpr Fixed kShotAngle{"angle", 12, 0x1p-9, "rad",
+                                  "of a shot from straight ahead, counter-clockwise positive"};
+
 template <class Codec, class Event>
 void describe_event(Codec& codec, Event& event) {
   codec.integer(Integer{"id", 32, std::numeric_limits<std::uint32_t>::max(), "", "counts up"},
                 event.id);
   codec.integer(Integer{"kind", 4, kEventKindCount - 1, "",
                         "0 man hit, 1 wall hit, 2 field hit, 3 goal, 4 serve, 5 dead ball, "
-                        "6 ball out, 7 screen, 8 match won"},
+                        "6 ball out, 7 screen, 8 match won, 9 shot, 10 foul, 11 time-out, "
+                        "12 set won, 13 match drawn"},
                 event.kind);
-  codec.integer(Integer{"team", 1, kTeamCount - 1, "", "of the man or the goal"}, event.team);
-  codec.integer(Integer{"rod", 3, kRods - 1, "", "of a man hit"}, event.rod);
-  codec.integer(Integer{"man", 3, kMenOnRod - 1, "", "of a man hit"}, event.man);
-  codec.fixed(Fixed{"value", 18, 0x1p-14, "", "impulse of a hit [N s], or the new screen"},
+  codec.integer(Integer{"team", 1, kTeamCount - 1, "", "of the man, the goal or the foul"},
+                event.team);
+  codec.integer(Integer{"rod", 3, kRods - 1, "", "of the man"}, event.rod);
+  codec.integer(Integer{"man", 3, kMenOnRod - 1, "", ""}, event.man);
+  codec.fixed(Fixed{"value", 21, 0x1p-14, "",
+                    "impulse of a hit [N s], speed of a shot or goal [m/s], the new screen, the "
+                    "foul's reason"},
               event.value);
   codec.vector(Fixed{"point", 18, 0x1p-16, "m", "x, y, z in the world"}, event.point);
+  codec.fixed(kShotAngle, event.angle);
+  codec.flag(Flag{"own", "goal: by a man of the team that conceded"}, event.own);
+}
+
+template <class Codec, class Shot>
+void describe_shot(Codec& codec, Shot& shot) {
+  codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, shot.team);
+  codec.integer(Integer{"rod", 3, kRods - 1, "", ""}, shot.rod);
+  codec.integer(Integer{"man", 3, kMenOnRod - 1, "", ""}, shot.man);
+  codec.fixed(Fixed{"speed", 16, 0x1p-10, "m/s", "", false}, shot.speed);
+  codec.fixed(kShotAngle, shot.angle);
+}
+
+// Rules and what they have decided.
+template <class Codec, class S>
+void describe_rules_state(Codec& codec, S& s) {
+  codec.integer(
+      Integer{"mode", 2, kModeCount - 1, "", "0 match, 1 training, 2 challenge, 3 ladder"}, s.mode);
+  codec.integer(Integer{"rule_set", 1, kRuleSetCount - 1, "", "0 arcade, 1 ITSF"}, s.rule_set);
+  codec.array(Group{"sets", "won by team 0 and 1"}, s.sets, [&](auto& sets) {
+    codec.integer(Integer{"won", 4, 15, "", ""}, sets);
+  });
+  codec.array(Group{"time_outs_left", "of team 0 and 1, in this set"}, s.time_outs_left,
+              [&](auto& left) {
+                codec.integer(Integer{"left", 8, 255, "", ""}, left);
+              });
+  codec.fixed(Fixed{"time_out_seconds", 16, 0x1p-4, "s", "left of a time-out; 0: none", false},
+              s.time_out_seconds);
+  codec.integer(Integer{"time_out_team", 1, kTeamCount - 1, "", "that asked for it"},
+                s.time_out_team);
+  codec.flag(Flag{"timed", ""}, s.timed);
+  codec.flag(Flag{"golden_goal", "the next goal decides"}, s.golden_goal);
+  codec.fixed(Fixed{"seconds_left", 16, 0x1p-4, "s", "of a timed set", false}, s.seconds_left);
+  codec.integer(Integer{"next_server", 1, kTeamCount - 1, "", "has the ball next, or had it last"},
+                s.next_server);
+  codec.flag(Flag{"fouled", "since the last goal"}, s.fouled);
+  codec.integer(Integer{"last_foul", 3, kFoulCount - 1, "",
+                        "0 possession, 1 spin, 2 jarring, 3 technical, 4 time-out, 5 serve"},
+                s.last_foul);
+  codec.integer(Integer{"last_foul_team", 1, kTeamCount - 1, "", ""}, s.last_foul_team);
+  codec.integer(Integer{"possession_team", 1, kTeamCount - 1, "", "has the ball, or had it last"},
+                s.possession_team);
+  codec.fixed(Fixed{"possession_seconds", 16, 0x1p-4, "s", "for so long", false},
+              s.possession_seconds);
+  codec.array(Group{"computer", "plays team 0 and 1"}, s.computer, [&](auto& is) {
+    codec.flag(Flag{"is", ""}, is);
+  });
+  codec.flag(Flag{"attract", "nobody plays: computers show a match"}, s.attract);
+  codec.integer(Integer{"rung", 3, kRungCount - 1, "", "of the ladder"}, s.rung);
+  codec.flag(Flag{"ball_visible", "in play, or in the goal it went into"}, s.ball_visible);
+  codec.group(Group{"last_goal", "credited to"}, [&] { describe_shot(codec, s.last_goal); });
+  codec.flag(Flag{"last_goal_own", "by a man of the team that conceded"}, s.last_goal_own);
+  codec.group(Group{"last_shot", ""}, [&] { describe_shot(codec, s.last_shot); });
 }
 
 template <class Codec, class S>
@@ -101,6 +161,7 @@ void describe_snapshot(Codec& codec, S& s) {
   codec.integer(Integer{"send_time_us", 63, kAny >> 1, "us", "server's monotonic clock"},
                 s.send_time_us);
   describe_match_state(codec, s);
+  describe_rules_state(codec, s);
   codec.group(Group{"ball", ""}, [&] { describe_pose(codec, s.ball, kBallSpin); });
   codec.array(Group{"rods", "from -x to +x"}, s.rods, [&](auto& rod) { describe_rod(codec, rod); });
   codec.list(List{"men", 6, kMaxMen, "every man on the table"}, s.men,
