@@ -231,15 +231,19 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(drive.angle)));
 }
 
-RodState TableWorld::rod(int rod) const {
-  const vp::ArticulationId id = rods_[rod];
-  return {world_.joint_position(id, kSlide, 0), world_.joint_position(id, kTurn, 0),
-          world_.joint_velocity(id, kSlide, 0), world_.joint_velocity(id, kTurn, 0)};
+// Both joints have one coordinate, so that a link's index is its coordinate's.
+void TableWorld::read_rods() {
+  for (int rod = 0; rod < kRods; ++rod) {
+    const std::span<const double> q = world_.coordinates(rods_[rod]);
+    const std::span<const double> v = world_.velocities(rods_[rod]);
+    rod_states_[rod] = {q[kSlide], q[kTurn], v[kSlide], v[kTurn]};
+  }
 }
 
 void TableWorld::set_rod(int rod, const RodState& state) {
   must(world_.set_joint_state(rods_[rod], kSlide, 0, state.slide, state.slide_rate));
   must(world_.set_joint_state(rods_[rod], kTurn, 0, state.angle, state.angle_rate));
+  read_rods();
 }
 
 // --- ball ----------------------------------------------------------------------------------------
@@ -297,9 +301,16 @@ void TableWorld::let_field_sag() {
   must(world_.apply_impulse(ball_, {std::copysign(impulse, nearest), 0.0, 0.0}, ball));
 }
 
+vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
+  auto restored = world_.restore(bytes);
+  if (restored) read_rods();
+  return restored;
+}
+
 bool TableWorld::step() {
   let_field_sag();
   status_ = must(world_.step(kTick));
+  read_rods();
   return !status_.non_finite;
 }
 

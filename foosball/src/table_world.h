@@ -56,7 +56,7 @@ class TableWorld {
 
   // Drives a rod towards a target: finite, within the slide limit.
   void drive(int rod, const RodTarget& target);
-  RodState rod(int rod) const;
+  const RodState& rod(int rod) const { return rod_states_[rod]; }
   void set_rod(int rod, const RodState& state);
 
   BallState ball() const;
@@ -77,7 +77,7 @@ class TableWorld {
 
   void snapshot(std::vector<std::byte>& bytes) const { world_.snapshot(bytes); }
   std::uint64_t state_hash() const { return world_.state_hash(); }
-  vp::Expected<void> restore(std::span<const std::byte> bytes) { return world_.restore(bytes); }
+  vp::Expected<void> restore(std::span<const std::byte> bytes);
 
  private:
   void add_fixed(const vp::Shape& shape, const vp::SE3& T_world_shape, const vp::Material& material,
@@ -90,6 +90,7 @@ class TableWorld {
   void add_ball();
   void add_rod(int rod, int character);
   void let_field_sag();
+  void read_rods();
 
   const TableSpec& table_;
   int first_;
@@ -97,6 +98,7 @@ class TableWorld {
   vp::BodyId fixed_;
   vp::BodyId ball_;
   std::array<vp::ArticulationId, kRods> rods_{};
+  std::array<RodState, kRods> rod_states_{};  // read once a step: all ask for them
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };
