@@ -51,6 +51,8 @@ check  systemd               verifies the service that the package installs
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests
 check  libeigen3-dev         6x6 matrices that the tests compare with
+check  libopenmpi-dev        space-foosball-match-mpi, matches over a cluster, is built where MPI is
+check  openmpi-bin           mpirun: its test, on ranks of this machine
 check  librapidcheck-dev     property tests
 check  gcc-avr               compiles the firmware
 check  binutils-avr          links the firmware

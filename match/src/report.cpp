@@ -107,7 +107,7 @@ void add_ball(List& list, const Statistics& s) {
   list.add("nobody can reach the ball", percent(s.unreachable_ticks, s.ball_ticks), "% of ball",
            at_most(10.0, "below 10"));
   list.add("  longest", static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
-           at_most(6.0, "at most 6 (dead ball)"));
+           at_most(6.1, "at most 6 (dead ball)"));
   list.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball");
   list.add("longest stuck", static_cast<double>(s.longest_stuck_ticks) * foosball::kTick, "s",
            at_most(6.1, "at most 6 (dead ball)"));
@@ -288,8 +288,12 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
               at_most(30.0, "below 30"));
   append(passive);
 
-  const auto score = [&](Part part) { return 100.0 * mean_score(series[part].pairs()); };
-  const auto error = [&](Part part) { return 100.0 * score_error(series[part].pairs()); };
+  const auto score = [&](Part part) {
+    return series[part].taken() < 2 ? kNone : 100.0 * mean_score(series[part].pairs());
+  };
+  const auto error = [&](Part part) {
+    return series[part].taken() < 4 ? kNone : 100.0 * score_error(series[part].pairs());
+  };
   List spinner(players(kSpinner));
   spinner.add("points of the spinner", score(kSpinner), "%", at_most(35.0, "at most 35"));
   spinner.add("  standard error", error(kSpinner), "%");

@@ -1,0 +1,101 @@
+#include "run.h"
+
+#include <signal.h>
+
+#include <atomic>
+#include <cinttypes>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "match/checkpoint.h"
+#include "match/executor.h"
+#include "match/report.h"
+#include "plan.h"
+#include "progress.h"
+
+namespace {
+
+std::atomic<bool> stop_requested{false};
+
+extern "C" void request_stop(int) {
+  stop_requested.store(true);
+}
+
+// A second signal ends the program at once.
+void end_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
+bool write_text(const std::string& path, const std::string& text) {
+  if (path.empty()) return true;
+  if (path == "-") return std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  return static_cast<bool>(file);
+}
+
+void print_effort(const match::Effort& effort) {
+  std::printf("\n%" PRIu64
+              " matches played in %.1f s, %.1f s of one core: %.0f times real time on "
+              "one core\n",
+              effort.games, effort.seconds, effort.core_seconds, effort.real_time_factor());
+}
+
+}  // namespace
+
+namespace app {
+
+int fail(int exit_code, const std::string& sentence) {
+  std::fprintf(stderr, "space-foosball-match: %s\n", sentence.c_str());
+  return exit_code;
+}
+
+int leave(const Leave& leave) {
+  if (leave.exit_code != 0) return fail(leave.exit_code, leave.text);
+  std::fputs(leave.text.c_str(), stdout);
+  return 0;
+}
+
+int run(const Options& options, const PlayAll& play_all) {
+  end_on_signals();
+  const std::vector<match::SeriesDesc> plan = series_of(options);
+  match::Schedule schedule(plan);
+  std::unique_ptr<match::Checkpoint> checkpoint;
+  if (!options.checkpoint.empty()) {
+    auto opened = match::Checkpoint::open(options.checkpoint, plan);
+    if (!opened) return fail(2, opened.error());
+    for (auto& line : opened->lines) schedule.know(line.id, std::move(line.result));
+    checkpoint = std::move(opened->checkpoint);
+  }
+  Progress progress(options.quiet);
+  match::ExecutorOptions executor;
+  executor.jobs = options.jobs;
+  executor.record_folder = options.record;
+  executor.checkpoint = checkpoint.get();
+  executor.stop = &stop_requested;
+  executor.progress = [&](const match::Schedule& s, const match::Effort& e) {
+    progress.show(s, e);
+  };
+  const auto effort = play_all(schedule, executor);
+  progress.finish();
+  if (!effort) return fail(1, effort.error());
+
+  const Results results = results_of(options, schedule.series());
+  if (options.csv != "-" && options.json != "-") {
+    std::fputs(results.text.c_str(), stdout);
+    print_effort(*effort);
+  }
+  if (!write_text(options.csv, match::as_csv(results.figures)) ||
+      !write_text(options.json, match::as_json(results.figures))) {
+    return fail(1, "the results could not be written to the file");
+  }
+  if (!schedule.finished()) return fail(1, "stopped before all matches were played");
+  return 0;
+}
+
+}  // namespace app

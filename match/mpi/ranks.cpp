@@ -1,0 +1,205 @@
+#include "ranks.h"
+
+#include <mpi.h>
+
+#include <array>
+#include <charconv>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "match/checkpoint.h"
+#include "match/codec.h"
+#include "os/clock.h"
+
+namespace ranks {
+namespace {
+
+using match::JobId;
+
+enum Tag { kIdle, kResult, kFailed, kJob, kStop };
+
+// What a rank sends back: "series game nanoseconds result", or a sentence with kFailed.
+struct Answer {
+  JobId id;
+  std::int64_t cost_ns = 0;
+  match::GameResult result;
+};
+
+std::string encode(const Answer& answer) {
+  std::string text = std::to_string(answer.id.series);
+  text += ' ';
+  text += std::to_string(answer.id.game);
+  text += ' ';
+  text += std::to_string(answer.cost_ns);
+  text += ' ';
+  return text + match::encode_result(answer.result);
+}
+
+std::optional<Answer> decode(const std::string& text) {
+  Answer answer;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  const auto number = [&](auto& value) {
+    const auto [after, error] = std::from_chars(at, end, value);
+    if (error != std::errc{} || after == end || *after != ' ') return false;
+    at = after + 1;
+    return true;
+  };
+  if (!number(answer.id.series) || !number(answer.id.game) || !number(answer.cost_ns)) {
+    return std::nullopt;
+  }
+  const auto result = match::decode_result({at, static_cast<std::size_t>(end - at)});
+  if (!result) return std::nullopt;
+  answer.result = *result;
+  return answer;
+}
+
+void send(int rank, Tag tag, const std::string& text = {}) {
+  MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, tag, MPI_COMM_WORLD);
+}
+
+struct Message {
+  int rank, tag;
+  std::string text;
+};
+
+// Waits without holding a core, which the ranks that play need more.
+std::optional<Message> receive(std::int64_t patience_ns) {
+  const std::int64_t until = os::monotonic_ns() + patience_ns;
+  MPI_Status status;
+  int there = 0;
+  while (true) {
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
+    if (there != 0) break;
+    if (os::monotonic_ns() >= until) return std::nullopt;
+    os::sleep_until_ns(os::monotonic_ns() + 500'000);
+  }
+  int size = 0;
+  MPI_Get_count(&status, MPI_CHAR, &size);
+  Message message{status.MPI_SOURCE, status.MPI_TAG,
+                  std::string(static_cast<std::size_t>(size), 0)};
+  MPI_Recv(message.text.data(), size, MPI_CHAR, message.rank, message.tag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return message;
+}
+
+class Coordinator {
+ public:
+  Coordinator(match::Schedule& schedule, const match::ExecutorOptions& options)
+      : schedule_(schedule), options_(options) {
+    int ranks = 1;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    players_ = ranks - 1;
+  }
+
+  tl::expected<match::Effort, std::string> run() {
+    const std::int64_t begun = os::monotonic_ns();
+    while (!over()) {
+      if (const auto message = receive(100'000'000)) take(*message);
+    }
+    effort_.seconds = static_cast<double>(os::monotonic_ns() - begun) * 1e-9;
+    dismiss();
+    if (!problem_.empty()) return tl::unexpected(problem_);
+    return effort_;
+  }
+
+ private:
+  bool stopped() const {
+    return !problem_.empty() || (options_.stop != nullptr && options_.stop->load());
+  }
+  bool over() const { return schedule_.finished() || stopped(); }
+
+  void take(const Message& message) {
+    if (message.tag == kFailed) problem_ = message.text;
+    if (message.tag == kResult) take_result(message.text);
+    if (message.tag != kFailed && !over())
+      hand_out(message.rank);
+    else
+      waiting_.push_back(message.rank);
+  }
+
+  void take_result(const std::string& text) {
+    auto answer = decode(text);
+    if (!answer) {
+      problem_ = "a rank sent a result that cannot be read";
+      return;
+    }
+    std::erase(under_way_, answer->id);
+    ++effort_.games;
+    effort_.ticks += answer->result.statistics.ticks;
+    effort_.core_seconds += static_cast<double>(answer->cost_ns) * 1e-9;
+    if (options_.checkpoint != nullptr) {
+      if (auto kept = options_.checkpoint->append(answer->id, answer->result); !kept) {
+        problem_ = kept.error();
+      }
+    }
+    schedule_.complete(answer->id, std::move(answer->result));
+    if (options_.progress) options_.progress(schedule_, effort_);
+  }
+
+  // Something new; else what has been under way for longest, in case its rank is lost.
+  void hand_out(int rank) {
+    auto id = schedule_.next();
+    if (!id && !under_way_.empty()) {
+      id = under_way_.front();
+      under_way_.pop_front();
+    }
+    if (!id) {
+      waiting_.push_back(rank);
+      return;
+    }
+    under_way_.push_back(*id);
+    send(rank, kJob, std::to_string(id->series) + ' ' + std::to_string(id->game));
+  }
+
+  // Tells all ranks that there is no more. Those that still play what is not needed any more are
+  // waited for; one that does not answer is lost, and MPI could not be ended in order with it.
+  void dismiss() {
+    constexpr std::int64_t kPatience = 120'000'000'000;
+    for (const int rank : waiting_) send(rank, kStop);
+    int left = players_ - static_cast<int>(waiting_.size());
+    while (left > 0) {
+      const auto message = receive(kPatience);
+      if (!message) return;
+      send(message->rank, kStop);
+      --left;
+    }
+  }
+
+  match::Schedule& schedule_;
+  const match::ExecutorOptions& options_;
+  int players_ = 0;
+  std::deque<JobId> under_way_;
+  std::vector<int> waiting_;  // ranks without a game
+  match::Effort effort_;
+  std::string problem_;
+};
+
+}  // namespace
+
+tl::expected<match::Effort, std::string> coordinate(match::Schedule& schedule,
+                                                    const match::ExecutorOptions& options) {
+  return Coordinator(schedule, options).run();
+}
+
+int play(const match::Schedule& schedule, const std::string& record_folder) {
+  send(0, kIdle);
+  while (true) {
+    const auto message = receive(INT64_MAX / 2);
+    if (!message || message->tag != kJob) return 0;
+    JobId id;
+    const char* end = message->text.data() + message->text.size();
+    const auto series = std::from_chars(message->text.data(), end, id.series);
+    std::from_chars(series.ptr + 1, end, id.game);
+    const std::int64_t before = os::thread_ns();
+    auto result = match::play_job(schedule.game(id), id, record_folder);
+    if (!result) {
+      send(0, kFailed, result.error());
+      continue;
+    }
+    send(0, kResult, encode({id, os::thread_ns() - before, std::move(*result)}));
+  }
+}
+
+}  // namespace ranks

@@ -1,0 +1,73 @@
+#!/bin/bash
+# The programs as they are run: clear sentences for bad options, recordings that replay, and the same
+# totals from threads, from 1, 2 and 4 ranks, and from a run that was killed and goes on.
+#   program_test.sh SPACE_FOOSBALL_MATCH FOOSBALL_REPLAY [SPACE_FOOSBALL_MATCH_MPI]
+set -euo pipefail
+match=$1 replay=$2 mpi=${3:-}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*" >&2
+  failures=$((failures + 1))
+}
+
+# refuses SENTENCE OPTION...: exit code 2, and one line on stderr that has the sentence.
+refuses() {
+  local sentence=$1 code=0
+  shift
+  "$match" "$@" >"$folder/out" 2>"$folder/err" || code=$?
+  [[ $code == 2 ]] || fail "$* ended with $code"
+  [[ $(wc -l <"$folder/err") == 1 && ! -s $folder/out ]] || fail "$*: not one line: $(cat "$folder/err")"
+  grep -q -- "$sentence" "$folder/err" || fail "$*: said $(cat "$folder/err")"
+}
+refuses 'is no player: give one of' --home nobody
+refuses 'a skill is a number from 0 to 1' --away classic:1.5
+refuses 'paper' --layout square
+refuses 'excludes' --sprt classic idle --report
+refuses 'elo0 must be below' --sprt classic idle --elo0 5 --elo1 5
+refuses 'twice' --round-robin idle idle
+refuses '--matches' --matches many
+refuses 'not exist' --record "$folder/none"
+refuses 'choose a file' --checkpoint "$folder/none/file"
+refuses '--nonsense' --nonsense
+
+# A few seconds of play a match; the totals with all distributions are in the JSON.
+options=(--quiet --matches 8 --max-minutes 0.05 --home classic:0.9 --away classic:0.3)
+"$match" "${options[@]}" --json "$folder/threads.json" --record "$folder" --checkpoint "$folder/whole" >"$folder/out"
+digest=$(grep digest "$folder/out")
+recordings=("$folder"/*.sfr)
+[[ ${#recordings[@]} == 8 ]] || fail "${#recordings[@]} recordings of 8 matches"
+"$replay" "${recordings[0]}" | grep -q 'is the match that was played' || fail "a recording does not replay"
+
+same() {
+  cmp -s "$folder/threads.json" "$1" || fail "$2: other figures"
+  grep -qx "$digest" "$folder/out" || fail "$2: other matches: $(grep digest "$folder/out")"
+}
+# Cut in the middle of a line, as by a kill while it was written.
+head -c "$(($(wc -c <"$folder/whole") * 2 / 3))" "$folder/whole" >"$folder/cut"
+cp "$folder/cut" "$folder/cut-mpi"
+"$match" "${options[@]}" --json "$folder/cut.json" --checkpoint "$folder/cut" >"$folder/out"
+same "$folder/cut.json" "resumed"
+grep -q '^8 matches played' "$folder/out" && fail "resumed: played all matches again"
+
+# Killed at whatever point it had reached.
+long=(--quiet --matches 12 --max-minutes 0.2 --jobs 1)
+"$match" "${long[@]}" --json "$folder/long.json" >/dev/null
+timeout -s KILL 0.5 "$match" "${long[@]}" --checkpoint "$folder/killed" >/dev/null 2>&1 || true
+"$match" "${long[@]}" --checkpoint "$folder/killed" --json "$folder/resumed.json" >/dev/null
+cmp -s "$folder/long.json" "$folder/resumed.json" || fail "killed and resumed: other figures"
+refuses 'of other matches' "${long[@]}" --seed 2 --checkpoint "$folder/killed"
+
+if [[ -n $mpi ]]; then
+  launch() { timeout 100 mpirun --oversubscribe --allow-run-as-root -n "$@"; }
+  for ranks in 1 2 4; do
+    launch $ranks "$mpi" "${options[@]}" --json "$folder/ranks.json" >"$folder/out"
+    same "$folder/ranks.json" "$ranks ranks"
+  done
+  launch 3 "$mpi" "${options[@]}" --json "$folder/ranks.json" --checkpoint "$folder/cut-mpi" >"$folder/out"
+  same "$folder/ranks.json" "resumed by 3 ranks"
+fi
+echo "program_test: $failures failures"
+[[ $failures == 0 ]]
