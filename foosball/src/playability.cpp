@@ -27,16 +27,16 @@ Playability playability_of(const Statistics& s) {
   const double matches = static_cast<double>(s.matches());
   const double ball = static_cast<double>(s.ball_ticks);
   if (minutes < 1.0 || matches == 0.0 || ball == 0.0) return p;
-  p.rallies = rising(s.rally.mean() - 0.5 * s.rally.kWidth, 8.0);
+  p.rallies = rising(s.rally.mean() - 0.5 * s.rally.kWidth, 20.0);
   const double on_target = sum(s.shots_on_target);
   const double saved = on_target > 0.0 ? sum(s.saves) / on_target : 0.0;
   p.saves = rising(saved, 1.0 / 3.0) * rising(1.0 - saved, 1.0 / 3.0);
-  p.reach = rising(1.0 - static_cast<double>(s.unreachable_ticks) / ball, 0.95);
-  p.surprise = rising(static_cast<double>(s.lead_changes) / matches, 0.7);
+  p.reach = rising(0.30 - static_cast<double>(s.unreachable_ticks) / ball, 0.25);
+  p.surprise = rising(static_cast<double>(s.lead_changes) / matches, 1.0);
   const double length = minutes / matches;
-  p.length = rising(length, 2.0) * falling(length, 5.0);
+  p.length = rising(length, 2.0) * falling(length, 4.0);
   const double still = static_cast<double>(s.still_ticks) / ball;
-  p.flow = falling(still, 0.05) * falling(static_cast<double>(s.dead_balls) / minutes, 0.5);
+  p.flow = falling(still, 0.02) * falling(static_cast<double>(s.dead_balls) / minutes, 0.2);
   p.total = std::pow(p.rallies * p.saves * p.reach * p.surprise * p.length * p.flow, 1.0 / 6.0);
   return p;
 }

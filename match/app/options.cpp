@@ -30,7 +30,7 @@ std::string check_player(const std::string& name) {
 
 struct Raw {
   std::string home = "classic", away = "classic", layout = "tournament";
-  bool report = false, balance = false;
+  bool report = false, balance = false, passive = false;
   std::vector<std::string> sprt, round_robin;
 };
 
@@ -40,6 +40,9 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
   cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
+  auto* passive = cli.add_flag("--passive", raw.passive,
+                               "the same as --away idle: what an idle side makes of play");
+  passive->excludes(away);
   auto* matches = cli.add_option("--matches", o.matches, "to play; in pairs, so an even number")
                       ->check(CLI::Range(2, 100'000'000));
   cli.add_option("--max-minutes", o.max_minutes, "a match is over after so much simulated time")
@@ -83,7 +86,7 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
 
 std::string translate(Options& o, const Raw& raw) {
   o.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
-  o.players = {raw.home, raw.away};
+  o.players = {raw.home, raw.passive ? "idle" : raw.away};
   if (raw.report) o.mode = Mode::report;
   if (raw.balance) o.mode = Mode::balance;
   if (!raw.sprt.empty()) {

@@ -1,4 +1,5 @@
 // The registry of players: one row for each kind.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -30,23 +31,45 @@ class Idle final : public Player {
   void play(const MatchView&, RodTargets&) override {}
 };
 
-// All rods of the team turn forward at a rate that a hard flick of the wrist reaches.
+// All rods of the team spin forward without end, each with a man kept level with the ball: what
+// wins against whoever only guards, and what the ITSF forbids.
 class Spinner final : public Player {
  public:
   explicit Spinner(int team) : team_(team) {}
   void play(const MatchView& view, RodTargets& targets) override {
-    constexpr double kRate = 40.0;  // [rad/s]
+    constexpr double kRate = 60.0;  // a hard flick of the wrist [rad/s]
+    constexpr double kSpeed = 1.5;  // of the slide [m/s]
     const bool turns = view.screen == foosball::Screen::play && !view.paused;
     const double rate = turns ? -foosball::attack_sign(team_) * kRate : 0.0;
     angle_ += rate * foosball::kTick;
-    for (const int rod : rods_of_team(foosball::table_spec(view.layout), team_)) {
-      targets[rod] = {0.0, angle_, 0.0, rate, true};
+    const auto& table = foosball::table_spec(view.layout);
+    for (const int rod : rods_of_team(table, team_)) {
+      const double way = goal_of(table.rods[rod], view.ball_position.y, slide_[rod]) - slide_[rod];
+      const double step = std::clamp(way, -kSpeed * foosball::kTick, kSpeed * foosball::kTick);
+      slide_[rod] += step;
+      targets[rod] = {slide_[rod], angle_, step / foosball::kTick, rate, true};
     }
   }
 
  private:
+  // The slide that brings a man to y with the least motion.
+  static double goal_of(const foosball::RodSpec& rod, double y, double slide) {
+    double best = slide, least = 1e9;
+    for (int man = 0; man < rod.men; ++man) {
+      const double wanted = y - man_offset(rod, man);
+      const double goal = std::clamp(wanted, -rod.slide_limit, rod.slide_limit);
+      const double cost = 10.0 * std::fabs(wanted - goal) + std::fabs(goal - slide);
+      if (cost < least) {
+        least = cost;
+        best = goal;
+      }
+    }
+    return best;
+  }
+
   int team_;
   double angle_ = 0.0;
+  std::array<double, kRods> slide_{};
 };
 
 // Lets only one hand of another player through: the one on the rod nearest to the ball. A hand that
@@ -117,7 +140,7 @@ constexpr Kind kKinds[] = {
      [](const PlayerDesc& desc, const std::string& argument) {
        return without_argument(desc, argument, std::make_unique<Idle>());
      }},
-    {"spinner", "spinner", "all rods spin all the time",
+    {"spinner", "spinner", "all rods spin all the time, a man level with the ball",
      [](const PlayerDesc& desc, const std::string& argument) {
        return without_argument(desc, argument, std::make_unique<Spinner>(desc.team));
      }},

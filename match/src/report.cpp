@@ -29,6 +29,13 @@ Goal at_least(double low, const char* text) {
   return {.low = low, .text = text};
 }
 
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? kNone : static_cast<double>(part) / static_cast<double>(whole);
+}
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return 100.0 * ratio(part, whole);
+}
+
 class List {
  public:
   explicit List(std::string section) : section_(std::move(section)) {}
@@ -36,10 +43,17 @@ class List {
     figures.push_back({section_, name, value, unit, "", Judgment::none});
   }
   void add(const char* name, double value, const char* unit, const Goal& goal) {
-    const Judgment judgment = std::isnan(value)                         ? Judgment::unknown
+    const Judgment judgment = *goal.text == 0                           ? Judgment::none
+                              : std::isnan(value)                       ? Judgment::unknown
                               : value >= goal.low && value <= goal.high ? Judgment::pass
                                                                         : Judgment::falls_short;
     figures.push_back({section_, name, value, unit, goal.text, judgment});
+  }
+  // Of a share of n, each by itself [%].
+  void add_share(const char* name, std::uint64_t part, std::uint64_t n, const Goal& goal) {
+    add(name, percent(part, n), "%", goal);
+    const double p = ratio(part, n);
+    figures.back().error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n));
   }
   std::vector<Figure> figures;
 
@@ -47,12 +61,6 @@ class List {
   std::string section_;
 };
 
-double ratio(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? kNone : static_cast<double>(part) / static_cast<double>(whole);
-}
-double percent(std::uint64_t part, std::uint64_t whole) {
-  return 100.0 * ratio(part, whole);
-}
 template <class Counts>
 std::uint64_t sum(const Counts& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
@@ -71,13 +79,12 @@ double quantile(const Histogram& histogram, double fraction) {
 void add_goals(List& list, const Statistics& s) {
   const std::uint64_t goals = sum(s.goals);
   list.add("goals a minute of play", per_minute(goals, s.play_ticks), "");
-  list.add("own goals by swing, of all goals", percent(sum(s.own_goals_swing), goals), "%",
-           at_most(3.0, "below 3"));
-  list.add("own goals by deflection, of all goals", percent(sum(s.own_goals_deflected), goals),
-           "%");
+  list.add_share("own goals by swing, of all goals", sum(s.own_goals_swing), goals,
+                 at_most(3.0, "below 3"));
+  list.add_share("own goals by deflection, of all goals", sum(s.own_goals_deflected), goals, {});
   const std::uint64_t served = sum(s.goals_of_server) + sum(s.goals_of_receiver);
-  list.add("the server scores next", percent(sum(s.goals_of_server), served), "%",
-           {48.0, 52.0, "48 to 52"});
+  list.add_share("the server scores next", sum(s.goals_of_server), served,
+                 {48.0, 52.0, "48 to 52"});
 }
 
 void add_hands(List& list, const Statistics& s) {
@@ -129,7 +136,7 @@ void add_play(List& list, const Statistics& s) {
   list.add("length of a match, median", quantile(s.length, 0.5), "s of play");
   list.add("changes of lead", ratio(s.lead_changes, s.matches()), "a match");
   list.add("matches not decided in time", percent(s.undecided, s.matches()), "%");
-  list.add("team 1 wins", percent(s.wins[1], decided), "%");
+  list.add_share("team 1 wins", s.wins[1], decided, {});
   const double n = static_cast<double>(decided);
   const double z = n > 0 ? (static_cast<double>(s.wins[1]) - 0.5 * n) / std::sqrt(0.25 * n) : kNone;
   list.add("  from chance", z, "z", {-2.0, 2.0, "-2 to 2"});
@@ -187,6 +194,12 @@ std::vector<Figure> figures_of(const std::string& section, const Statistics& sta
   add_play(list, statistics);
   const foosball::Playability p = foosball::playability_of(statistics);
   list.add("playability", p.total, "of 1");
+  list.add("  rallies", p.rallies, "");
+  list.add("  saves", p.saves, "");
+  list.add("  somebody can act", p.reach, "");
+  list.add("  surprise", p.surprise, "");
+  list.add("  length", p.length, "");
+  list.add("  flow", p.flow, "");
   return list.figures;
 }
 
@@ -196,6 +209,7 @@ std::string as_table(const std::vector<Figure>& figures) {
     if (f.section != section) text += (text.empty() ? "" : "\n") + f.section + "\n";
     section = f.section;
     std::string line = "  " + padded(f.name, 44) + right(format(f.value), 8) + " " +
+                       padded(std::isnan(f.error) ? "" : "+-" + format(f.error), 7) +
                        padded(f.unit, 11) + padded(f.goal, 24) + word(f.judgment);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
@@ -204,10 +218,11 @@ std::string as_table(const std::vector<Figure>& figures) {
 }
 
 std::string as_csv(const std::vector<Figure>& figures) {
-  std::string text = "section,figure,value,unit,goal,judgment\n";
+  std::string text = "section,figure,value,standard error,unit,goal,judgment\n";
   for (const Figure& f : figures) {
     text += escaped(f.section, false) + ',' + escaped(f.name, false) + ',' +
-            (std::isnan(f.value) ? "" : std::to_string(f.value)) + ',' + escaped(f.unit, false) +
+            (std::isnan(f.value) ? "" : std::to_string(f.value)) + ',' +
+            (std::isnan(f.error) ? "" : std::to_string(f.error)) + ',' + escaped(f.unit, false) +
             ',' + escaped(f.goal, false) + ',' + word(f.judgment) + '\n';
   }
   return text;
@@ -220,6 +235,7 @@ std::string as_json(const std::vector<Figure>& figures) {
     text += "  {\"section\": " + escaped(f.section, true) +
             ", \"figure\": " + escaped(f.name, true) +
             ", \"value\": " + (std::isnan(f.value) ? "null" : std::to_string(f.value)) +
+            ", \"standard_error\": " + (std::isnan(f.error) ? "null" : std::to_string(f.error)) +
             ", \"unit\": " + escaped(f.unit, true) + ", \"goal\": " + escaped(f.goal, true) +
             ", \"judgment\": \"" + word(f.judgment) + "\"}" + (i + 1 < figures.size() ? "," : "") +
             "\n";
@@ -294,13 +310,15 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
   const auto error = [&](Part part) {
     return series[part].taken() < 4 ? kNone : 100.0 * score_error(series[part].pairs());
   };
+  const auto add_points = [&](List& list, const char* name, Part part, const Goal& goal) {
+    list.add(name, score(part), "% points", goal);
+    list.figures.back().error = error(part);
+  };
   List spinner(players(kSpinner));
-  spinner.add("points of the spinner", score(kSpinner), "%", at_most(35.0, "at most 35"));
-  spinner.add("  standard error", error(kSpinner), "%");
+  add_points(spinner, "points of the spinner", kSpinner, at_most(35.0, "at most 35"));
   append(spinner);
   List one(players(kOneRod));
-  one.add("points of the player with one rod", score(kOneRod), "%", at_least(45.0, "half"));
-  one.add("  standard error", error(kOneRod), "%");
+  add_points(one, "points of the player with one rod", kOneRod, at_least(45.0, "half"));
   append(one);
   List characters("characters, " + series[kTall].desc().players[0] + " against " +
                   series[kTall].desc().players[1] + ", " + std::to_string(series[kTall].taken()) +
@@ -309,8 +327,7 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
     const auto& c = series[part].desc().characters;
     const std::string name = std::string(foosball::character_spec(c[0]).name) + " against " +
                              foosball::character_spec(c[1]).name;
-    characters.add(name.c_str(), score(part), "% points", {40.0, 60.0, "40 to 60"});
-    characters.add("  standard error", error(part), "%");
+    add_points(characters, name.c_str(), part, {40.0, 60.0, "40 to 60"});
   }
   append(characters);
   return all;

@@ -54,6 +54,25 @@ TEST(LogLikelihoodRatio, NearsTheNormalApproximationForCloseHypotheses) {
   EXPECT_NEAR(log_likelihood_ratio(pairs, s0, s1), expected, 0.01 * std::fabs(expected) + 0.005);
 }
 
+// As Fishtest published them for Stockfish's pull requests 2950, 3098 and 3209 (2020), with bounds
+// in logistic Elo.
+TEST(LogLikelihoodRatio, IsThatOfPublishedTests) {
+  struct Published {
+    PairCounts pairs;
+    double elo0, elo1, ratio;
+  };
+  const Published published[] = {{{133, 1751, 5094, 1849, 165}, -0.50, 1.50, 2.94},
+                                 {{149, 4748, 32785, 5063, 159}, 0.25, 1.75, 2.95},
+                                 {{491, 7345, 29693, 7670, 465}, -0.25, 1.25, 2.96},
+                                 {{53, 2220, 21459, 2445, 47}, 0.25, 1.25, 2.97},
+                                 {{253, 4282, 17604, 4431, 286}, -0.25, 1.25, 2.94},
+                                 {{58, 3302, 33130, 3518, 84}, 0.25, 1.25, 2.97}};
+  for (const Published& p : published) {
+    EXPECT_NEAR(log_likelihood_ratio(p.pairs, score_of_elo(p.elo0), score_of_elo(p.elo1)), p.ratio,
+                0.005);
+  }
+}
+
 TEST(SequentialTest, HasWaldsBounds) {
   const SequentialTest test{0.5, 0.55, 0.05, 0.05};
   EXPECT_NEAR(test.upper_bound(), 2.944439, 1e-6);
@@ -63,7 +82,7 @@ TEST(SequentialTest, HasWaldsBounds) {
   EXPECT_EQ(test.verdict({40, 0, 0, 0, 0}), Verdict::h0);
 }
 
-// How often the test decides for H1, of 2000 runs of pairs of independent games.
+// How often the test decides for H1, of 1000 runs of pairs of independent games.
 double share_of_h1(const SequentialTest& test, double win, double draw, double& mean_pairs) {
   Uniform uniform(7);
   int h1 = 0;

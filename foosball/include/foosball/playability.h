@@ -9,12 +9,12 @@
 namespace foosball {
 
 struct Playability {
-  double rallies = 0.0;   // the ball changes sides often before play stops: mean 8 and more
-  double saves = 0.0;     // of the shots on target a third to two thirds are saved
-  double reach = 0.0;     // share of time that somebody can act: 95 % and more
-  double surprise = 0.0;  // changes of lead: 0.7 a match and more
-  double length = 0.0;    // a match takes 2 to 5 minutes of play
-  double flow = 0.0;      // the ball is hardly ever still or dead: under 5 % and 0.5 a minute
+  double rallies = 0.0;   // the ball changes sides often before play stops: a mean of 20 and more
+  double saves = 0.0;     // a third to two thirds of the shots on target are saved
+  double reach = 0.0;     // share of time in which somebody can act: from 70 % (0) to 95 % (1)
+  double surprise = 0.0;  // changes of lead: 1 a match and more
+  double length = 0.0;    // a match takes 2 to 4 minutes of play
+  double flow = 0.0;      // the ball is hardly ever still or dead: under 2 % and 0.2 a minute
   double total = 0.0;
 };
 

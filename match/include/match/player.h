@@ -3,7 +3,7 @@
 //
 //   classic:SKILL     the computer player of foosball/computer_player.h, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
-//   spinner           every rod spins all the time, as fast as the drive allows
+//   spinner           every rod spins all the time, a man level with the ball
 //   one-rod:PLAYER    PLAYER with a hand on the rod nearest to the ball only, as a person with a
 //   mouse
 #pragma once

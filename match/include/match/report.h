@@ -1,6 +1,7 @@
 // Figures of play, each beside its goal; docs/match-runner.md defines them.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Figure {
   std::string unit;
   std::string goal;  // as text; empty: none
   enum class Judgment { none, pass, falls_short, unknown } judgment = Judgment::none;
+  double error = std::numeric_limits<double>::quiet_NaN();  // standard error, where known
 };
 
 std::vector<Figure> figures_of(const std::string& section, const foosball::Statistics& statistics);
