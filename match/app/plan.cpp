@@ -79,7 +79,7 @@ std::string score_text(const Series& series) {
 
 std::string elo_text(const Series& series) {
   const double score = mean_score(series.pairs()), error = 1.96 * score_error(series.pairs());
-  const auto elo = [](double s) { return match::elo_of_score(std::clamp(s, 0.001, 0.999)); };
+  const auto elo = [](double s) { return match::elo_of_score(std::clamp(s, 0.001, 0.999)) + 0.0; };
   return line("%+.0f Elo (95 %%: %+.0f to %+.0f)", elo(score), elo(score - error),
               elo(score + error));
 }
