@@ -55,6 +55,7 @@ LAYERS = {
     'cabinet/include/cabinet/rod_input.h': 'hand',
     'cabinet/include/cabinet/rate_filter.h': 'hand',
     'firmware/': 'firmware',
+    'results/': 'results',
     'server/': 'server',
     'match/': 'match',
     'draw/': 'draw',
@@ -92,7 +93,8 @@ MAY_USE = {
     'hand': {'device-frame'},
     'cabinet': {'os', 'device-frame', 'hand'},
     'firmware': {'device-frame'},
-    'server': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
+    'results': set(),
+    'server': {ENGINE_FACE, 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
     'match': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     # The client draws from snapshots only: the table's geometry, never the match.
@@ -102,7 +104,7 @@ MAY_USE = {
     'sandbox': {ENGINE_FACE, 'os', 'draw', 'scenes'},
     # A recording drawn as the client draws it: here, and only here, server and client meet.
     'video': {ENGINE_FACE, 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'server', 'client'},
-    'tools': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
+    'tools': {ENGINE_FACE, 'os', 'results', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
     'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',
               'firmware', 'server', 'draw', 'client'},

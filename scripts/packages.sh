@@ -23,6 +23,7 @@ build  liburdfdom-dev        robots' descriptions, URDF: the engine's optional p
 build  libtinyxml2-dev       XML of these, with the lines of what is wrong
 build  libtbb-dev            oneTBB: steps of the engine by several threads, its optional part
 build  nlohmann-json3-dev    JSON, the calibration file
+build  libsqlite3-dev        SQLite, the file of results
 build  libglfw3-dev          the window, its keys, mice and gamepads
 build  libgles-dev           OpenGL ES headers
 build  libglm-dev            vectors and matrices of the renderer

@@ -4,9 +4,11 @@
 #include <spdlog/spdlog.h>
 #include <sys/random.h>
 
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 #include "options.h"
 #include "server/exit_code.h"
@@ -54,6 +56,15 @@ server::Log make_log(bool quiet) {
   return [logger](server::LogLevel level, const std::string& text) {
     logger->log(level == server::LogLevel::info ? spdlog::level::info : spdlog::level::warn, text);
   };
+}
+
+// Of now, in UTC.
+std::string date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text;
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
 int fail(int exit_code, const std::string& sentence) {
@@ -112,6 +123,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.random = random_number;
   wanted.record = options.record;
   wanted.overwrite = options.overwrite;
+  wanted.results = options.results;
+  wanted.date = date;
   wanted.await_client = options.await_client;
   // Below the tick, which it must never hold up, and above all else.
   if (options.loop.paced && options.loop.real_time)
@@ -128,12 +141,15 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   return made;
 }
 
-// The exit code, as far as the recording that was written has a say in it.
+// The exit code, as far as the recording and the results that were written have a say in it.
 int judge_record(const server::Server& server, const server::Log& log) {
-  const std::string problem = server.journal_problem();
-  if (problem.empty()) return server::kExitOk;
-  log(server::LogLevel::warning, problem);
-  return server::kExitFailed;
+  int code = server::kExitOk;
+  for (const std::string& problem : {server.journal_problem(), server.results_problem()}) {
+    if (problem.empty()) continue;
+    log(server::LogLevel::warning, problem);
+    code = server::kExitFailed;
+  }
+  return code;
 }
 
 // The same for a replay. The summary says the verdict too.

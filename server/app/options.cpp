@@ -89,6 +89,8 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
   cli.add_flag("--overwrite", o.overwrite, "replace the recording that is there already")
       ->needs(record);
+  cli.add_option("--results", o.results,
+                 "add every match that is won to this file; space-foosball-results lists them");
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)

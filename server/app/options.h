@@ -19,7 +19,7 @@ struct Options {
   server::RunOptions run;
   server::LoopOptions loop;
   std::vector<std::string> devices;
-  std::string calibration, record, replay, ready_file, stats_file;
+  std::string calibration, record, replay, results, ready_file, stats_file;
   bool overwrite = false, await_client = false, quiet = false;
 };
 

@@ -251,6 +251,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
   event.client = connection.client;
   event.team = connection.team;
   event.token = options_.random();
+  connection.name.copy(event.name.data(), event.name.size() - 1);
   event.listener = connection.peer();
   event.listener.sin_port = htons(hello.udp_port);
   events_.push(event);  // before the Welcome: who has it is in the very next tick

@@ -33,11 +33,12 @@ namespace server {
 struct ControlEvent {
   enum class Kind : std::uint8_t { joined, left, wish };
   Kind kind = Kind::joined;
-  std::uint32_t client = 0;              // counts up, never used twice
-  std::uint8_t team = wire::kWatchOnly;  // joined: granted
-  std::uint64_t token = 0;               // joined
-  sockaddr_in listener{};                // joined: where its snapshots go; port 0: nowhere
-  foosball::Command wish{};              // wish
+  std::uint32_t client = 0;                     // counts up, never used twice
+  std::uint8_t team = wire::kWatchOnly;         // joined: granted
+  std::uint64_t token = 0;                      // joined
+  std::array<char, wire::kMaxName + 1> name{};  // joined: what it calls itself, ended by a zero
+  sockaddr_in listener{};                       // joined: where its snapshots go; port 0: nowhere
+  foosball::Command wish{};                     // wish
 };
 
 struct ControlOptions {

@@ -68,6 +68,7 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"match_events_dropped", number(c.match_events_dropped)},
       {"journal_bytes", number(c.journal_bytes)},
       {"journal_dropped", number(c.journal_dropped)},
+      {"results_kept", number(c.results_kept)},
       {"clients_joined", number(c.control.joined)},
       {"clients_left", number(c.control.left)},
       {"clients_refused", number(c.control.refused)},

@@ -12,9 +12,11 @@
 #include "device_watch.h"
 #include "event_repeater.h"
 #include "input_port.h"
+#include "match_scribe.h"
 #include "os/clock.h"
 #include "os/socket_address.h"
 #include "recorder.h"
+#include "results_log.h"
 #include "rod_desk.h"
 #include "server/match_record.h"
 #include "snapshot_builder.h"
@@ -47,12 +49,16 @@ struct Server::Impl {
   void broadcast(std::int64_t now_us, std::int64_t tick_ns);
   void put_drivers(wire::Snapshot& out) const;
   void watch_journal();
+  void keep_result();
+  void watch_results();
+  MatchScribe::Players players() const;
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
   ControlOptions control_options() const;
 
   struct Client {
     std::uint32_t id;
     std::uint8_t team;
+    std::array<char, wire::kMaxName + 1> name;
   };
 
   ServerOptions options;
@@ -65,6 +71,8 @@ struct Server::Impl {
   DeviceWatch device_watch;
   EventRepeater events;
   std::unique_ptr<Recorder> recorder;  // or none
+  MatchScribe scribe;
+  std::unique_ptr<ResultsLog> results;  // or none
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
   std::uint64_t ticks = 0;
@@ -87,6 +95,7 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
                   options.send_priority),
       desk(options.match, options.computer, match.view()),
       recorder(std::move(journal)),
+      scribe(options.match),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
   clients.reserve(static_cast<std::size_t>(options.limits.connections));
   next.commands.reserve(wire::kMaxJournalCommands);
@@ -95,6 +104,9 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
   if (options.network.multicast) {
     const auto& group = *options.network.multicast;
     broadcaster.add(0, *os::parse_ipv4(group.address, group.port));
+  }
+  if (!options.results.empty() && !options.replay) {
+    results = std::make_unique<ResultsLog>(ResultsLogOptions{.path = options.results});
   }
 }
 
@@ -134,7 +146,7 @@ void Server::Impl::take_control_events() {
 }
 
 void Server::Impl::admit(const ControlEvent& event) {
-  clients.push_back({event.client, event.team});
+  clients.push_back({event.client, event.team, event.name});
   ++clients_ever;
   const bool plays = event.team < foosball::kTeams;
   if (plays) desk.set_claimed(event.team, true);
@@ -221,6 +233,42 @@ void Server::Impl::watch_journal() {
          recorder->file().problem());
 }
 
+// Of the last tick.
+void Server::Impl::keep_result() {
+  foosball::RodTargets targets;
+  for (int rod = 0; rod < foosball::kRods; ++rod) targets[rod] = from_grid(next.rods[rod]);
+  if (!scribe.observe(match, targets)) return;
+  results::MatchResult result = scribe.result(match.view(), players());
+  result.finished_at = options.date();
+  result.recording = options.record;
+  results->add(std::move(result));
+}
+
+MatchScribe::Players Server::Impl::players() const {
+  MatchScribe::Players players;
+  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
+    const auto client = std::find_if(clients.begin(), clients.end(),
+                                     [&](const Client& c) { return c.team == team; });
+    if (client != clients.end()) {
+      players[team] = {client->name.data(), "person"};
+    } else if (options.computer[team]) {
+      players[team] = {"computer", "computer"};
+    } else {
+      players[team] = {desk.devices().empty() ? "nobody" : "cabinet", "person"};
+    }
+    if (players[team].name.empty()) players[team].name = "person";
+  }
+  return players;
+}
+
+void Server::Impl::watch_results() {
+  std::string problem;
+  if (!results || !results->problem_changed(problem)) return;
+  const auto level = problem.empty() ? wire::Notice::Level::cleared : wire::Notice::Level::warning;
+  notify(level, static_cast<std::uint32_t>(Topic::results),
+         problem.empty() ? "results are kept again" : problem);
+}
+
 void Server::Impl::notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text) {
   control.notify({level, topic, text});
 }
@@ -281,10 +329,12 @@ void Server::tick(std::int64_t now_us) {
     s.events.add(s.match.events());
     s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
     if (s.recorder) s.recorder->add(s.next, s.match);
+    if (s.results) s.keep_result();
   } else {
     s.broadcast(now_us, began_ns);
   }
   s.watch_journal();
+  s.watch_results();
 }
 
 void Server::wait_sent() {
@@ -305,6 +355,7 @@ void Server::finish(const std::string& reason) {
   impl_->broadcaster.close();  // the last snapshot before the Bye
   impl_->control.stop(reason);
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
+  if (impl_->results) impl_->results->close();
 }
 
 std::uint16_t Server::port() const {
@@ -333,6 +384,10 @@ std::string Server::journal_problem() const {
   return impl_->recorder ? impl_->recorder->file().problem() : std::string{};
 }
 
+std::string Server::results_problem() const {
+  return impl_->results ? impl_->results->problem() : std::string{};
+}
+
 Counters Server::counters() const {
   const Impl& s = *impl_;
   Counters out;
@@ -346,6 +401,7 @@ Counters Server::counters() const {
     out.journal_bytes = s.recorder->file().bytes_written();
     out.journal_dropped = s.recorder->file().entries_dropped();
   }
+  if (s.results) out.results_kept = s.results->kept();
   out.input = s.input.counters();
   out.control = s.control.counters();
   return out;

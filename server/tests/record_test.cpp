@@ -12,6 +12,7 @@
 #include "journal_file.h"
 #include "lockstep.h"
 #include "os/file_descriptor.h"
+#include "results/store.h"
 #include "wire/read_file.h"
 
 namespace {
@@ -297,6 +298,63 @@ TEST(Recording, SaysThatAFileCannotBeMade) {
   ASSERT_FALSE(table.started());
   EXPECT_EQ(table.error().kind, StartError::Kind::bad_option);
   EXPECT_NE(table.error().sentence.find("/nowhere/match.sfr"), std::string::npos);
+}
+
+// Two computers play until one has won; the file has the match as the server saw it.
+TEST(Results, OfAMatchThatWasWonAreInTheFile) {
+  const std::string path = temp_path("results.sqlite");
+  std::array<int, 2> score{};
+  double seconds = 0.0;
+  {
+    Lockstep table([&](ServerOptions& o) {
+      o.computer = {true, true};
+      o.match.seed = 7;
+      o.match.rules.goals_to_win = 1;
+      o.results = path;
+      o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
+    });
+    ASSERT_TRUE(
+        table.tick_until([&] { return table->match().view().screen == foosball::Screen::end; }));
+    score = table->match().view().score;
+    seconds = table->match().view().play_seconds;
+    table->finish("done");
+    EXPECT_EQ(table->results_problem(), "");
+    EXPECT_EQ(table->counters().results_kept, 1u);
+  }
+  const auto store = results::Store::open(path, results::Access::read_only);
+  ASSERT_TRUE(store) << store.error();
+  const auto matches = store->matches({}).value();
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].finished_at, "2026-11-22T20:00:00Z");
+  EXPECT_EQ(matches[0].layout, "tournament");
+  EXPECT_EQ(matches[0].seed, 7u);
+  EXPECT_DOUBLE_EQ(matches[0].play_seconds, seconds);
+  for (std::size_t t = 0; t < 2; ++t) {
+    EXPECT_EQ(matches[0].teams[t].goals, static_cast<std::uint32_t>(score[t]));
+    EXPECT_EQ(matches[0].teams[t].players[0], (results::Player{"computer", "computer"}));
+    ASSERT_TRUE(matches[0].teams[t].statistics);
+  }
+  const auto& statistics = *matches[0].teams[0].statistics;
+  EXPECT_GT(statistics.touches + matches[0].teams[1].statistics->touches, 0u);
+  EXPECT_LE(statistics.possession_seconds, seconds);
+  for (const char* more : {"", "-wal", "-shm"}) std::remove((path + more).c_str());
+}
+
+TEST(Results, ThatCannotBeKeptAreToldAndStopNothing) {
+  Lockstep table([&](ServerOptions& o) {
+    o.results = "/nowhere/results.sqlite";
+    o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
+  });
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  ASSERT_TRUE(table.tick_until([&] { return !table->results_problem().empty(); }));
+  table.tick(3);
+  const auto notice = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(notice);
+  EXPECT_NE(notice->text.find("/nowhere/results.sqlite"), std::string::npos);
+  const std::uint64_t before = table->counters().ticks;
+  table.tick(100);
+  EXPECT_EQ(table->counters().ticks, before + 100);
 }
 
 TEST(JournalFile, WaitsForTheDiskAtItsEndAndSaysWhenThatFails) {

@@ -40,6 +40,7 @@ struct Counters {
   std::uint64_t match_events_dropped = 0;  // found none in their tick
   std::uint64_t journal_bytes = 0;
   std::uint64_t journal_dropped = 0;  // entries that the journal lacks, at least
+  std::uint64_t results_kept = 0;     // matches in the file of results
   InputCounters input;
   ControlCounters control;
 };

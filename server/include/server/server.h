@@ -33,8 +33,12 @@ struct ServerOptions {
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
   bool overwrite = false;                 // the recording that is there already
-  bool await_client = false;              // the first tick is when the first client has joined
-  int send_priority = 0;  // real-time, of the thread that sends snapshots; 0: an ordinary one
+  // A file of results (results/store.h) to which every match that was won is added, or empty; and
+  // then what date it is, as 2026-11-22T23:59:59Z. Not of a replay.
+  std::string results;
+  std::function<std::string()> date;
+  bool await_client = false;  // the first tick is when the first client has joined
+  int send_priority = 0;      // real-time, of the thread that sends snapshots; 0: an ordinary one
   std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say
   Log log = [](LogLevel, const std::string&) {};
 };
@@ -60,12 +64,18 @@ class Server {
   void wait_sent();
 
   // Something all clients should read; replaces the notice of the same topic.
-  enum class Topic : std::uint32_t { overload = 1, journal = 2, replay = 3, devices = 100 };
+  enum class Topic : std::uint32_t {
+    overload = 1,
+    journal = 2,
+    replay = 3,
+    results = 4,
+    devices = 100
+  };
   void warn(Topic topic, const std::string& text);
   void clear(Topic topic, const std::string& text);
 
-  // Says Bye to the clients and closes the journal, waiting for both: up to 0.2 s, and for the
-  // disk.
+  // Says Bye to the clients and closes the journal and the results, waiting for them: up to 0.2 s,
+  // and for the disk, up to 4 s each.
   void finish(const std::string& reason);
 
   std::uint16_t port() const;
@@ -76,6 +86,7 @@ class Server {
   std::uint64_t clients_ever() const;   // joined so far
   std::uint64_t ticks() const;          // of the match
   std::string journal_problem() const;  // empty: none
+  std::string results_problem() const;  // empty: none
   Counters counters() const;
   std::vector<DeviceCounters> devices() const;
   const SendStats& sending() const;  // precondition: finish() was called

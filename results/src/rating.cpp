@@ -1,0 +1,70 @@
+#include "results/rating.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace results {
+namespace {
+
+using Players = std::map<std::string, Standing>;
+
+double rating_of(const Team& team, Players& players) {
+  double sum = 0.0;
+  for (const Player& player : team.players) sum += players[player.name].rating;
+  return sum / static_cast<double>(team.players.size());
+}
+
+bool meets_himself(const MatchResult& match) {
+  std::set<std::string> names;
+  for (const Player& player : match.teams[0].players) names.insert(player.name);
+  return std::any_of(match.teams[1].players.begin(), match.teams[1].players.end(),
+                     [&](const Player& player) { return names.count(player.name) > 0; });
+}
+
+void count(const MatchResult& match, int side, Players& players) {
+  const Team &own = match.teams[static_cast<std::size_t>(side)],
+             &other = match.teams[static_cast<std::size_t>(1 - side)];
+  const auto winner = match.winner();
+  for (const Player& player : own.players) {
+    Standing& standing = players[player.name];
+    standing.name = player.name;
+    standing.kind = player.kind;
+    ++standing.matches;
+    if (winner) ++(*winner == side ? standing.wins : standing.losses);
+    standing.goals_for += own.goals;
+    standing.goals_against += other.goals;
+    if (match.shot_speeds) {
+      standing.fastest_shot = std::max(standing.fastest_shot, match.shot_speeds->fastest);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Standing> standings(std::span<const MatchResult> matches) {
+  Players players;
+  for (const MatchResult& match : matches) {
+    if (match.teams[0].players.empty() || match.teams[1].players.empty()) continue;
+    const double ratings[] = {rating_of(match.teams[0], players),
+                              rating_of(match.teams[1], players)};
+    for (const int side : {0, 1}) count(match, side, players);
+    if (!match.winner() || meets_himself(match)) continue;
+    for (const int side : {0, 1}) {
+      const double expected =
+          1.0 / (1.0 + std::pow(10.0, (ratings[1 - side] - ratings[side]) / 400.0));
+      const double gain = kRatingGain * ((*match.winner() == side ? 1.0 : 0.0) - expected);
+      for (const Player& player : match.teams[static_cast<std::size_t>(side)].players) {
+        players[player.name].rating += gain;
+      }
+    }
+  }
+  std::vector<Standing> sorted;
+  for (const auto& [name, standing] : players) sorted.push_back(standing);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Standing& a, const Standing& b) { return a.rating > b.rating; });
+  return sorted;
+}
+
+}  // namespace results

@@ -1,0 +1,39 @@
+// Follows the matches of a server, one after another, and makes a result of each that was won.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "foosball/match.h"
+#include "foosball/statistics.h"
+#include "results/match_result.h"
+
+namespace server {
+
+class MatchScribe {
+ public:
+  // Who plays a team; asked at the end of a match.
+  using Players = std::array<results::Player, foosball::kTeams>;
+
+  explicit MatchScribe(const foosball::MatchDesc& match) : match_(match) {}
+
+  // After each tick, with the targets that it was stepped with. True: the match has just been won,
+  // and result() tells it. Takes no memory.
+  bool observe(const foosball::Match& match, const foosball::RodTargets& targets);
+  // Of the match that was just won; the date and the recording are the caller's to add.
+  results::MatchResult result(const foosball::MatchView& view, const Players& players) const;
+
+ private:
+  foosball::MatchDesc match_;
+  foosball::StatisticsObserver statistics_;
+  foosball::Statistics before_;  // totals when this match began
+};
+
+// Of one match: what the totals have more than before.
+std::array<results::TeamStatistics, foosball::kTeams> statistics_of_teams(
+    const foosball::Statistics& before, const foosball::Statistics& now);
+std::optional<results::ShotSpeeds> shot_speeds(const foosball::Statistics& before,
+                                               const foosball::Statistics& now);
+
+}  // namespace server

@@ -1,0 +1,147 @@
+#include "results_log.h"
+
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <semaphore>
+#include <utility>
+
+#include "results/store.h"
+#include "server/spsc_queue.h"
+
+namespace server {
+
+class ResultsLog::Keeper {
+ public:
+  explicit Keeper(const ResultsLogOptions& options) : options_(options) {}
+
+  // Tick thread. A semaphore's release() never waits.
+  bool add(results::MatchResult&& result) {
+    const bool taken = incoming_.push(std::move(result));
+    if (!taken) lost_.fetch_add(1, std::memory_order_relaxed);
+    wake_.release();
+    return taken;
+  }
+  void close() {
+    closing_.store(true, std::memory_order_release);
+    wake_.release();
+  }
+
+  bool problem_changed(std::string& problem) {
+    const std::unique_lock guard(mutex_, std::try_to_lock);
+    if (!guard || problem_ == told_) return false;
+    told_ = problem = problem_;
+    return true;
+  }
+
+  // Any thread.
+  void tell(const std::string& problem) {
+    const std::lock_guard guard(mutex_);
+    problem_ = problem;
+  }
+  std::string problem() const {
+    const std::lock_guard guard(mutex_);
+    const auto lost = lost_.load(std::memory_order_relaxed);
+    if (lost == 0) return problem_;
+    return problem_ + (problem_.empty() ? "" : "; ") + std::to_string(lost) + " results are lost";
+  }
+  std::uint64_t kept() const { return kept_.load(std::memory_order_relaxed); }
+
+  // The thread.
+  void run() {
+    keep();  // opens the file: what is wrong with it is told at once
+    bool closing = false;
+    while (!closing) {
+      if (waiting_.empty()) {
+        wake_.acquire();
+      } else {
+        (void)wake_.try_acquire_for(options_.retry_period);
+      }
+      closing = closing_.load(std::memory_order_acquire);
+      keep();
+    }
+  }
+
+ private:
+  void keep();
+
+  const ResultsLogOptions options_;
+  SpscQueue<results::MatchResult, kWaiting> incoming_;
+  std::counting_semaphore<> wake_{0};
+  std::atomic<bool> closing_{false};
+  std::atomic<std::uint64_t> kept_{0}, lost_{0};
+  mutable std::mutex mutex_;
+  std::string problem_, told_;  // told_: to the tick
+  // The thread's own.
+  std::optional<results::Store> store_;
+  std::deque<results::MatchResult> waiting_;
+};
+
+// A store that has failed is closed and opened anew the next time: the file may be another then.
+void ResultsLog::Keeper::keep() {
+  if (!store_) {
+    auto opened = results::Store::open(options_.path, results::Access::create);
+    if (opened) {
+      store_ = std::move(*opened);
+    } else {
+      tell(opened.error() + "; play goes on");
+    }
+  }
+  results::MatchResult result;
+  while (waiting_.size() < kWaiting && incoming_.pop(result)) waiting_.push_back(std::move(result));
+  while (store_ && !waiting_.empty()) {
+    const auto id = store_->add(waiting_.front());
+    if (!id) {
+      tell(id.error() + "; play goes on");
+      store_.reset();
+      return;
+    }
+    waiting_.pop_front();
+    kept_.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (store_) tell({});
+}
+
+ResultsLog::ResultsLog(const ResultsLogOptions& options)
+    : path_(options.path),
+      close_patience_(options.close_patience),
+      keeper_(std::make_shared<Keeper>(options)) {
+  std::promise<void> end;
+  ended_ = end.get_future();
+  thread_ = std::thread([keeper = keeper_, end = std::move(end)]() mutable {
+    keeper->run();
+    end.set_value();
+  });
+}
+
+ResultsLog::~ResultsLog() {
+  close();
+}
+
+bool ResultsLog::add(results::MatchResult result) {
+  return keeper_->add(std::move(result));
+}
+
+void ResultsLog::close() {
+  if (!thread_.joinable()) return;
+  keeper_->close();
+  if (ended_.wait_for(close_patience_) == std::future_status::ready) {
+    thread_.join();
+  } else {
+    keeper_->tell("results in " + path_ + ": the file did not answer in time; some may be missing");
+    thread_.detach();
+  }
+}
+
+bool ResultsLog::problem_changed(std::string& problem) {
+  return keeper_->problem_changed(problem);
+}
+std::string ResultsLog::problem() const {
+  return keeper_->problem();
+}
+std::uint64_t ResultsLog::kept() const {
+  return keeper_->kept();
+}
+
+}  // namespace server

@@ -1,0 +1,52 @@
+// Keeps results in their file on a thread of its own: the tick hands them on and never waits. A
+// file that is damaged, locked or cannot be made stops nothing: it is told, and results wait, as
+// many as there is room for, until the file takes them or the program ends.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "results/match_result.h"
+
+namespace server {
+
+struct ResultsLogOptions {
+  std::string path;
+  std::chrono::milliseconds retry_period{10'000};   // while results wait
+  std::chrono::milliseconds close_patience{4'000};  // a locked file is given results::kBusy_ms
+};
+
+class ResultsLog {
+ public:
+  static constexpr std::size_t kWaiting = 64;  // results; a match takes minutes
+
+  explicit ResultsLog(const ResultsLogOptions& options);
+  ~ResultsLog();  // closes, if close() was not called
+
+  // Tick thread. False: too many are waiting, this one is lost and counted.
+  bool add(results::MatchResult result);
+  // Tries once more to keep what waits, and ends the thread; within close_patience, else the thread
+  // is left alone. Not for the loop while it runs.
+  void close();
+
+  // Any thread. Empty, or the sentence that says why results are not kept now.
+  std::string problem() const;
+  // Tick thread: it is another one than at the last call. False too while the thread is writing it.
+  bool problem_changed(std::string& problem);
+  std::uint64_t kept() const;
+
+ private:
+  class Keeper;
+
+  std::string path_;
+  std::chrono::milliseconds close_patience_;
+  std::shared_ptr<Keeper> keeper_;  // the thread's too, which may outlast this object
+  std::future<void> ended_;
+  std::thread thread_;
+};
+
+}  // namespace server

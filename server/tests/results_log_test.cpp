@@ -1,0 +1,123 @@
+// Results in the file, and a file that cannot be had.
+#include "results_log.h"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "match_scribe.h"
+#include "results/store.h"
+
+namespace server {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string temp_path() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  return testing::TempDir() + "sf_results_log_" + test->name() + "_" + std::to_string(::getpid());
+}
+void remove(const std::string& path) {
+  for (const char* more : {"", "-wal", "-shm"}) std::remove((path + more).c_str());
+}
+results::MatchResult won(int minute = 0) {
+  results::MatchResult result;
+  result.finished_at = "2026-11-22T20:" + std::to_string(10 + minute) + ":00Z";
+  result.layout = "tournament";
+  result.teams[0] = {{{"Ann", "person"}}, 5, std::nullopt};
+  result.teams[1] = {{{"computer", "computer"}}, 3, std::nullopt};
+  return result;
+}
+std::size_t kept_in(const std::string& path) {
+  const auto store = results::Store::open(path, results::Access::read_only);
+  EXPECT_TRUE(store) << store.error();
+  return store ? store->matches({}).value().size() : 0;
+}
+
+TEST(ResultsLog, KeepsAllThatWasAddedBeforeItIsClosed) {
+  const std::string path = temp_path();
+  ResultsLog log({.path = path});
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(log.add(won(i)));
+  log.close();
+  EXPECT_EQ(log.problem(), "");
+  EXPECT_EQ(log.kept(), 20u);
+  EXPECT_EQ(kept_in(path), 20u);
+  remove(path);
+}
+
+TEST(ResultsLog, TellsOnceThatTheFileIsDamagedAndTakesItWhenItIsMendedWithWhatWaited) {
+  const std::string path = temp_path();
+  std::ofstream(path) << std::string(5000, 'x');
+  ResultsLog log({.path = path, .retry_period = 1ms});
+  const auto until = std::chrono::steady_clock::now() + 20s;
+  std::string told;
+  while (!log.problem_changed(told) && std::chrono::steady_clock::now() < until) {
+  }
+  EXPECT_NE(told.find("no database of results"), std::string::npos) << told;
+  EXPECT_NE(told.find(path), std::string::npos);
+  EXPECT_FALSE(log.problem_changed(told));
+  log.add(won());
+  remove(path);
+  while (log.kept() == 0 && std::chrono::steady_clock::now() < until) {
+  }
+  log.close();
+  EXPECT_EQ(log.kept(), 1u);
+  EXPECT_EQ(log.problem(), "");
+  remove(path);
+}
+
+TEST(ResultsLog, EndsInTimeThoughTheFileIsLockedAndSaysSo) {
+  const std::string path = temp_path();
+  { ASSERT_TRUE(results::Store::open(path, results::Access::create)); }
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr), SQLITE_OK);
+  const auto before = std::chrono::steady_clock::now();
+  {
+    ResultsLog log({.path = path, .close_patience = 50ms});
+    log.add(won());
+    log.close();
+    EXPECT_LT(std::chrono::steady_clock::now() - before, 2s);
+    EXPECT_NE(log.problem().find(path), std::string::npos) << log.problem();
+  }
+  sqlite3_close(other);
+  remove(path);
+}
+
+TEST(ResultsLog, CountsWhatItHasNoRoomFor) {
+  ResultsLog log({.path = "/nowhere/at/all", .retry_period = 1h});
+  bool taken = true;
+  for (std::size_t i = 0; i < 3 * ResultsLog::kWaiting && taken; ++i) taken = log.add(won());
+  EXPECT_FALSE(taken);
+  log.close();
+  EXPECT_NE(log.problem().find("lost"), std::string::npos) << log.problem();
+}
+
+// Of totals over several matches, what the last has more.
+TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
+  foosball::Statistics before, now;
+  before.shots = {3, 4};
+  before.shot_speed.add(12.0);
+  now = before;
+  now.shots = {5, 4};
+  now.possession_ticks = {1500, 0};
+  now.own_goals_swing = {1, 0};
+  now.own_goals_deflected = {1, 1};
+  EXPECT_EQ(shot_speeds(before, now), std::nullopt);
+  for (const double speed : {5.0, 6.0, 9.0}) now.shot_speed.add(speed);
+  const auto teams = statistics_of_teams(before, now);
+  EXPECT_EQ(teams[0].shots, 2u);
+  EXPECT_EQ(teams[1].shots, 0u);
+  EXPECT_DOUBLE_EQ(teams[0].possession_seconds, 1.5);
+  EXPECT_EQ(teams[0].own_goals, 2u);
+  const auto speeds = shot_speeds(before, now);
+  ASSERT_TRUE(speeds);
+  EXPECT_NEAR(speeds->median, 6.0, 0.11);
+  EXPECT_NEAR(speeds->fastest, 9.0, 0.11);
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,81 @@
+// space-foosball-results: lists finished matches and the hall of fame, and exports them.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "results/rating.h"
+#include "results/store.h"
+#include "results/text.h"
+#include "server/exit_code.h"
+
+namespace {
+
+struct Options {
+  std::string file, player, format = "table";
+  std::size_t newest = 0;
+  std::uint64_t least_matches = 1;
+};
+
+int fail(int code, const std::string& why) {
+  std::fprintf(stderr, "space-foosball-results: %s\n", why.c_str());
+  return code;
+}
+
+int print(const std::string& text) {
+  const bool ok = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  return ok ? server::kExitOk : fail(server::kExitFailed, "cannot write; is the disk full?");
+}
+
+int list(const Options& options, const std::vector<results::MatchResult>& matches) {
+  if (options.format == "csv") return print(results::matches_csv(matches));
+  if (options.format == "json") return print(results::matches_json(matches));
+  if (matches.empty()) return print("no match that was won is in " + options.file + "\n");
+  return print(results::matches_table(matches));
+}
+
+int hall_of_fame(const Options& options, const std::vector<results::MatchResult>& matches) {
+  std::vector<results::Standing> all = results::standings(matches);
+  std::erase_if(all, [&](const auto& s) { return s.matches < options.least_matches; });
+  if (options.newest != 0 && all.size() > options.newest) all.resize(options.newest);
+  if (options.format == "csv") return print(results::standings_csv(all));
+  if (options.format == "json") return print(results::standings_json(all));
+  return print(results::standings_table(all));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App cli{
+      "Lists finished matches, and who plays best. The file is the one that a server writes with\n"
+      "--results FILE.\n\nExit codes: 0 printed; 1 it could not be written; 2 a bad option or "
+      "file.",
+      "space-foosball-results"};
+  Options options;
+  cli.require_subcommand(1);
+  const auto common = [&](CLI::App* command) {
+    command->add_option("FILE", options.file, "the results")->required();
+    command->add_option("--format", options.format, "table, csv or json")
+        ->check(CLI::IsMember({"table", "csv", "json"}));
+    return command;
+  };
+  CLI::App* matches = common(cli.add_subcommand("matches", "finished matches, the newest last"));
+  matches->add_option("--newest", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
+  matches->add_option("--player", options.player, "only those in which this player was");
+  CLI::App* fame =
+      common(cli.add_subcommand("fame", "the hall of fame: players by their rating (Elo)"));
+  fame->add_option("--top", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
+  fame->add_option("--least", options.least_matches, "only who has played so many matches (1)")
+      ->check(CLI::Range(1, 1'000'000));
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return print(cli.help("", CLI::AppFormatMode::All));
+  } catch (const CLI::ParseError& error) {
+    return fail(server::kExitUsage, std::string(error.what()) + "; --help explains the options");
+  }
+  const auto store = results::Store::open(options.file, results::Access::read_only);
+  if (!store) return fail(server::kExitUsage, store.error());
+  results::Store::Filter filter{options.player, matches->parsed() ? options.newest : 0};
+  const auto found = store->matches(filter);
+  if (!found) return fail(server::kExitUsage, found.error());
+  return matches->parsed() ? list(options, *found) : hall_of_fame(options, *found);
+}
