@@ -146,6 +146,12 @@ void StatisticsObserver::note_events(const MatchView& view, std::span<const Even
         ++totals_.balls_out;
         end_rally();
         break;
+      case EventKind::foul:
+        ++totals_.fouls;
+        break;
+      case EventKind::match_drawn:
+        abandon();
+        break;
       case EventKind::serve:
         begin_rally(view, event);
         break;

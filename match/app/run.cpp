@@ -69,7 +69,7 @@ int run(const Options& options, const PlayAll& play_all) {
   if (!options.checkpoint.empty()) {
     auto opened = match::Checkpoint::open(options.checkpoint, plan);
     if (!opened) return fail(2, opened.error());
-    for (auto& line : opened->lines) schedule.know(line.id, std::move(line.result));
+    for (const auto& line : opened->lines) schedule.know(line.id, line.result);
     checkpoint = std::move(opened->checkpoint);
   }
   Progress progress(options.quiet);

@@ -134,7 +134,7 @@ class Coordinator {
         problem_ = kept.error();
       }
     }
-    schedule_.complete(answer->id, std::move(answer->result));
+    schedule_.complete(answer->id, answer->result);
     if (options_.progress) options_.progress(schedule_, effort_);
   }
 
@@ -198,7 +198,7 @@ int play(const match::Schedule& schedule, const std::string& record_folder) {
       send(0, kFailed, result.error());
       continue;
     }
-    send(0, kResult, encode({id, os::thread_ns() - before, std::move(*result)}));
+    send(0, kResult, encode({id, os::thread_ns() - before, *result}));
   }
 }
 

@@ -64,7 +64,7 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
   while (old && std::getline(text, line)) {
     auto parsed = parse(line);
     if (parsed) {
-      opened.lines.push_back(std::move(*parsed));
+      opened.lines.push_back(*parsed);
     } else {
       ++opened.unreadable;
     }

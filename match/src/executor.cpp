@@ -46,14 +46,14 @@ class Pool {
         game = schedule_.game(id);
       }
       const std::int64_t before = os::thread_ns();
-      auto result = play_job(game, id, options_.record_folder);
+      const auto result = play_job(game, id, options_.record_folder);
       const std::int64_t cost = os::thread_ns() - before;
       const std::lock_guard lock(mutex_);
-      if (!take(id, std::move(result), cost)) return;
+      if (!take(id, result, cost)) return;
     }
   }
 
-  bool take(JobId id, tl::expected<GameResult, std::string> result, std::int64_t cost_ns) {
+  bool take(JobId id, const tl::expected<GameResult, std::string>& result, std::int64_t cost_ns) {
     if (!result) {
       problem_ = result.error();
       return false;
@@ -67,7 +67,7 @@ class Pool {
         return false;
       }
     }
-    schedule_.complete(id, std::move(*result));
+    schedule_.complete(id, *result);
     if (options_.progress) options_.progress(schedule_, effort_);
     return true;
   }
@@ -106,7 +106,7 @@ tl::expected<GameResult, std::string> play_job(const GameDesc& game, JobId id,
     if (!file)
       return tl::unexpected("cannot write " + path + "; is there space, may it be written?");
   }
-  return std::move(played.result);
+  return played.result;
 }
 
 }  // namespace match

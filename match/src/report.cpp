@@ -109,6 +109,7 @@ void add_ball(List& list, const Statistics& s) {
   list.add("hop, 90th percentile", 1e3 * quantile(s.hop_height, 0.9), "mm",
            {80.0, 160.0, "120 (80 to 160)"});
   list.add("bounce, height after to before, median", 100.0 * quantile(s.bounce_ratio, 0.5), "%");
+  list.add("fouls", per_minute(s.fouls, s.play_ticks), "a minute");
   list.add("balls out", per_minute(s.balls_out, s.play_ticks), "a minute",
            at_most(1.0, "at most 1"));
   list.add("nobody can reach the ball", percent(s.unreachable_ticks, s.ball_ticks), "% of ball",

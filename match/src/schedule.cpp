@@ -8,9 +8,9 @@ Schedule::Schedule(std::vector<SeriesDesc> series) : handed_out_(series.size(), 
   for (SeriesDesc& desc : series) series_.emplace_back(std::move(desc));
 }
 
-void Schedule::know(JobId id, GameResult result) {
+void Schedule::know(JobId id, const GameResult& result) {
   if (id.series >= series_.size() || id.game >= series_[id.series].desc().max_games) return;
-  waiting_.insert_or_assign(id, std::move(result));
+  waiting_.insert_or_assign(id, result);
   take_known(id.series);
 }
 
@@ -33,9 +33,9 @@ std::optional<JobId> Schedule::next() {
   return JobId{*best, handed_out_[*best]++};
 }
 
-void Schedule::complete(JobId id, GameResult result) {
+void Schedule::complete(JobId id, const GameResult& result) {
   if (id.game < series_[id.series].taken() || series_[id.series].decided()) return;
-  waiting_.insert_or_assign(id, std::move(result));
+  waiting_.insert_or_assign(id, result);
   take_known(id.series);
 }
 

@@ -88,6 +88,7 @@ struct Statistics {
   PerTeam goals_of_receiver{};    // the other team scored; by the team of the last serve
   std::uint64_t dead_balls = 0;
   std::uint64_t balls_out = 0;
+  std::uint64_t fouls = 0;
 
   // Hands. A rod counts while a hand is on it (RodTarget::live).
   std::array<std::array<std::uint64_t, 5>, kTeams> moving_ticks{};  // [team][rods moving at once]
@@ -230,6 +231,7 @@ void Statistics::visit(Visitor& visitor, Self& self) {
   list("goals_of_receiver", self.goals_of_receiver);
   visitor.sum("dead_balls", self.dead_balls);
   visitor.sum("balls_out", self.balls_out);
+  visitor.sum("fouls", self.fouls);
   for (auto& team : self.moving_ticks) list("moving_ticks", team);
   list("hand_ticks", self.hand_ticks);
   list("slide_reversals", self.slide_reversals);

@@ -23,13 +23,13 @@ class Schedule {
   explicit Schedule(std::vector<SeriesDesc> series);
 
   // Results of an earlier run: are taken instead of played. Ignored if they are of no series here.
-  void know(JobId id, GameResult result);
+  void know(JobId id, const GameResult& result);
 
   // The next game to play; nothing, if all that may still be needed is under way. Gives a game
   // again after give_back().
   std::optional<JobId> next();
   // Takes results in any order; each series sees them in its own.
-  void complete(JobId id, GameResult result);
+  void complete(JobId id, const GameResult& result);
   // Whoever played it is gone.
   void give_back(JobId id);
 
