@@ -2,6 +2,7 @@
 // serve, goals, dead ball, ball out, win.
 #include <limits>
 
+#include "../src/tuning.h"
 #include "match_fixture.h"
 
 namespace foosball {
@@ -164,7 +165,7 @@ TEST_F(MatchTest, TheBallIsServedToTheMidfieldWithinItsReach) {
                        return event.kind == EventKind::serve;
                      })->team;
   const RodSpec& rod = table().rods[rods_of_team(table(), server)[2]];
-  EXPECT_NEAR(view().ball_position.x, rod.x + attack_sign(server) * 0.034, 0.005);
+  EXPECT_NEAR(view().ball_position.x, rod.x + attack_sign(server) * tuning::kServeAhead, 0.005);
 }
 
 TEST_F(MatchTest, TheServeWaitsWhileMenFillThePlace) {

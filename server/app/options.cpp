@@ -1,7 +1,9 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -41,6 +43,12 @@ std::string check_seconds(const std::string& text) {
   return ok ? "" : "\"" + text + "\" is no number of seconds between 0.001 and 1000000";
 }
 
+std::string check_sets(const std::string& text) {
+  int sets = 0;
+  const bool ok = CLI::detail::lexical_cast(text, sets) && sets >= 1 && sets <= 17 && sets % 2 == 1;
+  return ok ? "" : "\"" + text + "\" is no odd number of sets from 1 to 17";
+}
+
 std::optional<std::uint64_t> parse_seed(const std::string& text) {
   std::uint64_t value = 0;
   const char* end = text.data() + text.size();
@@ -53,7 +61,20 @@ std::string check_seed(const std::string& text) {
                           : "\"" + text + "\" is no whole number from 0 to 18446744073709551615";
 }
 
+// Today as the number that names a challenge, such as 20261122 (UTC).
+std::uint32_t today() {
+  const auto now = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
+  const std::chrono::year_month_day date(now);
+  return static_cast<std::uint32_t>(static_cast<int>(date.year()) * 10000) +
+         static_cast<unsigned>(date.month()) * 100 + static_cast<unsigned>(date.day());
+}
+
 struct Raw {
+  std::string rules = "arcade", mode = "match";
+  int goals = 0, sets = 0;
+  double minutes = 0.0;
+  std::uint32_t date = 0;
+  bool change_sides = false;
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed;
   double seconds = 0.0;
   bool fast = false, no_real_time = false;
@@ -67,6 +88,21 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
+  cli.add_option("--rules", raw.rules, "arcade, or itsf: the tournament rules, best of 5 sets")
+      ->check(CLI::IsMember({"arcade", "itsf"}));
+  cli.add_option("--goals", raw.goals, "that win a set")->check(CLI::Range(1, 99));
+  cli.add_option("--sets", raw.sets, "best of so many: 1, 3, 5 ... 17")->check(check_sets);
+  cli.add_option("--minutes", raw.minutes,
+                 "of play, then whoever leads has won; a draw goes on to the next goal")
+      ->check(CLI::Range(0.1, 60.0));
+  cli.add_flag("--change-sides", raw.change_sides, "the players change sides between sets");
+  cli.add_option(
+         "--mode", raw.mode,
+         "match; training: the ball is served to a man again and again; challenge: two "
+         "minutes, the same for all on a day; ladder: against stronger and stronger computers")
+      ->check(CLI::IsMember({"match", "training", "challenge", "ladder"}));
+  cli.add_option("--date", raw.date, "of the challenge, such as 20261122 (today)")
+      ->check(CLI::Range(10000101, 99991231));
   cli.add_option("--device", o.devices,
                  "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; may be given "
                  "more than once");
@@ -117,9 +153,38 @@ std::string with_scheme(const std::string& device) {
   return (device.rfind("/dev/", 0) == 0 ? "serial:" : "file:") + device;
 }
 
+foosball::Rules rules_of(const Raw& raw) {
+  foosball::Rules rules = raw.rules == "itsf" ? foosball::itsf_rules() : foosball::arcade_rules();
+  if (raw.minutes > 0.0) {
+    rules.match_seconds = 60.0 * raw.minutes;
+    rules.goals_to_win = rules.max_goals = 99;
+  }
+  if (raw.goals > 0) {
+    rules.goals_to_win = raw.goals;
+    rules.max_goals = std::min(99, raw.goals + 3);  // as 8 is to 5
+  }
+  if (raw.sets > 0) rules.sets_to_win = (raw.sets + 1) / 2;
+  rules.change_sides = raw.change_sides;
+  return rules;
+}
+
+foosball::Mode mode_of(const std::string& name) {
+  if (name == "training") return foosball::Mode::training;
+  if (name == "ladder") return foosball::Mode::ladder;
+  return name == "challenge" ? foosball::Mode::challenge : foosball::Mode::match;
+}
+
 void translate(Options& o, const Raw& raw) {
-  o.match.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
-  if (!raw.seed.empty()) o.match.seed = *parse_seed(raw.seed);
+  const auto layout =
+      raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
+  o.match.layout = layout;
+  o.match.rules = rules_of(raw);
+  o.match.mode = mode_of(raw.mode);
+  if (o.match.mode == foosball::Mode::challenge) {
+    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : today(), layout);
+  }
+  if (!raw.seed.empty() && o.match.mode != foosball::Mode::challenge)
+    o.match.seed = *parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));

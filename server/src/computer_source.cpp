@@ -6,6 +6,10 @@ ComputerSource::ComputerSource(const foosball::ComputerPlayerDesc& desc,
                                const foosball::MatchView& view)
     : player_(desc), view_(view), name_("computer of team " + std::to_string(desc.team)) {}
 
+void ComputerSource::replace(const foosball::ComputerPlayerDesc& desc) {
+  player_ = foosball::ComputerPlayer(desc);
+}
+
 void ComputerSource::set_playing(bool playing) {
   playing_ = playing;
   if (!playing) rods_ = {};

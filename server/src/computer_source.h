@@ -11,6 +11,8 @@ class ComputerSource final : public cabinet::InputSource {
   // view must outlive the source and be that of the tick before.
   ComputerSource(const foosball::ComputerPlayerDesc& desc, const foosball::MatchView& view);
 
+  // Another player takes its place, from the next poll on.
+  void replace(const foosball::ComputerPlayerDesc& desc);
   // While it does not play, its rods are absent and nothing is computed.
   void set_playing(bool playing);
 

@@ -31,6 +31,13 @@ class RodDesk {
   void set_claimed(int team, bool claimed);
   RemoteSource& remote(int team) { return *remotes_[team]; }
 
+  // Computers play both teams, whoever has them: a match is shown while nobody plays.
+  void show_match(bool shown);
+  // A hand has moved a rod of a device or a client since the match is shown.
+  bool hand_moved() const;
+  // The opponent at a rung of the ladder: stronger from one to the next.
+  void set_rung(int rung);
+
   void poll(std::int64_t now_us) { mux_.poll(now_us); }
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
   RodDriver driver(int rod) const;
@@ -38,12 +45,20 @@ class RodDesk {
  private:
   int add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver kind);
   void assign_all();
+  foosball::ComputerPlayerDesc computer_desc(int team) const;
+  const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
   const foosball::TableSpec& table_;
   std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
   std::array<std::unique_ptr<RemoteSource>, foosball::kTeams> remotes_;
-  std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;  // or none
+  std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
+  std::array<bool, foosball::kTeams>
+      computer_allowed_{};  // else it plays only a match that is shown
   std::array<bool, foosball::kTeams> claimed_{};
+  std::uint64_t seed_ = 0;
+  int rung_ = -1;  // not on the ladder
+  bool shown_ = false;
+  std::vector<cabinet::RodInputs> hands_;  // where each device and client had the rods then
   cabinet::SourceMux mux_;
   std::vector<RodDriver> kinds_;                         // by the mux's index
   std::vector<int> order_{cabinet::SourceMux::kNobody};  // the devices', then the team's player

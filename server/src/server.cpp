@@ -46,6 +46,7 @@ struct Server::Impl {
   bool nobody_left_to_play_for(std::uint8_t leavers_team) const;
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
+  void tell_match();
   void broadcast(std::int64_t now_us, std::int64_t tick_ns);
   void put_drivers(wire::Snapshot& out) const;
   void watch_journal();
@@ -197,12 +198,33 @@ bool Server::Impl::gather(std::int64_t now_us) {
 }
 
 void Server::Impl::gather_live(std::int64_t now_us) {
+  desk.show_match(match.view().attract);
+  desk.set_rung(match.view().rung);
   desk.poll(now_us);
+  tell_match();
   next.tick = ticks;
   for (int rod = 0; rod < foosball::kRods; ++rod) next.rods[rod] = to_grid(desk.rods()[rod]);
   device_watch.look(desk.devices(), now_us, [this](auto level, auto index, const auto& text) {
     notify(level, static_cast<std::uint32_t>(Topic::devices) + index, text);
   });
+}
+
+// Which teams computers play, so that the match knows whose absence counts; and the hand that ends
+// a match that is shown.
+void Server::Impl::tell_match() {
+  const foosball::MatchView& view = match.view();
+  if (view.attract) {
+    if (desk.hand_moved()) next.commands.push_back(to_record({foosball::Command::Kind::touch}));
+    return;
+  }
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    const int rod = foosball::rods_of_team(foosball::table_spec(view.layout), team)[0];
+    const bool computer = desk.driver(rod) == RodDriver::computer;
+    if (computer == view.computer[team]) continue;
+    next.commands.push_back(
+        to_record({foosball::Command::Kind::seat, static_cast<std::uint8_t>(team),
+                   static_cast<std::uint8_t>(computer)}));
+  }
 }
 
 // --- what goes out

@@ -15,6 +15,17 @@ TEST(WishRules, APlayerWishesForTheOwnTeamAndForTheMatch) {
   EXPECT_TRUE(may_wish(1, false, {Kind::restart, 0, 0}));
 }
 
+TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
+  const auto formed = [](Kind kind, int value) {
+    return well_formed({static_cast<std::uint8_t>(kind), 0, static_cast<std::uint8_t>(value)});
+  };
+  EXPECT_FALSE(formed(Kind::seat, 1));
+  EXPECT_FALSE(formed(Kind::touch, 0));
+  EXPECT_TRUE(formed(Kind::time_out, 0));
+  EXPECT_TRUE(formed(Kind::feed, foosball::feed_value(foosball::Line::attack, 2)));
+  EXPECT_FALSE(formed(Kind::feed, foosball::kFeedValues));
+}
+
 TEST(WishRules, AWatcherWishesOnlyAtTheServersMachine) {
   for (const auto kind : {Kind::push, Kind::choose_character, Kind::pause, Kind::restart}) {
     EXPECT_TRUE(may_wish(wire::kWatchOnly, true, {kind, 1, 0}));
