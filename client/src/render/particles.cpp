@@ -68,7 +68,7 @@ void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float r
   const float speed = glm::length(velocity);
   if (speed < 1.2f) return;
   const float fade = std::clamp((speed - 1.2f) / 6.0f, 0.0f, 1.0f);
-  const glm::vec3 light = (reduced_ ? 0.12f : 0.30f) * fade *
+  const glm::vec3 light = (reduced_ ? 0.15f : 0.50f) * fade *
                           glm::mix(0.9f * colour, 0.5f * (colour + kHot), fade * fade);
   const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, 12);
   for (int i = 0; i < beads; ++i) {
