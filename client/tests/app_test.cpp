@@ -205,7 +205,9 @@ TEST(MatchStory, NamesScorerSaveAndOwnGoal) {
   EXPECT_EQ(story.statistics()[1].saves, 1);
   EXPECT_EQ(story.statistics()[1].shots, 0) << "a clearance is no shot";
   // He then knocks it in himself.
-  step({event_of(Kind::goal, 0)}, 1.0f);
+  wire::EventSnapshot own = event_of(Kind::goal, 0, 7, 1.0f);
+  own.own = true;
+  step({own}, 1.0f);
   EXPECT_TRUE(story.last_goal().own_goal);
   EXPECT_EQ(story.last_goal().team, 0);
   EXPECT_EQ(story.last_goal().scorer_rod, 7);
@@ -214,7 +216,7 @@ TEST(MatchStory, NamesScorerSaveAndOwnGoal) {
   EXPECT_EQ(story.moments()[0].moment, Moment::own_goal);
   // A goal that team 1's attack shoots.
   step({event_of(Kind::man_hit, 1, 2)}, -9.0f);
-  step({event_of(Kind::goal, 1)}, -9.0f);
+  step({event_of(Kind::goal, 1, 2, 9.0f)}, -9.0f);
   EXPECT_FALSE(story.last_goal().own_goal);
   EXPECT_EQ(story.last_goal().scorer_rod, 2);
   // Nobody touched it.

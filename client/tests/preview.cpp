@@ -94,8 +94,16 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     state.screen = shot.screen;
     state.ball_in_play = shot.screen == 2;
     state.confirmed = {true, false};
+    if (std::strcmp(shot.name, "play-3") == 0) {
+      state.rule_set = number(wire::RuleSet::itsf);
+      state.sets = {1, 0};
+      state.fouled = true;
+      state.last_foul = number(wire::Foul::spin);
+      state.last_foul_team = 1;
+    }
     if (std::strcmp(shot.name, "held") == 0) state.rods[3].status = state.rods[5].status = 2;
     if (shot.screen >= 3) {
+      state.ball_visible = true;
       state.ball.position = {0.66f, 0.03f, 0.0173f};
       state.ball.linear_velocity = {0, 0, 0};
     }
@@ -115,6 +123,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .own_goal = false, .speed = 7.4f};
     if (name == "above-ceremony")
       hud.goal = {.team = 0, .scorer_rod = 6, .scorer_man = 0, .own_goal = true, .speed = 2.1f};
+    hud.since_foul = 1.0f;
     hud.replay = name == "ceremony";
     hud.statistics = {TeamStatistics{14, 6, 0, 9.3f, 71.0f}, TeamStatistics{9, 11, 1, 7.8f, 54.0f}};
     if (name.ends_with("settings")) {

@@ -365,9 +365,10 @@ TEST_P(RenderTest, TheBallLooksLargerWithHeightAndLiesInTheGoalAfterIt) {
   wire::Snapshot state = scripted_play(0.35);
   state.screen = 3;
   state.ball_in_play = false;
+  state.ball_visible = true;
   state.ball.position = {0.655f, 0.03f, radius};
   wire::Snapshot parked = state;
-  parked.ball.position = {0, 0, 1.0f};
+  parked.ball_visible = false;
   EXPECT_TRUE(ball_is_seen(state));
   EXPECT_FALSE(ball_is_seen(parked));
   camera = above_camera(table, 0, kSize);

@@ -333,6 +333,7 @@ HudState App::hud(const Camera& camera) const {
   hud.replay = replay_;
   hud.rod_shift = rod_shift();
   hud.goal = story_.last_goal();
+  hud.since_foul = story_.since_foul();
   hud.statistics = story_.statistics();
   if (menu_.open()) hud.menu = menu_.rows(settings_);
   hud.menu_row = menu_.row();

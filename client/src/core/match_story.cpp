@@ -39,11 +39,14 @@ void MatchStory::touch(const wire::EventSnapshot& event, const foosball::TableSp
   shot_judged_ = false;
 }
 
-void MatchStory::score(int team) {
-  goal_ = {team, touch_.rod, touch_.man, touch_.team >= 0 && touch_.team != team, speed_};
-  if (goal_.own_goal) ++statistics_[static_cast<std::size_t>(touch_.team)].own_goals;
-  moments_.push_back({goal_.own_goal ? Moment::own_goal : Moment::goal, team,
-                      std::clamp(speed_ / kFastestShot, 0.3f, 1.0f)});
+// The match itself says whose goal it is.
+void MatchStory::score(const wire::EventSnapshot& event) {
+  const int team = event.team == 1 ? 1 : 0;
+  const bool touched = touch_.team >= 0;
+  goal_ = {team, touched ? event.rod : -1, touched ? event.man : -1, event.own, event.value};
+  if (event.own) ++statistics_[static_cast<std::size_t>(1 - team)].own_goals;
+  moments_.push_back({event.own ? Moment::own_goal : Moment::goal, team,
+                      std::clamp(event.value / kFastestShot, 0.3f, 1.0f)});
   touch_ = {};
   shooting_team_ = -1;
 }
@@ -80,16 +83,20 @@ void MatchStory::update(std::span<const wire::EventSnapshot> events, const wire:
         if (event.value > kTouch) touch(event, table);
         break;
       case Kind::goal:
-        score(event.team == 1 ? 1 : 0);
+        score(event);
         break;
       case Kind::serve:
         touch_ = {};
         shooting_team_ = -1;
         break;
+      case Kind::foul:
+        since_foul_ = 0.0f;
+        break;
       default:
         break;
     }
   }
+  since_foul_ += dt;
   watch_shot(scene, screen == wire::Screen::play && !scene.paused ? dt : 0.0f);
 }
 

@@ -44,6 +44,7 @@ class MatchStory {
   const GoalStory& last_goal() const { return goal_; }
   const std::array<TeamStatistics, 2>& statistics() const { return statistics_; }
   int last_touch_team() const { return touch_.team; }  // -1: nobody
+  float since_foul() const { return since_foul_; }     // [s]; the scene says which
 
  private:
   struct Touch {
@@ -52,14 +53,15 @@ class MatchStory {
   void begin_match();
   void touch(const wire::EventSnapshot& event, const foosball::TableSpec& table);
   void watch_shot(const wire::Snapshot& scene, float dt);
-  void score(int team);
+  void score(const wire::EventSnapshot& event);
 
   GoalStory goal_;
   std::array<TeamStatistics, 2> statistics_;
   std::vector<StoryMoment> moments_;
   Touch touch_;
   float since_touch_ = 0.0f;  // [s]
-  bool shot_judged_ = true;   // the last touch was looked at: a shot or none
+  float since_foul_ = 1e3f;
+  bool shot_judged_ = true;  // the last touch was looked at: a shot or none
   int shooting_team_ = -1;
   float since_shot_ = 0.0f, shot_speed_ = 0.0f, speed_ = 0.0f;
 };

@@ -33,10 +33,60 @@ void draw_score(const HudPen& whole, const wire::Snapshot& state, bool at_the_bo
     pen.text(tr(spec.name), {Face::regular, 11.5f, 0.01f, Align::centre},
              {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
+  if (state.sets[0] + state.sets[1] > 0) {
+    const std::size_t left = pen.left_is_team_0 ? 0 : 1;
+    const std::string sets = std::string(tr("sets")) + " " + std::to_string(state.sets[left]) +
+                             " : " + std::to_string(state.sets[1 - left]);
+    pen.text(sets, {Face::regular, 11.5f, 0.0f, Align::centre}, {0.0f, y + 56.0f}, kFaint, 0.55f,
+             70.0f);
+  }
   char clock[32];
-  const int seconds = std::max(0, static_cast<int>(std::min(state.play_seconds, 35999.0f)));
+  // Of a timed set what is left, else what was played.
+  const float shown = state.timed ? state.seconds_left : state.play_seconds;
+  const int seconds = std::max(0, static_cast<int>(std::min(shown, 35999.0f)));
   std::snprintf(clock, sizeof clock, "%d:%02d", seconds / 60, seconds % 60);
   pen.text(clock, {Face::regular, 14.0f, 0.04f, Align::centre}, {0.0f, y + 38.0f}, kInk);
+}
+
+std::string team_with_mark(std::uint8_t team) {
+  const std::size_t t = team == 1 ? 1 : 0;
+  return std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]);
+}
+
+// What the rules have to say now: a time-out, a foul for a while, else the last shot in training.
+std::string rules_line(const HudState& hud) {
+  constexpr float kFoulShown = 4.0f;  // [s]
+  constexpr std::array<const char*, 6> kFouls{N_("held too long"),    N_("spinning"),
+                                              N_("jarring"),          N_("technical foul"),
+                                              N_("time-out misused"), N_("serve")};
+  const wire::Snapshot& state = *hud.state;
+  char number_text[48];
+  if (state.time_out_seconds > 0.0f) {
+    std::snprintf(number_text, sizeof number_text, " %.0f s",
+                  static_cast<double>(state.time_out_seconds));
+    return std::string(tr("Time-out")) + ": " + team_with_mark(state.time_out_team) + number_text;
+  }
+  if (state.fouled && hud.since_foul < kFoulShown) {
+    const char* foul = kFouls[std::min<std::size_t>(state.last_foul, kFouls.size() - 1)];
+    return std::string(tr("Foul")) + ": " + team_with_mark(state.last_foul_team) + ", " + tr(foul);
+  }
+  if (state.mode == number(wire::Mode::training) && state.last_shot.speed > 0.0f) {
+    std::snprintf(number_text, sizeof number_text, ": %.1f m/s, %.0f°",
+                  static_cast<double>(state.last_shot.speed),
+                  57.29578 * static_cast<double>(state.last_shot.angle));
+    return std::string(tr("Last shot")) + number_text;
+  }
+  return {};
+}
+
+void draw_rules_line(const HudPen& pen, const HudState& hud, bool at_the_bottom) {
+  const std::string line = rules_line(hud);
+  if (line.empty()) return;
+  const TextStyle style{Face::bold, 16.0f, 0.0f, Align::centre};
+  const float half = std::min(0.5f * pen.width(line, style) + 14.0f, pen.half_width - 4.0f);
+  const float y = at_the_bottom ? pen.bottom - 100.0f : 82.0f;
+  pen.panel({-half, y}, {half, y + 26.0f}, 8.0f, {0.20f, 0.13f, 0.02f, 0.86f});
+  pen.text(line, style, {0.0f, y + 19.0f}, kWarning, 0.55f, 2.0f * half - 12.0f);
 }
 
 // Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
@@ -137,6 +187,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       break;
   }
   draw_score(pen, state, above);
+  if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) draw_rules_line(pen, hud, above);
   if (!above) draw_held_rods(pen, hud, screen);
   if (state.paused) draw_paused(pen);
 }

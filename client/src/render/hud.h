@@ -37,6 +37,7 @@ struct HudState {
   bool replay = false;  // what is seen is the goal again
   std::array<float, 8> rod_shift{};
   GoalStory goal;
+  float since_foul = 1e3f;  // [s]
   std::array<TeamStatistics, 2> statistics;
   std::vector<MenuRow> menu;  // the settings screen; empty: closed
   int menu_row = 0;

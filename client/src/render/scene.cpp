@@ -66,10 +66,7 @@ float Scene::drawn_ball_radius(const foosball::TableSpec& table, float height) {
 }
 
 bool ball_is_seen(const wire::Snapshot& state) {
-  constexpr float kParked = 0.5f;  // [m]: above it the server keeps a ball that is nowhere
-  const bool scored =
-      state.screen == number(wire::Screen::ceremony) || state.screen == number(wire::Screen::end);
-  return state.ball_in_play || (scored && state.ball.position[2] < kParked);
+  return state.ball_in_play || state.ball_visible;
 }
 
 void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift) {
