@@ -15,6 +15,7 @@ build  ninja-build           runs the build
 build  pkg-config            finds libraries that have no CMake package
 build  flatbuffers-compiler  the control messages' code from their description
 build  libflatbuffers-dev    control messages
+build  libsodium-dev         encryption and authentication of what goes over a network
 build  libcli11-dev          command lines
 build  libspdlog-dev         logs
 build  libfmt-dev            formatted text of the reports
