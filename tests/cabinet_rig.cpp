@@ -62,16 +62,16 @@ CabinetRig::~CabinetRig() {
 
 void CabinetRig::join() {
   udp_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const sockaddr_in mine = os::loopback(0);
-  require(bind(udp_, os::generic(mine), sizeof mine) == 0, "bind failed");
+  const auto mine = os::loopback(0);
+  require(bind(udp_, mine.generic(), mine.size()) == 0, "bind failed");
 
   tcp_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const sockaddr_in server = os::loopback(server_->port());
-  require(connect(tcp_, os::generic(server), sizeof server) == 0, "cannot connect to the server");
+  const auto server = os::loopback(server_->port());
+  require(connect(tcp_, server.generic(), server.size()) == 0, "cannot connect to the server");
   wire::Hello hello;
   hello.snapshot_layout = wire::snapshot_layout_hash();
   hello.name = "rig";
-  hello.udp_port = os::port_of(os::local_address(udp_));
+  hello.udp_port = os::local_address(udp_).port();
   std::vector<std::byte> bytes;
   wire::encode_control(hello, bytes);
   require(send(tcp_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
@@ -79,7 +79,9 @@ void CabinetRig::join() {
 
   wire::ControlMessage message;
   require(next_message(kDeadlineMs, message), "no Welcome in time");
-  require(std::holds_alternative<wire::Welcome>(message), "not welcome");
+  const auto* welcome = std::get_if<wire::Welcome>(&message);
+  require(welcome != nullptr, "not welcome");
+  opener_ = {welcome->snapshot_key, welcome->client};
   // The tick learns of a new listener through a queue: the first snapshot says that it has.
   for (int i = 0; i < kDeadlineMs && first_; ++i) {
     sim_.advance_us(1000);
@@ -140,7 +142,12 @@ bool CabinetRig::receive(wire::Snapshot& snapshot) {
   if (poll(&ready, 1, kDeadlineMs) != 1) return false;
   std::byte buffer[2048];
   const ssize_t got = recv(udp_, buffer, sizeof buffer, 0);
-  return got > 0 && wire::decode_snapshot({buffer, static_cast<std::size_t>(got)}, snapshot);
+  if (got <= 0) return false;
+  std::byte plain[wire::kMaxDatagram];
+  std::size_t size = 0;
+  return opener_.open({buffer, static_cast<std::size_t>(got)}, plain, size) ==
+             wire::SealVerdict::good &&
+         wire::decode_snapshot({plain, size}, snapshot);
 }
 
 void CabinetRig::forward_reports() {

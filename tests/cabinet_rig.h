@@ -12,6 +12,7 @@
 #include "firmware_sim/cabinet_sim.h"
 #include "server/server.h"
 #include "wire/control.h"
+#include "wire/seal.h"
 #include "wire/snapshot.h"
 
 namespace end_to_end {
@@ -61,6 +62,7 @@ class CabinetRig {
   std::unique_ptr<cabinet::DeviceSource> tap_;
   int udp_ = -1, tcp_ = -1;
   wire::ControlReader reader_;
+  wire::DatagramOpener opener_;
   wire::Snapshot last_;
   bool first_ = true;
   int missed_ = 0;

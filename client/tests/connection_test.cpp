@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/socket.h>
 
 #include <functional>
 
 #include "os/clock.h"
+#include "os/socket_address.h"
 #include "scripted_scene.h"
 #include "scripted_server.h"
+#include "wire/limits.h"
 
 namespace client {
 namespace {
@@ -43,7 +46,8 @@ wire::Snapshot snapshot(std::uint64_t session, std::uint64_t tick) {
 class ConnectionTest : public ::testing::Test {
  protected:
   void open() {
-    auto opened = Connection::open(options_for(server.port()));
+    options.port = server.port();
+    auto opened = Connection::open(options);
     ASSERT_TRUE(opened) << opened.error();
     connection = std::move(*opened);
     connection->start();
@@ -65,6 +69,7 @@ class ConnectionTest : public ::testing::Test {
     return hears(session, 20'000) && hears(session, 30'000);
   }
   ScriptedServer server;
+  ConnectionOptions options = options_for(0);
   std::unique_ptr<Connection> connection;
 };
 
@@ -87,7 +92,9 @@ TEST_F(ConnectionTest, BadForeignAndRepeatedDatagramsAreEachCounted) {
   server.send_datagram(noise);
   server.send_datagram({});
   server.send_datagram(oversized);
-  server.send_snapshot(snapshot(7, 5000));
+  auto turned = server.sealed(snapshot(42, 1));
+  turned.back() ^= std::byte{1};
+  server.send_datagram(turned);
   server.send_snapshot(snapshot(42, 0));
   EXPECT_TRUE(eventually([&] {
     const SnapshotCounters c = connection->counters();
@@ -106,7 +113,7 @@ TEST_F(ConnectionTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
   join(42);
 }
 
-TEST_F(ConnectionTest, SilenceIsNoticedAndTheServersReturnToo) {
+TEST_F(ConnectionTest, AGapIsNoticedAndCostsNoSeat) {
   open();
   join(42);
   ASSERT_TRUE(hears(42, 0));
@@ -114,9 +121,76 @@ TEST_F(ConnectionTest, SilenceIsNoticedAndTheServersReturnToo) {
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   EXPECT_GE(os::monotonic_us() - silent_since, 450'000);
   EXPECT_TRUE(connection->sample(os::monotonic_us()).any);  // the last scene stands
-  ASSERT_TRUE(server.welcome(42));                          // the next attempt, answered
+  ASSERT_TRUE(hears(42, 600));                              // the line is back
   EXPECT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
-  EXPECT_TRUE(hears(42, 1000));
+  EXPECT_EQ(connection->status().joins, 1u) << "the connection was never let go";
+}
+
+TEST_F(ConnectionTest, ALongSilenceIsTheEndOfAConnectionAndTheSeatIsAskedForAgain) {
+  options.silence_us = 50'000;
+  options.gone_us = 100'000;
+  open();
+  ASSERT_TRUE(server.welcome(42, 77));
+  const wire::Hello first = server.hello();
+  EXPECT_EQ(first.ticket, 0u);
+  ASSERT_TRUE(server.welcome(42, 77));  // the next attempt, answered
+  EXPECT_EQ(server.hello().session, 42u);
+  EXPECT_EQ(server.hello().ticket, 77u);
+  EXPECT_TRUE(eventually([&] { return connection->status().joins == 2; }));
+}
+
+// Each of these froze the picture for good, or could have.
+TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
+  open();
+  join(42);
+  ASSERT_TRUE(hears(42, 1000));
+  ScriptedServer attacker;  // sockets of its own: another address
+  const auto forge = [&](const ScriptedServer& from, std::span<const std::byte> bytes) {
+    const auto to = os::loopback(server.hello().udp_port);
+    ::sendto(from.udp(), bytes.data(), bytes.size(), 0, to.generic(), to.size());
+  };
+  wire::Snapshot far = snapshot(42, wire::kMaxTick);
+  far.sequence = ~std::uint64_t{0};
+  std::array<std::byte, wire::kMaxDatagram> plain;
+  const auto unsealed = std::span<const std::byte>(plain).first(wire::encode_snapshot(far, plain));
+  std::vector<std::byte> wrong_key(unsealed.size() + wire::kSealBytes);
+  wire::seal_datagram(wire::SealKey{}, server.said().client, ~std::uint64_t{0}, unsealed,
+                      wrong_key);
+  const auto replayed = server.sealed(snapshot(42, 1900));
+  // From another address nothing comes through at all, not even what is sealed well.
+  forge(attacker, unsealed);
+  forge(attacker, wrong_key);
+  forge(attacker, server.sealed(far));
+  // From the server's own address and port, as an attacker that can write any source.
+  forge(server, unsealed);
+  forge(server, wrong_key);
+  forge(server, replayed);
+  for (int i = 0; i < 10; ++i) forge(server, replayed);
+  ASSERT_TRUE(eventually([&] { return connection->counters().old >= 10; }));
+  const SnapshotCounters after = connection->counters();
+  EXPECT_EQ(after.bad + after.foreign, 2u);
+  EXPECT_EQ(after.implausible, 0u);
+  // A server gone mad, or a group's member: a jump that nothing after it confirms.
+  server.send_snapshot(far);
+  ASSERT_TRUE(eventually([&] { return connection->counters().implausible == 1; }));
+  EXPECT_TRUE(hears(42, 1901));
+  const auto scene = connection->sample(os::monotonic_us());
+  EXPECT_LT(scene.state.tick, 3000u);
+}
+
+TEST_F(ConnectionTest, AFloodFromElsewhereCostsTheListenerNothing) {
+  open();
+  join(42);
+  ASSERT_TRUE(hears(42, 0));
+  const ScriptedServer attacker;
+  const std::vector<std::byte> garbage(700, std::byte{0x5A});
+  const auto to = os::loopback(server.hello().udp_port);
+  for (int i = 0; i < 20'000; ++i) {
+    ::sendto(attacker.udp(), garbage.data(), garbage.size(), 0, to.generic(), to.size());
+  }
+  ASSERT_TRUE(hears(42, 500));
+  const SnapshotCounters c = connection->counters();
+  EXPECT_EQ(c.bad + c.foreign, 0u);
 }
 
 TEST_F(ConnectionTest, AServerThatDiesAndReturnsWithANewSessionIsJoinedAgain) {

@@ -13,9 +13,9 @@ namespace {
 std::uint16_t bind_to(int fd, std::uint16_t port) {
   const int on = 1;
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const sockaddr_in address = os::loopback(port);
-  if (bind(fd, os::generic(address), sizeof address) != 0) return 0;
-  return os::port_of(os::local_address(fd));
+  const auto address = os::loopback(port);
+  if (bind(fd, address.generic(), address.size()) != 0) return 0;
+  return os::local_address(fd).port();
 }
 
 bool readable(const os::FileDescriptor& fd) {
@@ -62,7 +62,12 @@ std::optional<wire::InputDatagram> ScriptedServer::next_input() {
   wire::InputDatagram input;
   if (!readable(udp_)) return {};
   const auto size = recv(udp_.get(), bytes.data(), bytes.size(), 0);
-  if (size < 0 || !wire::decode_input({bytes.data(), static_cast<std::size_t>(size)}, input))
+  std::array<std::byte, wire::kMaxInputDatagram> plain;
+  std::size_t plain_size = 0;
+  if (size < 0 ||
+      inputs_.open({bytes.data(), static_cast<std::size_t>(size)}, plain, plain_size) !=
+          wire::SealVerdict::good ||
+      !wire::decode_input(std::span(plain).first(plain_size), input))
     return {};
   return input;
 }
@@ -84,14 +89,22 @@ void ScriptedServer::send_bytes(std::span<const std::byte> bytes) {
       ::send(client_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
+std::vector<std::byte> ScriptedServer::sealed(const wire::Snapshot& snapshot) {
+  std::array<std::byte, wire::kMaxDatagram> plain;
+  const std::size_t size = wire::encode_snapshot(snapshot, plain);
+  std::vector<std::byte> out(size + wire::kSealBytes);
+  wire::seal_datagram(welcome_.snapshot_key, welcome_.client, ++sealed_,
+                      std::span(plain).first(size), out);
+  return out;
+}
+
 void ScriptedServer::send_snapshot(const wire::Snapshot& snapshot) {
-  std::array<std::byte, wire::kMaxDatagram> bytes;
-  send_datagram({bytes.data(), wire::encode_snapshot(snapshot, bytes)});
+  send_datagram(sealed(snapshot));
 }
 
 void ScriptedServer::send_datagram(std::span<const std::byte> bytes) {
-  const sockaddr_in to = os::loopback(hello_.udp_port);
-  sendto(udp_.get(), bytes.data(), bytes.size(), 0, os::generic(to), sizeof to);
+  const auto to = os::loopback(hello_.udp_port);
+  sendto(udp_.get(), bytes.data(), bytes.size(), 0, to.generic(), to.size());
 }
 
 bool ScriptedServer::welcome(std::uint64_t session, std::uint64_t token, std::uint8_t team) {
@@ -105,6 +118,14 @@ bool ScriptedServer::welcome(std::uint64_t session, std::uint64_t token, std::ui
   welcome.udp_port = udp_port_;
   welcome.layout = 1;
   welcome.team = team;
+  welcome.client = ++welcomed_;
+  for (std::size_t i = 0; i < welcome.input_key.size(); ++i) {
+    welcome.input_key[i] = static_cast<std::byte>(welcomed_ + i);
+    welcome.snapshot_key[i] = static_cast<std::byte>(welcomed_ + 100 + i);
+  }
+  welcome_ = welcome;
+  inputs_ = {welcome.input_key, welcome.client};
+  sealed_ = 0;
   send(welcome);
   return true;
 }

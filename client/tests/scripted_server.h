@@ -11,6 +11,7 @@
 #include "os/file_descriptor.h"
 #include "wire/control.h"
 #include "wire/input_datagram.h"
+#include "wire/seal.h"
 #include "wire/snapshot.h"
 
 namespace client {
@@ -29,19 +30,26 @@ class ScriptedServer {
 
   void send(const wire::ControlMessage& message);
   void send_bytes(std::span<const std::byte> bytes);
-  void send_snapshot(const wire::Snapshot& snapshot);  // to the port of the client's Hello
+  void send_snapshot(const wire::Snapshot& snapshot);  // to the port of the client's Hello, sealed
+  std::vector<std::byte> sealed(const wire::Snapshot& snapshot);
   void send_datagram(std::span<const std::byte> bytes);
   void drop_client();
 
   // Accepts, reads the Hello and answers with a Welcome; false if any of it fails.
   bool welcome(std::uint64_t session, std::uint64_t token = 11, std::uint8_t team = 0);
   const wire::Hello& hello() const { return hello_; }
+  const wire::Welcome& said() const { return welcome_; }  // the last Welcome
+  int udp() const { return udp_.get(); }
 
  private:
   os::FileDescriptor listener_, client_, udp_;
   std::uint16_t port_ = 0, udp_port_ = 0;
   wire::ControlReader reader_;
   wire::Hello hello_;
+  wire::Welcome welcome_;
+  wire::DatagramOpener inputs_;
+  std::uint64_t sealed_ = 0;
+  std::uint32_t welcomed_ = 0;
 };
 
 }  // namespace client

@@ -208,5 +208,39 @@ TEST_F(Buffer, AnEventRepeatedInManySnapshotsIsGivenOnceWhenItsTickIsShown) {
   EXPECT_EQ(seen[1].id, 6u);
 }
 
+// One of these, believed, made everything after it old for good.
+TEST_F(Buffer, AJumpOfTickOrSequenceIsNotBelievedAndStopsNothing) {
+  for (std::uint64_t t = 0; t < 100; ++t) push(t);
+  wire::Snapshot far_tick = at_tick(100), far_sequence = at_tick(100);
+  far_tick.tick = wire::kMaxTick;
+  far_sequence.sequence = ~std::uint64_t{0};
+  for (wire::Snapshot forged : {far_tick, far_sequence}) {
+    forged.events = {event(0x7FFFFFFF)};
+    EXPECT_EQ(buffer.push(forged, on_time(99) + 500), Verdict::implausible);
+  }
+  for (std::uint64_t t = 100; t < 200; ++t) EXPECT_EQ(push(t), Verdict::taken);
+  EXPECT_NEAR(ball_x(on_time(199)), kSpeed * (0.199 - 0.0015), 2e-6);
+  EXPECT_TRUE(buffer.take_events().empty());
+  EXPECT_EQ(buffer.counters().implausible, 2u);
+  EXPECT_EQ(buffer.counters().lost, 0u);
+}
+
+TEST_F(Buffer, AServerThatItselfJumpsIsFollowedAfterAMoment) {
+  for (std::uint64_t t = 50'000; t < 50'100; ++t) push(t);
+  int refused = 0;
+  for (std::uint64_t t = 0; t < 100; ++t) {  // back, as after another match was restored
+    wire::Snapshot s = at_tick(t);
+    s.sequence = 50'101 + t;
+    refused += buffer.push(s, on_time(50'100 + t)) != Verdict::taken;
+  }
+  EXPECT_EQ(refused, SnapshotBuffer::kAgreeing - 1);
+  EXPECT_EQ(buffer.sample(on_time(50'200)).state.tick, 98u);
+}
+
+TEST_F(Buffer, AStallIsNoJump) {
+  for (std::uint64_t t = 0; t < 100; ++t) push(t);
+  for (std::uint64_t t = 5100; t < 5200; ++t) EXPECT_EQ(push(t), Verdict::taken) << t;
+}
+
 }  // namespace
 }  // namespace client

@@ -12,13 +12,13 @@ namespace {
 
 // On loopback a datagram has arrived when sendto() returns.
 void send(const UdpSocket& from, std::uint16_t port, std::span<const std::byte> bytes) {
-  const sockaddr_in to = os::loopback(port);
-  ASSERT_EQ(::sendto(from.fd.get(), bytes.data(), bytes.size(), 0, os::generic(to), sizeof to),
+  const auto to = os::loopback(port);
+  ASSERT_EQ(::sendto(from.fd.get(), bytes.data(), bytes.size(), 0, to.generic(), to.size()),
             static_cast<ssize_t>(bytes.size()));
 }
 
 TEST(Datagrams, AFloodIsTakenInPortionsAndInOrder) {
-  const auto from = open_udp(htonl(INADDR_LOOPBACK), 0), to = open_udp(htonl(INADDR_LOOPBACK), 0);
+  const auto from = open_udp(os::loopback(0)), to = open_udp(os::loopback(0));
   ASSERT_TRUE(from && to);
   for (int i = 0; i < 10; ++i) send(*from, to->port, std::vector(3, static_cast<std::byte>(i)));
   std::vector<int> taken;
@@ -35,7 +35,7 @@ TEST(Datagrams, AFloodIsTakenInPortionsAndInOrder) {
 }
 
 TEST(Datagrams, EmptyAndOverlongOnesAreTakenToo) {
-  const auto from = open_udp(htonl(INADDR_LOOPBACK), 0), to = open_udp(htonl(INADDR_LOOPBACK), 0);
+  const auto from = open_udp(os::loopback(0)), to = open_udp(os::loopback(0));
   ASSERT_TRUE(from && to);
   send(*from, to->port, {});
   send(*from, to->port, std::vector<std::byte>(kLongestDatagram + 1));

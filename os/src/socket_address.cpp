@@ -1,41 +1,147 @@
 #include "os/socket_address.h"
 
 #include <arpa/inet.h>
+#include <net/if.h>
 #include <sys/socket.h>
 
+#include <charconv>
+#include <cstring>
+
 namespace os {
+namespace {
 
-std::optional<sockaddr_in> parse_ipv4(const std::string& address, std::uint16_t port) {
-  sockaddr_in parsed{};
-  parsed.sin_family = AF_INET;
-  parsed.sin_port = htons(port);
-  if (::inet_pton(AF_INET, address.c_str(), &parsed.sin_addr) != 1) return std::nullopt;
-  return parsed;
+constexpr std::size_t kMappedAt = 12;  // the IPv4 address in ::ffff:a.b.c.d
+
+// The IPv4 address in network order, of an address that is one or has one mapped into it.
+std::optional<std::uint32_t> as_ipv4(const SocketAddress& address) {
+  if (address.family() == AF_INET) return address.ipv4().sin_addr.s_addr;
+  if (!address.is_ipv6() || !IN6_IS_ADDR_V4MAPPED(&address.ipv6().sin6_addr)) return std::nullopt;
+  std::uint32_t mapped = 0;
+  std::memcpy(&mapped, &address.ipv6().sin6_addr.s6_addr[kMappedAt], sizeof mapped);
+  return mapped;
 }
 
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
+}  // namespace
+
+SocketAddress SocketAddress::from(const sockaddr* address, socklen_t size) {
+  SocketAddress out;
+  if (address->sa_family == AF_INET && size >= sizeof(sockaddr_in)) {
+    std::memcpy(&out.v4_, address, sizeof out.v4_);
+  } else if (address->sa_family == AF_INET6 && size >= sizeof(sockaddr_in6)) {
+    std::memcpy(&out.v6_, address, sizeof out.v6_);
+  }
+  return out;
 }
 
-std::string to_text(const sockaddr_in& address) {
-  char text[INET_ADDRSTRLEN] = "?";
-  ::inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-  return std::string(text) + ":" + std::to_string(port_of(address));
+bool SocketAddress::is_loopback() const {
+  if (const auto v4 = as_ipv4(*this)) return (ntohl(*v4) >> 24) == IN_LOOPBACKNET;
+  return is_ipv6() && IN6_IS_ADDR_LOOPBACK(&v6_.sin6_addr);
 }
 
-bool is_loopback(const sockaddr_in& address) {
-  return (ntohl(address.sin_addr.s_addr) >> 24) == IN_LOOPBACKNET;
+bool SocketAddress::is_any() const {
+  if (family() == AF_INET) return v4_.sin_addr.s_addr == htonl(INADDR_ANY);
+  return is_ipv6() && IN6_IS_ADDR_UNSPECIFIED(&v6_.sin6_addr);
 }
 
-sockaddr_in local_address(int socket) {
-  sockaddr_in address{};
-  socklen_t size = sizeof address;
-  if (::getsockname(socket, generic(address), &size) != 0) return {};
-  return address;
+bool SocketAddress::is_multicast() const {
+  if (family() == AF_INET) return IN_MULTICAST(ntohl(v4_.sin_addr.s_addr));
+  return is_ipv6() && IN6_IS_ADDR_MULTICAST(&v6_.sin6_addr);
+}
+
+bool SocketAddress::same_host(const SocketAddress& other) const {
+  const auto mine = as_ipv4(*this), theirs = as_ipv4(other);
+  if (mine || theirs) return mine == theirs;
+  if (!is_ipv6() || !other.is_ipv6()) return family() == other.family();
+  return IN6_ARE_ADDR_EQUAL(&v6_.sin6_addr, &other.v6_.sin6_addr);
+}
+
+std::string SocketAddress::network() const {
+  if (const auto v4 = as_ipv4(*this)) {
+    return {reinterpret_cast<const char*>(&*v4), sizeof *v4};
+  }
+  constexpr std::size_t kPrefixBytes = 8;
+  return {reinterpret_cast<const char*>(v6_.sin6_addr.s6_addr), kPrefixBytes};
+}
+
+std::string SocketAddress::host() const {
+  char text[INET6_ADDRSTRLEN] = "?";
+  if (const auto v4 = as_ipv4(*this)) {
+    ::inet_ntop(AF_INET, &*v4, text, sizeof text);
+  } else if (is_ipv6()) {
+    ::inet_ntop(AF_INET6, &v6_.sin6_addr, text, sizeof text);
+  }
+  return text;
+}
+
+std::optional<SocketAddress> parse_address(const std::string& text, std::uint16_t port) {
+  sockaddr_in v4{};
+  if (::inet_pton(AF_INET, text.c_str(), &v4.sin_addr) == 1) {
+    v4.sin_family = AF_INET;
+    v4.sin_port = htons(port);
+    return SocketAddress(v4);
+  }
+  sockaddr_in6 v6{};
+  const auto percent = text.find('%');
+  if (::inet_pton(AF_INET6, text.substr(0, percent).c_str(), &v6.sin6_addr) != 1) {
+    return std::nullopt;
+  }
+  if (percent != std::string::npos) {
+    v6.sin6_scope_id = ::if_nametoindex(text.c_str() + percent + 1);
+    if (v6.sin6_scope_id == 0) return std::nullopt;
+  }
+  v6.sin6_family = AF_INET6;
+  v6.sin6_port = htons(port);
+  return SocketAddress(v6);
+}
+
+SocketAddress loopback(std::uint16_t port) {
+  return *parse_address("127.0.0.1", port);
+}
+
+std::string to_text(const SocketAddress& address) {
+  const std::string host = address.host();
+  const bool colons = host.find(':') != std::string::npos;
+  return (colons ? "[" + host + "]" : host) + ":" + std::to_string(address.port());
+}
+
+SocketAddress local_address(int socket) {
+  sockaddr_storage storage{};
+  socklen_t size = sizeof storage;
+  auto* generic = reinterpret_cast<sockaddr*>(&storage);
+  if (::getsockname(socket, generic, &size) != 0) return {};
+  return SocketAddress::from(generic, size);
+}
+
+std::optional<HostPort> parse_host_port(const std::string& text) {
+  HostPort out;
+  std::string port;
+  bool has_port = false;
+  if (!text.empty() && text.front() == '[') {
+    const auto close = text.find(']');
+    if (close == std::string::npos) return std::nullopt;
+    out.host = text.substr(1, close - 1);
+    if (!parse_address(out.host, 0)) return std::nullopt;
+    const std::string rest = text.substr(close + 1);
+    has_port = !rest.empty();
+    if (has_port && rest.front() != ':') return std::nullopt;
+    if (has_port) port = rest.substr(1);
+  } else if (parse_address(text, 0)) {
+    out.host = text;
+  } else {
+    const auto colon = text.find(':');
+    out.host = text.substr(0, colon);
+    has_port = colon != std::string::npos;
+    if (has_port) port = text.substr(colon + 1);
+  }
+  if (!has_port) return text.empty() ? std::nullopt : std::optional(out);
+  int number = 0;
+  const char* end = port.data() + port.size();
+  const auto [stopped_at, error] = std::from_chars(port.data(), end, number);
+  if (error != std::errc() || stopped_at != end || number < 1 || number > 65535) {
+    return std::nullopt;
+  }
+  out.port = static_cast<std::uint16_t>(number);
+  return out;
 }
 
 }  // namespace os

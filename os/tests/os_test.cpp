@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <fstream>
+#include <string>
 #include <thread>
 
+#include "os/capabilities.h"
 #include "os/clock.h"
+#include "os/cores.h"
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
 #include "os/thread_signal.h"
@@ -46,39 +50,109 @@ TEST(FileDescriptor, ReleasedItIsTheCallers) {
   EXPECT_FALSE(is_open(fd));
 }
 
-TEST(SocketAddress, TakesDottedAddressesOnly) {
-  for (const char* wrong :
-       {"", "localhost", "1.2.3", "1.2.3.256", "::1", "127.0.0.1:80", " 1.2.3.4"}) {
-    EXPECT_FALSE(parse_ipv4(wrong, 1)) << wrong;
+TEST(SocketAddress, TakesAddressesOfBothFamiliesAndNoNames) {
+  for (const char* wrong : {"", "localhost", "1.2.3", "1.2.3.256", "127.0.0.1:80", " 1.2.3.4",
+                            "::g", "::1%no-such-if", "[::1]"}) {
+    EXPECT_FALSE(parse_address(wrong, 1)) << wrong;
   }
-  const auto address = parse_ipv4("239.7.5.31", 7532);
-  ASSERT_TRUE(address);
-  EXPECT_EQ(to_text(*address), "239.7.5.31:7532");
-  EXPECT_EQ(port_of(*address), 7532);
+  const auto v4 = parse_address("239.7.5.31", 7532), v6 = parse_address("ff15::7531", 7532);
+  ASSERT_TRUE(v4 && v6);
+  EXPECT_EQ(to_text(*v4), "239.7.5.31:7532");
+  EXPECT_EQ(to_text(*v6), "[ff15::7531]:7532");
+  for (const auto& address : {*v4, *v6}) {
+    EXPECT_EQ(address.port(), 7532);
+    EXPECT_TRUE(address.is_multicast());
+    EXPECT_FALSE(address.is_loopback());
+  }
+  EXPECT_TRUE(parse_address("0.0.0.0", 1)->is_any());
+  EXPECT_TRUE(parse_address("::", 1)->is_any());
+  EXPECT_TRUE(SocketAddress().empty());
 }
 
-TEST(SocketAddress, AllOf127IsThisMachine) {
-  for (const char* here : {"127.0.0.1", "127.0.0.9", "127.255.255.255"}) {
-    EXPECT_TRUE(is_loopback(*parse_ipv4(here, 0))) << here;
+TEST(SocketAddress, KnowsThisMachineInEveryForm) {
+  for (const char* here : {"127.0.0.1", "127.0.0.9", "127.255.255.255", "::1", "::ffff:127.0.0.1"})
+    EXPECT_TRUE(parse_address(here, 0)->is_loopback()) << here;
+  for (const char* elsewhere :
+       {"0.0.0.0", "126.255.255.255", "128.0.0.1", "1.0.0.127", "::", "::2", "::ffff:1.0.0.127"}) {
+    EXPECT_FALSE(parse_address(elsewhere, 0)->is_loopback()) << elsewhere;
   }
-  for (const char* elsewhere : {"0.0.0.0", "126.255.255.255", "128.0.0.1", "1.0.0.127"}) {
-    EXPECT_FALSE(is_loopback(*parse_ipv4(elsewhere, 0))) << elsewhere;
-  }
+  EXPECT_FALSE(SocketAddress().is_loopback());
+}
+
+TEST(SocketAddress, AMappedAddressIsTheHostThatItIs) {
+  const SocketAddress plain = *parse_address("192.0.2.7", 1);
+  const SocketAddress mapped = *parse_address("::ffff:192.0.2.7", 2);
+  EXPECT_TRUE(plain.same_host(mapped));
+  EXPECT_EQ(plain.network(), mapped.network());
+  EXPECT_EQ(to_text(mapped), "192.0.2.7:2");
+  EXPECT_FALSE(plain.same_host(*parse_address("192.0.2.8", 1)));
+  EXPECT_FALSE(plain.same_host(*parse_address("2001:db8::7", 1)));
+  const SocketAddress v6 = *parse_address("2001:db8::7", 1);
+  EXPECT_TRUE(v6.same_host(*parse_address("2001:db8::7", 9)));
+  EXPECT_FALSE(v6.same_host(*parse_address("2001:db8::8", 1)));
+  EXPECT_EQ(v6.network(), parse_address("2001:db8::8", 1)->network()) << "of one network";
+  EXPECT_NE(v6.network(), parse_address("2001:db8:0:1::8", 1)->network());
 }
 
 TEST(SocketAddress, OfASocketIsWhereItIsBound) {
   const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  const sockaddr_in any = loopback(0);
-  ASSERT_EQ(::bind(socket.get(), generic(any), sizeof any), 0);
-  EXPECT_NE(port_of(local_address(socket.get())), 0);
-  EXPECT_TRUE(is_loopback(local_address(socket.get())));
-  EXPECT_EQ(port_of(local_address(-1)), 0);
+  const SocketAddress any = loopback(0);
+  ASSERT_EQ(::bind(socket.get(), any.generic(), any.size()), 0);
+  EXPECT_NE(local_address(socket.get()).port(), 0);
+  EXPECT_TRUE(local_address(socket.get()).is_loopback());
+  EXPECT_TRUE(local_address(-1).empty());
+}
+
+TEST(HostPort, IsTakenInEveryUsualForm) {
+  struct Case {
+    const char *text, *host;
+    int port;  // 0: none
+  };
+  for (const Case& c :
+       {Case{"table", "table", 0}, Case{"table:99", "table", 99}, Case{":99", "", 99},
+        Case{"[::1]:99", "::1", 99}, Case{"::1", "::1", 0}, Case{"[fd00::2]", "fd00::2", 0},
+        Case{"10.0.0.1:65535", "10.0.0.1", 65535}}) {
+    const auto parsed = parse_host_port(c.text);
+    ASSERT_TRUE(parsed) << c.text;
+    EXPECT_EQ(parsed->host, c.host) << c.text;
+    EXPECT_EQ(parsed->port.value_or(0), c.port) << c.text;
+  }
+  for (const char* wrong :
+       {"", "table:", "table:0", "table:65536", "table:x", "[::1", "[::1]99", "[table]:9", "a:b:c"})
+    EXPECT_FALSE(parse_host_port(wrong)) << wrong;
 }
 
 TEST(Clock, ASleepEndsNoEarlierThanItsDeadline) {
   const std::int64_t deadline = monotonic_ns() + 2'000'000;
   sleep_until_ns(deadline);
   EXPECT_GE(monotonic_ns(), deadline);
+}
+
+TEST(Cores, AQuotaIsReadAsCoresOfTime) {
+  EXPECT_DOUBLE_EQ(quota_of("150000 100000\n"), 1.5);
+  EXPECT_DOUBLE_EQ(quota_of("max 100000\n"), 0.0);
+  EXPECT_DOUBLE_EQ(quota_of(""), 0.0);
+  EXPECT_GE(usable_cores(), 1);
+}
+
+TEST(Capabilities, AreGoneForTheThreadThatGaveThemUpAndNoOther) {
+  const auto effective = [] {
+    std::ifstream status("/proc/thread-self/status");
+    for (std::string word; status >> word;) {
+      if (word == "CapEff:") return status >> word, word;
+    }
+    return std::string();
+  };
+  const std::string before = effective();
+  bool dropped = false;
+  std::string after;
+  std::thread([&] {
+    dropped = drop_capabilities(false);
+    after = effective();
+  }).join();
+  EXPECT_TRUE(dropped);
+  EXPECT_EQ(after, "0000000000000000");
+  EXPECT_EQ(effective(), before);
 }
 
 TEST(ThreadSignal, APostIsNotLostWhicheverComesFirst) {

@@ -1,17 +1,23 @@
 // space-foosball-server: options, devices, clock and randomness, handed to server_core.
+#include <fmt/core.h>
+#include <poll.h>
 #include <signal.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <sys/random.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
+#include <exception>
+#include <new>
+#include <optional>
 
 #include "options.h"
+#include "os/socket_address.h"
 #include "server/exit_code.h"
+#include "server/log_writer.h"
 #include "server/report.h"
 #include "server/run.h"
 
@@ -49,12 +55,25 @@ std::uint64_t random_number() {
   return number;
 }
 
-server::Log make_log(bool quiet) {
-  auto logger = spdlog::stderr_color_mt("server");
-  logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  logger->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
-  return [logger](server::LogLevel level, const std::string& text) {
-    logger->log(level == server::LogLevel::info ? spdlog::level::info : spdlog::level::warn, text);
+// What a person reads, without anybody waiting for them to do so.
+struct Outputs {
+  server::LogWriter out{STDOUT_FILENO}, err{STDERR_FILENO};
+};
+
+std::string time_of_day() {
+  timespec now{};
+  tm local{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  ::localtime_r(&now.tv_sec, &local);
+  return fmt::format("{:02}:{:02}:{:02}.{:03}", local.tm_hour, local.tm_min, local.tm_sec,
+                     now.tv_nsec / 1'000'000);
+}
+
+server::Log make_log(Outputs& outputs, bool quiet) {
+  return [&outputs, quiet](server::LogLevel level, const std::string& text) {
+    const bool info = level == server::LogLevel::info;
+    if (quiet && info) return;
+    outputs.err.write(fmt::format("{} {} {}\n", time_of_day(), info ? "info" : "warning", text));
   };
 }
 
@@ -67,9 +86,33 @@ std::string date() {
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
-int fail(int exit_code, const std::string& sentence) {
-  std::fprintf(stderr, "space-foosball-server: %s\n", sentence.c_str());
+int fail(Outputs& outputs, int exit_code, const std::string& sentence) {
+  outputs.err.write("space-foosball-server: " + sentence + "\n");
   return exit_code;
+}
+
+// Any thread, when the heap has no more: nothing here may take memory. The journal's file has all
+// but the last ticks.
+void leave_without_memory() {
+  constexpr char kText[] =
+      "space-foosball-server: out of memory: end other programs, or raise the limit of this one\n";
+  pollfd polled{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&polled, 1, 0) == 1) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+  }
+  ::_exit(server::kExitFailed);
+}
+
+// Of the letters and digits that nobody takes for one another; 50 bits, of which each guess costs
+// a connection.
+std::string make_password() {
+  constexpr char kLetters[] = "23456789abcdefghjkmnpqrstuvwxyz";
+  std::string password;
+  for (int i = 0; i < 10; ++i) {
+    if (i == 5) password += '-';
+    password += kLetters[random_number() % (sizeof kLetters - 1)];
+  }
+  return password;
 }
 
 int exit_code(server::StartError::Kind kind) {
@@ -105,6 +148,12 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options) {
   return devices;
 }
 
+// Beyond this machine nobody joins without a password: where none was chosen, one is made.
+bool wants_password(const app::Options& options) {
+  const auto listen = os::parse_address(options.network.listen, 0);
+  return !options.access.password && listen && !listen->is_loopback();
+}
+
 tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const app::Options& options,
                                                                         const server::Log& log) {
   using Kind = server::StartError::Kind;
@@ -118,7 +167,10 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   server::ServerOptions wanted;
   wanted.match = options.match;
   wanted.computer = options.computer;
+  wanted.computer_fills = options.computer_fills;
   wanted.network = options.network;
+  wanted.access = options.access;
+  wanted.limits = options.limits;
   wanted.session = random_number();
   wanted.random = random_number;
   wanted.record = options.record;
@@ -162,44 +214,81 @@ int judge_replay(const server::Server& server, bool quiet, const server::Log& lo
   return code;
 }
 
-int serve(server::Server& server, const app::Options& options, const server::Log& log) {
+// ... and as far as the network has: a run of which nothing was heard is none.
+int judge_sending(const server::Server& server, const server::Log& log) {
+  const server::Counters c = server.counters();
+  if (c.send_errors == 0 || c.snapshots_sent > 0) return server::kExitOk;
+  log(server::LogLevel::warning, fmt::format("none of {} snapshots could be sent: {}",
+                                             c.send_errors, std::strerror(c.last_send_error)));
+  return server::kExitFailed;
+}
+
+int serve(server::Server& server, const app::Options& options, Outputs& outputs,
+          const server::Log& log) {
   if (!options.ready_file.empty()) {
     const auto written =
         server::write_whole(options.ready_file, "port=" + std::to_string(server.port()) + "\n");
-    if (!written) return fail(server::kExitUsage, written.error());
+    if (!written) return fail(outputs, server::kExitUsage, written.error());
   }
-  log(server::LogLevel::info,
-      "listening at " + options.network.listen + ":" + std::to_string(server.port()));
+  const auto address = os::parse_address(options.network.listen, server.port());
+  log(server::LogLevel::info, "listening at " + os::to_text(*address));
+  if (options.password_was_made) {
+    log(server::LogLevel::warning, "from another machine, join with the password " +
+                                       *options.access.password + " (--password-file chooses one)");
+  }
   server::TickLoop loop(options.loop, log);
   const server::RunEnd end = server::run(server, loop, options.run, stop_requested);
   server.finish(server::to_text(end));
 
   // Never both: a replay is not recorded.
-  const int code =
+  int code =
       options.replay.empty() ? judge_record(server, log) : judge_replay(server, options.quiet, log);
+  if (code == server::kExitOk) code = judge_sending(server, log);
   if (!options.quiet) {
-    std::printf("%s:\n%s", server::to_text(end), server::summary(server, loop.stats()).c_str());
+    outputs.out.write(
+        fmt::format("{}:\n{}", server::to_text(end), server::summary(server, loop.stats())));
   }
   if (options.stats_file.empty()) return code;
   const auto written = server::write_stats(server, loop.stats(), options.stats_file);
-  return written ? code : fail(server::kExitFailed, written.error());
+  return written ? code : fail(outputs, server::kExitFailed, written.error());
+}
+
+int run(int argc, char** argv, Outputs& outputs) {
+  auto options = app::parse(argc, argv);
+  if (!options) {
+    const app::Leave& leave = options.error();
+    if (leave.exit_code != server::kExitOk) return fail(outputs, leave.exit_code, leave.text);
+    outputs.out.write(leave.text);
+    return server::kExitOk;
+  }
+  if (wants_password(*options)) {
+    options->access.password = make_password();
+    options->password_was_made = true;
+  }
+  const server::Log log = make_log(outputs, options->quiet);
+  auto server = [&] {
+    const SignalsBlocked blocked;
+    return start(*options, log);
+  }();
+  if (!server) return fail(outputs, exit_code(server.error().kind), server.error().sentence);
+  return serve(**server, *options, outputs, log);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto options = app::parse(argc, argv);
-  if (!options) {
-    const app::Leave& leave = options.error();
-    if (leave.exit_code != server::kExitOk) return fail(leave.exit_code, leave.text);
-    std::fputs(leave.text.c_str(), stdout);
-    return server::kExitOk;
+  std::set_new_handler(leave_without_memory);
+  try {
+    std::optional<Outputs> outputs;
+    {
+      const SignalsBlocked blocked;  // the writers' threads take none
+      outputs.emplace();
+    }
+    return run(argc, argv, *outputs);
+  } catch (const std::exception& error) {  // no thread to be had, above all
+    const std::string text = std::string("space-foosball-server: ") + error.what() +
+                             "; end other programs, or raise the limits of this one\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    return server::kExitFailed;
   }
-  const server::Log log = make_log(options->quiet);
-  auto server = [&] {
-    const SignalsBlocked blocked;
-    return start(*options, log);
-  }();
-  if (!server) return fail(exit_code(server.error().kind), server.error().sentence);
-  return serve(**server, *options, log);
 }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "os/socket_address.h"
@@ -17,24 +18,40 @@ constexpr std::uint16_t kDefaultPort = 7531;
 constexpr double kMaxSeconds = 1e6;  // 11 days
 
 std::string check_address(const std::string& text) {
-  return os::parse_ipv4(text, 0) ? "" : "\"" + text + "\" is no IPv4 address, such as 0.0.0.0";
+  return os::parse_address(text, 0) ? "" : "\"" + text + "\" is no address, such as 0.0.0.0 or ::";
 }
 
 std::optional<server::Endpoint> parse_group(const std::string& text) {
-  const auto colon = text.find(':');
-  if (colon == std::string::npos) return std::nullopt;
-  const std::string address = text.substr(0, colon), port = text.substr(colon + 1);
-  const auto parsed = os::parse_ipv4(address, 0);
-  if (!parsed || !IN_MULTICAST(ntohl(parsed->sin_addr.s_addr))) return std::nullopt;
-  const bool digits = !port.empty() && port.size() <= 5 &&
-                      port.find_first_not_of("0123456789") == std::string::npos;
-  const long number = digits ? std::stol(port) : 0;
-  if (number < 1 || number > 65535) return std::nullopt;
-  return server::Endpoint{address, static_cast<std::uint16_t>(number)};
+  const auto parsed = os::parse_host_port(text);
+  if (!parsed || !parsed->port) return std::nullopt;
+  const auto address = os::parse_address(parsed->host, *parsed->port);
+  if (!address || !address->is_multicast()) return std::nullopt;
+  return server::Endpoint{parsed->host, *parsed->port};
+}
+
+// The file's first line.
+std::optional<std::string> read_password(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) return std::nullopt;
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  constexpr std::size_t kShortest = 6, kLongest = 256;
+  if (line.size() < kShortest || line.size() > kLongest) return std::nullopt;
+  return line;
+}
+
+std::string check_password_file(const std::string& path) {
+  return read_password(path) ? ""
+                             : "\"" + path +
+                                   "\" has no password of 6 to 256 bytes in its first line, or "
+                                   "cannot be read";
 }
 
 std::string check_group(const std::string& text) {
-  return parse_group(text) ? "" : "\"" + text + "\" is no multicast group, such as 239.7.5.31:7532";
+  return parse_group(text)
+             ? ""
+             : "\"" + text +
+                   "\" is no multicast group, such as 239.7.5.31:7532 or [ff15::7531]:7532";
 }
 
 std::string check_seconds(const std::string& text) {
@@ -76,7 +93,8 @@ struct Raw {
   std::uint32_t date = 0;
   bool change_sides = false;
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed;
-  double seconds = 0.0;
+  std::string password_file, host_password_file;
+  double seconds = 0.0, keep_seats = 30.0;
   bool fast = false, no_real_time = false;
 };
 
@@ -103,6 +121,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::IsMember({"match", "training", "challenge", "ladder"}));
   cli.add_option("--date", raw.date, "of the challenge, such as 20261122 (today)")
       ->check(CLI::Range(10000101, 99991231));
+  cli.add_flag("--computer-fills", o.computer_fills,
+               "the computer also plays rods that nobody has of a team that persons share");
   cli.add_option("--device", o.devices,
                  "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; may be given "
                  "more than once");
@@ -114,11 +134,26 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--port", o.network.port,
                  "TCP for control and UDP for input, on the same number; 0: any free one")
       ->check(CLI::Range(0, 65535));
-  cli.add_option("--listen", o.network.listen,
-                 "IPv4 address to listen at; without it, only this machine can connect")
+  cli.add_option(
+         "--listen", o.network.listen,
+         "address to listen at, 0.0.0.0 or :: for all; without it, only this machine can connect")
       ->check(check_address);
   cli.add_option("--multicast", raw.multicast, "GROUP:PORT to send the snapshots to, all at once")
       ->check(check_group);
+  cli.add_option("--password-file", raw.password_file,
+                 "its first line is the password that who joins from another machine must know; "
+                 "without it, one is made and said")
+      ->check(check_password_file);
+  cli.add_option("--host-password-file", raw.host_password_file,
+                 "... and that of who may pause, restart and choose from another machine")
+      ->check(check_password_file);
+  cli.add_option(
+         "--keep-seats", raw.keep_seats,
+         "for so many seconds the rods of a player whose connection was lost are kept; 0: not")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  cli.add_flag("--mixed-teams", o.access.mixed_teams,
+               "who joins from another machine may have rods of both teams");
 }
 
 void add_run(CLI::App& cli, Options& o, Raw& raw) {
@@ -187,9 +222,15 @@ void translate(Options& o, const Raw& raw) {
     o.match.seed = *parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
+  if (!raw.password_file.empty()) o.access.password = read_password(raw.password_file);
+  if (!raw.host_password_file.empty()) {
+    o.access.host_password = read_password(raw.host_password_file);
+  }
+  o.limits.seat_kept_us = std::llround(raw.keep_seats * 1e6);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
+  o.loop.drop_rights = true;
   for (std::string& device : o.devices) device = with_scheme(device);
 }
 

@@ -15,11 +15,15 @@ namespace app {
 struct Options {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};
+  bool computer_fills = false;
   server::NetworkOptions network;
+  server::AccessOptions access;
+  server::ControlLimits limits;
   server::RunOptions run;
   server::LoopOptions loop;
   std::vector<std::string> devices;
   std::string calibration, record, replay, results, ready_file, stats_file;
+  bool password_was_made = false;  // for this run: it is to be said
   bool overwrite = false, await_client = false, quiet = false;
 };
 

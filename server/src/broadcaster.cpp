@@ -3,15 +3,20 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
+#include "os/capabilities.h"
 #include "os/clock.h"
+#include "os/cores.h"
 
 namespace server {
 
 Broadcaster::Broadcaster(int fd, std::size_t capacity, int priority)
     : fd_(fd), capacity_(capacity) {
   listeners_.reserve(capacity);
-  messages_.reserve(capacity);
+  messages_.resize(capacity);
+  sealed_.resize(capacity);
   for (Parcel& parcel : parcels_) parcel.to.reserve(capacity);
   thread_ = std::thread([this, priority] { run(priority); });
 }
@@ -20,8 +25,8 @@ Broadcaster::~Broadcaster() {
   close();
 }
 
-void Broadcaster::add(std::uint32_t client, const sockaddr_in& listener) {
-  if (listeners_.size() < capacity_) listeners_.push_back({client, listener});
+void Broadcaster::add(const Listener& listener) {
+  if (listeners_.size() < capacity_) listeners_.push_back(listener);
 }
 
 void Broadcaster::remove(std::uint32_t client) {
@@ -34,7 +39,8 @@ void Broadcaster::expect() {
   work_.post();
 }
 
-void Broadcaster::send(std::span<const std::byte> datagram, std::int64_t tick_ns) {
+void Broadcaster::send(std::span<const std::byte> datagram, std::uint64_t counter,
+                       std::int64_t tick_ns) {
   if (listeners_.empty()) return;
   const std::uint32_t given = given_.load(std::memory_order_relaxed);
   if (given - done_.load(std::memory_order_acquire) == kParcels) {
@@ -44,9 +50,9 @@ void Broadcaster::send(std::span<const std::byte> datagram, std::int64_t tick_ns
   Parcel& parcel = parcels_[given % kParcels];
   std::copy(datagram.begin(), datagram.end(), parcel.datagram.begin());
   parcel.size = datagram.size();
+  parcel.counter = counter;
   parcel.tick_ns = tick_ns;
-  parcel.to.clear();
-  for (const Listener& listener : listeners_) parcel.to.push_back(listener.address);
+  parcel.to.assign(listeners_.begin(), listeners_.end());  // within what is reserved
   given_.store(given + 1, std::memory_order_release);
   work_.post();
 }
@@ -70,6 +76,7 @@ void Broadcaster::run(int priority) {
     const sched_param wanted{.sched_priority = priority};
     ::sched_setscheduler(0, SCHED_FIFO, &wanted);  // refused: the loop has said so of its own
   }
+  os::drop_capabilities(false);
   std::uint32_t done = 0;
   while (true) {
     const bool closing = closing_.load(std::memory_order_acquire);
@@ -84,36 +91,93 @@ void Broadcaster::run(int priority) {
   }
 }
 
-// Awake, since to be woken takes as long as the tick does.
+// A core for this thread beside the tick's: asked anew now and then, for who runs the server may
+// move it. Within a quota of one core's time, waiting awake would take the tick's.
+bool Broadcaster::spare_core() {
+  constexpr std::uint32_t kEvery = 1024;  // a second
+  if (looked_at_cores_++ % kEvery == 0) spare_core_ = os::usable_cores() > 1;
+  return spare_core_;
+}
+
+// Awake, since to be woken takes as long as the tick does. Where that is in vain again and again
+// (ticks that take long, a machine without time to spare), it is left alone for a while.
 void Broadcaster::await(std::uint32_t done) {
-  static const bool beside = std::thread::hardware_concurrency() > 1;  // else it would hold it up
-  if (!beside || expected_.load(std::memory_order_acquire) != done + 1) return;
-  const std::int64_t end = os::monotonic_ns() + kLookOutNs;
-  while (given_.load(std::memory_order_acquire) == done && os::monotonic_ns() < end) {
+  constexpr int kMostVain = 8, kRest = 1000;
+  if (expected_.load(std::memory_order_acquire) != done + 1 || !spare_core()) return;
+  if (vain_ >= kMostVain) {
+    if (++vain_ > kMostVain + kRest) vain_ = 0;
+    return;
   }
+  const std::int64_t end = os::monotonic_ns() + kLookOutNs;
+  while (given_.load(std::memory_order_acquire) == done) {
+    if (os::monotonic_ns() >= end) {
+      ++vain_;
+      return;
+    }
+  }
+  vain_ = 0;
+}
+
+namespace {
+
+// Sent from the address that the client knows, on a machine that has several.
+template <class Info>
+std::size_t put_source(std::span<std::byte> control, int level, int type, const Info& info) {
+  auto* head = reinterpret_cast<cmsghdr*>(control.data());
+  head->cmsg_level = level;
+  head->cmsg_type = type;
+  head->cmsg_len = CMSG_LEN(sizeof info);
+  std::memcpy(CMSG_DATA(head), &info, sizeof info);
+  return CMSG_SPACE(sizeof info);
+}
+
+std::size_t put_source(std::span<std::byte> control, const os::SocketAddress& from) {
+  if (from.empty()) return 0;
+  if (from.is_ipv6()) {
+    in6_pktinfo info{};
+    info.ipi6_addr = from.ipv6().sin6_addr;
+    return put_source(control, IPPROTO_IPV6, IPV6_PKTINFO, info);
+  }
+  in_pktinfo info{};
+  info.ipi_spec_dst = from.ipv4().sin_addr;
+  return put_source(control, IPPROTO_IP, IP_PKTINFO, info);
+}
+
+}  // namespace
+
+void Broadcaster::prepare(Parcel& parcel, std::size_t i) {
+  Listener& listener = parcel.to[i];
+  Sealed& sealed = sealed_[i];
+  const auto plain = std::span<const std::byte>(parcel.datagram).first(parcel.size);
+  const std::size_t size =
+      wire::seal_datagram(listener.key, listener.client, parcel.counter, plain, sealed.bytes);
+  sealed.part = {sealed.bytes.data(), size};
+  mmsghdr& message = messages_[i];
+  message = {};
+  message.msg_hdr.msg_name = listener.to.generic();
+  message.msg_hdr.msg_namelen = listener.to.size();
+  message.msg_hdr.msg_iov = &sealed.part;
+  message.msg_hdr.msg_iovlen = 1;
+  sealed.control = {};
+  message.msg_hdr.msg_controllen = put_source(sealed.control, listener.from);
+  if (message.msg_hdr.msg_controllen != 0) message.msg_hdr.msg_control = sealed.control.data();
 }
 
 void Broadcaster::deliver(Parcel& parcel) {
   const std::int64_t begun = os::monotonic_ns();
-  iovec part{parcel.datagram.data(), parcel.size};
-  messages_.clear();
-  for (sockaddr_in& address : parcel.to) {
-    mmsghdr message{};
-    message.msg_hdr.msg_name = &address;
-    message.msg_hdr.msg_namelen = sizeof address;
-    message.msg_hdr.msg_iov = &part;
-    message.msg_hdr.msg_iovlen = 1;
-    messages_.push_back(message);
-  }
-  for (std::size_t at = 0; at < messages_.size();) {
-    const auto left = static_cast<unsigned>(messages_.size() - at);
+  const std::size_t listeners = parcel.to.size();
+  for (std::size_t i = 0; i < listeners; ++i) prepare(parcel, i);
+  for (std::size_t at = 0; at < listeners;) {
+    const auto left = static_cast<unsigned>(listeners - at);
     const int sent = ::sendmmsg(fd_, messages_.data() + at, left, MSG_DONTWAIT);
     if (sent > 0) {
       at += static_cast<std::size_t>(sent);
       sent_.fetch_add(static_cast<std::uint64_t>(sent), std::memory_order_relaxed);
-      bytes_.fetch_add(static_cast<std::uint64_t>(sent) * parcel.size, std::memory_order_relaxed);
+      bytes_.fetch_add(static_cast<std::uint64_t>(sent) * (parcel.size + wire::kSealBytes),
+                       std::memory_order_relaxed);
     } else {  // the first of the rest could not be sent: the others may
       errors_.fetch_add(1, std::memory_order_relaxed);
+      last_error_.store(errno, std::memory_order_relaxed);
       ++at;
     }
   }

@@ -33,7 +33,7 @@ void watch_for_silence(int fd) {
 
 }  // namespace
 
-ControlConnection::ControlConnection(os::FileDescriptor socket, const sockaddr_in& peer,
+ControlConnection::ControlConnection(os::FileDescriptor socket, const os::SocketAddress& peer,
                                      std::int64_t hello_deadline_us)
     : deadline_us(hello_deadline_us), socket_(std::move(socket)), peer_(peer) {
   watch_for_silence(socket_.get());
@@ -45,8 +45,24 @@ bool ControlConnection::receive() {
   if (size < 0) return would_block();
   if (size == 0) return false;
   heard_ = true;
-  if (state != State::closing) reader_.push({buffer.data(), static_cast<std::size_t>(size)});
-  return true;
+  if (state == State::closing) return true;
+  const auto bytes = std::span<const std::byte>(buffer).first(static_cast<std::size_t>(size));
+  if (!opener_) {
+    reader_.push(bytes);
+    return true;
+  }
+  std::vector<std::byte> plain;
+  const bool whole = opener_->open(bytes, plain);
+  wrong_password_ = !whole && !opened_;
+  opened_ = opened_ || !plain.empty();
+  reader_.push(plain);
+  return whole;
+}
+
+void ControlConnection::seal(const wire::StreamKeys& keys) {
+  reader_ = {};  // nothing that came unsealed counts any more
+  opener_.emplace(keys.to_server);
+  sealer_.emplace(keys.to_client);
 }
 
 wire::ControlReader::Status ControlConnection::next(wire::ControlMessage& message) {
@@ -54,7 +70,13 @@ wire::ControlReader::Status ControlConnection::next(wire::ControlMessage& messag
 }
 
 bool ControlConnection::send(const wire::ControlMessage& message, std::size_t cap) {
-  wire::encode_control(message, out_);
+  if (sealer_) {
+    std::vector<std::byte> plain;
+    wire::encode_control(message, plain);
+    sealer_->seal(plain, out_);
+  } else {
+    wire::encode_control(message, out_);
+  }
   return out_.size() - sent_ <= cap;
 }
 

@@ -2,14 +2,16 @@
 // Who may say what is decided by ControlServer.
 #pragma once
 
-#include <netinet/in.h>
-
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "os/file_descriptor.h"
+#include "os/socket_address.h"
 #include "wire/control.h"
+#include "wire/enums.h"
+#include "wire/password_exchange.h"
 #include "wish_rules.h"
 
 namespace server {
@@ -23,13 +25,18 @@ class ControlConnection {
     dead,
   };
 
-  ControlConnection(os::FileDescriptor socket, const sockaddr_in& peer,
+  ControlConnection(os::FileDescriptor socket, const os::SocketAddress& peer,
                     std::int64_t hello_deadline_us);
 
   // Reads what is there, at most a buffer full at a time, so that no client starves another.
-  // False when the peer has gone.
+  // False when the peer has gone, or its sealed stream is broken.
   bool receive();
   wire::ControlReader::Status next(wire::ControlMessage& message);
+  // From what is sent and received next on, both ways are sealed.
+  void seal(const wire::StreamKeys& keys);
+  bool sealed() const { return opener_.has_value(); }
+  // What came under the keys could not be opened, and nothing before: the password was another.
+  bool wrong_password() const { return wrong_password_; }
   // False when more than cap bytes would wait to be sent: the peer does not read.
   bool send(const wire::ControlMessage& message, std::size_t cap);
   // False when the peer has gone.
@@ -44,21 +51,23 @@ class ControlConnection {
   bool broke_off() const { return state == State::greeting && heard_; }
 
   int fd() const { return socket_.get(); }
-  const sockaddr_in& peer() const { return peer_; }
+  const os::SocketAddress& peer() const { return peer_; }
 
   State state = State::greeting;
-  std::int64_t deadline_us;  // greeting, closing
-  std::uint32_t client = 0;  // joined
-  std::uint8_t team = wire::kWatchOnly;
-  std::string name;
+  std::int64_t deadline_us;               // greeting, closing
+  std::uint32_t client = 0;               // joined: whose seat it is
+  wire::Role role = wire::Role::watcher;  // that the password gave, or this machine
   WishAllowance wishes;
 
  private:
   void forget_sent();
 
   os::FileDescriptor socket_;
-  sockaddr_in peer_;
+  os::SocketAddress peer_;
   wire::ControlReader reader_;
+  std::optional<wire::StreamOpener> opener_;
+  std::optional<wire::StreamSealer> sealer_;
+  bool opened_ = false, wrong_password_ = false;
   std::vector<std::byte> out_;
   std::size_t sent_ = 0;
   bool heard_ = false;

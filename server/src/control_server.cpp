@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
+#include "os/capabilities.h"
 #include "os/clock.h"
 #include "os/socket_address.h"
-#include "wire/snapshot.h"
-#include "wish_rules.h"
 
 namespace server {
 namespace {
@@ -20,18 +20,11 @@ constexpr std::int64_t kClosingUs = 1'000'000;  // a peer told to go may take so
 constexpr std::int64_t kGoodbyeUs = 200'000;    // at our own end
 // Without descriptors left, accept(2) fails at once and poll(2) would spin.
 constexpr std::int64_t kAcceptPauseUs = 100'000;
-// Places in the queue to the tick that wishes leave free, so that who joined and left gets through.
-constexpr std::size_t kRoomForMembers = 256;
-constexpr int kMaxRefusalsLogged = 20;
-
-// A stranger's name, fit for a log.
-std::string printable(const std::string& name) {
-  std::string text = name.empty() ? "unnamed" : name;
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return text;
-}
+// Lines that strangers cause in the log: so many at once, then one a second.
+constexpr int kLinesAtOnce = 20;
+constexpr std::int64_t kLineEveryUs = 1'000'000;
+// Told to go, and not gone yet.
+constexpr std::size_t kMostClosing = 64;
 
 }  // namespace
 
@@ -40,6 +33,8 @@ ControlServer::ControlServer(ControlOptions options, os::FileDescriptor listener
     : options_(std::move(options)),
       listener_(std::move(listener)),
       wake_(std::move(wake)),
+      seats_(options_.layout, options_.access.mixed_teams),
+      log_limit_(kLinesAtOnce, kLineEveryUs),
       thread_([this] { run(); }) {}
 
 ControlServer::~ControlServer() {
@@ -70,6 +65,10 @@ ControlCounters ControlServer::counters() const {
           .timed_out = value(Count::timed_out),
           .gave_up = value(Count::gave_up),
           .slow_dropped = value(Count::slow_dropped),
+          .crowded_out = value(Count::crowded_out),
+          .wrong_passwords = value(Count::wrong_passwords),
+          .lost = value(Count::lost),
+          .resumed = value(Count::resumed),
           .wishes = value(Count::wishes),
           .wishes_dropped = value(Count::wishes_dropped)};
 }
@@ -78,6 +77,7 @@ ControlCounters ControlServer::counters() const {
 // -----------------------------------------------------------------------------------
 
 void ControlServer::run() {
+  os::drop_capabilities(false);  // strangers' bytes are read here
   while (!stopping_.load(std::memory_order_acquire)) {
     wait();
     publish_notices();
@@ -87,10 +87,13 @@ void ControlServer::run() {
     if (polled_[1].revents & POLLIN) accept_all();
     for (auto& connection : connections_) {
       expire(*connection);
-      if (connection->state != State::dead && !connection->flush()) release(*connection);
+      if (connection->state != State::dead && !connection->flush())
+        release(*connection, Going::lost);
     }
+    watch_seats();
+    if (std::exchange(roster_changed_, false)) send_roster();
     std::erase_if(connections_, [](const auto& c) { return c->state == State::dead; });
-    tell_leavers();
+    tell_tick();
   }
   say_goodbye();
 }
@@ -99,7 +102,10 @@ void ControlServer::wait() {
   const std::int64_t now = os::monotonic_us();
   const bool accepting = now >= accept_after_us_;
   std::int64_t until = accepting ? now + 60'000'000 : accept_after_us_;
-  if (!leavers_.empty()) until = std::min(until, now + 10'000);
+  if (!untold_.empty()) until = std::min(until, now + 10'000);
+  constexpr std::int64_t kLookAtSeatsUs = 100'000;
+  const bool waiting = votes_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
+  if (waiting) until = std::min(until, now + kLookAtSeatsUs);
   polled_.clear();
   polled_.push_back({wake_.get(), POLLIN, 0});
   polled_.push_back({accepting ? listener_.get() : -1, POLLIN, 0});
@@ -116,12 +122,13 @@ void ControlServer::wait() {
 
 void ControlServer::accept_all() {
   while (true) {
-    sockaddr_in peer{};
-    socklen_t size = sizeof peer;
-    os::FileDescriptor socket(::accept4(listener_.get(), reinterpret_cast<sockaddr*>(&peer), &size,
-                                        SOCK_NONBLOCK | SOCK_CLOEXEC));
+    sockaddr_storage storage{};
+    socklen_t size = sizeof storage;
+    auto* generic = reinterpret_cast<sockaddr*>(&storage);
+    os::FileDescriptor socket(
+        ::accept4(listener_.get(), generic, &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket) {
-      admit(std::move(socket), peer);
+      admit(std::move(socket), os::SocketAddress::from(generic, size));
     } else if (errno != ECONNABORTED && errno != EINTR) {
       if (errno != EAGAIN) accept_after_us_ = os::monotonic_us() + kAcceptPauseUs;
       return;
@@ -129,36 +136,54 @@ void ControlServer::accept_all() {
   }
 }
 
-// Attempts that were given up while this process stood still take up nobody's share.
-int ControlServer::connections_from(const sockaddr_in& peer) const {
-  return static_cast<int>(std::count_if(connections_.begin(), connections_.end(), [&](auto& c) {
-    return c->peer().sin_addr.s_addr == peer.sin_addr.s_addr && !c->peer_left();
-  }));
+void ControlServer::admit(os::FileDescriptor socket, const os::SocketAddress& peer) {
+  count(Count::accepted);
+  make_room_at_the_door();
+  connections_.push_back(std::make_unique<ControlConnection>(
+      std::move(socket), peer, os::monotonic_us() + options_.limits.hello_us));
 }
 
-void ControlServer::admit(os::FileDescriptor socket, const sockaddr_in& peer) {
-  count(Count::accepted);
-  const auto& limits = options_.limits;
-  const int share = os::is_loopback(peer) ? limits.per_local_address : limits.per_address;
-  const bool full = static_cast<int>(connections_.size()) >= limits.connections;
-  const bool greedy = connections_from(peer) >= share;
-  auto connection = std::make_unique<ControlConnection>(std::move(socket), peer,
-                                                        os::monotonic_us() + limits.hello_us);
-  if (full || greedy) {
-    // Told once and forgotten at once: a crowd at the door takes no place inside.
-    refuse(*connection, wire::Refusal::Code::full,
-           full ? "the server is full: try again when somebody has left"
-                : "too many connections from your address: close one first");
-    connection->flush();
-    return;
+// Who comes may always knock: where too many stand at the door, the one that has stood there
+// longest goes, of the network that has most of them. A client says Hello at once, and is in before
+// that reaches it.
+void ControlServer::make_room_at_the_door() {
+  std::map<std::string, int> crowd;
+  int greeting = 0;
+  std::size_t closing = 0;
+  for (const auto& c : connections_) {
+    if (c->state == State::greeting) ++greeting, ++crowd[c->peer().network()];
+    if (c->state == State::closing) ++closing;
   }
-  connections_.push_back(std::move(connection));
+  const auto drop_oldest = [&](const auto& chosen) {
+    const auto oldest = std::ranges::find_if(connections_, chosen);
+    if (oldest != connections_.end()) connections_.erase(oldest);
+  };
+  if (closing >= kMostClosing) {
+    drop_oldest([](const auto& c) { return c->state == State::closing; });
+  }
+  if (greeting < options_.limits.greeting) return;
+  const auto most = std::ranges::max_element(crowd, {}, [](const auto& n) { return n.second; });
+  drop_oldest([&](const auto& c) {
+    return c->state == State::greeting && c->peer().network() == most->first;
+  });
+  count(Count::crowded_out);
+}
+
+// At this machine there is no password to prove.
+bool ControlServer::trusted(const ControlConnection& connection) const {
+  return options_.access.trust_this_machine && connection.peer().is_loopback();
 }
 
 void ControlServer::serve(ControlConnection& connection) {
   if (!connection.receive()) {
-    if (connection.broke_off()) count(Count::bad_messages);
-    release(connection);
+    if (connection.wrong_password()) {
+      count(Count::wrong_passwords);
+      wrong_passwords_.note(connection.peer().network(), os::monotonic_us());
+      say(LogLevel::warning, os::to_text(connection.peer()) + " gave a wrong password");
+    } else if (connection.broke_off()) {
+      count(Count::bad_messages);
+    }
+    release(connection, Going::lost);
     return;
   }
   wire::ControlMessage message;
@@ -177,117 +202,20 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
   const bool joined = connection.state == State::joined;
   if (const auto* hello = std::get_if<wire::Hello>(&message); hello && !joined) {
     greet(connection, *hello);
+  } else if (const auto* knock = std::get_if<wire::Knock>(&message);
+             knock && !joined && !connection.sealed()) {
+    answer_knock(connection, *knock);
+  } else if (const auto* claim = std::get_if<wire::Claim>(&message); claim && joined) {
+    take_claim(connection, *claim);
   } else if (const auto* ping = std::get_if<wire::Ping>(&message); ping && joined) {
     send(connection, wire::Pong{ping->id});
   } else if (const auto* wish = std::get_if<wire::Wish>(&message); wish && joined) {
     take_wish(connection, *wish);
   } else if (std::holds_alternative<wire::Bye>(message)) {
-    release(connection);
+    release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {
     reject(connection, "a message out of its place: say Hello first and once");
   }
-}
-
-void ControlServer::greet(ControlConnection& connection, const wire::Hello& hello) {
-  connection.name = printable(hello.name);
-  // Whoever gave up waiting has asked anew since, and must not find its place taken by its own
-  // ghost.
-  if (connection.peer_left()) {
-    count(Count::gave_up);
-    release(connection);
-    return;
-  }
-  if (hello.version != wire::kControlVersion) {
-    refuse(connection, wire::Refusal::Code::version,
-           "this server speaks control version " + std::to_string(wire::kControlVersion) +
-               ", you speak " + std::to_string(hello.version) + ": use the same release of both");
-  } else if (hello.snapshot_layout != wire::snapshot_layout_hash()) {
-    refuse(connection, wire::Refusal::Code::layout,
-           "your snapshots are laid out otherwise: use the same release of both");
-  } else if (events_.room() <= kRoomForMembers / 2 || !leavers_.empty()) {
-    refuse(connection, wire::Refusal::Code::full, "the server is overloaded: try again");
-  } else if (grant_team(connection, hello.team)) {
-    join(connection, hello);
-  }
-}
-
-// True when the client may go on: as a watcher, or with the team that was free.
-bool ControlServer::grant_team(ControlConnection& connection, std::uint8_t team) {
-  if (team == wire::kWatchOnly) return true;
-  if (team >= foosball::kTeams) {
-    reject(connection, "there is no such team: ask for 0, 1 or 255 to watch");
-    return false;
-  }
-  if (!options_.teams_open) {
-    refuse(connection, wire::Refusal::Code::team_taken, "a recording plays here: join to watch");
-    return false;
-  }
-  release_team_of_a_leaver(team);
-  if (team_owner_[team] != 0) {
-    refuse(connection, wire::Refusal::Code::team_taken,
-           "team " + std::to_string(team) + " is taken: ask for the other one, or join to watch");
-    return false;
-  }
-  return true;
-}
-
-// Its end may be known and not yet read: it comes behind what the client still said.
-void ControlServer::release_team_of_a_leaver(std::uint8_t team) {
-  for (auto& connection : connections_) {
-    if (connection->state == State::joined && connection->team == team && connection->peer_left()) {
-      release(*connection);
-    }
-  }
-}
-
-void ControlServer::join(ControlConnection& connection, const wire::Hello& hello) {
-  connection.state = State::joined;
-  connection.client = ++last_client_;
-  connection.team = hello.team;
-  if (hello.team != wire::kWatchOnly) team_owner_[hello.team] = connection.client;
-
-  ControlEvent event;
-  event.kind = ControlEvent::Kind::joined;
-  event.client = connection.client;
-  event.team = connection.team;
-  event.token = options_.random();
-  connection.name.copy(event.name.data(), event.name.size() - 1);
-  event.listener = connection.peer();
-  event.listener.sin_port = htons(hello.udp_port);
-  events_.push(event);  // before the Welcome: who has it is in the very next tick
-
-  wire::Welcome welcome;
-  welcome.session = options_.session;
-  welcome.token = event.token;
-  welcome.udp_port = options_.udp_port;
-  welcome.layout = static_cast<std::uint8_t>(options_.layout);
-  welcome.team = connection.team;
-  if (options_.multicast) {
-    welcome.multicast = options_.multicast->address;
-    welcome.multicast_port = options_.multicast->port;
-  }
-  send(connection, welcome);
-  for (const auto& [topic, notice] : notices_) send(connection, notice);
-  count(Count::joined);
-  options_.log(LogLevel::info, connection.name + " at " + os::to_text(connection.peer()) +
-                                   (connection.team == wire::kWatchOnly
-                                        ? " watches"
-                                        : " plays team " + std::to_string(connection.team)));
-}
-
-void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& wish) {
-  if (!well_formed(wish)) {
-    reject(connection, "a wish that does not exist: use the same release of client and server");
-    return;
-  }
-  ControlEvent event;
-  event.kind = ControlEvent::Kind::wish;
-  event.client = connection.client;
-  event.wish = {static_cast<foosball::Command::Kind>(wish.kind), wish.team, wish.value};
-  const bool taken = may_wish(connection.team, os::is_loopback(connection.peer()), event.wish) &&
-                     connection.wishes.take(os::monotonic_us()) &&
-                     events_.room() > kRoomForMembers && events_.push(event);
-  count(taken ? Count::wishes : Count::wishes_dropped);
 }
 
 void ControlServer::send(ControlConnection& connection, const wire::ControlMessage& message) {
@@ -304,15 +232,22 @@ void ControlServer::send(ControlConnection& connection, const wire::ControlMessa
 void ControlServer::refuse(ControlConnection& connection, wire::Refusal::Code code,
                            const std::string& reason) {
   count(code == wire::Refusal::Code::bad_message ? Count::bad_messages : Count::refused);
-  if (++refusals_logged_ <= kMaxRefusalsLogged) {
-    options_.log(
-        LogLevel::warning,
-        "refused " + os::to_text(connection.peer()) + ": " + reason +
-            (refusals_logged_ == kMaxRefusalsLogged ? " (further refusals are only counted)" : ""));
-  }
+  say(LogLevel::warning, "refused " + os::to_text(connection.peer()) + ": " + reason);
   send(connection, wire::Refusal{code, reason});
-  if (connection.client != 0) release(connection);
+  if (connection.client != 0) release(connection, Going::left);
   connection.close_softly(os::monotonic_us() + kClosingUs);
+}
+
+// A line that a stranger caused: the log is spared a crowd's.
+void ControlServer::say(LogLevel level, const std::string& text) {
+  if (!log_limit_.take(os::monotonic_us())) {
+    ++unsaid_;
+    return;
+  }
+  const std::uint64_t unsaid = std::exchange(unsaid_, 0);
+  options_.log(level, unsaid == 0 ? text
+                                  : text + " (" + std::to_string(unsaid) +
+                                        " lines like this were left out before it)");
 }
 
 void ControlServer::reject(ControlConnection& connection, const std::string& reason) {
@@ -320,31 +255,28 @@ void ControlServer::reject(ControlConnection& connection, const std::string& rea
 }
 
 void ControlServer::drop(ControlConnection& connection, const std::string& why) {
-  options_.log(LogLevel::warning, connection.name + " at " + os::to_text(connection.peer()) +
-                                      " is dropped: it " + why);
-  release(connection);
+  const Seat* seat = seats_.find(connection.client);
+  say(LogLevel::warning, (seat != nullptr ? seat->name + " at " : std::string()) +
+                             os::to_text(connection.peer()) + " is dropped: it " + why);
+  release(connection, Going::left);
 }
 
-// The client is no longer one; its team is free.
-void ControlServer::release(ControlConnection& connection) {
+// The connection is no longer one. A player who did not say good-bye is expected back.
+void ControlServer::release(ControlConnection& connection, Going going) {
   connection.state = State::dead;
   if (connection.client == 0) return;
-  if (connection.team < foosball::kTeams) team_owner_[connection.team] = 0;
-  ControlEvent event;
-  event.kind = ControlEvent::Kind::left;
-  event.client = connection.client;
-  leavers_.push_back(event);
-  tell_leavers();
-  count(Count::left);
-  options_.log(LogLevel::info, connection.name + " at " + os::to_text(connection.peer()) + " left");
-  connection.client = 0;
+  const std::uint32_t client = std::exchange(connection.client, 0);
+  const Seat* seat = seats_.find(client);
+  const bool kept =
+      going == Going::lost && seat != nullptr && seat->plays() && options_.limits.seat_kept_us > 0;
+  kept ? lose_seat(client) : give_up_seat(client);
 }
 
 void ControlServer::expire(ControlConnection& connection) {
   const bool waits = connection.state == State::greeting || connection.state == State::closing;
   if (!waits || os::monotonic_us() < connection.deadline_us) return;
   if (connection.state == State::greeting) count(Count::timed_out);
-  release(connection);
+  release(connection, Going::lost);
 }
 
 // --- between the threads
@@ -355,21 +287,27 @@ void ControlServer::publish_notices() {
   while (outbound_.pop(notice)) {
     const bool cleared = notice.level == wire::Notice::Level::cleared;
     options_.log(cleared ? LogLevel::info : LogLevel::warning, notice.text);
-    for (auto& connection : connections_) {
-      if (connection->state == State::joined) send(*connection, notice);
-    }
-    if (cleared) {
-      notices_.erase(notice.topic);
-    } else {
-      notices_[notice.topic] = notice;
-    }
+    tell(notice);
   }
 }
 
-void ControlServer::tell_leavers() {
-  std::size_t told = 0;
-  while (told < leavers_.size() && events_.push(leavers_[told])) ++told;
-  leavers_.erase(leavers_.begin(), leavers_.begin() + static_cast<std::ptrdiff_t>(told));
+// To all, and until it is cleared to each who joins.
+void ControlServer::tell(const wire::Notice& notice) {
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined) send(*connection, notice);
+  }
+  if (notice.level == wire::Notice::Level::cleared) {
+    notices_.erase(notice.topic);
+  } else {
+    notices_[notice.topic] = notice;
+  }
+}
+
+void ControlServer::tell_tick() {
+  while (!untold_.empty() && events_.room() > 0) {
+    events_.push(std::move(untold_.front()));
+    untold_.pop_front();
+  }
 }
 
 void ControlServer::say_goodbye() {

@@ -1,16 +1,19 @@
 // The control port: a thread of its own that speaks wire/control.h with every client over TCP and
 // hands the tick's thread what concerns the match, through queues that never wait.
 //
-// poll(2) in place of an asynchronous library: one thread, at most 32 connections, each a reader, a
-// capped buffer and a deadline. See docs/decisions/0010.
+// poll(2) in place of an asynchronous library: one thread, some hundred connections at most, each a
+// reader, a capped buffer and a deadline. See docs/decisions/0010 and 0040.
+//
+// Who connects is at the door until it has said Hello; who has, has a seat (seats.h). The two have
+// limits of their own, so that a crowd at the door takes nobody's place inside.
 #pragma once
 
-#include <netinet/in.h>
 #include <poll.h>
 
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,36 +22,54 @@
 #include <vector>
 
 #include "control_connection.h"
+#include "door.h"
 #include "foosball/match.h"
 #include "os/file_descriptor.h"
+#include "seats.h"
 #include "server/counters.h"
 #include "server/log.h"
 #include "server/network.h"
 #include "server/spsc_queue.h"
+#include "votes.h"
 #include "wire/control.h"
+#include "wire/seal.h"
 
 namespace server {
 
 // From the control thread to the tick.
 struct ControlEvent {
-  enum class Kind : std::uint8_t { joined, left, wish };
+  enum class Kind : std::uint8_t {
+    joined,
+    away,  // lost, and expected back: its rods hold
+    back,  // with new keys
+    rods,  // has others now
+    left,  // for good
+    wish,
+  };
   Kind kind = Kind::joined;
   std::uint32_t client = 0;                     // counts up, never used twice
-  std::uint8_t team = wire::kWatchOnly;         // joined: granted
-  std::uint64_t token = 0;                      // joined
+  std::uint8_t team = wire::kWatchOnly;         // joined
+  RodSet rods = 0;                              // joined, back, rods: all that it has
+  std::uint64_t token = 0;                      // joined, back
   std::array<char, wire::kMaxName + 1> name{};  // joined: what it calls itself, ended by a zero
-  sockaddr_in listener{};                       // joined: where its snapshots go; port 0: nowhere
-  foosball::Command wish{};                     // wish
+  wire::SealKey input_key{}, snapshot_key{};
+  os::FileDescriptor socket;   // joined, back, rods, of a client with rods: for its inputs
+  os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
+  os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
+  foosball::Command wish{};    // wish
 };
 
 struct ControlOptions {
   ControlLimits limits;
+  AccessOptions access;
   std::uint64_t session = 0;
+  int udp = -1;  // the port's UDP socket, which must outlive the server
   std::uint16_t udp_port = 0;
   foosball::Layout layout{};
   std::optional<Endpoint> multicast;
+  wire::SealKey group_key{};              // with multicast: everybody's
   bool teams_open = true;                 // false: a recording plays, nobody can take a team
-  std::function<std::uint64_t()> random;  // tokens; called on the control thread
+  std::function<std::uint64_t()> random;  // secrets; called on the control thread
   Log log;                                // called on the control thread
 };
 
@@ -80,30 +101,57 @@ class ControlServer {
     slow_dropped,
     wishes,
     wishes_dropped,
+    crowded_out,
+    wrong_passwords,
+    lost,
+    resumed,
     kCount
   };
 
+  // How a client goes: for good, or lost, so that its seat is kept.
+  enum class Going : std::uint8_t { left, lost };
+
+  // control_server.cpp: the thread, the door, the ends of connections, notices
   void run();
   void wait();
   void accept_all();
-  void admit(os::FileDescriptor socket, const sockaddr_in& peer);
-  int connections_from(const sockaddr_in& peer) const;
+  void admit(os::FileDescriptor socket, const os::SocketAddress& peer);
+  void make_room_at_the_door();
+  bool trusted(const ControlConnection& connection) const;
   void serve(ControlConnection& connection);
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
-  void greet(ControlConnection& connection, const wire::Hello& hello);
-  bool grant_team(ControlConnection& connection, std::uint8_t team);
-  void release_team_of_a_leaver(std::uint8_t team);
-  void join(ControlConnection& connection, const wire::Hello& hello);
-  void take_wish(ControlConnection& connection, const wire::Wish& wish);
   void send(ControlConnection& connection, const wire::ControlMessage& message);
   void refuse(ControlConnection& connection, wire::Refusal::Code code, const std::string& reason);
   void reject(ControlConnection& connection, const std::string& reason);
   void drop(ControlConnection& connection, const std::string& why);
-  void release(ControlConnection& connection);
+  void release(ControlConnection& connection, Going going);
   void expire(ControlConnection& connection);
   void publish_notices();
-  void tell_leavers();
+  void tell(const wire::Notice& notice);
+  void tell_tick();
+  void say(LogLevel level, const std::string& text);
   void say_goodbye();
+
+  // control_table.cpp: who sits where, and who may what
+  void answer_knock(ControlConnection& connection, const wire::Knock& knock);
+  void greet(ControlConnection& connection, const wire::Hello& hello);
+  bool resume(ControlConnection& connection, const wire::Hello& hello);
+  bool admit_to_table(ControlConnection& connection, const wire::Hello& hello, RodSet& rods);
+  void hear_out_leavers(RodSet wanted);
+  void join(ControlConnection& connection, const wire::Hello& hello, RodSet rods);
+  bool welcome(ControlConnection& connection, Seat& seat, ControlEvent::Kind kind,
+               std::uint16_t udp_port);
+  os::FileDescriptor client_socket(const ControlConnection& connection,
+                                   const os::SocketAddress& listener);
+  void take_claim(ControlConnection& connection, const wire::Claim& claim);
+  void take_wish(ControlConnection& connection, const wire::Wish& wish);
+  bool put_to_vote(const Seat& seat, const foosball::Command& wish);
+  bool hand_on(std::uint32_t client, const foosball::Command& wish);
+  void lose_seat(std::uint32_t client);
+  void give_up_seat(std::uint32_t client);
+  void watch_seats();
+  void send_roster();
+  wire::SealKey random_key();
   void count(Count which) {
     counts_[static_cast<std::size_t>(which)].fetch_add(1, std::memory_order_relaxed);
   }
@@ -111,13 +159,17 @@ class ControlServer {
   ControlOptions options_;
   os::FileDescriptor listener_, wake_;
   Connections connections_;
-  std::array<std::uint32_t, foosball::kTeams> team_owner_{};  // client; 0 nobody
-  std::map<std::uint32_t, wire::Notice> notices_;             // standing, by topic
-  std::vector<ControlEvent> leavers_;                         // the tick has not been told yet
+  Seats seats_;
+  Votes votes_;
+  WrongPasswords wrong_passwords_;
+  std::map<std::uint32_t, wire::Notice> notices_;  // standing, by topic
+  std::deque<ControlEvent> untold_;                // the tick has not been told yet
   std::vector<pollfd> polled_;
   std::uint32_t last_client_ = 0;
   std::int64_t accept_after_us_ = 0;
-  int refusals_logged_ = 0;
+  bool roster_changed_ = false;
+  RateLimit log_limit_;
+  std::uint64_t unsaid_ = 0;  // lines that the log was spared
 
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<wire::Notice, 64> outbound_;

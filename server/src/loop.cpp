@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
+#include "os/capabilities.h"
 #include "os/clock.h"
 
 namespace server {
@@ -17,7 +19,7 @@ class MonotonicClock final : public LoopClock {
  public:
   std::int64_t now_ns() override { return os::monotonic_ns(); }
   // A signal ends the sleep early; the tick then comes to see that it should stop.
-  void sleep_until(std::int64_t deadline_ns) override { os::sleep_until_ns(deadline_ns); }
+  int sleep_until(std::int64_t deadline_ns) override { return os::sleep_until_ns(deadline_ns); }
 };
 
 std::string because() {
@@ -71,12 +73,24 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t now) {
   return next + missed * kPeriodNs;
 }
 
+// A kernel that refuses to wait (an emulator, a sandbox) costs a core, not the match its pace.
+void TickLoop::wait_until(std::int64_t deadline) {
+  const int error = clock_.sleep_until(deadline);
+  if (error == 0 || error == EINTR) return;
+  if (!std::exchange(cannot_sleep_, true)) {
+    log_(LogLevel::warning, std::string("the clock cannot be waited for: ") + std::strerror(error) +
+                                "; waiting awake, which takes a core");
+  }
+  while (clock_.now_ns() < deadline) ::sched_yield();
+}
+
 void TickLoop::run(const std::function<bool(std::int64_t, const LoopStats&)>& tick) {
   if (options_.paced) ask_for_rights();
+  if (options_.drop_rights) os::drop_capabilities(true);  // it has what they were for
   const std::int64_t start = clock_.now_ns();
   std::int64_t deadline = start + kPeriodNs;
   for (bool go_on = true; go_on;) {
-    if (options_.paced) clock_.sleep_until(deadline);
+    if (options_.paced) wait_until(deadline);
     const std::int64_t woken = clock_.now_ns();
     go_on = tick(woken / 1000, stats_);
     const std::int64_t done = clock_.now_ns();

@@ -12,14 +12,17 @@ void let_go(cabinet::RodInput& rod) {
 
 }  // namespace
 
-RemoteSource::RemoteSource(const foosball::TableSpec& table, int team)
-    : name_("client of team " + std::to_string(team)) {
-  for (int rod = 0; rod < foosball::kRods; ++rod) own_[rod] = table.rods[rod].team == team;
-}
-
 void RemoteSource::reset() {
   rods_ = {};
+  own_ = {};
   heard_ = false;
+}
+
+void RemoteSource::set_rods(std::uint8_t rods) {
+  for (int rod = 0; rod < cabinet::kRods; ++rod) {
+    own_[rod] = (rods >> rod & 1) != 0;
+    if (!own_[rod]) rods_[rod] = {};
+  }
 }
 
 bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us) {

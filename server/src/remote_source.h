@@ -1,8 +1,10 @@
-// The rods of one team as its client sends them.
+// The rods of one client as it sends them.
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "cabinet/rod_input.h"
-#include "foosball/table.h"
 #include "wire/input_datagram.h"
 
 namespace server {
@@ -12,11 +14,15 @@ class RemoteSource final : public cabinet::InputSource {
   // A client sends at least 20 datagrams a second; after five missing ones its rods hold.
   static constexpr std::int64_t kSilenceUs = 250'000;
 
-  RemoteSource(const foosball::TableSpec& table, int team);
+  explicit RemoteSource(const std::string& name) : name_(name) {}
 
-  // Another client, or none, has the team: forgets all.
+  // Another client, or none, is heard here: forgets all.
   void reset();
-  // Rods of the other team are not looked at. False for a datagram no newer than one accepted.
+  // The client has these rods, by bit, from now on; of those that it gives up nothing is kept.
+  void set_rods(std::uint8_t rods);
+  // The client connects anew: its rods stay where they are, its count begins anew.
+  void resume() { heard_ = false; }
+  // Rods of others are not looked at. False for a datagram no newer than one accepted.
   bool accept(const wire::InputDatagram& input, std::int64_t now_us);
 
   void poll(std::int64_t now_us) override;

@@ -1,5 +1,6 @@
 #include "rod_desk.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -20,16 +21,19 @@ std::uint64_t computer_seed(std::uint64_t match_seed, int team) {
 }  // namespace
 
 RodDesk::RodDesk(const foosball::MatchDesc& match,
-                 const std::array<bool, foosball::kTeams>& computer,
+                 const std::array<bool, foosball::kTeams>& computer, bool computer_fills,
                  const foosball::MatchView& view)
     : table_(foosball::table_spec(match.layout)),
+      computer_fills_(computer_fills),
       computer_allowed_(computer),
       seed_(match.seed),
       mux_(slide_limits(table_)) {
   if (match.mode == foosball::Mode::ladder) rung_ = 0;
+  for (Place& place : places_) {
+    place.remote = std::make_unique<RemoteSource>("client");
+    place.index = add(*place.remote, cabinet::Origin::absolute, RodDriver::client);
+  }
   for (int team = 0; team < foosball::kTeams; ++team) {
-    remotes_[team] = std::make_unique<RemoteSource>(table_, team);
-    remote_index_[team] = add(*remotes_[team], cabinet::Origin::absolute, RodDriver::client);
     computers_[team] = std::make_unique<ComputerSource>(computer_desc(team), view);
     computer_index_[team] = add(*computers_[team], cabinet::Origin::absolute, RodDriver::computer);
   }
@@ -56,14 +60,14 @@ void RodDesk::set_rung(int rung) {
 
 // Sources that hands drive: first the clients', then the devices'.
 const cabinet::RodInput& RodDesk::hand(std::size_t source, int rod) const {
-  if (source < remotes_.size()) return remotes_[source]->rods()[rod];
-  return devices_[source - remotes_.size()]->rods()[rod];
+  if (source < places_.size()) return places_[source].remote->rods()[rod];
+  return devices_[source - places_.size()]->rods()[rod];
 }
 
 void RodDesk::show_match(bool shown) {
   if (shown == shown_) return;
   shown_ = shown;
-  hands_.resize(remotes_.size() + devices_.size());
+  hands_.resize(places_.size() + devices_.size());
   for (std::size_t source = 0; source < hands_.size(); ++source) {
     for (int rod = 0; rod < cabinet::kRods; ++rod) hands_[source][rod] = hand(source, rod);
   }
@@ -97,26 +101,52 @@ void RodDesk::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
   assign_all();
 }
 
-void RodDesk::set_claimed(int team, bool claimed) {
-  claimed_[team] = claimed;
-  remotes_[team]->reset();
+RemoteSource* RodDesk::remote(std::uint32_t client) {
+  const auto place = std::ranges::find(places_, client, &Place::client);
+  return client != 0 && place != places_.end() ? place->remote.get() : nullptr;
+}
+
+RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods) {
+  auto place = std::ranges::find(places_, client, &Place::client);
+  if (place == places_.end() && rods != 0) {
+    place = std::ranges::find(places_, 0u, &Place::client);
+    if (place != places_.end()) place->remote->reset();
+  }
+  if (place == places_.end()) return nullptr;
+  place->client = rods != 0 ? client : 0;
+  place->rods = rods;
+  place->remote->set_rods(rods);
   assign_all();
+  return rods != 0 ? place->remote.get() : nullptr;
 }
 
 void RodDesk::assign_all() {
-  for (int team = 0; team < foosball::kTeams; ++team) {
-    computers_[team]->set_playing(shown_ || (computer_allowed_[team] && !claimed_[team]));
+  std::array<int, foosball::kRods> person;
+  person.fill(cabinet::SourceMux::kNobody);
+  std::array<bool, foosball::kTeams> has_person{}, computes{};
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    for (const Place& place : places_) {
+      if ((place.rods >> rod & 1) == 0) continue;
+      person[rod] = place.index;
+      has_person[table_.rods[rod].team] = true;
+    }
   }
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const int team = table_.rods[rod].team;
-    const int computer =
-        computer_allowed_[team] ? computer_index_[team] : cabinet::SourceMux::kNobody;
-    order_.back() = claimed_[team] ? remote_index_[team] : computer;
+    order_.back() = person[rod];
+    const bool unclaimed = person[rod] == cabinet::SourceMux::kNobody;
+    if (unclaimed && computer_allowed_[team] && (!has_person[team] || computer_fills_)) {
+      order_.back() = computer_index_[team];
+      computes[team] = true;
+    }
     if (shown_) {
       mux_.assign(rod, std::span(&computer_index_[team], 1));
     } else {
       mux_.assign(rod, order_);
     }
+  }
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    computers_[team]->set_playing(shown_ || computes[team]);
   }
 }
 

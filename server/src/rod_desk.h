@@ -1,5 +1,6 @@
-// Who drives which rod: the cabinet's sensors first, then the client that has the team, or the
-// computer where no client has it. Built on cabinet::SourceMux, which keeps rods from jumping when
+// Who drives which rod: the cabinet's sensors first, then the client that has the rod. The computer
+// has the rods of a team without a person; where people have only some of a team's rods, it has the
+// others if the options say so. Built on cabinet::SourceMux, which keeps rods from jumping when
 // the driver changes.
 #pragma once
 
@@ -20,16 +21,18 @@ enum class RodDriver : std::uint8_t { none, cabinet, client, computer, replay };
 
 class RodDesk {
  public:
-  // computer: teams that a computer plays while no client has them. view must outlive the desk.
+  // computer: teams that a computer plays while no client has rods of them. computer_fills: and
+  // their rods that nobody has. view must outlive the desk.
   RodDesk(const foosball::MatchDesc& match, const std::array<bool, foosball::kTeams>& computer,
-          const foosball::MatchView& view);
+          bool computer_fills, const foosball::MatchView& view);
 
   void add_device(std::unique_ptr<cabinet::DeviceSource> device);
   const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices() const { return devices_; }
 
-  // A client has taken the team, or given it up.
-  void set_claimed(int team, bool claimed);
-  RemoteSource& remote(int team) { return *remotes_[team]; }
+  // The client has these rods, by bit, from now on, and no others; 0: none. Takes no memory.
+  // Preconditions: no rod is another client's. Returns where its inputs go; null: it has no rod.
+  RemoteSource* seat(std::uint32_t client, std::uint8_t rods);
+  RemoteSource* remote(std::uint32_t client);  // null: it has no rod
 
   // Computers play both teams, whoever has them: a match is shown while nobody plays.
   void show_match(bool shown);
@@ -50,19 +53,25 @@ class RodDesk {
 
   const foosball::TableSpec& table_;
   std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
-  std::array<std::unique_ptr<RemoteSource>, foosball::kTeams> remotes_;
+  struct Place {
+    std::uint32_t client = 0;  // 0: nobody
+    std::uint8_t rods = 0;
+    int index = cabinet::SourceMux::kNobody;  // the mux's
+    std::unique_ptr<RemoteSource> remote;
+  };
+  std::array<Place, foosball::kRods> places_;  // one for each client that has a rod
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
+  bool computer_fills_;
   std::array<bool, foosball::kTeams>
       computer_allowed_{};  // else it plays only a match that is shown
-  std::array<bool, foosball::kTeams> claimed_{};
   std::uint64_t seed_ = 0;
   int rung_ = -1;  // not on the ladder
   bool shown_ = false;
   std::vector<cabinet::RodInputs> hands_;  // where each device and client had the rods then
   cabinet::SourceMux mux_;
   std::vector<RodDriver> kinds_;                         // by the mux's index
-  std::vector<int> order_{cabinet::SourceMux::kNobody};  // the devices', then the team's player
-  std::array<int, foosball::kTeams> remote_index_{}, computer_index_{};
+  std::vector<int> order_{cabinet::SourceMux::kNobody};  // the devices', then the rod's player
+  std::array<int, foosball::kTeams> computer_index_{};
 };
 
 }  // namespace server

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "broadcaster.h"
 #include "control_server.h"
@@ -41,7 +42,9 @@ struct Server::Impl {
        std::unique_ptr<Recorder>&& journal);
 
   void take_control_events();
-  void admit(const ControlEvent& event);
+  void admit(ControlEvent& event);
+  void take_back(ControlEvent& event);
+  void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client);
   bool nobody_left_to_play_for(std::uint8_t leavers_team) const;
   bool gather(std::int64_t now_us);
@@ -53,6 +56,7 @@ struct Server::Impl {
   void keep_result();
   void watch_results();
   MatchScribe::Players players() const;
+  void watch_sending();
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
   ControlOptions control_options() const;
 
@@ -61,8 +65,11 @@ struct Server::Impl {
     std::uint8_t team;
     std::array<char, wire::kMaxName + 1> name;
   };
+  static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
 
   ServerOptions options;
+  const wire::SealKey group_key;  // of the multicast group
+  const bool everywhere;          // listens at every address of this machine
   foosball::Match match;
   std::uint16_t port;
   os::FileDescriptor udp;
@@ -77,6 +84,8 @@ struct Server::Impl {
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
   std::uint64_t ticks = 0;
+  std::uint64_t sent_seen = 0, errors_seen = 0;
+  bool sending_fails = false;
   bool replay_over = false, journal_told = false, finished = false;
 
   wire::JournalTick next;  // the inputs of the tick under way
@@ -88,13 +97,15 @@ struct Server::Impl {
 Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
                    os::FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
     : options(std::move(given)),
+      group_key(options.network.multicast ? random_key(options.random) : wire::SealKey{}),
+      everywhere(os::parse_address(options.network.listen, 0)->is_any()),
       match(std::move(made)),
       port(opened.port),
       udp(std::move(opened.udp)),
-      input(udp.get(), options.session, static_cast<std::size_t>(options.limits.connections)),
+      input(udp.get(), options.session, foosball::kRods),
       broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1,
                   options.send_priority),
-      desk(options.match, options.computer, match.view()),
+      desk(options.match, options.computer, options.computer_fills, match.view()),
       recorder(std::move(journal)),
       scribe(options.match),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
@@ -104,7 +115,10 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
   snapshot.events.reserve(wire::kMaxEvents);
   if (options.network.multicast) {
     const auto& group = *options.network.multicast;
-    broadcaster.add(0, *os::parse_ipv4(group.address, group.port));
+    broadcaster.add({.client = 0,
+                     .to = *os::parse_address(group.address, group.port),
+                     .from = {},
+                     .key = group_key});
   }
   if (!options.results.empty() && !options.replay) {
     results = std::make_unique<ResultsLog>(ResultsLogOptions{.path = options.results});
@@ -114,8 +128,11 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
 ControlOptions Server::Impl::control_options() const {
   ControlOptions out;
   out.limits = options.limits;
+  out.access = options.access;
   out.session = options.session;
+  out.udp = udp.get();
   out.udp_port = port;
+  out.group_key = group_key;
   out.layout = options.match.layout;
   out.multicast = options.network.multicast;
   out.teams_open = options.replay == nullptr;
@@ -136,6 +153,16 @@ void Server::Impl::take_control_events() {
       case ControlEvent::Kind::joined:
         admit(event);
         break;
+      case ControlEvent::Kind::away:
+        input.remove(event.client);
+        broadcaster.remove(event.client);
+        break;
+      case ControlEvent::Kind::back:
+        take_back(event);
+        break;
+      case ControlEvent::Kind::rods:
+        desk.seat(event.client, event.rods);
+        break;
       case ControlEvent::Kind::left:
         dismiss(event.client);
         break;
@@ -146,14 +173,41 @@ void Server::Impl::take_control_events() {
   }
 }
 
-void Server::Impl::admit(const ControlEvent& event) {
+void Server::Impl::admit(ControlEvent& event) {
   clients.push_back({event.client, event.team, event.name});
   ++clients_ever;
-  const bool plays = event.team < foosball::kTeams;
-  if (plays) desk.set_claimed(event.team, true);
-  input.add(event.client, event.token, plays ? &desk.remote(event.team) : nullptr);
-  const bool unicast = !options.network.multicast && event.listener.sin_port != 0;
-  if (unicast) broadcaster.add(event.client, event.listener);
+  desk.seat(event.client, event.rods);
+  listen_to(event);
+}
+
+void Server::Impl::take_back(ControlEvent& event) {
+  input.remove(event.client);
+  broadcaster.remove(event.client);
+  if (RemoteSource* source = desk.remote(event.client)) source->resume();
+  listen_to(event);
+}
+
+// Hears the client's inputs, and sends it snapshots.
+void Server::Impl::listen_to(ControlEvent& event) {
+  RemoteSource* source = desk.remote(event.client);
+  if (source != nullptr && event.socket) {
+    input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
+  }
+  const bool unicast = !options.network.multicast && event.listener.port() != 0;
+  if (!unicast) return;
+  broadcaster.add({.client = event.client,
+                   .to = event.listener,
+                   .from = everywhere ? event.heard_at : os::SocketAddress(),
+                   .key = event.snapshot_key});
+}
+
+wire::SealKey Server::Impl::random_key(const std::function<std::uint64_t()>& random) {
+  wire::SealKey key;
+  for (std::size_t i = 0; i < key.size(); i += 8) {
+    const std::uint64_t bits = random();
+    for (std::size_t k = 0; k < 8; ++k) key[i + k] = static_cast<std::byte>(bits >> 8 * k);
+  }
+  return key;
 }
 
 void Server::Impl::dismiss(std::uint32_t client) {
@@ -162,7 +216,7 @@ void Server::Impl::dismiss(std::uint32_t client) {
   if (leaver == clients.end()) return;
   const std::uint8_t team = leaver->team;
   clients.erase(leaver);
-  if (team < foosball::kTeams) desk.set_claimed(team, false);
+  desk.seat(client, 0);
   input.remove(client);
   broadcaster.remove(client);
   // A pause is for those who made it: the match goes on when they have left.
@@ -245,7 +299,7 @@ void Server::Impl::broadcast(std::int64_t now_us, std::int64_t tick_ns) {
   put_drivers(snapshot);
   events.fill(snapshot.events);
   const std::size_t size = wire::encode_snapshot(snapshot, datagram);
-  broadcaster.send(std::span(datagram).first(size), tick_ns);
+  broadcaster.send(std::span(datagram).first(size), snapshot.sequence, tick_ns);
 }
 
 void Server::Impl::watch_journal() {
@@ -291,6 +345,25 @@ void Server::Impl::watch_results() {
          problem.empty() ? "results are kept again" : problem);
 }
 
+// Once a second: whether anything of it has reached the network.
+void Server::Impl::watch_sending() {
+  constexpr std::uint64_t kEveryTicks = 1000;
+  if (snapshot.sequence % kEveryTicks != 0) return;
+  const std::uint64_t sent = broadcaster.sent(), errors = broadcaster.errors();
+  const bool failing = errors > errors_seen && sent == sent_seen;
+  sent_seen = sent;
+  errors_seen = errors;
+  if (failing == std::exchange(sending_fails, failing)) return;
+  const auto topic = static_cast<std::uint32_t>(Topic::sending);
+  if (failing) {
+    notify(wire::Notice::Level::warning, topic,
+           std::string("no snapshot can be sent: ") + std::strerror(broadcaster.last_error()) +
+               "; check the network's routes, or leave --multicast out");
+  } else {
+    notify(wire::Notice::Level::cleared, topic, "snapshots are sent again");
+  }
+}
+
 void Server::Impl::notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text) {
   control.notify({level, topic, text});
 }
@@ -305,10 +378,9 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
   options.match = from_header(header);
   auto match = foosball::Match::create(options.match);
   if (!match) return tl::unexpected(StartError{Kind::failed, match.error().message});
-  const auto& group = options.network.multicast;
-  if (group && !os::parse_ipv4(group->address, group->port)) {
-    return tl::unexpected(
-        StartError{Kind::bad_option, "\"" + group->address + "\" is no IPv4 address"});
+  if (const auto& group = options.network.multicast) {
+    const auto reachable = can_reach(*group, options.network);
+    if (!reachable) return tl::unexpected(StartError{Kind::bad_option, reachable.error()});
   }
   auto ports = open_ports(options.network);
   if (!ports) return tl::unexpected(port_error(options.network, ports.error()));
@@ -357,6 +429,7 @@ void Server::tick(std::int64_t now_us) {
   }
   s.watch_journal();
   s.watch_results();
+  s.watch_sending();
 }
 
 void Server::wait_sent() {
@@ -417,6 +490,7 @@ Counters Server::counters() const {
   out.snapshots_sent = s.broadcaster.sent();
   out.snapshot_bytes = s.broadcaster.bytes();
   out.send_errors = s.broadcaster.errors();
+  out.last_send_error = s.broadcaster.last_error();
   out.events_dropped = s.events.dropped();
   out.match_events_dropped = s.match.view().events_dropped;
   if (s.recorder) {

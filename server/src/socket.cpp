@@ -19,43 +19,68 @@ bool set_option(int fd, int level, int name, const T& value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
 }
 
-tl::expected<os::FileDescriptor, SocketError> bound_socket(int type, const sockaddr_in& address) {
-  os::FileDescriptor fd(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+tl::expected<os::FileDescriptor, SocketError> bound_socket(int type,
+                                                           const os::SocketAddress& address) {
+  os::FileDescriptor fd(::socket(address.family(), type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd) return tl::unexpected(last_error());
   // TCP: a restart does not wait for the last run's closed connections. On UDP it would let two
   // servers share a port.
   if (type == SOCK_STREAM && !set_option(fd.get(), SOL_SOCKET, SO_REUSEADDR, 1)) {
     return tl::unexpected(last_error());
   }
-  if (::bind(fd.get(), os::generic(address), sizeof address) != 0) {
+  // "::" hears both families, whatever the system's default is.
+  if (address.is_ipv6() && !set_option(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0)) {
+    return tl::unexpected(last_error());
+  }
+  if (::bind(fd.get(), address.generic(), address.size()) != 0) {
     return tl::unexpected(last_error());
   }
   return fd;
 }
 
-bool prepare_udp(int fd, const NetworkOptions& options, const sockaddr_in& address) {
-  bool ok = set_option(fd, SOL_SOCKET, SO_SNDBUF, options.send_buffer_bytes) &&
-            set_option(fd, SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes);
-  if (options.multicast) {
-    // One hop: a group is for this table's network, not for the next one.
-    ok = ok && set_option(fd, IPPROTO_IP, IP_MULTICAST_IF, address.sin_addr) &&
+// One hop: a group is for this table's network, not for the next one.
+bool prepare_multicast(int fd, const os::SocketAddress& address) {
+  if (address.is_ipv6()) {
+    return set_option(fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, 1) &&
+           set_option(fd, IPPROTO_IPV6, IPV6_MULTICAST_LOOP, 1);
+  }
+  return set_option(fd, IPPROTO_IP, IP_MULTICAST_IF, address.ipv4().sin_addr) &&
          set_option(fd, IPPROTO_IP, IP_MULTICAST_TTL, 1) &&
          set_option(fd, IPPROTO_IP, IP_MULTICAST_LOOP, 1);
-  }
-  return ok;
 }
 
-tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options, sockaddr_in address) {
+bool prepare_udp(int fd, const NetworkOptions& options, const os::SocketAddress& address) {
+  return set_option(fd, SOL_SOCKET, SO_SNDBUF, options.send_buffer_bytes) &&
+         set_option(fd, SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes) &&
+         (!options.multicast || prepare_multicast(fd, address));
+}
+
+constexpr int kBacklog = 128;  // a crowd at the door must not fill the kernel's queue at once
+
+tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options,
+                                              os::SocketAddress address) {
   auto tcp = bound_socket(SOCK_STREAM, address);
   if (!tcp) return tl::unexpected(tcp.error());
-  if (::listen(tcp->get(), 16) != 0) return tl::unexpected(last_error());
-  const std::uint16_t port = os::port_of(os::local_address(tcp->get()));
-  address.sin_port = htons(port);
+  if (::listen(tcp->get(), kBacklog) != 0) return tl::unexpected(last_error());
+  const std::uint16_t port = os::local_address(tcp->get()).port();
+  address.set_port(port);
   auto udp = bound_socket(SOCK_DGRAM, address);
   if (!udp) return tl::unexpected(udp.error());
   if (!prepare_udp(udp->get(), options, address)) return tl::unexpected(last_error());
   return PortPair{std::move(*tcp), std::move(*udp), port};
 }
+
+// While it lives, another UDP socket may be bound to the socket's port.
+class Shareable {
+ public:
+  explicit Shareable(int fd) : fd_(fd) { set_option(fd_, SOL_SOCKET, SO_REUSEADDR, 1); }
+  ~Shareable() { set_option(fd_, SOL_SOCKET, SO_REUSEADDR, 0); }
+  Shareable(const Shareable&) = delete;
+  Shareable& operator=(const Shareable&) = delete;
+
+ private:
+  int fd_;
+};
 
 }  // namespace
 
@@ -63,7 +88,8 @@ std::string sentence(const NetworkOptions& options, const SocketError& error) {
   const std::string where = std::to_string(options.port) + " on " + options.listen;
   switch (error.number) {
     case 0:
-      return "\"" + options.listen + "\" is no IPv4 address: give one with --listen";
+      return "\"" + options.listen +
+             "\" is no address, such as 0.0.0.0 or ::1: give one with --listen";
     case EADDRINUSE:
       return "port " + where +
              " is already in use: stop the program that has it (ss -lntup lists them), or choose "
@@ -82,7 +108,7 @@ std::string sentence(const NetworkOptions& options, const SocketError& error) {
 }
 
 tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
-  const auto address = os::parse_ipv4(options.listen, options.port);
+  const auto address = os::parse_address(options.listen, options.port);
   if (!address) return tl::unexpected(SocketError{});
   auto ports = open_once(options, *address);
   // A free TCP port whose UDP twin is taken: another free one will do.
@@ -91,6 +117,43 @@ tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
     ports = open_once(options, *address);
   }
   return ports;
+}
+
+tl::expected<os::FileDescriptor, SocketError> open_client_socket(int shared,
+                                                                 const os::SocketAddress& local,
+                                                                 const os::SocketAddress& client) {
+  constexpr int kReceiveBytes = 64 * 1024;  // a quarter of a second of inputs
+  os::FileDescriptor fd(::socket(local.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!fd) return tl::unexpected(last_error());
+  const Shareable for_a_moment(shared);
+  const bool ok = set_option(fd.get(), SOL_SOCKET, SO_REUSEADDR, 1) &&
+                  set_option(fd.get(), SOL_SOCKET, SO_RCVBUF, kReceiveBytes) &&
+                  (!local.is_ipv6() || set_option(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0)) &&
+                  ::bind(fd.get(), local.generic(), local.size()) == 0 &&
+                  ::connect(fd.get(), client.generic(), client.size()) == 0;
+  if (!ok) return tl::unexpected(last_error());
+  return fd;
+}
+
+tl::expected<void, std::string> can_reach(const Endpoint& group, const NetworkOptions& options) {
+  const auto to = os::parse_address(group.address, group.port);
+  auto from = os::parse_address(options.listen, 0);
+  if (!to || !to->is_multicast()) {
+    return tl::unexpected("\"" + group.address + "\" is no multicast group, such as 239.7.5.31");
+  }
+  if (!from || from->family() != to->family()) {
+    return tl::unexpected("the group " + group.address + " and the address " + options.listen +
+                          " are of different families: give both as IPv4 or both as IPv6");
+  }
+  os::FileDescriptor fd(::socket(to->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const bool ok = fd && prepare_multicast(fd.get(), *from) &&
+                  ::bind(fd.get(), from->generic(), from->size()) == 0 &&
+                  ::connect(fd.get(), to->generic(), to->size()) == 0;
+  if (ok) return {};
+  return tl::unexpected("cannot send to the group " + group.address + " from " + options.listen +
+                        ": " + std::strerror(errno) +
+                        "; add a route (ip route add 224.0.0.0/4 dev lo), choose another --listen, "
+                        "or leave --multicast out");
 }
 
 }  // namespace server

@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 
 #include "os/file_descriptor.h"
+#include "os/socket_address.h"
 #include "server/network.h"
 
 namespace server {
@@ -24,5 +25,17 @@ struct PortPair {
   std::uint16_t port = 0;
 };
 tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options);
+
+// A UDP socket of its own for one client: bound to the shared port too, and connected to the
+// client's address, so that the kernel puts into it what comes from there and nothing else. A flood
+// from elsewhere fills the shared socket and not this one. shared: the port's socket. local: where
+// the client reached the server.
+tl::expected<os::FileDescriptor, SocketError> open_client_socket(int shared,
+                                                                 const os::SocketAddress& local,
+                                                                 const os::SocketAddress& client);
+
+// Whether the kernel knows a way to the group, from the address that the server listens at. The
+// error is a sentence.
+tl::expected<void, std::string> can_reach(const Endpoint& group, const NetworkOptions& options);
 
 }  // namespace server

@@ -1,7 +1,5 @@
 #include "wish_rules.h"
 
-#include <algorithm>
-
 #include "wire/limits.h"
 
 namespace server {
@@ -34,17 +32,16 @@ bool well_formed(const wire::Wish& wish) {
   return false;
 }
 
-bool may_wish(std::uint8_t team, bool at_this_machine, const foosball::Command& wish) {
+Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& wish) {
   using Kind = foosball::Command::Kind;
-  if (team == wire::kWatchOnly) return at_this_machine;
-  return wish.kind == Kind::pause || wish.kind == Kind::restart || wish.team == team;
-}
-
-bool WishAllowance::take(std::int64_t now_us) {
-  const std::int64_t paid = std::max(paid_until_us_, now_us) + kEveryUs;
-  if (paid - now_us > kAtOnce * kEveryUs) return false;
-  paid_until_us_ = paid;
-  return true;
+  const bool for_all = wish.kind == Kind::pause || wish.kind == Kind::restart;
+  if (role == wire::Role::watcher) return Ruling::no;
+  if (role == wire::Role::player) {
+    if (team == wire::kWatchOnly) return Ruling::no;
+    return for_all ? Ruling::vote : wish.team == team ? Ruling::yes : Ruling::no;
+  }
+  // A host who plays does not play for the others.
+  return for_all || team == wire::kWatchOnly || wish.team == team ? Ruling::yes : Ruling::no;
 }
 
 }  // namespace server

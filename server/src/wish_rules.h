@@ -3,29 +3,27 @@
 
 #include <cstdint>
 
+#include "door.h"
 #include "foosball/match.h"
 #include "wire/control.h"
+#include "wire/enums.h"
 
 namespace server {
 
 bool well_formed(const wire::Wish& wish);
 
-// A player for the own team; a watcher (team wire::kWatchOnly) at the server's machine for all, one
-// elsewhere for nothing.
-bool may_wish(std::uint8_t team, bool at_this_machine, const foosball::Command& wish);
+// What becomes of a well-formed wish: a host's and one for the own team is done, what concerns both
+// teams is put to the vote, a watcher has none.
+enum class Ruling : std::uint8_t { no, vote, yes };
+Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& wish);
 
 // One client's: so many at once, then so many a second. A hand at the keys needs no more, and a
 // restart and what follows it costs the tick more than play does.
-class WishAllowance {
+class WishAllowance : public RateLimit {
  public:
   static constexpr int kAtOnce = 16;
   static constexpr std::int64_t kEveryUs = 50'000;
-
-  // False: too many.
-  bool take(std::int64_t now_us);
-
- private:
-  std::int64_t paid_until_us_ = 0;  // each wish moves it on by kEveryUs
+  WishAllowance() : RateLimit(kAtOnce, kEveryUs) {}
 };
 
 }  // namespace server

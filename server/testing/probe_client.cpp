@@ -39,17 +39,17 @@ bool wait_readable(int fd, int patience_ms) {
   return ready > 0;
 }
 
-ProbeClient::ProbeClient(std::uint16_t port, const std::string& from) : server_port_(port) {
-  udp_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+ProbeClient::ProbeClient(std::uint16_t port, const std::string& from, const std::string& to)
+    : server_(os::parse_address(to, port).value_or(os::loopback(port))) {
+  const auto mine = os::parse_address(from, 0).value_or(os::loopback(0));
+  udp_ = ::socket(mine.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const int buffer = 4 << 20;  // a stalled test machine loses nothing
   ::setsockopt(udp_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
-  const sockaddr_in mine = os::parse_ipv4(from, 0).value_or(os::loopback(0));
-  const bool udp_bound = ::bind(udp_, os::generic(mine), sizeof mine) == 0;
+  const bool udp_bound = ::bind(udp_, mine.generic(), mine.size()) == 0;
 
-  tcp_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool tcp_bound = ::bind(tcp_, os::generic(mine), sizeof mine) == 0;
-  const sockaddr_in server = os::loopback(port);
-  if (!udp_bound || !tcp_bound || ::connect(tcp_, os::generic(server), sizeof server) != 0) leave();
+  tcp_ = ::socket(mine.family(), SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool tcp_bound = ::bind(tcp_, mine.generic(), mine.size()) == 0;
+  if (!udp_bound || !tcp_bound || ::connect(tcp_, server_.generic(), server_.size()) != 0) leave();
 }
 
 ProbeClient::~ProbeClient() {
@@ -58,18 +58,29 @@ ProbeClient::~ProbeClient() {
 }
 
 ProbeClient::ProbeClient(ProbeClient&& other) noexcept
-    : server_port_(other.server_port_),
+    : server_(other.server_),
       tcp_(std::exchange(other.tcp_, -1)),
       udp_(std::exchange(other.udp_, -1)),
-      reader_(std::move(other.reader_)) {}
+      reader_(std::move(other.reader_)),
+      sealer_(std::move(other.sealer_)),
+      opener_(std::move(other.opener_)),
+      welcome_(std::move(other.welcome_)),
+      roster_(std::move(other.roster_)),
+      snapshots_(other.snapshots_),
+      sent_(other.sent_) {}
 
 void ProbeClient::leave() {
   if (tcp_ >= 0) ::close(tcp_);
   tcp_ = -1;
 }
 
+void ProbeClient::say_goodbye() {
+  say(wire::Bye{"done"});
+  leave();
+}
+
 std::uint16_t ProbeClient::udp_port() const {
-  return os::port_of(os::local_address(udp_));
+  return os::local_address(udp_).port();
 }
 
 wire::Hello ProbeClient::hello(std::uint8_t team) const {
@@ -84,7 +95,10 @@ wire::Hello ProbeClient::hello(std::uint8_t team) const {
 bool ProbeClient::say(const wire::ControlMessage& message) {
   std::vector<std::byte> bytes;
   wire::encode_control(message, bytes);
-  return send_raw(bytes);
+  if (!sealer_) return send_raw(bytes);
+  std::vector<std::byte> sealed;
+  sealer_->seal(bytes, sealed);
+  return send_raw(sealed);
 }
 
 bool ProbeClient::send_raw(std::span<const std::byte> bytes) {
@@ -101,21 +115,64 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
   wire::ControlMessage message;
   while (true) {
     const auto status = reader_.next(message);
-    if (status == wire::ControlReader::Status::message) return message;
+    if (status == wire::ControlReader::Status::message) {
+      const auto* roster = std::get_if<wire::Roster>(&message);
+      if (roster == nullptr) return message;
+      roster_ = *roster;
+      continue;
+    }
     if (status == wire::ControlReader::Status::broken) return std::nullopt;
     if (!wait_readable(tcp_, deadline.left_ms())) return std::nullopt;
     std::array<std::byte, 4096> buffer;
     const ssize_t size = ::recv(tcp_, buffer.data(), buffer.size(), 0);
     if (size <= 0) return std::nullopt;
-    reader_.push({buffer.data(), static_cast<std::size_t>(size)});
+    const auto bytes = std::span<const std::byte>(buffer).first(static_cast<std::size_t>(size));
+    std::vector<std::byte> plain;
+    if (opener_ && !opener_->open(bytes, plain)) return std::nullopt;
+    reader_.push(opener_ ? std::span<const std::byte>(plain) : bytes);
   }
 }
 
-std::optional<wire::Welcome> ProbeClient::join(std::uint8_t team) {
-  if (!connected() || !say(hello(team))) return std::nullopt;
+std::optional<wire::Welcome> ProbeClient::join(std::uint8_t team, std::uint8_t rods) {
+  wire::Hello wanted = hello(team);
+  wanted.rods = rods;
+  return join(wanted);
+}
+
+std::optional<wire::Welcome> ProbeClient::resume(const wire::Welcome& before) {
+  wire::Hello wanted = hello(before.team);
+  wanted.session = before.session;
+  wanted.ticket = before.token;
+  return join(wanted);
+}
+
+std::optional<wire::Welcome> ProbeClient::join(const wire::Hello& hello) {
+  if (!connected() || !say(hello)) return std::nullopt;
   const auto answer = hear();
   const auto* welcome = answer ? std::get_if<wire::Welcome>(&*answer) : nullptr;
-  return welcome ? std::optional(*welcome) : std::nullopt;
+  if (welcome == nullptr) return std::nullopt;
+  welcome_ = *welcome;
+  snapshots_ = {welcome_.snapshot_key, welcome_.multicast.empty() ? welcome_.client : 0};
+  sent_ = 0;
+  return welcome_;
+}
+
+bool ProbeClient::prove(const std::string& password, wire::Role role) {
+  wire::Knock knock;
+  knock.role = number(role);
+  knock.sid = wire::random_sid();
+  const wire::PasswordExchange exchange(wire::PasswordExchange::Side::client, password,
+                                        wire::exchange_channel(role == wire::Role::host),
+                                        knock.sid);
+  knock.share = exchange.share();
+  if (!say(knock)) return false;
+  const auto challenge = hear_a<wire::Challenge>();
+  const auto secret = challenge ? exchange.secret(challenge->share) : std::nullopt;
+  if (!secret) return false;
+  const wire::StreamKeys keys = wire::stream_keys(*secret);
+  sealer_.emplace(keys.to_server);
+  opener_.emplace(keys.to_client);
+  return true;
 }
 
 bool ProbeClient::sees_close(int patience_ms) {
@@ -127,25 +184,34 @@ bool ProbeClient::sees_close(int patience_ms) {
   return false;
 }
 
-bool ProbeClient::send_input(const wire::InputDatagram& input) {
+std::vector<std::byte> ProbeClient::sealed(const wire::InputDatagram& input) {
   std::array<std::byte, wire::kMaxInputDatagram> bytes;
   const std::size_t size = wire::encode_input(input, bytes);
-  return send_datagram({bytes.data(), size});
+  std::vector<std::byte> out(size + wire::kSealBytes);
+  wire::seal_datagram(welcome_.input_key, welcome_.client, sent_++, {bytes.data(), size}, out);
+  return out;
+}
+
+bool ProbeClient::send_input(const wire::InputDatagram& input) {
+  return send_datagram(sealed(input));
 }
 
 bool ProbeClient::send_datagram(std::span<const std::byte> bytes) {
-  const sockaddr_in to = os::loopback(server_port_);
-  return ::sendto(udp_, bytes.data(), bytes.size(), 0, os::generic(to), sizeof to) ==
+  return ::sendto(udp_, bytes.data(), bytes.size(), 0, server_.generic(), server_.size()) ==
          static_cast<ssize_t>(bytes.size());
 }
 
 std::optional<wire::Snapshot> ProbeClient::snapshot(int patience_ms) {
   if (!wait_readable(udp_, patience_ms)) return std::nullopt;
-  std::array<std::byte, wire::kMaxDatagram + 1> bytes;
+  std::array<std::byte, wire::kMaxDatagram + wire::kSealBytes + 1> bytes;
+  std::array<std::byte, wire::kMaxDatagram> plain;
+  std::size_t plain_size = 0;
   const ssize_t size = ::recv(udp_, bytes.data(), bytes.size(), 0);
   wire::Snapshot snapshot;
   if (size < 0 ||
-      !wire::decode_snapshot({bytes.data(), static_cast<std::size_t>(size)}, snapshot)) {
+      snapshots_.open({bytes.data(), static_cast<std::size_t>(size)}, plain, plain_size) !=
+          wire::SealVerdict::good ||
+      !wire::decode_snapshot(std::span(plain).first(plain_size), snapshot)) {
     return std::nullopt;
   }
   return snapshot;

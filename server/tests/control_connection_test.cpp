@@ -19,7 +19,7 @@ class ControlConnectionTest : public testing::Test {
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
     const int small = 4096;  // so that the peer is behind at once
     ::setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
-    connection.emplace(os::FileDescriptor(ends[0]), sockaddr_in{}, 0);
+    connection.emplace(os::FileDescriptor(ends[0]), os::SocketAddress{}, 0);
     peer = os::FileDescriptor(ends[1]);
   }
   // Up to so many bytes of what has been sent.

@@ -4,7 +4,9 @@
 
 #include <random>
 
+#include "door.h"
 #include "lockstep.h"
+#include "seats.h"
 
 namespace server {
 namespace {
@@ -166,6 +168,7 @@ TEST(Control, CapsConnectionsInAllAndPerAddress) {
     ASSERT_TRUE(inside.back().join());
   }
   ProbeClient greedy(table.port());
+  greedy.say(greedy.hello());
   const auto too_many = greedy.hear_a<wire::Refusal>();
   ASSERT_TRUE(too_many);
   EXPECT_NE(too_many->reason.find("from your address"), std::string::npos);
@@ -173,6 +176,7 @@ TEST(Control, CapsConnectionsInAllAndPerAddress) {
   ProbeClient neighbour(table.port(), "127.0.0.2");
   EXPECT_TRUE(neighbour.join());
   ProbeClient late(table.port(), "127.0.0.3");
+  late.say(late.hello());
   const auto full = late.hear_a<wire::Refusal>();
   ASSERT_TRUE(full);
   EXPECT_EQ(full->code, Code::full);
@@ -393,6 +397,272 @@ TEST(Control, SaysWhichPortIsInUseAndWhatToDo) {
   EXPECT_EQ(second.error().kind, StartError::Kind::port_taken);
   EXPECT_NE(second.error().sentence.find(std::to_string(table.port())), std::string::npos);
   EXPECT_NE(second.error().sentence.find("--port"), std::string::npos);
+}
+
+// --- lost and back
+// --------------------------------------------------------------------------------
+
+void keep_seats(ServerOptions& o) {
+  o.limits.seat_kept_us = 30'000'000;
+}
+
+std::string notice_of(ProbeClient& client) {
+  return client.hear_a<wire::Notice>().value_or(wire::Notice{}).text;
+}
+
+TEST(Seat, OfAPlayerWhoWasLostIsKeptFromRivalsAndTakenAgainWithItsTicket) {
+  Lockstep table(keep_seats);
+  ProbeClient watcher(table.port());
+  ASSERT_TRUE(watcher.join());
+  auto player = std::make_unique<ProbeClient>(table.port());
+  const auto before = player->join(0);
+  ASSERT_TRUE(before);
+  player->leave();  // the cable is drawn
+  EXPECT_NE(notice_of(watcher).find("was lost"), std::string::npos);
+
+  ProbeClient rival(table.port()), thief(table.port()), again(table.port());
+  rival.say(rival.hello(0));
+  const auto refusal = rival.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::team_taken);
+  wire::Welcome guess = *before;
+  guess.token ^= 1;
+  EXPECT_FALSE(thief.resume(guess)) << "with another ticket it is a stranger";
+
+  const auto back = again.resume(*before);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->client, before->client);
+  EXPECT_EQ(back->rods, before->rods);
+  EXPECT_NE(back->input_key, before->input_key);
+  EXPECT_EQ(watcher.hear_a<wire::Notice>().value_or(wire::Notice{}).level,
+            wire::Notice::Level::cleared);
+  table.tick();
+  EXPECT_TRUE(again.snapshot());
+  wire::InputDatagram input;
+  input.session = back->session;
+  input.token = back->token;
+  ASSERT_TRUE(again.send_input(input));
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().input.accepted == 1; }));
+  EXPECT_EQ(table->clients(), 2);
+}
+
+TEST(Seat, IsTakenAgainThoughTheServerHasNotNoticedTheLoss) {
+  Lockstep table(keep_seats);
+  ProbeClient player(table.port()), again(table.port());
+  const auto before = player.join(1);
+  ASSERT_TRUE(before);
+  ASSERT_TRUE(again.resume(*before));
+  EXPECT_TRUE(player.sees_close()) << "the old connection is no more";
+  table.tick();
+  EXPECT_TRUE(again.snapshot());
+  EXPECT_EQ(table->clients(), 1);
+}
+
+TEST(Seat, IsFreeAtOnceAfterAGoodByeAndInTimeWithoutOne) {
+  Lockstep table([](ServerOptions& o) { o.limits.seat_kept_us = 100'000; });
+  ProbeClient polite(table.port()), next(table.port()), last(table.port());
+  ASSERT_TRUE(polite.join(0));
+  polite.say_goodbye();
+  ASSERT_TRUE(next.join(0));
+  table.tick();
+  ASSERT_EQ(table->clients(), 1);
+  next.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
+  EXPECT_TRUE(last.join(0));
+}
+
+// --- crowds
+// ---------------------------------------------------------------------------------------
+
+// 500 connections that send a byte now and then: a newcomer is in at once, and who is in stays in.
+TEST(Door, ACrowdOfSlowConnectionsKeepsNobodyOut) {
+  Lockstep table;
+  ProbeClient inside(table.port());
+  ASSERT_TRUE(inside.join(0));
+  std::vector<std::unique_ptr<ProbeClient>> crowd;
+  for (int i = 0; i < 500; ++i) {
+    crowd.push_back(std::make_unique<ProbeClient>(table.port()));
+    const auto bytes = bytes_of(crowd.back()->hello());
+    crowd.back()->send_raw(std::span(bytes).first(1));
+    if (i % 100 == 99) {
+      ProbeClient newcomer(table.port());
+      EXPECT_TRUE(newcomer.join()) << i;
+    }
+  }
+  ProbeClient neighbour(table.port(), "127.0.0.2");
+  EXPECT_TRUE(neighbour.join(1));
+  inside.say(wire::Ping{5});
+  EXPECT_TRUE(inside.hear_a<wire::Pong>());
+  EXPECT_GE(table->counters().control.crowded_out, 400u);
+}
+
+TEST(Door, AHelloThatTricklesInIsCutOffAtItsDeadline) {
+  Lockstep table([](ServerOptions& o) { o.limits.hello_us = 200'000; });
+  ProbeClient slow(table.port());
+  const auto bytes = bytes_of(slow.hello());
+  const auto begun = std::chrono::steady_clock::now();
+  std::size_t sent = 0;
+  while (sent < bytes.size() && slow.send_raw(std::span(bytes).subspan(sent, 1))) {
+    ++sent;
+    if (slow.sees_close(20)) break;
+  }
+  EXPECT_LT(sent, bytes.size());
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
+  EXPECT_EQ(table->counters().control.timed_out, 1u);
+}
+
+TEST(Door, TheLogIsSparedACrowdsLines) {
+  Lockstep table;
+  for (int i = 0; i < 200; ++i) ProbeClient(table.port()).join();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 200; }));
+  const std::string log = table.log();
+  EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100);
+}
+
+// --- beyond this machine (where loopback is not trusted, it stands for one)
+// ------------------------
+
+void want_password(ServerOptions& o) {
+  o.access.trust_this_machine = false;
+  o.access.password = "open sesame";
+  o.access.host_password = "the host's own";
+}
+
+TEST(Password, LetsInWhoKnowsItAndNobodyElse) {
+  Lockstep table(want_password);
+  ProbeClient without(table.port()), wrong(table.port()), right(table.port());
+  without.say(without.hello(0));
+  const auto refusal = without.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::password);
+
+  ASSERT_TRUE(wrong.prove("open sesame!"));  // the exchange itself tells nobody
+  EXPECT_FALSE(wrong.join(0));
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.wrong_passwords == 1; }));
+
+  ASSERT_TRUE(right.prove("open sesame"));
+  const auto welcome = right.join(0);
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->role, number(wire::Role::player));
+  table.tick();
+  EXPECT_TRUE(right.snapshot());
+}
+
+TEST(Password, OfAGuestMakesNoHost) {
+  Lockstep table(want_password);
+  ProbeClient guest(table.port()), host(table.port());
+  ASSERT_TRUE(guest.prove("open sesame", wire::Role::host));
+  EXPECT_FALSE(guest.join());
+  ASSERT_TRUE(host.prove("the host's own", wire::Role::host));
+  const auto welcome = host.join();
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->role, number(wire::Role::host));
+}
+
+TEST(Password, IsGuessedSlowly) {
+  Lockstep table(want_password);
+  for (int i = 0; i < WrongPasswords::kAtOnce; ++i) {
+    ProbeClient guess(table.port());
+    ASSERT_TRUE(guess.prove("guess " + std::to_string(i)));
+    EXPECT_FALSE(guess.join());
+  }
+  ProbeClient one_more(table.port());
+  EXPECT_FALSE(one_more.prove("open sesame")) << "not even with the right one, for a while";
+}
+
+TEST(Password, WithoutOneNobodyJoinsFromAfar) {
+  Lockstep table([](ServerOptions& o) { o.access.trust_this_machine = false; });
+  ProbeClient client(table.port());
+  EXPECT_FALSE(client.prove(""));
+}
+
+TEST(Password, WhatIsSealedAndThenTurnedEndsTheConnection) {
+  Lockstep table(want_password);
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.prove("open sesame"));
+  ASSERT_TRUE(client.join());
+  const std::vector<std::byte> garbage(40, std::byte{1});
+  client.send_raw(garbage);
+  EXPECT_TRUE(client.sees_close());
+}
+
+TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
+  Lockstep table(want_password);
+  ProbeClient first(table.port()), second(table.port()), watcher(table.port());
+  ASSERT_TRUE(first.prove("open sesame") && first.join(0));
+  ASSERT_TRUE(second.prove("open sesame") && second.join(1));
+  ASSERT_TRUE(watcher.prove("open sesame") && watcher.join());
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  first.say(wire::Wish{push, 0, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  watcher.say(restart);
+  first.say(restart);
+  EXPECT_NE(notice_of(second).find("1 of 2 votes"), std::string::npos);
+  table.tick(5);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
+  EXPECT_EQ(table->counters().control.wishes_dropped, 1u) << "the watcher's";
+  second.say(restart);
+  EXPECT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen != foosball::Screen::selection; }));
+}
+
+// --- two people, one team
+// -------------------------------------------------------------------------
+
+TEST(Rods, TwoPeopleShareATeamAndEachDrivesTheirOwn) {
+  Lockstep table;
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
+  ProbeClient goalie(table.port()), striker(table.port()), third(table.port());
+  const auto a = goalie.join(0, one), b = striker.join(0);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->rods, one);
+  EXPECT_EQ(b->rods, rest);
+  EXPECT_FALSE(third.join(0)) << "no rod is left";
+  table.tick();
+  const auto drive = [&](ProbeClient& client, const wire::Welcome& welcome, float slide) {
+    wire::InputDatagram in;
+    in.session = welcome.session;
+    in.token = welcome.token;
+    for (auto& rod : in.rods) rod = {true, slide, 0.0, 0.0f, 0.0f};
+    in.sequence = 1;
+    ASSERT_TRUE(client.send_input(in));
+  };
+  drive(goalie, *a, 0.01f);
+  drive(striker, *b, -0.01f);
+  table.tick();
+  std::optional<wire::Snapshot> newest;
+  while (wait_readable(goalie.udp(), 0)) newest = goalie.snapshot(0);
+  ASSERT_TRUE(newest);
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if ((all0 >> rod & 1) == 0) continue;
+    EXPECT_EQ(newest->rods[rod].source, number(wire::RodSource::client)) << rod;
+    EXPECT_EQ(newest->rods[rod].slide_rate > 0, (one >> rod & 1) != 0) << rod;
+  }
+}
+
+TEST(Rods, AreClaimedAndGivenUpWhileTheGameGoesOnAndAllAreTold) {
+  Lockstep table;
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
+  ProbeClient first(table.port()), second(table.port());
+  ASSERT_TRUE(first.join(0));
+  first.say(wire::Claim{one});
+  first.say(wire::Ping{1});
+  ASSERT_TRUE(first.hear_a<wire::Pong>());
+  const auto joined = second.join(0);
+  ASSERT_TRUE(joined);
+  EXPECT_EQ(joined->rods, rest);
+  second.say(wire::Claim{all0});
+  EXPECT_NE(notice_of(second).find("are taken"), std::string::npos);
+  first.say(wire::Ping{2});
+  ASSERT_TRUE(first.hear_a<wire::Pong>());
+  ASSERT_EQ(first.roster().seats.size(), 2u);
+  EXPECT_EQ(first.roster().seats[0].rods, one);
+  EXPECT_EQ(first.roster().seats[1].rods, rest);
 }
 
 }  // namespace

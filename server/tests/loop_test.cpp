@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <string>
 #include <thread>
 #include <vector>
@@ -28,11 +29,17 @@ LoopOptions ordinary() {
 // Time that passes only by the loop's sleeping and by what a tick says it takes.
 class ManualClock final : public LoopClock {
  public:
-  std::int64_t now_ns() override { return now_; }
-  void sleep_until(std::int64_t deadline) override { now_ = std::max(now_, deadline); }
+  std::int64_t now_ns() override { return now_ += refuses_ ? 10'000 : 0; }
+  int sleep_until(std::int64_t deadline) override {
+    if (refuses_) return EINVAL;
+    now_ = std::max(now_, deadline);
+    return 0;
+  }
   void pass(std::int64_t ns) { now_ += ns; }
+  void refuse() { refuses_ = true; }
 
  private:
+  bool refuses_ = false;
   std::int64_t now_ = 1'000'000'000'000'123;
 };
 
@@ -60,6 +67,21 @@ TEST(TickLoop, CountsTheTicksThatAnOverrunMissesAndKeepsItsPhase) {
   EXPECT_EQ(stats.cost.max(), 5'500'000);
   EXPECT_NEAR(static_cast<double>(stats.cost.quantile(0.9)), 40'000, 40'000.0 / 32);
   EXPECT_DOUBLE_EQ(stats.missed_share(), 4.0 / 65.0);
+}
+
+// A kernel that does not let it sleep: it says so once, and the pace stays.
+TEST(TickLoop, KeepsItsPaceWhereTheClockCannotBeWaitedFor) {
+  ManualClock clock;
+  clock.refuse();
+  int told = 0;
+  TickLoop loop(
+      ordinary(), [&](LogLevel level, const std::string&) { told += level == LogLevel::warning; },
+      clock);
+  const std::int64_t start = clock.now_ns();
+  loop.run([&](std::int64_t, const LoopStats& stats) { return stats.ticks < 99; });
+  EXPECT_EQ(loop.stats().missed, 0u);
+  EXPECT_EQ(told, 1);
+  EXPECT_NEAR(static_cast<double>(clock.now_ns() - start), 100e6, 1e6);
 }
 
 // An overrun of less than a period makes the next tick late, and misses none.

@@ -46,6 +46,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  pid_t pid() const { return pid_; }
   void kill(int signal) { ::kill(pid_, signal); }
   // Stands still from now on, until SIGCONT.
   bool suspend() {

@@ -1,14 +1,19 @@
 // The real programs: options, signals, ports, kill -9.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "lockstep.h"
 #include "os/file_descriptor.h"
+#include "os/socket_address.h"
 #include "process.h"
 
 namespace server {
@@ -29,8 +34,9 @@ std::string text_of(const std::string& path) {
 // A server at any free port, which it says in its log.
 class RunningServer {
  public:
-  explicit RunningServer(std::vector<std::string> options) : process_(with_port(options)) {
-    const std::string said = "listening at 127.0.0.1:";
+  explicit RunningServer(std::vector<std::string> options, const std::string& address = "127.0.0.1")
+      : process_(with_port(options)) {
+    const std::string said = "listening at " + address + ":";
     EXPECT_TRUE(process_.says(said) && process_.says("memory ")) << process_.output();
     const auto at = process_.output().find(said) + said.size();
     port_ = static_cast<std::uint16_t>(std::atoi(process_.output().c_str() + at));
@@ -141,8 +147,9 @@ TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
   RunningServer server({"--exit-when-empty"});
   {
     ProbeClient client(server.port());
-    ASSERT_TRUE(client.join());
+    ASSERT_TRUE(client.join(0));
     ASSERT_TRUE(client.snapshot());
+    client.say_goodbye();
   }
   EXPECT_EQ(server->wait(), 0);
   EXPECT_NE(server->output().find("everybody has left"), std::string::npos);
@@ -152,17 +159,24 @@ TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
 TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBeforeIt) {
   RunningServer server({});
   ProbeClient player(server.port());
-  ASSERT_TRUE(player.join(0));
+  const auto before = player.join(0);
+  ASSERT_TRUE(before);
   ASSERT_TRUE(server->suspend());
   player.say(wire::Ping{1});
   player.leave();
   for (int attempt = 0; attempt < 10; ++attempt) {
     ProbeClient ghost(server.port());
     ASSERT_TRUE(ghost.connected());
-    ghost.say(ghost.hello(0));
+    wire::Hello hello = ghost.hello(0);
+    hello.session = before->session;
+    hello.ticket = before->token;
+    ghost.say(hello);
   }
   ProbeClient again(server.port());
-  ASSERT_TRUE(again.say(again.hello(0)));
+  wire::Hello hello = again.hello(0);
+  hello.session = before->session;
+  hello.ticket = before->token;
+  ASSERT_TRUE(again.say(hello));
   server->kill(SIGCONT);
   const auto answer = again.hear();
   ASSERT_TRUE(answer);
@@ -180,7 +194,7 @@ TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBef
 }
 
 TEST(ServerProgram, PlaysOnWhenAClientIsKilledAndTheNextIsInStepWithinASecond) {
-  RunningServer server({"--team0", "computer", "--team1", "computer"});
+  RunningServer server({"--team0", "computer", "--team1", "computer", "--keep-seats", "0"});
   std::array<int, 2> ends{-1, -1};
   ASSERT_EQ(::pipe(ends.data()), 0);
   const pid_t victim = ::fork();
@@ -361,6 +375,173 @@ TEST(ServerProgram, LeavesAReadableJournalWhenItIsKilled) {
   ASSERT_NE(at, std::string::npos);
   EXPECT_GE(std::strtoull(headless.output().c_str() + at + 9, nullptr, 10), written);
   std::remove(path.c_str());
+}
+
+// Nobody reads its output: a pipe that was full before it began.
+TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
+  std::array<int, 2> ends{-1, -1};
+  ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+  ::fcntl(ends[1], F_SETFL, O_NONBLOCK);
+  const std::vector<char> full(1 << 20, 'x');
+  while (::write(ends[1], full.data(), full.size()) > 0) {
+  }
+  ::fcntl(ends[1], F_SETFL, 0);
+  const std::string ready = temp_path("ready");
+  std::vector<std::string> command = serve({"--port", "0", "--ready-file", ready});
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  pid_t pid = -1;
+  ASSERT_EQ(::posix_spawn(&pid, arguments[0], &actions, nullptr, arguments.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&actions);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (text_of(ready).empty() && std::chrono::steady_clock::now() < end) ::usleep(1000);
+  const auto port = static_cast<std::uint16_t>(std::atoi(text_of(ready).c_str() + 5));
+  ASSERT_NE(port, 0);
+  for (int i = 0; i < 100; ++i) {
+    ProbeClient client(port);
+    ASSERT_TRUE(client.join()) << i;  // each a line in the log
+    client.say_goodbye();
+  }
+  ProbeClient watcher(port);
+  ASSERT_TRUE(watcher.join());
+  EXPECT_TRUE(watcher.snapshot());
+  ::kill(pid, SIGTERM);
+  int status = 0, done = 0;
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while ((done = ::waitpid(pid, &status, WNOHANG)) == 0 &&
+         std::chrono::steady_clock::now() < patience) {
+    ::usleep(1000);
+  }
+  if (done == 0) ::kill(pid, SIGKILL), ::waitpid(pid, nullptr, 0);
+  EXPECT_EQ(done, pid) << "it hung";
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
+  std::remove(ready.c_str());
+}
+
+// Whatever the limit: it runs, or says one sentence and exits with 1.
+TEST(ServerProgram, SaysThatMemoryIsOutInOneSentence) {
+  bool said = false;
+  for (int megabytes = 8; megabytes <= 512; megabytes = megabytes * 5 / 4) {
+    Process process({"/bin/sh", "-c",
+                     "ulimit -v " + std::to_string(megabytes * 1024) + "; exec " + SERVER_BINARY +
+                         " --port 0 --seconds 0.02 --quiet --no-real-time"});
+    const int code = process.wait();
+    if (code == 127) continue;  // not even its libraries
+    EXPECT_TRUE(code == 0 || code == 1) << megabytes << " MB: " << code << process.output();
+    said = said || (code == 1 && process.output().find("space-foosball-server: ") == 0);
+    if (code == 0) break;
+  }
+  EXPECT_TRUE(said);
+}
+
+TEST(ServerProgram, SaysThatAGroupCannotBeReached) {
+  Process families(serve({"--port", "0", "--multicast", "[ff15::7531]:7532"}));
+  EXPECT_EQ(families.wait(), 2);
+  EXPECT_NE(families.output().find("different families"), std::string::npos) << families.output();
+}
+
+TEST(ServerProgram, SaysThePasswordThatItMadeWhereItListensBeyondThisMachine) {
+  RunningServer server({"--listen", "0.0.0.0"}, "0.0.0.0");
+  ASSERT_TRUE(server->says("join with the password "));
+  const auto at = server->output().find("password ") + 9;
+  EXPECT_EQ(server->output().substr(at, 11).find('-'), 5u);
+  ProbeClient here(server.port());
+  EXPECT_TRUE(here.join()) << "at this machine there is no ceremony";
+  EXPECT_TRUE(here.snapshot());
+  server->kill(SIGTERM);
+  EXPECT_EQ(server->wait(), 0);
+}
+
+TEST(ServerProgram, ServesIpv6AndIpv4AtOnce) {
+  RunningServer server({"--listen", "::"}, "[::]");
+  ProbeClient six(server.port(), "::1", "::1"), four(server.port());
+  if (!six.connected()) GTEST_SKIP() << "this machine has no IPv6";  // then four proves little
+  const auto welcome = six.join(0);
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->role, number(wire::Role::host));
+  ASSERT_TRUE(four.join(1));
+  EXPECT_TRUE(six.snapshot());
+  EXPECT_TRUE(four.snapshot());
+  wire::InputDatagram in;
+  in.session = welcome->session;
+  in.token = welcome->token;
+  in.rods[0] = {true, 0.02f, 0.0, 0.0f, 0.0f};
+  ASSERT_TRUE(six.send_input(in));
+  bool driven = false;
+  for (int i = 0; i < 2000 && !driven; ++i) {
+    const auto snapshot = six.snapshot();
+    driven = snapshot && snapshot->rods[0].source == number(wire::RodSource::client);
+  }
+  EXPECT_TRUE(driven);
+}
+
+// Real-time rights are for the moment of asking.
+TEST(ServerProgram, KeepsNoCapabilityButAccessToFilesOnceItRuns) {
+  RunningServer server({});
+  ProbeClient client(server.port());
+  ASSERT_TRUE(client.join());
+  ASSERT_TRUE(client.snapshot());
+  int threads = 0;
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(server->pid()) + "/task")) {
+    std::ifstream status(task.path() / "status");
+    for (std::string word; status >> word;) {
+      if (word != "CapEff:") continue;
+      status >> word;
+      constexpr unsigned long kFileAccess = 1ul << 1;  // CAP_DAC_OVERRIDE
+      EXPECT_EQ(std::stoul(word, nullptr, 16) & ~kFileAccess, 0u) << task.path();
+      ++threads;
+    }
+  }
+  EXPECT_GE(threads, 5);  // the tick, the sender, the control port, two writers
+}
+
+// A hundred thousand datagrams a second of garbage, from elsewhere and with another player's port
+// as the target: every input of the player counts.
+TEST(ServerProgram, LosesNoInputOfAPlayerInAFlood) {
+  const std::string stats = temp_path("stats.json");
+  RunningServer server({"--stats-file", stats});
+  ProbeClient player(server.port()), other(server.port());
+  const auto welcome = player.join(0);
+  ASSERT_TRUE(welcome);
+  ASSERT_TRUE(other.join(1));
+  ASSERT_TRUE(player.snapshot());
+  std::atomic<bool> stop{false};
+  std::atomic<long> sent{0};
+  std::thread flood([&] {
+    const ProbeClient stranger(server.port());
+    const auto to = os::loopback(server.port());
+    const std::vector<std::byte> garbage(120, std::byte{0x5A});
+    while (!stop) {
+      ::sendto(stranger.udp(), garbage.data(), garbage.size(), 0, to.generic(), to.size());
+      ++sent;
+    }
+  });
+  constexpr std::uint32_t kInputs = 1000;
+  wire::InputDatagram in;
+  in.session = welcome->session;
+  in.token = welcome->token;
+  for (std::uint32_t i = 1; i <= kInputs; ++i) {
+    in.sequence = i;
+    ASSERT_TRUE(player.send_input(in));
+    player.snapshot();  // one a tick
+  }
+  stop = true;
+  flood.join();
+  server->kill(SIGTERM);
+  EXPECT_EQ(server->wait(), 0);
+  EXPECT_NE(text_of(stats).find("\"input_accepted\": " + std::to_string(kInputs)),
+            std::string::npos)
+      << text_of(stats);
+  RecordProperty("flood", std::to_string(sent.load()));
+  std::remove(stats.c_str());
 }
 
 }  // namespace

@@ -15,14 +15,15 @@ class RemoteSourceTest : public testing::Test {
     for (auto& rod : in.rods) rod = {true, slide, 0.5, 0.25f, 2.0f};
     return in;
   }
-  const foosball::TableSpec& table = foosball::table_spec(foosball::Layout::tournament);
-  RemoteSource source{table, 0};
+  static constexpr std::uint8_t kMine = 0b0001'0111;
+  void SetUp() override { source.set_rods(kMine); }
+  RemoteSource source{"client"};
 };
 
-TEST_F(RemoteSourceTest, DrivesTheRodsOfItsTeamOnly) {
+TEST_F(RemoteSourceTest, DrivesItsOwnRodsOnly) {
   ASSERT_TRUE(source.accept(input(1, 0.03f), 1000));
-  for (int rod = 0; rod < foosball::kRods; ++rod) {
-    const bool own = table.rods[rod].team == 0;
+  for (int rod = 0; rod < cabinet::kRods; ++rod) {
+    const bool own = (kMine >> rod & 1) != 0;
     EXPECT_EQ(source.rods()[rod].status, own ? RodStatus::live : RodStatus::absent) << rod;
   }
 }
@@ -75,8 +76,29 @@ TEST_F(RemoteSourceTest, HoldsARodThatIsNoLongerDrivenAndLeavesAloneOneThatNever
 TEST_F(RemoteSourceTest, TakesANewClientsSequenceFromItsStart) {
   ASSERT_TRUE(source.accept(input(500, 0.03f), 1000));
   source.reset();
+  source.set_rods(kMine);
   EXPECT_EQ(source.rods()[0].status, RodStatus::absent);
   EXPECT_TRUE(source.accept(input(1, 0.01f), 2000));
+}
+
+TEST_F(RemoteSourceTest, GivesUpARodWithoutLettingGoOfTheOthers) {
+  ASSERT_TRUE(source.accept(input(1, 0.03f), 1000));
+  source.set_rods(0b0010'0001);
+  EXPECT_EQ(source.rods()[0].status, RodStatus::live);
+  EXPECT_EQ(source.rods()[1].status, RodStatus::absent);
+  EXPECT_EQ(source.rods()[5].status, RodStatus::absent) << "not heard of yet";
+  ASSERT_TRUE(source.accept(input(2, 0.04f), 2000));
+  EXPECT_EQ(source.rods()[1].status, RodStatus::absent);
+  EXPECT_EQ(source.rods()[5].status, RodStatus::live);
+}
+
+TEST_F(RemoteSourceTest, AfterAReturnItsRodsStandAndItsCountBeginsAnew) {
+  ASSERT_TRUE(source.accept(input(500, 0.03f), 1000));
+  source.poll(900'000);
+  source.resume();
+  EXPECT_EQ(source.rods()[0].status, RodStatus::held);
+  EXPECT_FLOAT_EQ(static_cast<float>(source.rods()[0].slide), 0.03f);
+  EXPECT_TRUE(source.accept(input(1, 0.01f), 950'000));
 }
 
 }  // namespace

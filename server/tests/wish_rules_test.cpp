@@ -7,12 +7,13 @@ namespace {
 
 using Kind = foosball::Command::Kind;
 
-TEST(WishRules, APlayerWishesForTheOwnTeamAndForTheMatch) {
-  EXPECT_TRUE(may_wish(0, false, {Kind::push, 0, 0}));
-  EXPECT_FALSE(may_wish(0, true, {Kind::push, 1, 0}));
-  EXPECT_FALSE(may_wish(1, true, {Kind::choose_character, 0, 2}));
-  EXPECT_TRUE(may_wish(1, false, {Kind::pause, 0, 1}));
-  EXPECT_TRUE(may_wish(1, false, {Kind::restart, 0, 0}));
+TEST(WishRules, APlayerWishesForTheOwnTeamAndVotesOnWhatConcernsBoth) {
+  EXPECT_EQ(rule(wire::Role::player, 0, {Kind::push, 0, 0}), Ruling::yes);
+  EXPECT_EQ(rule(wire::Role::player, 0, {Kind::push, 1, 0}), Ruling::no);
+  EXPECT_EQ(rule(wire::Role::player, 1, {Kind::choose_character, 0, 2}), Ruling::no);
+  EXPECT_EQ(rule(wire::Role::player, 1, {Kind::pause, 0, 1}), Ruling::vote);
+  EXPECT_EQ(rule(wire::Role::player, 1, {Kind::restart, 0, 0}), Ruling::vote);
+  EXPECT_EQ(rule(wire::Role::player, wire::kWatchOnly, {Kind::restart, 0, 0}), Ruling::no);
 }
 
 TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
@@ -26,11 +27,13 @@ TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
   EXPECT_FALSE(formed(Kind::feed, foosball::kFeedValues));
 }
 
-TEST(WishRules, AWatcherWishesOnlyAtTheServersMachine) {
+TEST(WishRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
   for (const auto kind : {Kind::push, Kind::choose_character, Kind::pause, Kind::restart}) {
-    EXPECT_TRUE(may_wish(wire::kWatchOnly, true, {kind, 1, 0}));
-    EXPECT_FALSE(may_wish(wire::kWatchOnly, false, {kind, 1, 0}));
+    EXPECT_EQ(rule(wire::Role::host, wire::kWatchOnly, {kind, 1, 0}), Ruling::yes);
+    EXPECT_EQ(rule(wire::Role::watcher, wire::kWatchOnly, {kind, 1, 0}), Ruling::no);
   }
+  EXPECT_EQ(rule(wire::Role::host, 0, {Kind::restart, 0, 0}), Ruling::yes);
+  EXPECT_EQ(rule(wire::Role::host, 0, {Kind::push, 1, 0}), Ruling::no);
 }
 
 TEST(WishRules, AFewAtOnceAndThenAFewASecond) {

@@ -19,13 +19,37 @@ using Builder = flatbuffers::FlatBufferBuilder;
 auto text(Builder& b, const std::string& s, std::size_t max_bytes) {
   return b.CreateString(clean_text(s, max_bytes));
 }
+template <std::size_t kSize>
+auto octets(Builder& b, const std::array<std::byte, kSize>& bytes) {
+  return b.CreateVector(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+auto build(Builder& b, const Knock& m) {
+  return fb::CreateKnock(b, m.version, m.role, octets(b, m.sid), octets(b, m.share));
+}
+auto build(Builder& b, const Challenge& m) {
+  return fb::CreateChallenge(b, octets(b, m.share));
+}
 auto build(Builder& b, const Hello& m) {
   return fb::CreateHello(b, m.version, m.snapshot_layout, text(b, m.name, kMaxName), m.udp_port,
-                         m.team);
+                         m.team, m.rods, m.session, m.ticket);
+}
+auto build(Builder& b, const Claim& m) {
+  return fb::CreateClaim(b, m.rods);
+}
+auto build(Builder& b, const Seat& m) {
+  return fb::CreateSeat(b, m.client, text(b, m.name, kMaxName), m.team, m.rods, m.role, m.away);
+}
+auto build(Builder& b, const Roster& m) {
+  std::vector<flatbuffers::Offset<fb::Seat>> seats;
+  for (const Seat& seat : m.seats) {
+    if (seats.size() < kMaxSeats) seats.push_back(build(b, seat));
+  }
+  return fb::CreateRoster(b, b.CreateVector(seats));
 }
 auto build(Builder& b, const Welcome& m) {
   return fb::CreateWelcome(b, m.session, m.token, m.udp_port, m.tick_us, m.layout, m.team,
-                           text(b, m.multicast, kMaxName), m.multicast_port);
+                           text(b, m.multicast, kMaxName), m.multicast_port, m.rods, m.role,
+                           m.client, octets(b, m.input_key), octets(b, m.snapshot_key));
 }
 auto build(Builder& b, const Refusal& m) {
   return fb::CreateRefusal(b, static_cast<fb::RefusalCode>(m.code), text(b, m.reason, kMaxText));
@@ -63,11 +87,49 @@ bool is_team(std::uint8_t team) {
   return team < kTeamCount || team == kWatchOnly;
 }
 
+template <std::size_t kSize>
+bool take(const flatbuffers::Vector<std::uint8_t>* from, std::array<std::byte, kSize>& to) {
+  if (from->size() != kSize) return false;
+  std::memcpy(to.data(), from->data(), kSize);
+  return true;
+}
+
+bool take(const fb::Knock& t, Knock& m) {
+  m.version = t.version();
+  m.role = t.role();
+  return m.role < kRoleCount && take(t.sid(), m.sid) && take(t.share(), m.share);
+}
+bool take(const fb::Challenge& t, Challenge& m) {
+  return take(t.share(), m.share);
+}
+bool take(const fb::Claim& t, Claim& m) {
+  m.rods = t.rods();
+  return m.rods != 0;
+}
+bool take(const fb::Seat& t, Seat& m) {
+  m.client = t.client();
+  m.team = t.team();
+  m.rods = t.rods();
+  m.role = t.role();
+  m.away = t.away();
+  return take(t.name(), kMaxName, m.name) && is_team(m.team) && m.role < kRoleCount;
+}
+bool take(const fb::Roster& t, Roster& m) {
+  if (t.seats()->size() > kMaxSeats) return false;
+  m.seats.clear();
+  for (const auto* seat : *t.seats()) {
+    if (!take(*seat, m.seats.emplace_back())) return false;
+  }
+  return true;
+}
 bool take(const fb::Hello& t, Hello& m) {
   m.version = t.version();
   m.snapshot_layout = t.snapshot_layout();
   m.udp_port = t.udp_port();
   m.team = t.team();
+  m.rods = t.rods();
+  m.session = t.session();
+  m.ticket = t.ticket();
   return take(t.name(), kMaxName, m.name) && is_team(m.team);
 }
 bool take(const fb::Welcome& t, Welcome& m) {
@@ -78,8 +140,12 @@ bool take(const fb::Welcome& t, Welcome& m) {
   m.layout = t.layout();
   m.team = t.team();
   m.multicast_port = t.multicast_port();
-  return take(t.multicast(), kMaxName, m.multicast) && m.tick_us > 0 && m.tick_us <= kMaxTickUs &&
-         m.layout < kLayoutCount && is_team(m.team);
+  m.rods = t.rods();
+  m.role = t.role();
+  m.client = t.client();
+  return take(t.input_key(), m.input_key) && take(t.snapshot_key(), m.snapshot_key) &&
+         m.role < kRoleCount && take(t.multicast(), kMaxName, m.multicast) && m.tick_us > 0 &&
+         m.tick_us <= kMaxTickUs && m.layout < kLayoutCount && is_team(m.team);
 }
 bool take(const fb::Refusal& t, Refusal& m) {
   m.code = static_cast<Refusal::Code>(t.code());
@@ -130,6 +196,14 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Notice>(control.message_as_Notice(), message);
     case fb::Message::Bye:
       return take_as<Bye>(control.message_as_Bye(), message);
+    case fb::Message::Knock:
+      return take_as<Knock>(control.message_as_Knock(), message);
+    case fb::Message::Challenge:
+      return take_as<Challenge>(control.message_as_Challenge(), message);
+    case fb::Message::Claim:
+      return take_as<Claim>(control.message_as_Claim(), message);
+    case fb::Message::Roster:
+      return take_as<Roster>(control.message_as_Roster(), message);
     case fb::Message::NONE:
       break;
   }
@@ -139,7 +213,7 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
 // bytes: aligned as operator new aligns, since FlatBuffers reads its numbers in place.
 bool parse(const std::vector<std::byte>& bytes, ControlMessage& message) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  constexpr std::uint32_t kMaxDepth = 4, kMaxTables = 4;
+  constexpr std::uint32_t kMaxDepth = 4, kMaxTables = kMaxSeats + 2;
   flatbuffers::Verifier verifier(data, bytes.size(), kMaxDepth, kMaxTables);
   return fb::VerifyControlBuffer(verifier) && take_any(*fb::GetControl(data), message);
 }

@@ -109,6 +109,10 @@ std::optional<ExchangeSecret> PasswordExchange::secret(const ExchangeShare& othe
   return isk;
 }
 
+const char* exchange_channel(bool host) {
+  return host ? "Space Foosball 2, host" : "Space Foosball 2, guest";
+}
+
 StreamKeys stream_keys(const ExchangeSecret& secret) {
   // crypto_kdf wants 32 bytes; the secret's 64 are hashed to that.
   std::array<std::byte, crypto_kdf_KEYBYTES> root;

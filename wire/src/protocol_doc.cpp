@@ -14,6 +14,7 @@
 #include "wire/device_frame.h"
 #include "wire/input_datagram.h"
 #include "wire/journal.h"
+#include "wire/seal.h"
 #include "wire/snapshot.h"
 
 namespace wire {
@@ -65,6 +66,29 @@ and a FlatBuffers buffer of so many bytes with the file identifier "SFCT", root 
 size-prefixed. `wire/control.fbs` is the schema. Every buffer is verified before it is read. Texts are
 UTF-8 without control characters. A message of an unknown kind, one that fails verification and a value
 out of range end the connection.
+
+At one machine (127.0.0.0/8, ::1) the client begins with Hello. From another machine it begins with
+Knock; the server answers with Challenge, both derive keys (docs/decisions/0040-who-may-join.md), and all
+that follows in either direction is a sealed stream: frames of a u32 length of what follows (17 to
+%zu), bytes encrypted with ChaCha20-Poly1305, and the tag of 16 bytes. The nonce is four zero bytes
+and the frame's number from 0 as u64, the length is authenticated with it. What the frames hold, joined,
+is the stream of messages above.
+)";
+
+constexpr const char* kSealText = R"(
+Every datagram on the network is sealed with ChaCha20-Poly1305 (RFC 8439), under a key that the Welcome
+gives: `input_key` for those of the client, `snapshot_key` for those of the server.
+
+| offset | size | field |
+|---|---|---|
+| 0 | 4 | id of the key: the client's number from Welcome; 0 for a multicast group's |
+| 4 | 8 | counter, rises with each datagram of the key |
+| 12 | n | the datagram, encrypted |
+| 12 + n | 16 | tag |
+
+The nonce is four zero bytes and the counter; the first 12 bytes are authenticated. A receiver takes each
+counter once, and none that is %llu or more behind the newest. It takes datagrams from the other side's
+address and port only. Nothing is ever sent in answer to a datagram.
 )";
 
 constexpr const char* kJournalText = R"(
@@ -142,6 +166,11 @@ const auto& named(const List& list, const std::string& name) {
 
 std::string type_name(const reflection::Schema& schema, const reflection::Field& field) {
   const reflection::Type& type = *field.type();
+  if (type.base_type() == reflection::Vector) {
+    if (type.element() != reflection::Obj) return "u8[]";
+    const auto& name = schema.objects()->Get(static_cast<unsigned>(type.index()))->name()->str();
+    return name.substr(name.rfind('.') + 1) + "[]";
+  }
   if (type.index() >= 0 && type.base_type() != reflection::Obj) {
     const auto* values = schema.enums()->Get(static_cast<unsigned>(type.index()))->values();
     std::string text;
@@ -152,6 +181,8 @@ std::string type_name(const reflection::Schema& schema, const reflection::Field&
     return "u8: " + text;
   }
   switch (type.base_type()) {
+    case reflection::Bool:
+      return "bool";
     case reflection::UByte:
       return "u8";
     case reflection::UShort:
@@ -182,7 +213,7 @@ std::string control_table(const reflection::Schema& schema, const reflection::Ob
 }
 
 std::string control() {
-  std::string text = formatted(kControlText, kMaxControlMessage);
+  std::string text = formatted(kControlText, kMaxControlMessage, kMaxSealedFrame);
   const std::string binary = file_text(WIRE_CONTROL_BFBS);
   flatbuffers::Verifier verifier(reinterpret_cast<const std::uint8_t*>(binary.data()),
                                  binary.size());
@@ -196,6 +227,9 @@ std::string control() {
     text += "\n### " + std::to_string(value->value()) + " " + name + "\n";
     text += (words.empty() ? "" : "\n" + words + "\n") + control_table(schema, object);
   }
+  const auto& seat = named(*schema.objects(), "Seat");
+  text += "\n### Seat, in a Roster\n\n" + comment(seat.documentation()) + "\n" +
+          control_table(schema, seat);
   return text;
 }
 
@@ -214,6 +248,8 @@ std::string device_frame() {
 std::string protocol_document() {
   std::string text = kHead;
   text += kVocabulary;
+  text += "\n## Sealed datagrams\n";
+  text += formatted(kSealText, static_cast<unsigned long long>(DatagramOpener::kWindow));
   text += "\n## Snapshot\n\nUDP, server to every listener, one a tick.\n";
   text += datagram(snapshot_layout(), kMaxDatagram);
   text +=

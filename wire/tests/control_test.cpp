@@ -161,17 +161,34 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 6, 0, 0))) << "kind";
   EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 0, 2, 0))) << "team";
   EXPECT_TRUE(refused(fb::Message::Hello, fb::CreateHelloDirect(b, 1, 1, "a", 1, 2))) << "team";
-  EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 0, 0, 0, "", 0)))
-      << "a tick of length 0";
-  const auto tick_of = [&](std::uint32_t us) {
-    return fb::CreateWelcomeDirect(b, 1, 1, 1, us, 0, 0, "", 0);
+  const std::vector<std::uint8_t> key(32, 1), sid(16, 1), long_key(33, 1);
+  const auto welcome = [&](std::uint32_t us, std::uint8_t layout, std::uint8_t role,
+                           const std::vector<std::uint8_t>& input_key) {
+    return fb::CreateWelcomeDirect(b, 1, 1, 1, us, layout, 0, "", 0, 0, role, 1, &input_key, &key);
   };
+  const auto tick_of = [&](std::uint32_t us) { return welcome(us, 0, 0, key); };
+  EXPECT_TRUE(refused(fb::Message::Welcome, tick_of(0))) << "a tick of length 0";
   EXPECT_FALSE(refused(fb::Message::Welcome, tick_of(kMaxTickUs)));
   EXPECT_TRUE(refused(fb::Message::Welcome, tick_of(kMaxTickUs + 1))) << "a tick too long";
-  EXPECT_TRUE(refused(fb::Message::Welcome, fb::CreateWelcomeDirect(b, 1, 1, 1, 1, 2, 0, "", 0)))
-      << "layout";
+  EXPECT_TRUE(refused(fb::Message::Welcome, welcome(1, 2, 0, key))) << "layout";
+  EXPECT_TRUE(refused(fb::Message::Welcome, welcome(1, 0, 3, key))) << "role";
+  EXPECT_TRUE(refused(fb::Message::Welcome, welcome(1, 0, 0, sid))) << "a short key";
+  EXPECT_TRUE(refused(fb::Message::Welcome, welcome(1, 0, 0, long_key))) << "a long key";
+  EXPECT_FALSE(refused(fb::Message::Knock, fb::CreateKnockDirect(b, 2, 2, &sid, &key)));
+  EXPECT_TRUE(refused(fb::Message::Knock, fb::CreateKnockDirect(b, 2, 3, &sid, &key))) << "role";
+  EXPECT_TRUE(refused(fb::Message::Knock, fb::CreateKnockDirect(b, 2, 1, &key, &key))) << "sid";
+  EXPECT_TRUE(refused(fb::Message::Challenge, fb::CreateChallengeDirect(b, &sid))) << "share";
+  EXPECT_TRUE(refused(fb::Message::Claim, fb::CreateClaim(b, 0))) << "no rod";
+  const auto roster = [&](std::size_t seats, std::uint8_t team) {
+    const auto seat = fb::CreateSeatDirect(b, 1, "a", team, 1, 1, false);
+    const std::vector all(seats, seat);
+    return fb::CreateRosterDirect(b, &all);
+  };
+  EXPECT_FALSE(refused(fb::Message::Roster, roster(kMaxSeats, 0)));
+  EXPECT_TRUE(refused(fb::Message::Roster, roster(kMaxSeats + 1, 0))) << "too many seats";
+  EXPECT_TRUE(refused(fb::Message::Roster, roster(1, 2))) << "team";
   EXPECT_TRUE(refused(fb::Message::Refusal,
-                      fb::CreateRefusalDirect(b, static_cast<fb::RefusalCode>(5), "")));
+                      fb::CreateRefusalDirect(b, static_cast<fb::RefusalCode>(7), "")));
   EXPECT_TRUE(refused(fb::Message::Notice,
                       fb::CreateNoticeDirect(b, static_cast<fb::NoticeLevel>(3), 0, "")));
   EXPECT_TRUE(refused(static_cast<fb::Message>(200), fb::CreatePing(b, 1))) << "unknown kind";

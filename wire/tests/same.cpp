@@ -36,11 +36,24 @@ auto tied(const InputRod& r) {
   return std::tie(r.driven, r.slide, r.angle, r.slide_rate, r.angle_rate);
 }
 auto tied(const Hello& m) {
-  return std::tie(m.version, m.snapshot_layout, m.name, m.udp_port, m.team);
+  return std::tie(m.version, m.snapshot_layout, m.name, m.udp_port, m.team, m.rods, m.session,
+                  m.ticket);
 }
 auto tied(const Welcome& m) {
   return std::tie(m.session, m.token, m.udp_port, m.tick_us, m.layout, m.team, m.multicast,
-                  m.multicast_port);
+                  m.multicast_port, m.rods, m.role, m.client, m.input_key, m.snapshot_key);
+}
+auto tied(const Knock& m) {
+  return std::tie(m.version, m.role, m.sid, m.share);
+}
+auto tied(const Challenge& m) {
+  return std::tie(m.share);
+}
+auto tied(const Claim& m) {
+  return std::tie(m.rods);
+}
+auto tied(const Seat& m) {
+  return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);
 }
 auto tied(const Refusal& m) {
   return std::tie(m.code, m.reason);
@@ -83,6 +96,17 @@ auto tied(const JournalEnd& e) {
 template <class List>
 bool all_tied(const List& a, const List& b) {
   return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return tied(x) == tied(y); });
+}
+
+// A list has no order of its own.
+struct TiedRoster {
+  const Roster& roster;
+  friend bool operator==(const TiedRoster& a, const TiedRoster& b) {
+    return all_tied(a.roster.seats, b.roster.seats);
+  }
+};
+TiedRoster tied(const Roster& m) {
+  return {m};
 }
 
 template <class Variant>

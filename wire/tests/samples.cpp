@@ -178,16 +178,27 @@ InputDatagram input() {
   return i;
 }
 
+template <std::size_t kSize>
+std::array<std::byte, kSize> octets(unsigned first) {
+  std::array<std::byte, kSize> bytes;
+  for (std::size_t i = 0; i < kSize; ++i) bytes[i] = static_cast<std::byte>(first + i);
+  return bytes;
+}
+
 std::vector<std::pair<std::string, ControlMessage>> control() {
-  return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0}},
+  return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
           {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
-                              "239.1.2.3", 4244}},
+                              "239.1.2.3", 4244, 0x81, 2, 9, octets<32>(1), octets<32>(101)}},
           {"refusal", Refusal{Refusal::Code::team_taken, "Team 0 is taken; choose team 1."}},
           {"wish", Wish{1, 1, 2}},
           {"ping", Ping{7}},
           {"pong", Pong{7}},
           {"notice", Notice{Notice::Level::warning, 3, "cabinet unplugged: its rods hold"}},
-          {"bye", Bye{"window closed"}}};
+          {"bye", Bye{"window closed"}},
+          {"knock", Knock{2, 1, octets<16>(1), octets<32>(65)}},
+          {"challenge", Challenge{octets<32>(17)}},
+          {"claim", Claim{0x2A}},
+          {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}}};
 }
 
 std::vector<JournalEntry> journal() {

@@ -1,6 +1,8 @@
 // The way to the physics server: control messages over TCP, snapshots and inputs over UDP, each on
-// a thread of its own. A server that falls silent or goes away is looked for again until it is
-// back, at the address it had at the start: a server that moves to another wants a new start here.
+// a thread of its own. A server that falls silent is waited for; one that stays silent, or goes
+// away, is looked for again until it is back, and the seat that was held there is taken again. It
+// is looked for at the address it had at the start: a server that moves to another wants a new
+// start here.
 #pragma once
 
 #include <array>
@@ -23,7 +25,12 @@ struct ConnectionOptions {
   std::uint16_t port = kDefaultPort;
   std::string name = "player";
   std::uint8_t team = wire::kWatchOnly;
-  std::int64_t silence_us = 500'000;     // no snapshot for so long: the server is lost
+  std::uint8_t rods = 0;           // which of the team, bit 0 at -x; 0: all that nobody has
+  std::string password;            // wanted of who joins from another machine
+  bool as_host = false;            // it is the host's: asks to be host from another machine
+  bool trust_this_machine = true;  // false: the password is proven to a server at this machine too
+  std::int64_t silence_us = 500'000;     // no snapshot for so long: the server counts as lost
+  std::int64_t gone_us = 5'000'000;      // ... and for so long: it is joined anew
   std::int64_t retry_us = 250'000;       // between attempts to join
   std::int64_t patience_us = 1'000'000;  // for a connection and its Welcome
 };
@@ -31,7 +38,7 @@ struct ConnectionOptions {
 enum class Link : std::uint8_t {
   connecting,  // never joined yet
   joined,
-  lost,     // was joined, is looked for
+  lost,     // was joined; silent, or gone and looked for
   refused,  // the server says why, in detail; asked again now and then
 };
 
@@ -62,12 +69,15 @@ class Connection {
   SceneSample sample(std::int64_t now_us);
   std::vector<wire::EventSnapshot> take_events();
   std::vector<wire::Notice> notices() const;  // standing ones, oldest first
+  wire::Roster roster() const;                // who is there, and which rods they have
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
   // that is joined: nothing made of an old match reaches a new one.
   // Asks for something.
   void wish(std::uint64_t session, const wire::Wish& wish);
+  // Wants these rods, by bit, in place of the ones it has: roster() shows when it has them.
+  void claim(std::uint64_t session, std::uint8_t rods);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
   // 20 times a second until nothing was heard from the caller for a second, or until the server is
   // joined anew.

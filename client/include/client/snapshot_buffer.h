@@ -19,12 +19,13 @@
 namespace client {
 
 struct SnapshotCounters {
-  std::uint64_t received = 0;   // taken in
-  std::uint64_t bad = 0;        // bytes that are no snapshot
-  std::uint64_t old = 0;        // duplicates, and too late to be of use
-  std::uint64_t foreign = 0;    // of another session
-  std::uint64_t lost = 0;       // never came, or came too late
-  std::uint64_t reordered = 0;  // came after a newer one, and in time
+  std::uint64_t received = 0;     // taken in
+  std::uint64_t bad = 0;          // bytes that are no snapshot
+  std::uint64_t old = 0;          // duplicates, and too late to be of use
+  std::uint64_t foreign = 0;      // of another session
+  std::uint64_t lost = 0;         // never came, or came too late
+  std::uint64_t reordered = 0;    // came after a newer one, and in time
+  std::uint64_t implausible = 0;  // jumped in time, and no others after them agreed
 };
 
 struct SceneSample {
@@ -44,9 +45,17 @@ class SnapshotBuffer {
   // tick above wire::kMaxTick.
   void begin_session(std::uint64_t session, std::uint32_t tick_us);
 
-  enum class Verdict : std::uint8_t { taken, old, foreign };
+  // A snapshot that jumps in time (ahead by more than kAheadUs beyond what has passed, or back
+  // though it was sent later) is not believed, since nothing that came after it would count any
+  // more, until kAgreeing in a row have said the same: the server itself may have jumped.
+  static constexpr std::int64_t kAheadUs = 1'000'000;
+  static constexpr int kAgreeing = 32;
+
+  enum class Verdict : std::uint8_t { taken, old, foreign, implausible };
   Verdict push(wire::Snapshot snapshot, std::int64_t arrival_us);
   void count_bad() { ++counters_.bad; }
+  void count_old() { ++counters_.old; }
+  void count_foreign() { ++counters_.foreign; }
 
   // Calls must not go back in time.
   SceneSample sample(std::int64_t now_us);
@@ -64,6 +73,8 @@ class SnapshotBuffer {
   std::int64_t time_of(const wire::Snapshot& s) const {
     return static_cast<std::int64_t>(s.tick) * tick_us_;
   }
+  bool plausible(const wire::Snapshot& snapshot, std::int64_t arrival_us);
+  bool jumps(const wire::Snapshot& snapshot, std::int64_t arrival_us) const;
   bool insert(wire::Snapshot snapshot);
   void note_arrival(std::int64_t offset_us);
   void note_events(const wire::Snapshot& snapshot);
@@ -79,6 +90,8 @@ class SnapshotBuffer {
   std::int64_t tick_us_ = 1000;
   std::deque<wire::Snapshot> kept_;  // by tick, oldest first
   SnapshotCounters counters_;
+  int doubted_ = 0;  // in a row, agreeing with one another
+  std::uint64_t doubted_tick_ = 0, doubted_sequence_ = 0;
   std::uint64_t first_sequence_ = 0, newest_sequence_ = 0, in_session_ = 0, lost_before_ = 0;
 
   std::array<std::int64_t, kWindow> offsets_{};  // arrival - simulated time

@@ -1,32 +1,39 @@
 #include "app/options.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
+#include <fstream>
+#include <sstream>
 
 #include "draw/command_line.h"
+#include "os/socket_address.h"
 
 namespace client {
 namespace {
 
-bool read_number(std::string_view text, int low, int high, int& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+// Rods of the whole table, counted from 1 at -x: "1,2,4".
+tl::expected<std::uint8_t, std::string> parse_rods(const std::string& text) {
+  unsigned rods = 0;
+  std::istringstream list(text);
+  for (std::string rod; std::getline(list, rod, ',');) {
+    if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {
+      return tl::unexpected(
+          "--rods wants rods from 1 to 8 with commas between, such as 1,2, not \"" + text + "\".");
+    }
+    rods |= 1u << (rod[0] - '1');
+  }
+  return static_cast<std::uint8_t>(rods);
 }
 
 }  // namespace
 
 tl::expected<void, std::string> parse_server(const std::string& text, ConnectionOptions& into) {
-  const auto colon = text.rfind(':');
-  const std::string host = text.substr(0, colon);
-  int port = kDefaultPort;
-  const bool good = colon == std::string::npos ||
-                    read_number(std::string_view(text).substr(colon + 1), 1, 65535, port);
-  if (text.empty() || !good || host.find(':') != std::string::npos) {
+  const auto parsed = os::parse_host_port(text);
+  if (!parsed) {
     return tl::unexpected("--server wants HOST:PORT with a port from 1 to 65535, not \"" + text +
                           "\".");
   }
-  if (!host.empty()) into.host = host;
-  into.port = static_cast<std::uint16_t>(port);
+  if (!parsed->host.empty()) into.host = parsed->host;
+  into.port = parsed->port.value_or(kDefaultPort);
   return {};
 }
 
@@ -42,6 +49,16 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.add_option("--team", team, "0 or 1 to play, watch to look on")
       ->capture_default_str()
       ->check(CLI::IsMember({"0", "1", "watch"}));
+  std::string rods, password_file;
+  cli.add_option("--rods", rods, "rods to play, of 1 to 8 from the left: 1,2 (all that are free)");
+  cli.add_option("--password-file", password_file,
+                 "its first line is the password of a server at another machine")
+      ->check(CLI::ExistingFile);
+  cli.add_option("--password", options.connection.password,
+                 "the same; other users of this machine can see it here, unless it is given as "
+                 "SPACE_FOOSBALL_PASSWORD")
+      ->envname("SPACE_FOOSBALL_PASSWORD");
+  cli.add_flag("--host", options.connection.as_host, "the password is the host's");
   cli.add_option("--name", options.connection.name, "your name, for the server's log")
       ->capture_default_str();
   cli.add_option("--seconds", options.seconds, "leave after so many seconds")
@@ -75,6 +92,13 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   if (const auto good = parse_server(server, options.connection); !good)
     return tl::unexpected(draw::refuse(good.error()));
+  const auto wanted_rods = parse_rods(rods);
+  if (!wanted_rods) return tl::unexpected(draw::refuse(wanted_rods.error()));
+  options.connection.rods = *wanted_rods;
+  if (!password_file.empty()) {
+    std::ifstream file(password_file);
+    std::getline(file, options.connection.password);
+  }
   const auto pixels = draw::parse_size(size);
   if (!pixels) return tl::unexpected(draw::refuse(pixels.error()));
   options.size = *pixels;

@@ -7,7 +7,7 @@
 namespace client {
 
 struct Connection::Impl {
-  Impl(const ConnectionOptions& o, const sockaddr_in& server, UdpSocket udp)
+  Impl(const ConnectionOptions& o, const os::SocketAddress& server, UdpSocket udp)
       : options(o), listener(std::move(udp)), link(o, server, listener) {}
   ConnectionOptions options;
   SnapshotListener listener;
@@ -19,7 +19,7 @@ tl::expected<std::unique_ptr<Connection>, std::string> Connection::open(
   // A server on this machine is heard on this machine only.
   const auto server = resolve(options.host, options.port);
   if (!server) return tl::unexpected(server.error());
-  auto udp = open_udp(htonl(os::is_loopback(*server) ? INADDR_LOOPBACK : INADDR_ANY), 0);
+  auto udp = open_udp(own_address_for(*server));
   if (!udp) return tl::unexpected(udp.error());
   return std::unique_ptr<Connection>(
       new Connection(std::make_unique<Impl>(options, *server, std::move(*udp))));
@@ -55,6 +55,12 @@ SnapshotCounters Connection::counters() const {
 }
 std::int64_t Connection::delay_us() const {
   return impl_->listener.delay_us();
+}
+wire::Roster Connection::roster() const {
+  return impl_->link.roster();
+}
+void Connection::claim(std::uint64_t session, std::uint8_t rods) {
+  impl_->link.claim(session, rods);
 }
 void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
   impl_->link.wish(session, wish);

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "os/clock.h"
-#include "os/socket_address.h"
+#include "wire/enums.h"
 
 namespace client {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leav
 
 }  // namespace
 
-ControlLink::ControlLink(const ConnectionOptions& options, const sockaddr_in& server,
+ControlLink::ControlLink(const ConnectionOptions& options, const os::SocketAddress& server,
                          SnapshotListener& listener)
     : options_(options), server_(server), listener_(listener) {}
 
@@ -44,11 +44,24 @@ std::vector<wire::Notice> ControlLink::notices() const {
   return standing;
 }
 
-void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
+wire::Roster ControlLink::roster() const {
+  const std::lock_guard lock(mutex_);
+  return roster_;
+}
+
+void ControlLink::ask(const wire::ControlMessage& message, std::uint64_t session) {
   const std::lock_guard lock(mutex_);
   if (status_.link != Link::joined || status_.welcome.session != session) return;
-  wishes_.push_back(wish);
+  asked_.push_back(message);
   waker_.wake();
+}
+
+void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
+  ask(wish, session);
+}
+
+void ControlLink::claim(std::uint64_t session, std::uint8_t rods) {
+  if (rods != 0) ask(wire::Claim{rods}, session);
 }
 
 void ControlLink::run() {
@@ -74,26 +87,36 @@ void ControlLink::run() {
 int ControlLink::wait_ms(std::int64_t now_us) const {
   std::int64_t until = next_try_us_;
   if (stage_ == Stage::joined) until = now_us + kListenEveryUs;
-  if (stage_ == Stage::connecting || stage_ == Stage::greeting) until = deadline_us_;
+  if (stage_ != Stage::joined && stage_ != Stage::idle) until = deadline_us_;
   return static_cast<int>(std::clamp<std::int64_t>((until - now_us + 999) / 1000, 0, 1000));
 }
 
 void ControlLink::on_time(std::int64_t now_us) {
   if (stage_ == Stage::idle && now_us >= next_try_us_) begin(now_us);
-  if ((stage_ == Stage::connecting || stage_ == Stage::greeting) && now_us >= deadline_us_) {
+  if (stage_ != Stage::joined && stage_ != Stage::idle && now_us >= deadline_us_) {
     drop("it does not answer", now_us);
   }
   if (stage_ != Stage::joined) return;
-  std::vector<wire::Wish> wishes;
+  std::vector<wire::ControlMessage> asked;
   {
     const std::lock_guard lock(mutex_);
-    wishes.swap(wishes_);
+    asked.swap(asked_);
   }
-  for (const wire::Wish& wish : wishes) queue(wish);
-  if (!wishes.empty()) flush(now_us);
-  if (now_us - std::max(joined_at_us_, listener_.last_arrival_us()) > options_.silence_us) {
-    drop("no snapshot for " + std::to_string(options_.silence_us / 1000) + " ms", now_us);
-  }
+  for (const wire::ControlMessage& message : asked) queue(message);
+  if (!asked.empty()) flush(now_us);
+  if (stage_ == Stage::joined) watch_silence(now_us);
+}
+
+// Silence alone is no reason to let go of the connection, and with it of the seat: the line may be
+// back at any moment.
+void ControlLink::watch_silence(std::int64_t now_us) {
+  const std::int64_t silent = now_us - std::max(joined_at_us_, listener_.last_arrival_us());
+  const std::string words =
+      "no snapshot for " + std::to_string(std::min(silent, options_.silence_us) / 1000) + " ms";
+  if (silent > options_.gone_us) return drop(words, now_us);
+  const std::lock_guard lock(mutex_);
+  status_.link = silent > options_.silence_us ? Link::lost : Link::joined;
+  status_.detail = status_.link == Link::lost ? words : std::string();
 }
 
 void ControlLink::begin(std::int64_t now_us) {
@@ -108,33 +131,92 @@ void ControlLink::begin(std::int64_t now_us) {
 void ControlLink::on_connected(std::int64_t now_us) {
   if (const int error = connect_result(tcp_.get()); error != 0)
     return drop(std::strerror(error), now_us);
-  stage_ = Stage::greeting;
   reader_ = {};
   out_.clear();
+  sealer_.reset();
+  opener_.reset();
+  if (server_.is_loopback() && options_.trust_this_machine) {
+    say_hello();
+  } else {
+    knock();
+  }
+  flush(now_us);
+}
+
+void ControlLink::knock() {
+  wire::Knock knock;
+  knock.role = number(options_.as_host ? wire::Role::host : wire::Role::player);
+  knock.sid = wire::random_sid();
+  exchange_ = std::make_unique<wire::PasswordExchange>(
+      wire::PasswordExchange::Side::client, options_.password,
+      wire::exchange_channel(options_.as_host), knock.sid);
+  knock.share = exchange_->share();
+  stage_ = Stage::proving;
+  queue(knock);
+}
+
+// False: the connection is no more.
+bool ControlLink::on_challenge(const wire::Challenge& challenge, std::int64_t now_us) {
+  const auto secret = exchange_->secret(challenge.share);
+  exchange_.reset();
+  if (!secret) {
+    drop("it sends what is no message", now_us);
+    return false;
+  }
+  const wire::StreamKeys keys = wire::stream_keys(*secret);
+  sealer_.emplace(keys.to_server);
+  opener_.emplace(keys.to_client);
+  reader_ = {};
+  say_hello();
+  return true;
+}
+
+void ControlLink::say_hello() {
+  stage_ = Stage::greeting;
   wire::Hello hello;
   hello.snapshot_layout = wire::snapshot_layout_hash();
   hello.name = options_.name;
   hello.udp_port = listener_.port();
   hello.team = options_.team;
+  hello.rods = options_.rods;
+  {  // the seat that was held there, if it is the same server
+    const std::lock_guard lock(mutex_);
+    hello.session = status_.welcome.session;
+    hello.ticket = status_.joins > 0 ? status_.welcome.token : 0;
+  }
   queue(hello);
-  flush(now_us);
 }
 
 void ControlLink::on_readable(std::int64_t now_us) {
   std::array<std::byte, 4096> bytes;
   const auto size = ::recv(tcp_.get(), bytes.data(), bytes.size(), 0);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  // A server that cannot open what is sealed with another password says nothing more.
+  const bool unproven = stage_ == Stage::greeting && sealer_;
+  if (size <= 0 && unproven) {
+    return drop("the password is not the server's: give --password-file with the right one", now_us,
+                true);
+  }
   if (size <= 0) return drop(size == 0 ? "it closed the connection" : std::strerror(errno), now_us);
-  reader_.push({bytes.data(), static_cast<std::size_t>(size)});
+  if (take({bytes.data(), static_cast<std::size_t>(size)}, now_us)) flush(now_us);
+}
+
+// False: the connection is no more.
+bool ControlLink::take(std::span<const std::byte> bytes, std::int64_t now_us) {
+  const auto nonsense = [&] {
+    drop("it sends what is no message", now_us);
+    return false;
+  };
+  std::vector<std::byte> plain;
+  if (opener_ && !opener_->open(bytes, plain)) return nonsense();
+  reader_.push(opener_ ? std::span<const std::byte>(plain) : bytes);
   wire::ControlMessage message;
   for (;;) {
     const auto status = reader_.next(message);
-    if (status == wire::ControlReader::Status::need_more) break;
-    if (status == wire::ControlReader::Status::broken)
-      return drop("it sends what is no message", now_us);
-    if (!handle(message, now_us)) return;
+    if (status == wire::ControlReader::Status::need_more) return true;
+    if (status == wire::ControlReader::Status::broken) return nonsense();
+    if (!handle(message, now_us)) return false;
   }
-  flush(now_us);
 }
 
 // False: the connection is no more.
@@ -142,6 +224,13 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
   if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
     if (stage_ == Stage::greeting) on_welcome(*welcome, now_us);
     return stage_ == Stage::joined;
+  }
+  if (const auto* challenge = std::get_if<wire::Challenge>(&message)) {
+    return stage_ != Stage::proving || on_challenge(*challenge, now_us);
+  }
+  if (const auto* roster = std::get_if<wire::Roster>(&message)) {
+    const std::lock_guard lock(mutex_);
+    roster_ = *roster;
   }
   if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
     drop(refusal->reason, now_us, true);
@@ -159,8 +248,7 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
 }
 
 void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) {
-  const auto heard =
-      listener_.join(welcome, server_, os::local_address(tcp_.get()).sin_addr.s_addr);
+  const auto heard = listener_.join(welcome, server_, os::local_address(tcp_.get()));
   if (!heard) return drop(heard.error(), now_us, true);
   stage_ = Stage::joined;
   joined_at_us_ = now_us;
@@ -188,14 +276,18 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   next_try_us_ =
       std::max(next_try_us_, now_us + (refused ? kAskRefusedAgainUs : options_.retry_us));
   const std::lock_guard lock(mutex_);
-  wishes_.clear();
+  asked_.clear();
+  roster_ = {};
   notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;
 }
 
 void ControlLink::queue(const wire::ControlMessage& message) {
-  wire::encode_control(message, out_);
+  if (!sealer_) return wire::encode_control(message, out_);
+  std::vector<std::byte> plain;
+  wire::encode_control(message, plain);
+  sealer_->seal(plain, out_);
 }
 
 void ControlLink::flush(std::int64_t now_us) {

@@ -3,18 +3,21 @@
 
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "client/connection.h"
 #include "core/snapshot_listener.h"
 #include "core/sockets.h"
+#include "wire/password_exchange.h"
 
 namespace client {
 
 class ControlLink {
  public:
-  ControlLink(const ConnectionOptions& options, const sockaddr_in& server,
+  ControlLink(const ConnectionOptions& options, const os::SocketAddress& server,
               SnapshotListener& listener);
   ~ControlLink();
 
@@ -23,10 +26,18 @@ class ControlLink {
   }
   ConnectionStatus status() const;
   std::vector<wire::Notice> notices() const;
+  wire::Roster roster() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
+  void claim(std::uint64_t session, std::uint8_t rods);
 
  private:
-  enum class Stage : std::uint8_t { idle, connecting, greeting, joined };
+  enum class Stage : std::uint8_t {
+    idle,
+    connecting,
+    proving,   // a Challenge is due
+    greeting,  // a Welcome is due
+    joined
+  };
 
   void run();
   int wait_ms(std::int64_t now_us) const;
@@ -34,6 +45,12 @@ class ControlLink {
   void begin(std::int64_t now_us);
   void on_connected(std::int64_t now_us);
   void on_readable(std::int64_t now_us);
+  bool take(std::span<const std::byte> bytes, std::int64_t now_us);
+  void knock();
+  void say_hello();
+  bool on_challenge(const wire::Challenge& challenge, std::int64_t now_us);
+  void ask(const wire::ControlMessage& message, std::uint64_t session);
+  void watch_silence(std::int64_t now_us);
   bool handle(const wire::ControlMessage& message, std::int64_t now_us);
   void on_welcome(const wire::Welcome& welcome, std::int64_t now_us);
   void on_notice(const wire::Notice& notice);
@@ -43,7 +60,7 @@ class ControlLink {
   void say_bye();
 
   const ConnectionOptions options_;
-  const sockaddr_in server_;
+  const os::SocketAddress server_;
   SnapshotListener& listener_;
   Waker waker_;
   std::atomic<bool> stop_{false};
@@ -53,12 +70,16 @@ class ControlLink {
   os::FileDescriptor tcp_;
   wire::ControlReader reader_;
   std::vector<std::byte> out_;
+  std::unique_ptr<wire::PasswordExchange> exchange_;  // proving
+  std::optional<wire::StreamSealer> sealer_;
+  std::optional<wire::StreamOpener> opener_;
   std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;
 
   mutable std::mutex mutex_;  // all below
   ConnectionStatus status_;
   std::map<std::uint32_t, wire::Notice> notices_;
-  std::vector<wire::Wish> wishes_;
+  wire::Roster roster_;
+  std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;
 };

@@ -25,6 +25,7 @@ void SnapshotBuffer::begin_session(std::uint64_t session, std::uint32_t tick_us)
   kept_.clear();
   events_.clear();
   playing_ = any_event_ = false;
+  doubted_ = 0;
 }
 
 SnapshotCounters SnapshotBuffer::counters() const {
@@ -60,10 +61,42 @@ bool SnapshotBuffer::insert(wire::Snapshot snapshot) {
   return true;
 }
 
+bool SnapshotBuffer::jumps(const wire::Snapshot& snapshot, std::int64_t arrival_us) const {
+  const std::int64_t passed = std::max<std::int64_t>(0, arrival_us - last_arrival_us_);
+  const auto ahead = static_cast<std::uint64_t>((passed + kAheadUs) / tick_us_);
+  const wire::Snapshot& newest = kept_.back();
+  const bool later = snapshot.sequence > newest_sequence_;
+  return snapshot.tick > newest.tick + ahead ||
+         (later && snapshot.sequence - newest_sequence_ > ahead) ||
+         (later && snapshot.tick + kKept < newest.tick);
+}
+
+bool SnapshotBuffer::plausible(const wire::Snapshot& snapshot, std::int64_t arrival_us) {
+  if (kept_.empty() || !jumps(snapshot, arrival_us)) {
+    doubted_ = 0;
+    return true;
+  }
+  const bool agrees = doubted_ > 0 && snapshot.sequence > doubted_sequence_ &&
+                      snapshot.sequence - doubted_sequence_ <= kKept &&
+                      snapshot.tick >= doubted_tick_ && snapshot.tick - doubted_tick_ <= kKept;
+  doubted_ = agrees ? doubted_ + 1 : 1;
+  doubted_tick_ = snapshot.tick;
+  doubted_sequence_ = snapshot.sequence;
+  if (doubted_ < kAgreeing) return false;
+  // The server jumped: what was kept is of another time.
+  begin_session(session_ ^ 1, static_cast<std::uint32_t>(tick_us_));
+  session_ ^= 1;
+  return true;
+}
+
 SnapshotBuffer::Verdict SnapshotBuffer::push(wire::Snapshot snapshot, std::int64_t arrival_us) {
   if (snapshot.session != session_) {
     ++counters_.foreign;
     return Verdict::foreign;
+  }
+  if (!plausible(snapshot, arrival_us)) {
+    ++counters_.implausible;
+    return Verdict::implausible;
   }
   const bool newest = kept_.empty() || snapshot.tick > kept_.back().tick;
   const bool standing = !kept_.empty() && snapshot.tick == kept_.back().tick &&

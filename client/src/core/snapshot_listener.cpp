@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "os/clock.h"
-#include "os/socket_address.h"
 
 namespace client {
 namespace {
@@ -16,7 +15,8 @@ namespace {
 // keep the hand waiting for 2 ms (3.4 us are measured for a good snapshot); a quarter of a second's
 // stall at 1 kHz is made up in one go.
 constexpr std::size_t kMostAtOnce = 256;
-static_assert(kLongestDatagram > wire::kMaxDatagram);  // a longer one shows as too long
+static_assert(kLongestDatagram >
+              wire::kMaxDatagram + wire::kSealBytes);  // a longer one shows as too long
 constexpr std::int64_t kSendEveryUs = 1'000;
 constexpr std::int64_t kRepeatUs = 45'000;  // 20 a second are promised: a little sooner
 constexpr std::int64_t kForgetUs =
@@ -40,18 +40,26 @@ SnapshotListener::~SnapshotListener() {
 }
 
 tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welcome,
-                                                       const sockaddr_in& server,
-                                                       std::uint32_t interface) {
+                                                       const os::SocketAddress& server,
+                                                       const os::SocketAddress& here) {
   std::shared_ptr<const UdpSocket> group;
   if (!welcome.multicast.empty()) {
-    auto opened = open_multicast(welcome.multicast, welcome.multicast_port, interface);
+    auto opened = open_multicast(welcome.multicast, welcome.multicast_port, here);
     if (!opened) return tl::unexpected(opened.error());
     group = std::make_shared<const UdpSocket>(std::move(*opened));
   }
   const std::lock_guard lock(mutex_);
   multicast_ = std::move(group);
-  server_ = server;
-  server_.sin_port = htons(welcome.udp_port);
+  os::SocketAddress inputs = server;
+  inputs.set_port(welcome.udp_port);
+  if (!hear_only(unicast_, inputs)) {
+    return tl::unexpected("There is no way to the server's UDP port " + os::to_text(inputs) +
+                          ": check this machine's network.");
+  }
+  opener_ = {welcome.snapshot_key, welcome.multicast.empty() ? welcome.client : 0};
+  input_key_ = welcome.input_key;
+  client_ = welcome.client;
+  sealed_ = 0;
   buffer_.begin_session(welcome.session, welcome.tick_us);
   input_ = {.session = welcome.session, .token = welcome.token, .sequence = input_.sequence};
   input_known_ = input_changed_ = false;  // what was driven before was meant for another match
@@ -104,9 +112,11 @@ void SnapshotListener::send_input(std::int64_t now_us) {
     for (wire::InputRod& rod : input_.rods) rod.slide_rate = rod.angle_rate = 0;
   }
   ++input_.sequence;
-  std::array<std::byte, wire::kMaxInputDatagram> bytes;
-  const std::size_t size = wire::encode_input(input_, bytes);
-  ::sendto(unicast_.fd.get(), bytes.data(), size, 0, os::generic(server_), sizeof server_);
+  std::array<std::byte, wire::kMaxInputDatagram> plain;
+  std::array<std::byte, wire::kMaxInputDatagram + wire::kSealBytes> bytes;
+  const auto input = std::span<const std::byte>(plain).first(wire::encode_input(input_, plain));
+  const std::size_t size = wire::seal_datagram(input_key_, client_, sealed_++, input, bytes);
+  ::send(unicast_.fd.get(), bytes.data(), size, 0);
   inputs_sent_.fetch_add(1, std::memory_order_relaxed);
   input_changed_ = false;
   sent_at_us_ = now_us;
@@ -125,17 +135,32 @@ int SnapshotListener::send_due(std::int64_t now_us) {
 }
 
 void SnapshotListener::receive(int socket) {
-  wire::Snapshot snapshot;
   take_datagrams(socket, kMostAtOnce, [&](std::span<const std::byte> bytes) {
     const std::int64_t arrival = os::monotonic_us();
-    const bool good = wire::decode_snapshot(bytes, snapshot);
     const std::lock_guard lock(mutex_);
-    if (!good) {
-      buffer_.count_bad();
-    } else if (buffer_.push(snapshot, arrival) == SnapshotBuffer::Verdict::taken) {
-      last_arrival_us_.store(arrival, std::memory_order_relaxed);
-    }
+    take(bytes, arrival);
   });
+}
+
+// Called with the lock held.
+void SnapshotListener::take(std::span<const std::byte> sealed, std::int64_t arrival) {
+  std::array<std::byte, wire::kMaxDatagram> plain;
+  std::size_t size = 0;
+  switch (opener_.open(sealed, plain, size)) {
+    case wire::SealVerdict::good:
+      break;
+    case wire::SealVerdict::foreign:
+      return buffer_.count_foreign();
+    case wire::SealVerdict::replayed:
+      return buffer_.count_old();
+    case wire::SealVerdict::malformed:
+    case wire::SealVerdict::forged:
+      return buffer_.count_bad();
+  }
+  if (!wire::decode_snapshot(std::span(plain).first(size), received_)) return buffer_.count_bad();
+  if (buffer_.push(received_, arrival) == SnapshotBuffer::Verdict::taken) {
+    last_arrival_us_.store(arrival, std::memory_order_relaxed);
+  }
 }
 
 void SnapshotListener::run() {

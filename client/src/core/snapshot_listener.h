@@ -11,6 +11,7 @@
 #include "core/sockets.h"
 #include "wire/control.h"
 #include "wire/input_datagram.h"
+#include "wire/seal.h"
 
 namespace client {
 
@@ -22,10 +23,13 @@ class SnapshotListener {
   std::uint16_t port() const { return unicast_.port; }
   bool small_buffer() const { return unicast_.small_buffer; }
 
-  // Joined: from now on snapshots of this session count, and inputs go to that address, the first
-  // when drive() is called anew. The error is a sentence (the multicast group cannot be joined).
-  tl::expected<void, std::string> join(const wire::Welcome& welcome, const sockaddr_in& server,
-                                       std::uint32_t interface);
+  // Joined: from now on snapshots of this session count, sealed as the Welcome says, that come from
+  // that server's address and port; and inputs go there, the first when drive() is called anew.
+  // here: the address by which this machine reaches the server. The error is a sentence (the
+  // multicast group cannot be joined).
+  tl::expected<void, std::string> join(const wire::Welcome& welcome,
+                                       const os::SocketAddress& server,
+                                       const os::SocketAddress& here);
   // No longer joined: nothing is sent.
   void leave();
 
@@ -41,6 +45,7 @@ class SnapshotListener {
  private:
   void run();
   void receive(int socket);
+  void take(std::span<const std::byte> sealed, std::int64_t arrival);
   int send_due(std::int64_t now_us);
   void send_input(std::int64_t now_us);
 
@@ -52,9 +57,13 @@ class SnapshotListener {
 
   mutable std::mutex mutex_;  // all below
   SnapshotBuffer buffer_;
+  wire::Snapshot received_;
   std::shared_ptr<const UdpSocket> multicast_;
   bool joined_ = false;
-  sockaddr_in server_{};
+  wire::DatagramOpener opener_;
+  wire::SealKey input_key_{};
+  std::uint32_t client_ = 0;
+  std::uint64_t sealed_ = 0;  // inputs under this key
   wire::InputDatagram input_;
   bool input_changed_ = false, input_known_ = false;
   std::int64_t driven_at_us_ = 0, sent_at_us_ = 0;

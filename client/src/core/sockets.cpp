@@ -9,8 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "os/socket_address.h"
-
 namespace client {
 namespace {
 
@@ -44,59 +42,91 @@ void Waker::drain() const {
   ::eventfd_read(event_.get(), &count);
 }
 
-tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port) {
-  if (const auto dotted = os::parse_ipv4(host, port)) return *dotted;
+tl::expected<os::SocketAddress, std::string> resolve(const std::string& host, std::uint16_t port) {
+  if (const auto address = os::parse_address(host, port)) return *address;
   addrinfo hints{}, *found = nullptr;
-  hints.ai_family = AF_INET;
+  hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
-  const int failed = getaddrinfo(host.c_str(), nullptr, &hints, &found);
-  if (failed != 0 || found == nullptr) {
-    return tl::unexpected(
-        "The server's host \"" + host + "\" is not known (" + gai_strerror(failed) +
-        "): give --server HOST:PORT with a name or an IPv4 address that this machine can look up.");
+  hints.ai_flags = AI_ADDRCONFIG;
+  int failed = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+  if (failed != 0) {  // a machine with nothing but its loopback has no address configured
+    hints.ai_flags = 0;
+    failed = getaddrinfo(host.c_str(), nullptr, &hints, &found);
   }
-  sockaddr_in address{};
-  std::memcpy(&address, found->ai_addr, sizeof address);
+  if (failed != 0 || found == nullptr) {
+    return tl::unexpected("The server's host \"" + host + "\" is not known (" +
+                          gai_strerror(failed) +
+                          "): give --server HOST:PORT with a name or an address that this machine "
+                          "can look up.");
+  }
+  // IPv4 first: a server listens there unless it was told otherwise.
+  os::SocketAddress address;
+  for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
+    const auto candidate = os::SocketAddress::from(entry->ai_addr, entry->ai_addrlen);
+    if (address.empty() || (address.is_ipv6() && candidate.family() == AF_INET))
+      address = candidate;
+  }
   freeaddrinfo(found);
-  address.sin_port = htons(port);
+  address.set_port(port);
   return address;
 }
 
-tl::expected<UdpSocket, std::string> open_udp(std::uint32_t address, std::uint16_t port) {
+os::SocketAddress own_address_for(const os::SocketAddress& server) {
+  const bool here = server.is_loopback();
+  if (server.is_ipv6()) return *os::parse_address(here ? "::1" : "::", 0);
+  return *os::parse_address(here ? "127.0.0.1" : "0.0.0.0", 0);
+}
+
+tl::expected<UdpSocket, std::string> open_udp(const os::SocketAddress& address) {
   UdpSocket udp;
-  udp.fd = os::FileDescriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  sockaddr_in local{};
-  local.sin_family = AF_INET;
-  local.sin_addr.s_addr = address;
-  local.sin_port = htons(port);
-  if (!udp.fd || ::bind(udp.fd.get(), os::generic(local), sizeof local) != 0) {
+  udp.fd =
+      os::FileDescriptor(::socket(address.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!udp.fd || ::bind(udp.fd.get(), address.generic(), address.size()) != 0) {
     return tl::unexpected(
         "Cannot open a UDP socket to hear the server (" + reason() +
         "): check the limits of open files and the network's permissions of this process.");
   }
   udp.small_buffer = !enlarge_receive_buffer(udp.fd.get());
-  udp.port = os::port_of(os::local_address(udp.fd.get()));
+  udp.port = os::local_address(udp.fd.get()).port();
   return udp;
 }
 
-tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
-                                                    std::uint32_t interface) {
-  UdpSocket udp;
-  udp.fd = os::FileDescriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  const int on = 1;
-  setsockopt(udp.fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+bool hear_only(const UdpSocket& udp, const os::SocketAddress& from) {
+  return ::connect(udp.fd.get(), from.generic(), from.size()) == 0;
+}
+
+namespace {
+
+bool join_group(int fd, const os::SocketAddress& group, const os::SocketAddress& here) {
+  if (group.is_ipv6()) {
+    ipv6_mreq membership{};
+    membership.ipv6mr_multiaddr = group.ipv6().sin6_addr;
+    membership.ipv6mr_interface = here.is_ipv6() ? here.ipv6().sin6_scope_id : 0;
+    return setsockopt(fd, IPPROTO_IPV6, IPV6_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+  }
   ip_mreq membership{};
-  membership.imr_interface.s_addr = interface;
-  const auto local = os::parse_ipv4(group, port);
-  if (!local) {
+  membership.imr_multiaddr = group.ipv4().sin_addr;
+  if (!here.is_ipv6()) membership.imr_interface = here.ipv4().sin_addr;
+  return setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
+}
+
+}  // namespace
+
+tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
+                                                    const os::SocketAddress& here) {
+  const auto local = os::parse_address(group, port);
+  if (!local || !local->is_multicast()) {
     return tl::unexpected(
         "The server names \"" + group +
-        "\" as its multicast group, which is no IPv4 address: check the server's --multicast.");
+        "\" as its multicast group, which is none: check the server's --multicast.");
   }
-  membership.imr_multiaddr = local->sin_addr;
-  if (!udp.fd || ::bind(udp.fd.get(), os::generic(*local), sizeof *local) != 0 ||
-      setsockopt(udp.fd.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) !=
-          0) {
+  UdpSocket udp;
+  udp.fd =
+      os::FileDescriptor(::socket(local->family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int on = 1;
+  setsockopt(udp.fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (!udp.fd || ::bind(udp.fd.get(), local->generic(), local->size()) != 0 ||
+      !join_group(udp.fd.get(), *local, here)) {
     return tl::unexpected(
         "Cannot join the server's multicast group " + group + " (" + reason() +
         "): start the server without --multicast, or allow multicast on this network.");
@@ -118,10 +148,10 @@ std::size_t take_datagrams(int socket, std::size_t most,
   return taken;
 }
 
-tl::expected<os::FileDescriptor, std::string> begin_connect(const sockaddr_in& server) {
-  os::FileDescriptor tcp(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+tl::expected<os::FileDescriptor, std::string> begin_connect(const os::SocketAddress& server) {
+  os::FileDescriptor tcp(::socket(server.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!tcp ||
-      (::connect(tcp.get(), os::generic(server), sizeof server) != 0 && errno != EINPROGRESS)) {
+      (::connect(tcp.get(), server.generic(), server.size()) != 0 && errno != EINPROGRESS)) {
     return tl::unexpected(reason());
   }
   const int on = 1;

@@ -1,8 +1,6 @@
 // The sockets of the client: non-blocking, closed with their owner.
 #pragma once
 
-#include <netinet/in.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,6 +9,7 @@
 #include <tl/expected.hpp>
 
 #include "os/file_descriptor.h"
+#include "os/socket_address.h"
 
 namespace client {
 
@@ -35,20 +34,24 @@ struct UdpSocket {
   bool small_buffer = false;  // less than kReceiveBufferBytes was granted
 };
 
-// A name is looked up by the system, which may take long; an IPv4 address is not.
-tl::expected<sockaddr_in, std::string> resolve(const std::string& host, std::uint16_t port);
-// address: the interface to listen on; port 0: any free one.
-tl::expected<UdpSocket, std::string> open_udp(std::uint32_t address, std::uint16_t port);
-// A socket that hears the group, on the interface with that address.
+// A name is looked up by the system, which may take long; an address is not.
+tl::expected<os::SocketAddress, std::string> resolve(const std::string& host, std::uint16_t port);
+// Where to hear that server: of one at this machine, at this machine only.
+os::SocketAddress own_address_for(const os::SocketAddress& server);
+// address: where to listen; its port 0: any free one.
+tl::expected<UdpSocket, std::string> open_udp(const os::SocketAddress& address);
+// From now on the kernel lets in what comes from that address and port alone. May be called again.
+bool hear_only(const UdpSocket& udp, const os::SocketAddress& from);
+// A socket that hears the group, on the interface that has the address `here`.
 tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
-                                                    std::uint32_t interface);
+                                                    const os::SocketAddress& here);
 // Takes the datagrams that have come, at most so many, cut to kLongestDatagram bytes; how many it
 // were. The bytes are the taker's until it returns.
 inline constexpr std::size_t kLongestDatagram = 2048;
 std::size_t take_datagrams(int socket, std::size_t most,
                            const std::function<void(std::span<const std::byte>)>& take);
 // Begins to connect; finished (or failed) when the socket turns writable.
-tl::expected<os::FileDescriptor, std::string> begin_connect(const sockaddr_in& server);
+tl::expected<os::FileDescriptor, std::string> begin_connect(const os::SocketAddress& server);
 // 0: connected; else the errno.
 int connect_result(int socket);
 

@@ -25,12 +25,13 @@ inline std::int64_t thread_ns() {
   return used.tv_sec * std::int64_t{1'000'000'000} + used.tv_nsec;
 }
 
-// May return early: when a signal comes.
-inline void sleep_until_ns(std::int64_t deadline_ns) {
+// 0, or why it returned early: EINTR, a signal came; else the kernel refuses to wait, and returned
+// at once.
+inline int sleep_until_ns(std::int64_t deadline_ns) {
   timespec until{};
   until.tv_sec = static_cast<time_t>(deadline_ns / 1'000'000'000);
   until.tv_nsec = static_cast<long>(deadline_ns % 1'000'000'000);
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  return ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
 }  // namespace os

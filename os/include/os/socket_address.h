@@ -1,4 +1,4 @@
-// IPv4 addresses as sockets take them.
+// IPv4 and IPv6 addresses as sockets take them.
 #pragma once
 
 #include <netinet/in.h>
@@ -9,22 +9,57 @@
 
 namespace os {
 
-// Dotted; nothing if it is no IPv4 address.
-std::optional<sockaddr_in> parse_ipv4(const std::string& address, std::uint16_t port);
-sockaddr_in loopback(std::uint16_t port);         // 127.0.0.1
-std::string to_text(const sockaddr_in& address);  // "127.0.0.1:4242"
-bool is_loopback(const sockaddr_in& address);     // 127.0.0.0/8
-sockaddr_in local_address(int socket);            // what it is bound to; all zeros: nothing
-inline std::uint16_t port_of(const sockaddr_in& address) {
-  return ntohs(address.sin_port);
-}
+// An address and a port, or none (family AF_UNSPEC). A socket that listens at "::" hears IPv4 too:
+// such peers are IPv4 addresses mapped into IPv6, and count as what they are.
+class SocketAddress {
+ public:
+  SocketAddress() = default;
+  explicit SocketAddress(const sockaddr_in& v4) { v4_ = v4; }
+  explicit SocketAddress(const sockaddr_in6& v6) { v6_ = v6; }
+  // Of any family that getaddrinfo() or accept() gave; none if it is neither.
+  static SocketAddress from(const sockaddr* address, socklen_t size);
 
-// As bind, connect and their kin want it.
-inline sockaddr* generic(sockaddr_in& address) {
-  return reinterpret_cast<sockaddr*>(&address);
-}
-inline const sockaddr* generic(const sockaddr_in& address) {
-  return reinterpret_cast<const sockaddr*>(&address);
-}
+  int family() const { return v4_.sin_family; }
+  bool empty() const { return family() == AF_UNSPEC; }
+  bool is_ipv6() const { return family() == AF_INET6; }
+  std::uint16_t port() const { return ntohs(is_ipv6() ? v6_.sin6_port : v4_.sin_port); }
+  void set_port(std::uint16_t port) { (is_ipv6() ? v6_.sin6_port : v4_.sin_port) = htons(port); }
+
+  bool is_loopback() const;                          // 127.0.0.0/8, ::1
+  bool is_any() const;                               // 0.0.0.0, ::
+  bool is_multicast() const;                         // 224.0.0.0/4, ff00::/8
+  bool same_host(const SocketAddress& other) const;  // whatever the ports
+  // Whose neighbours share limits: an IPv4 address, or the first 64 bits of an IPv6 one.
+  std::string network() const;
+  std::string host() const;  // "127.0.0.1", "::1"
+
+  const sockaddr_in& ipv4() const { return v4_; }   // precondition: !is_ipv6()
+  const sockaddr_in6& ipv6() const { return v6_; }  // precondition: is_ipv6()
+
+  // As bind, connect and their kin want it.
+  sockaddr* generic() { return reinterpret_cast<sockaddr*>(&v6_); }
+  const sockaddr* generic() const { return reinterpret_cast<const sockaddr*>(&v6_); }
+  socklen_t size() const { return is_ipv6() ? sizeof v6_ : sizeof v4_; }
+  static constexpr socklen_t kRoom = sizeof(sockaddr_in6);
+
+ private:
+  union {
+    sockaddr_in6 v6_{};
+    sockaddr_in v4_;  // the family is at the same place in both
+  };
+};
+
+// "127.0.0.1", "::1", "fe80::1%eth0"; nothing if it is no address.
+std::optional<SocketAddress> parse_address(const std::string& text, std::uint16_t port);
+SocketAddress loopback(std::uint16_t port);         // 127.0.0.1
+std::string to_text(const SocketAddress& address);  // "127.0.0.1:4242", "[::1]:4242"
+SocketAddress local_address(int socket);            // what it is bound to; none: nothing
+
+struct HostPort {
+  std::string host;  // empty: not given
+  std::optional<std::uint16_t> port;
+};
+// "HOST", "HOST:PORT", ":PORT", "[::1]:PORT", "::1"; nothing if it is none of these.
+std::optional<HostPort> parse_host_port(const std::string& text);
 
 }  // namespace os

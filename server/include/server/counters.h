@@ -14,11 +14,15 @@ struct ControlCounters {
   std::uint64_t accepted = 0;  // connections
   std::uint64_t joined = 0;
   std::uint64_t left = 0;
-  std::uint64_t refused = 0;         // for version, layout, a taken team or a full house
-  std::uint64_t bad_messages = 0;    // unreadable, cut short, or out of place
-  std::uint64_t timed_out = 0;       // no Hello in time
-  std::uint64_t gave_up = 0;         // had gone before their Hello was answered
-  std::uint64_t slow_dropped = 0;    // did not read what was sent to them
+  std::uint64_t refused = 0;       // for version, layout, a taken team or a full house
+  std::uint64_t bad_messages = 0;  // unreadable, cut short, or out of place
+  std::uint64_t timed_out = 0;     // no Hello in time
+  std::uint64_t gave_up = 0;       // had gone before their Hello was answered
+  std::uint64_t slow_dropped = 0;  // did not read what was sent to them
+  std::uint64_t crowded_out = 0;   // had to leave the door for newer ones
+  std::uint64_t wrong_passwords = 0;
+  std::uint64_t lost = 0;            // players whose seat was kept
+  std::uint64_t resumed = 0;         // of these, who came back to it
   std::uint64_t wishes = 0;          // handed on to the match
   std::uint64_t wishes_dropped = 0;  // not allowed, or too many
 };
@@ -26,9 +30,9 @@ struct ControlCounters {
 // Datagrams on the input port.
 struct InputCounters {
   std::uint64_t accepted = 0;
-  std::uint64_t bad = 0;      // not an input datagram: length, checksum, range
-  std::uint64_t foreign = 0;  // another session's, an unknown token, or a watcher's
-  std::uint64_t stale = 0;    // no newer than one accepted: late, or sent twice
+  std::uint64_t bad = 0;      // no input datagram: length, seal, checksum, range
+  std::uint64_t foreign = 0;  // from no player's address, or under another's key
+  std::uint64_t stale = 0;    // no newer than one accepted: late, or sent twice, or replayed
 };
 
 struct Counters {
@@ -36,6 +40,7 @@ struct Counters {
   std::uint64_t snapshots_sent = 0;  // datagrams, over all listeners
   std::uint64_t snapshot_bytes = 0;
   std::uint64_t send_errors = 0;
+  int last_send_error = 0;                 // errno
   std::uint64_t events_dropped = 0;        // found no place in the snapshots
   std::uint64_t match_events_dropped = 0;  // found none in their tick
   std::uint64_t journal_bytes = 0;

@@ -20,14 +20,17 @@ struct LoopOptions {
   // carry the network and the timers (50 and 99 by default: hence between).
   int priority = 60;
   int cpu = -1;  // pin to this core; -1: any
+  // Then give up the capabilities that it was started with, all but root's access to files.
+  bool drop_rights = false;
 };
 
 // What the loop asks the time of and sleeps by. A test hands in one of its own.
 class LoopClock {
  public:
   virtual ~LoopClock() = default;
-  virtual std::int64_t now_ns() = 0;                       // does not fall
-  virtual void sleep_until(std::int64_t deadline_ns) = 0;  // may return early, for a signal
+  virtual std::int64_t now_ns() = 0;  // does not fall
+  // 0, or an errno: EINTR where a signal ended it early, else it cannot wait at all.
+  virtual int sleep_until(std::int64_t deadline_ns) = 0;
 };
 LoopClock& monotonic_clock();
 
@@ -58,12 +61,14 @@ class TickLoop {
 
  private:
   void ask_for_rights();
+  void wait_until(std::int64_t deadline);
   std::int64_t next_deadline(std::int64_t deadline, std::int64_t now);
 
   LoopOptions options_;
   Log log_;
   LoopClock& clock_;
   LoopStats stats_;
+  bool cannot_sleep_ = false;
 };
 
 }  // namespace server

@@ -27,7 +27,9 @@ namespace server {
 struct ServerOptions {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
+  bool computer_fills = false;  // ... and its rods that nobody has while people have the others
   NetworkOptions network;
+  AccessOptions access;
   ControlLimits limits;
   std::uint64_t session = 0;              // random, other at every start
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
@@ -69,6 +71,7 @@ class Server {
     journal = 2,
     replay = 3,
     results = 4,
+    sending = 5,
     devices = 100
   };
   void warn(Topic topic, const std::string& text);
@@ -82,7 +85,7 @@ class Server {
   const foosball::Match& match() const;
   bool replay_over() const;             // nothing more to play
   const Playback* replay() const;       // or null
-  int clients() const;                  // joined now, as the last tick saw it
+  int clients() const;                  // joined now, or expected back, as the last tick saw it
   std::uint64_t clients_ever() const;   // joined so far
   std::uint64_t ticks() const;          // of the match
   std::string journal_problem() const;  // empty: none

@@ -5,6 +5,7 @@
 // kMaxControlMessage ends the connection before anything is allocated.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -15,38 +16,86 @@
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 1;
+inline constexpr std::uint16_t kControlVersion = 2;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
 inline constexpr std::size_t kMaxText = 200;  // bytes: reason, text
 
 inline constexpr std::uint8_t kWatchOnly = 255;
+inline constexpr std::size_t kMaxSeats = 64;
 
-// Client to server, first message, within 5 s of connecting.
+// Client to server, first message from another machine: the exchange of wire/password_exchange.h.
+// What follows its Challenge, both ways, is a sealed stream (wire/seal.h) of messages.
+struct Knock {
+  std::uint16_t version = kControlVersion;
+  std::uint8_t role = 0;  // Role (wire/enums.h), asked for; each has its password
+  std::array<std::byte, 16> sid{};
+  std::array<std::byte, 32> share{};
+};
+// Server to client: its answer.
+struct Challenge {
+  std::array<std::byte, 32> share{};
+};
+
+// Client to server, first message at one machine, or the first sealed one; within 5 s of
+// connecting.
 struct Hello {
   std::uint16_t version = kControlVersion;
   std::uint32_t snapshot_layout = 0;  // snapshot_layout_hash()
   std::string name;                   // at most 64 bytes of UTF-8
   std::uint16_t udp_port = 0;         // where this client listens for snapshots
-  std::uint8_t team = kWatchOnly;     // 0, 1: wants to drive that team's rods
+  std::uint8_t team = kWatchOnly;     // 0, 1: wants to drive rods of that team
+  std::uint8_t rods = 0;              // which, bit 0 at -x; 0: all of the team that nobody has
+  std::uint64_t session = 0;          // with ticket: of the Welcome before, to have the same seat
+  std::uint64_t ticket = 0;           // again; 0: a new one
 };
 
 // Server to client: accepted.
 struct Welcome {
-  std::uint64_t session = 0;       // names this run of the server
-  std::uint64_t token = 0;         // the client's secret for its input datagrams
-  std::uint16_t udp_port = 0;      // where the server takes input datagrams
-  std::uint32_t tick_us = 1000;    // 1..kMaxTickUs (wire/limits.h)
-  std::uint8_t layout = 0;         // foosball::Layout
+  std::uint64_t session = 0;     // names this run of the server
+  std::uint64_t token = 0;       // the client's secret: for its inputs, and the ticket of its seat
+  std::uint16_t udp_port = 0;    // where the server takes input datagrams
+  std::uint32_t tick_us = 1000;  // 1..kMaxTickUs (wire/limits.h)
+  std::uint8_t layout = 0;       // foosball::Layout
   std::uint8_t team = kWatchOnly;  // granted
   std::string multicast;           // group address, or empty for unicast to udp_port
   std::uint16_t multicast_port = 0;
+  std::uint8_t rods = 0;                     // granted, bit 0 at -x
+  std::uint8_t role = 0;                     // Role, granted
+  std::uint32_t client = 0;                  // the client's number, and its keys' id
+  std::array<std::byte, 32> input_key{};     // seals what the client sends
+  std::array<std::byte, 32> snapshot_key{};  // seals snapshots; with multicast, everybody's, id 0
+};
+
+// Client to server: these rods from now on. The answer is a Roster, or a Notice that says why not.
+struct Claim {
+  std::uint8_t rods = 0;  // bit 0 at -x; at least one
+};
+
+// One who has a place at the table.
+struct Seat {
+  std::uint32_t client = 0;
+  std::string name;
+  std::uint8_t team = kWatchOnly, rods = 0, role = 0;
+  bool away = false;  // was lost: the seat is kept for a while
+};
+// Server to client: all who have a place, after each change.
+struct Roster {
+  std::vector<Seat> seats;  // <= kMaxSeats
 };
 
 // Server to client: not accepted; the connection closes.
 struct Refusal {
-  enum class Code : std::uint8_t { version, layout, full, bad_message, team_taken };
+  enum class Code : std::uint8_t {
+    version,
+    layout,
+    full,
+    bad_message,
+    team_taken,
+    password,     // none was given, or the wrong one
+    not_allowed,  // by the host's options
+  };
   Code code = Code::version;
   std::string reason;  // one sentence that says what to do
 };
@@ -79,7 +128,8 @@ struct Bye {
   std::string reason;
 };
 
-using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye>;
+using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
+                                    Challenge, Claim, Roster>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

@@ -51,6 +51,10 @@ enum class WishKind : std::uint8_t {
   touch = 7,
 };
 
+// Knock::role, Welcome::role, Seat::role: what a client may do. A host may do everything, a player
+// what concerns its team, and vote; a watcher looks on.
+enum class Role : std::uint8_t { watcher = 0, player = 1, host = 2 };
+
 // RodSnapshot::status.
 enum class RodStatus : std::uint8_t { absent = 0, live = 1, held = 2 };
 

@@ -27,6 +27,7 @@ inline constexpr unsigned kModeCount = number(Mode::ladder) + 1;
 inline constexpr unsigned kFoulCount = number(Foul::serve) + 1;
 inline constexpr unsigned kSpinRuleCount = 3;  // foosball::SpinRule
 inline constexpr unsigned kRungCount = 5;      // foosball::kLadderRungs
+inline constexpr unsigned kRoleCount = number(Role::host) + 1;
 inline constexpr unsigned kMenOnRod = 5;
 inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
 inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;

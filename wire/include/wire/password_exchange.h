@@ -61,6 +61,9 @@ class PasswordExchange {
   ExchangeShare share_{};
 };
 
+// What the key is for, by the role asked for: a guest's password makes nobody host.
+const char* exchange_channel(bool host);
+
 StreamKeys stream_keys(const ExchangeSecret& secret);
 ExchangeSid random_sid();
 

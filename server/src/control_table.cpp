@@ -1,0 +1,397 @@
+// The part of ControlServer that decides who sits where, and who may what.
+#include <algorithm>
+#include <utility>
+
+#include "control_server.h"
+#include "os/clock.h"
+#include "os/socket_address.h"
+#include "socket.h"
+#include "wire/snapshot.h"
+#include "wish_rules.h"
+
+namespace server {
+namespace {
+
+using State = ControlConnection::State;
+
+// Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
+constexpr std::size_t kMostUntold = 256;
+// Topics of notices: of a seat that is kept, and of a vote, by what it is about.
+constexpr std::uint32_t kAwayTopic = 1'000'000;
+constexpr std::uint32_t kVoteTopic = 200;
+constexpr std::uint32_t kClaimTopic = 300;
+// More seats than the roster names would not be seen.
+constexpr std::size_t kMostSeats = wire::kMaxSeats;
+
+// A stranger's name, fit for a log.
+std::string printable(const std::string& name) {
+  std::string text = name.empty() ? "unnamed" : name;
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
+std::uint32_t vote_topic(const foosball::Command& wish) {
+  return kVoteTopic + 2 * static_cast<std::uint32_t>(wish.kind) + wish.value;
+}
+
+const char* what_for(const foosball::Command& wish) {
+  if (wish.kind == foosball::Command::Kind::restart) return "a restart";
+  return wish.value != 0 ? "a pause" : "the game to go on";
+}
+
+}  // namespace
+
+// --- who comes in
+// ---------------------------------------------------------------------------------
+
+void ControlServer::answer_knock(ControlConnection& connection, const wire::Knock& knock) {
+  const auto role = static_cast<wire::Role>(knock.role);
+  const auto& password =
+      role == wire::Role::host ? options_.access.host_password : options_.access.password;
+  if (knock.version != wire::kControlVersion) {
+    refuse(connection, wire::Refusal::Code::version,
+           "this server speaks control version " + std::to_string(wire::kControlVersion) +
+               ", you speak " + std::to_string(knock.version) + ": use the same release of both");
+    return;
+  }
+  if (!password) {
+    refuse(connection, wire::Refusal::Code::not_allowed,
+           role == wire::Role::host
+               ? "nobody is host from another machine here: start the server with "
+                 "--host-password-file"
+               : "nobody joins from another machine here: start the server with --password-file");
+    return;
+  }
+  if (!wrong_passwords_.may_try(connection.peer().network(), os::monotonic_us())) {
+    refuse(connection, wire::Refusal::Code::password,
+           "too many wrong passwords from your network: wait a minute");
+    return;
+  }
+  const wire::PasswordExchange exchange(wire::PasswordExchange::Side::server, *password,
+                                        wire::exchange_channel(role == wire::Role::host),
+                                        knock.sid);
+  const auto secret = exchange.secret(knock.share);
+  if (!secret) return reject(connection, "a share that is none: use the same release of both");
+  send(connection, wire::Challenge{exchange.share()});
+  connection.seal(wire::stream_keys(*secret));
+  connection.role = role;
+}
+
+void ControlServer::greet(ControlConnection& connection, const wire::Hello& hello) {
+  // Whoever gave up waiting has asked anew since, and must not find its place taken by its own
+  // ghost.
+  if (connection.peer_left()) {
+    count(Count::gave_up);
+    release(connection, Going::left);
+    return;
+  }
+  if (!connection.sealed() && trusted(connection)) connection.role = wire::Role::host;
+  if (hello.version != wire::kControlVersion) {
+    refuse(connection, wire::Refusal::Code::version,
+           "this server speaks control version " + std::to_string(wire::kControlVersion) +
+               ", you speak " + std::to_string(hello.version) + ": use the same release of both");
+  } else if (hello.snapshot_layout != wire::snapshot_layout_hash()) {
+    refuse(connection, wire::Refusal::Code::layout,
+           "your snapshots are laid out otherwise: use the same release of both");
+  } else if (!connection.sealed() && !trusted(connection)) {
+    refuse(connection, wire::Refusal::Code::password,
+           "from another machine a password is wanted: give --password-file");
+  } else if (untold_.size() > kMostUntold) {
+    refuse(connection, wire::Refusal::Code::full, "the server is overloaded: try again");
+  } else if (!resume(connection, hello)) {
+    RodSet rods = 0;
+    if (admit_to_table(connection, hello, rods)) join(connection, hello, rods);
+  }
+}
+
+// True when the client has its seat again. A ticket of a seat that is gone counts as none.
+bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hello) {
+  if (hello.session != options_.session) return false;
+  Seat* seat = seats_.find_ticket(hello.ticket);
+  if (seat == nullptr) return false;
+  // The connection before may look alive still: the cable was drawn, the address is another.
+  for (auto& other : connections_) {
+    if (other->client != seat->client) continue;
+    other->client = 0;
+    other->close_softly(0);
+  }
+  seat->peer = connection.peer();
+  const bool was_away = seat->away();
+  if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) return true;
+  seat->away_since_us = -1;
+  count(Count::resumed);
+  if (was_away) {
+    tell({wire::Notice::Level::cleared, kAwayTopic + seat->client, seat->name + " is back"});
+  }
+  say(LogLevel::info, seat->name + " at " + os::to_text(connection.peer()) + " is back");
+  return true;
+}
+
+// True when there is a place, and rods if it asks for some.
+bool ControlServer::admit_to_table(ControlConnection& connection, const wire::Hello& hello,
+                                   RodSet& rods) {
+  const auto& limits = options_.limits;
+  if (hello.team != wire::kWatchOnly && !options_.teams_open) {
+    refuse(connection, wire::Refusal::Code::team_taken, "a recording plays here: join to watch");
+    return false;
+  }
+  hear_out_leavers(hello.rods != 0 ? hello.rods : rods_of_team(options_.layout, hello.team));
+  const auto most = std::min(static_cast<std::size_t>(limits.connections), kMostSeats);
+  if (seats_.all().size() >= most) {
+    refuse(connection, wire::Refusal::Code::full,
+           "the server is full: try again when somebody has left");
+    return false;
+  }
+  const bool here = connection.peer().is_loopback();
+  if (seats_.from_network(connection.peer().network()) >=
+      (here ? limits.per_local_address : limits.per_address)) {
+    refuse(connection, wire::Refusal::Code::full,
+           "too many connections from your address: close one first");
+    return false;
+  }
+  if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
+  auto grant = seats_.grant(hello.team, hello.rods, 0, connection.role == wire::Role::host);
+  rods = grant.rods;
+  switch (grant.kind) {
+    case Seats::Grant::Kind::granted:
+      return true;
+    case Seats::Grant::Kind::taken:
+      refuse(connection, wire::Refusal::Code::team_taken, grant.sentence);
+      return false;
+    case Seats::Grant::Kind::other_team:
+      refuse(connection, wire::Refusal::Code::not_allowed, grant.sentence);
+      return false;
+    case Seats::Grant::Kind::none:
+      break;
+  }
+  reject(connection, grant.sentence);
+  return false;
+}
+
+// A client's end may be known and not yet read: it comes behind what the client still said, which
+// may be its good-bye.
+void ControlServer::hear_out_leavers(RodSet wanted) {
+  for (std::size_t i = 0; i < connections_.size(); ++i) {
+    ControlConnection& connection = *connections_[i];
+    const Seat* seat = seats_.find(connection.client);
+    if (seat == nullptr || (seat->rods & wanted) == 0) continue;
+    while (connection.state == State::joined && connection.peer_left()) serve(connection);
+  }
+}
+
+void ControlServer::join(ControlConnection& connection, const wire::Hello& hello, RodSet rods) {
+  Seat seat;
+  seat.client = ++last_client_;
+  seat.ticket = options_.random();
+  seat.name = printable(hello.name);
+  seat.team = hello.team;
+  seat.rods = rods;
+  seat.role = connection.role;
+  if (rods == 0 && seat.role == wire::Role::player) seat.role = wire::Role::watcher;
+  seat.peer = connection.peer();
+  const std::uint32_t client = seat.client;
+  if (!welcome(connection, seats_.add(seat), ControlEvent::Kind::joined, hello.udp_port)) {
+    seats_.remove(client);
+    return;
+  }
+  count(Count::joined);
+  say(LogLevel::info,
+      seat.name + " at " + os::to_text(connection.peer()) +
+          (rods == 0 ? " watches"
+                     : " plays team " + std::to_string(seat.team) + ", rods " + to_text(rods)));
+}
+
+wire::SealKey ControlServer::random_key() {
+  wire::SealKey key;
+  for (std::size_t i = 0; i < key.size(); i += 8) {
+    const std::uint64_t bits = options_.random();
+    for (std::size_t k = 0; k < 8; ++k) key[i + k] = static_cast<std::byte>(bits >> 8 * k);
+  }
+  return key;
+}
+
+// For its inputs; none for who only watches.
+os::FileDescriptor ControlServer::client_socket(const ControlConnection& connection,
+                                                const os::SocketAddress& listener) {
+  auto local = os::local_address(connection.fd());
+  local.set_port(options_.udp_port);
+  auto opened = open_client_socket(options_.udp, local, listener);
+  return opened ? std::move(*opened) : os::FileDescriptor();
+}
+
+// Says Welcome, and tells the tick first: who has it is in the very next tick. False, and refused,
+// if it cannot be.
+bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEvent::Kind kind,
+                            std::uint16_t udp_port) {
+  ControlEvent event;
+  event.kind = kind;
+  event.client = seat.client;
+  event.team = seat.team;
+  event.rods = seat.rods;
+  event.token = seat.ticket;
+  seat.name.copy(event.name.data(), event.name.size() - 1);
+  event.input_key = random_key();
+  event.snapshot_key = options_.multicast ? options_.group_key : random_key();
+  event.listener = connection.peer();
+  event.listener.set_port(udp_port);
+  event.heard_at = os::local_address(connection.fd());
+  if (seat.plays()) {
+    event.socket = client_socket(connection, event.listener);
+    if (!event.socket) {
+      refuse(connection, wire::Refusal::Code::full,
+             "the server has no socket left for you: try again");
+      return false;
+    }
+  }
+  wire::Welcome welcome;
+  welcome.session = options_.session;
+  welcome.token = seat.ticket;
+  welcome.udp_port = options_.udp_port;
+  welcome.layout = static_cast<std::uint8_t>(options_.layout);
+  welcome.team = seat.team;
+  welcome.rods = seat.rods;
+  welcome.role = number(seat.role);
+  welcome.client = seat.client;
+  welcome.input_key = event.input_key;
+  welcome.snapshot_key = event.snapshot_key;
+  if (options_.multicast) {
+    welcome.multicast = options_.multicast->address;
+    welcome.multicast_port = options_.multicast->port;
+  }
+  untold_.push_back(std::move(event));
+  tell_tick();
+  connection.state = State::joined;
+  connection.client = seat.client;
+  send(connection, welcome);
+  for (const auto& [topic, notice] : notices_) send(connection, notice);
+  roster_changed_ = true;
+  return true;
+}
+
+// --- who has which rods
+// ---------------------------------------------------------------------------
+
+void ControlServer::take_claim(ControlConnection& connection, const wire::Claim& claim) {
+  Seat* seat = seats_.find(connection.client);
+  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) return;
+  const auto grant =
+      seats_.grant(seat->team, claim.rods, seat->client, seat->role == wire::Role::host);
+  if (grant.kind != Seats::Grant::Kind::granted || !options_.teams_open) {
+    send(connection, wire::Notice{wire::Notice::Level::info, kClaimTopic,
+                                  options_.teams_open ? grant.sentence : "a recording plays here"});
+    return;
+  }
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::rods;
+  event.client = seat->client;
+  event.rods = seat->rods = grant.rods;
+  untold_.push_back(std::move(event));
+  tell_tick();
+  roster_changed_ = true;
+}
+
+void ControlServer::lose_seat(std::uint32_t client) {
+  Seat& seat = *seats_.find(client);
+  seat.away_since_us = os::monotonic_us();
+  count(Count::lost);
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::away;
+  event.client = client;
+  untold_.push_back(std::move(event));
+  tell_tick();
+  const auto seconds = std::to_string(options_.limits.seat_kept_us / 1'000'000);
+  tell({wire::Notice::Level::warning, kAwayTopic + client,
+        seat.name + " was lost: rods " + to_text(seat.rods) + " are kept for " + seconds + " s"});
+  say(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
+                             " was lost: its rods are kept for " + seconds + " s");
+  roster_changed_ = true;
+}
+
+void ControlServer::give_up_seat(std::uint32_t client) {
+  const Seat* seat = seats_.find(client);
+  if (seat == nullptr) return;
+  if (seat->away()) {
+    tell({wire::Notice::Level::cleared, kAwayTopic + client, seat->name + " has left"});
+  }
+  say(LogLevel::info, seat->name + " at " + os::to_text(seat->peer) + " left");
+  seats_.remove(client);
+  count(Count::left);
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::left;
+  event.client = client;
+  untold_.push_back(std::move(event));
+  tell_tick();
+  roster_changed_ = true;
+}
+
+void ControlServer::watch_seats() {
+  const std::int64_t now = os::monotonic_us();
+  for (bool again = true; again;) {
+    const auto over = std::ranges::find_if(seats_.all(), [&](const Seat& s) {
+      return s.away() && now - s.away_since_us >= options_.limits.seat_kept_us;
+    });
+    again = over != seats_.all().end();
+    if (again) give_up_seat(over->client);
+  }
+  foosball::Command wish{};
+  while (votes_.expire(now, wish)) {
+    tell({wire::Notice::Level::cleared, vote_topic(wish), "too few wanted it"});
+  }
+}
+
+void ControlServer::send_roster() {
+  const wire::Roster roster = seats_.roster();
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined) send(*connection, roster);
+  }
+}
+
+// --- what they ask for
+// ----------------------------------------------------------------------------
+
+void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& asked) {
+  if (!well_formed(asked)) {
+    reject(connection, "a wish that does not exist: use the same release of client and server");
+    return;
+  }
+  const Seat* seat = seats_.find(connection.client);
+  const foosball::Command wish{static_cast<foosball::Command::Kind>(asked.kind), asked.team,
+                               asked.value};
+  const Ruling ruling = seat != nullptr ? rule(seat->role, seat->team, wish) : Ruling::no;
+  const bool taken =
+      ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
+      (ruling == Ruling::yes ? hand_on(seat->client, wish) : put_to_vote(*seat, wish));
+  count(taken ? Count::wishes : Count::wishes_dropped);
+}
+
+bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish) {
+  if (untold_.size() > kMostUntold) return false;
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::wish;
+  event.client = client;
+  event.wish = wish;
+  untold_.push_back(std::move(event));
+  tell_tick();
+  return true;
+}
+
+// Those who are away do not vote, and nobody waits for them.
+bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
+  std::vector<std::uint32_t> voters;
+  for (const Seat& s : seats_.all()) {
+    if (s.plays() && !s.away()) voters.push_back(s.client);
+  }
+  const auto votes = votes_.cast(seat.client, wish, voters, os::monotonic_us());
+  if (votes.passed()) {
+    tell({wire::Notice::Level::cleared, vote_topic(wish), "agreed"});
+    return hand_on(seat.client, wish);
+  }
+  tell({wire::Notice::Level::info, vote_topic(wish),
+        seat.name + " asks for " + what_for(wish) + ": " + std::to_string(votes.votes) + " of " +
+            std::to_string(votes.needed) + " votes. Ask for it too to agree"});
+  return true;
+}
+
+}  // namespace server

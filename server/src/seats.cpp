@@ -1,0 +1,87 @@
+#include "seats.h"
+
+#include <algorithm>
+
+namespace server {
+
+RodSet rods_of_team(foosball::Layout layout, std::uint8_t team) {
+  RodSet rods = 0;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if (foosball::table_spec(layout).rods[rod].team == team) rods |= RodSet(1u << rod);
+  }
+  return rods;
+}
+
+std::string to_text(RodSet rods) {
+  std::vector<std::string> names;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if (rods >> rod & 1) names.push_back(std::to_string(rod + 1));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+Seat* Seats::find(std::uint32_t client) {
+  const auto it = std::ranges::find(seats_, client, &Seat::client);
+  return client != 0 && it != seats_.end() ? &*it : nullptr;
+}
+
+Seat* Seats::find_ticket(std::uint64_t ticket) {
+  const auto it = std::ranges::find(seats_, ticket, &Seat::ticket);
+  return ticket != 0 && it != seats_.end() ? &*it : nullptr;
+}
+
+void Seats::remove(std::uint32_t client) {
+  std::erase_if(seats_, [client](const Seat& s) { return s.client == client; });
+}
+
+int Seats::from_network(const std::string& network) const {
+  return static_cast<int>(
+      std::ranges::count_if(seats_, [&](const Seat& s) { return s.peer.network() == network; }));
+}
+
+RodSet Seats::taken_from(std::uint32_t client) const {
+  RodSet taken = 0;
+  for (const Seat& seat : seats_) {
+    if (seat.client != client) taken |= seat.rods;
+  }
+  return taken;
+}
+
+Seats::Grant Seats::grant(std::uint8_t team, RodSet wanted, std::uint32_t client,
+                          bool trusted) const {
+  const RodSet own = rods_of_team(layout_, team);
+  if (own == 0) return {Grant::Kind::none, 0, "choose a team to have rods of: 0 or 1"};
+  const RodSet taken = taken_from(client), left = RodSet(own & ~taken);
+  const std::string free =
+      left != 0 ? "free are rods " + to_text(left) : "ask for the other one, or join to watch";
+  if (wanted == 0) {
+    if (left != 0) return {Grant::Kind::granted, left, {}};
+    return {Grant::Kind::taken, 0, "team " + std::to_string(team) + " is taken: " + free};
+  }
+  if ((wanted & ~own) != 0 && !trusted && !mixed_teams_) {
+    return {Grant::Kind::other_team, 0,
+            "rods of both teams are for the table's own machine: ask for rods of team " +
+                std::to_string(team) + ", or start the server with --mixed-teams"};
+  }
+  if ((wanted & taken) != 0) {
+    return {Grant::Kind::taken, 0,
+            "rods " + to_text(RodSet(wanted & taken)) + " of team " + std::to_string(team) +
+                " are taken: " + free};
+  }
+  return {Grant::Kind::granted, wanted, {}};
+}
+
+wire::Roster Seats::roster() const {
+  wire::Roster roster;
+  for (const Seat& s : seats_) {
+    roster.seats.push_back({s.client, s.name, s.team, s.rods, number(s.role), s.away()});
+  }
+  return roster;
+}
+
+}  // namespace server

@@ -1,0 +1,68 @@
+// Who has a place at the table, and which rods. Several clients may share a team, each with rods of
+// its own. A player who was lost keeps the seat for a while and takes it again with its ticket.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "foosball/table.h"
+#include "os/socket_address.h"
+#include "wire/control.h"
+#include "wire/enums.h"
+
+namespace server {
+
+// Rods by bit, bit 0 the one at -x.
+using RodSet = std::uint8_t;
+static_assert(foosball::kRods == 8);
+RodSet rods_of_team(foosball::Layout layout, std::uint8_t team);  // none of wire::kWatchOnly
+std::string to_text(RodSet rods);                                 // "1, 2 and 4", counted from 1
+
+struct Seat {
+  std::uint32_t client = 0;  // counts up, never used twice
+  std::uint64_t ticket = 0;  // the client's secret
+  std::string name;
+  std::uint8_t team = wire::kWatchOnly;
+  RodSet rods = 0;
+  wire::Role role = wire::Role::watcher;
+  os::SocketAddress peer;
+  std::int64_t away_since_us = -1;  // not negative: lost then, and not back yet
+
+  bool away() const { return away_since_us >= 0; }
+  bool plays() const { return rods != 0; }
+};
+
+class Seats {
+ public:
+  // mixed_teams: a client from another machine, too, may have rods of both teams.
+  Seats(foosball::Layout layout, bool mixed_teams) : layout_(layout), mixed_teams_(mixed_teams) {}
+
+  const std::vector<Seat>& all() const { return seats_; }
+  Seat* find(std::uint32_t client);
+  Seat* find_ticket(std::uint64_t ticket);
+  Seat& add(Seat seat) { return seats_.emplace_back(std::move(seat)); }
+  void remove(std::uint32_t client);
+  int from_network(const std::string& network) const;
+
+  struct Grant {
+    enum class Kind : std::uint8_t { granted, taken, other_team, none };
+    Kind kind = Kind::none;
+    RodSet rods = 0;       // granted
+    std::string sentence;  // else why not, and what to do
+  };
+  // What somebody of this team may have of the rods wanted; 0: all of the team that are free.
+  // client: whose own rods count as free; 0: nobody's. trusted: at this machine, or the host.
+  Grant grant(std::uint8_t team, RodSet wanted, std::uint32_t client, bool trusted) const;
+
+  wire::Roster roster() const;
+
+ private:
+  RodSet taken_from(std::uint32_t client) const;
+
+  foosball::Layout layout_;
+  bool mixed_teams_;
+  std::vector<Seat> seats_;
+};
+
+}  // namespace server

@@ -1,0 +1,42 @@
+#include "votes.h"
+
+#include <algorithm>
+
+namespace server {
+namespace {
+
+// One question: whoever asks for it, of whichever team.
+bool same_question(const foosball::Command& a, const foosball::Command& b) {
+  return a.kind == b.kind && a.value == b.value;
+}
+
+}  // namespace
+
+Votes::Count Votes::cast(std::uint32_t client, const foosball::Command& wish,
+                         std::span<const std::uint32_t> voters, std::int64_t now_us) {
+  auto vote =
+      std::ranges::find_if(open_, [&](const Vote& v) { return same_question(v.wish, wish); });
+  if (vote == open_.end()) vote = open_.insert(vote, {wish, now_us + kOpenUs, {}});
+  if (std::ranges::find(vote->in_favour, client) == vote->in_favour.end()) {
+    vote->in_favour.push_back(client);
+  }
+  // Of those who have left since, no vote counts.
+  const auto here = [&](std::uint32_t who) {
+    return std::ranges::find(voters, who) != voters.end();
+  };
+  const Count count{static_cast<int>(std::ranges::count_if(vote->in_favour, here)),
+                    static_cast<int>(voters.size()) / 2 + 1};
+  if (count.passed()) open_.erase(vote);
+  return count;
+}
+
+bool Votes::expire(std::int64_t now_us, foosball::Command& wish) {
+  const auto over =
+      std::ranges::find_if(open_, [&](const Vote& v) { return now_us >= v.until_us; });
+  if (over == open_.end()) return false;
+  wish = over->wish;
+  open_.erase(over);
+  return true;
+}
+
+}  // namespace server

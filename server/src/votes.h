@@ -1,0 +1,36 @@
+// What concerns everybody at the table is done when more than half of the players want it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "foosball/match.h"
+
+namespace server {
+
+class Votes {
+ public:
+  static constexpr std::int64_t kOpenUs = 20'000'000;  // from the first vote on
+
+  struct Count {
+    int votes = 0, needed = 0;
+    bool passed() const { return votes >= needed; }
+  };
+  // voters: all who may vote now, the client among them. A vote that passed is over.
+  Count cast(std::uint32_t client, const foosball::Command& wish,
+             std::span<const std::uint32_t> voters, std::int64_t now_us);
+  // The next vote whose time is over, forgotten by this call. False: none.
+  bool expire(std::int64_t now_us, foosball::Command& wish);
+  bool any() const { return !open_.empty(); }
+
+ private:
+  struct Vote {
+    foosball::Command wish;
+    std::int64_t until_us;
+    std::vector<std::uint32_t> in_favour;
+  };
+  std::vector<Vote> open_;
+};
+
+}  // namespace server

@@ -1,0 +1,203 @@
+// Who gets which rods, what a vote needs, and what a crowd at the door can do.
+#include "seats.h"
+
+#include <gtest/gtest.h>
+
+#include "door.h"
+#include "rod_desk.h"
+#include "votes.h"
+
+namespace server {
+namespace {
+
+using Kind = Seats::Grant::Kind;
+constexpr auto kLayout = foosball::Layout::tournament;
+
+Seat seat_of(std::uint32_t client, std::uint8_t team, RodSet rods) {
+  Seat seat;
+  seat.client = client;
+  seat.ticket = 1000 + client;
+  seat.team = team;
+  seat.rods = rods;
+  return seat;
+}
+
+struct SeatsTest : testing::Test {
+  const RodSet all0 = rods_of_team(kLayout, 0), all1 = rods_of_team(kLayout, 1);
+  RodSet first_of(RodSet rods) const { return RodSet(rods & -rods); }
+  Seats seats{kLayout, false};
+};
+
+TEST_F(SeatsTest, TheTwoTeamsShareAllRods) {
+  EXPECT_EQ(all0 & all1, 0);
+  EXPECT_EQ(all0 | all1, 0xFF);
+  EXPECT_EQ(rods_of_team(kLayout, wire::kWatchOnly), 0);
+}
+
+TEST_F(SeatsTest, WithoutAWordOfRodsOneGetsAllThatAreFree) {
+  EXPECT_EQ(seats.grant(0, 0, 0, false).rods, all0);
+  const RodSet one = first_of(all0);
+  seats.add(seat_of(1, 0, one));
+  EXPECT_EQ(seats.grant(0, 0, 0, false).rods, all0 & ~one);
+  seats.add(seat_of(2, 0, RodSet(all0 & ~one)));
+  EXPECT_EQ(seats.grant(0, 0, 0, false).kind, Kind::taken);
+  EXPECT_EQ(seats.grant(1, 0, 0, false).rods, all1);
+}
+
+// Every way to part a team between two, and both teams between up to eight.
+TEST_F(SeatsTest, AnySplitIsPossibleAndNoRodIsEverTwoPlayers) {
+  for (unsigned part = 1; part < 256; ++part) {
+    const RodSet mine = RodSet(part & all0), theirs = RodSet(all0 & ~mine);
+    if (mine == 0 || theirs == 0) continue;
+    Seats table(kLayout, false);
+    ASSERT_EQ(table.grant(0, mine, 0, false).kind, Kind::granted);
+    table.add(seat_of(1, 0, mine));
+    for (unsigned wanted = 1; wanted < 256; ++wanted) {
+      const RodSet rods = RodSet(wanted & all0);
+      if (rods == 0) continue;
+      const auto grant = table.grant(0, rods, 0, false);
+      EXPECT_EQ(grant.kind == Kind::granted, (rods & mine) == 0);
+    }
+    EXPECT_EQ(table.grant(0, theirs, 0, false).rods, theirs);
+  }
+}
+
+TEST_F(SeatsTest, OnesOwnRodsMayBeChangedAndOthersAreNamed) {
+  const RodSet one = first_of(all0);
+  seats.add(seat_of(1, 0, one));
+  seats.add(seat_of(2, 0, first_of(RodSet(all0 & ~one))));
+  EXPECT_EQ(seats.grant(0, one, 1, false).kind, Kind::granted);
+  const auto refused = seats.grant(0, all0, 1, false);
+  EXPECT_EQ(refused.kind, Kind::taken);
+  EXPECT_NE(refused.sentence.find("free are rods"), std::string::npos) << refused.sentence;
+}
+
+TEST_F(SeatsTest, RodsOfBothTeamsAreForThisMachineUnlessTheHostSaysSo) {
+  EXPECT_EQ(seats.grant(0, 0xFF, 0, false).kind, Kind::other_team);
+  EXPECT_EQ(seats.grant(0, 0xFF, 0, true).rods, 0xFF);
+  EXPECT_EQ(Seats(kLayout, true).grant(0, 0xFF, 0, false).rods, 0xFF);
+  EXPECT_EQ(seats.grant(wire::kWatchOnly, 1, 0, true).kind, Kind::none);
+}
+
+TEST_F(SeatsTest, ATicketFindsItsSeatAndZeroNone) {
+  seats.add(seat_of(1, 0, all0));
+  EXPECT_EQ(seats.find_ticket(1001)->client, 1u);
+  EXPECT_EQ(seats.find_ticket(1002), nullptr);
+  EXPECT_EQ(seats.find_ticket(0), nullptr);
+  EXPECT_EQ(to_text(RodSet(0b1011)), "1, 2 and 4");
+}
+
+TEST(Votes, MoreThanHalfOfThoseWhoPlayNowDecide) {
+  const foosball::Command restart{foosball::Command::Kind::restart, 0, 0};
+  const std::vector<std::uint32_t> one{1}, two{1, 2}, three{1, 2, 3}, four{1, 2, 3, 4};
+  EXPECT_TRUE(Votes().cast(1, restart, one, 0).passed());
+  Votes votes;
+  EXPECT_FALSE(votes.cast(1, restart, two, 0).passed());
+  EXPECT_FALSE(votes.cast(1, restart, two, 1).passed()) << "one vote each";
+  EXPECT_TRUE(votes.cast(2, {foosball::Command::Kind::restart, 1, 0}, two, 2).passed());
+  EXPECT_FALSE(votes.any());
+  Votes of_four;
+  EXPECT_FALSE(of_four.cast(1, restart, four, 0).passed());
+  EXPECT_FALSE(of_four.cast(2, restart, four, 0).passed());
+  EXPECT_TRUE(of_four.cast(3, restart, four, 0).passed());
+  Votes left;
+  EXPECT_FALSE(left.cast(9, restart, three, 0).passed()) << "who has left does not count";
+  EXPECT_EQ(left.cast(1, restart, three, 0).votes, 1);
+}
+
+TEST(Votes, AQuestionIsForgottenInTime) {
+  Votes votes;
+  const foosball::Command pause{foosball::Command::Kind::pause, 0, 1};
+  const std::vector<std::uint32_t> two{1, 2};
+  votes.cast(1, pause, two, 1000);
+  foosball::Command over{};
+  EXPECT_FALSE(votes.expire(1000 + Votes::kOpenUs - 1, over));
+  EXPECT_TRUE(votes.expire(1000 + Votes::kOpenUs, over));
+  EXPECT_EQ(over.kind, pause.kind);
+  EXPECT_FALSE(votes.cast(2, pause, two, 2 + Votes::kOpenUs + 1000).passed());
+}
+
+TEST(WrongPasswords, AFewGuessesANetworkAndThenSlowly) {
+  WrongPasswords door;
+  std::int64_t now = 1'000'000'000;
+  int guesses = 0;
+  for (int second = 0; second < 1000; ++second, now += 1'000'000) {
+    for (int i = 0; i < 100 && door.may_try("a", now); ++i) door.note("a", now), ++guesses;
+  }
+  EXPECT_GE(guesses, 100);
+  EXPECT_LE(guesses, WrongPasswords::kAtOnce + 1000 / 10 + 1);
+  EXPECT_TRUE(door.may_try("b", now)) << "another network";
+}
+
+// --- the desk: rods of several clients and the computer
+
+struct DeskTest : testing::Test {
+  explicit DeskTest(bool fills = false)
+      : match(*foosball::Match::create({})), desk({}, {true, false}, fills, match.view()) {}
+  std::string drivers() {
+    desk.poll(now += 1000);
+    std::string text;
+    for (int rod = 0; rod < foosball::kRods; ++rod) {
+      text += "-kcCr"[static_cast<int>(desk.driver(rod))];
+    }
+    return text;
+  }
+  void hear(std::uint32_t client, RodSet rods) {
+    wire::InputDatagram in;
+    in.sequence = ++sequence;
+    for (auto& rod : in.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
+    RemoteSource* source = desk.seat(client, rods);
+    ASSERT_NE(source, nullptr);
+    ASSERT_TRUE(source->accept(in, now));
+  }
+  foosball::Match match;
+  RodDesk desk;
+  std::int64_t now = 0;
+  std::uint32_t sequence = 0;
+};
+struct FillingDesk : DeskTest {
+  FillingDesk() : DeskTest(true) {}
+};
+
+TEST_F(DeskTest, TheComputerHasATeamUntilAPersonHasARodOfIt) {
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const auto of = [&](RodSet rods, char who) {
+    std::string text(8, '-');
+    for (int rod = 0; rod < 8; ++rod) {
+      if (rods >> rod & 1) text[static_cast<std::size_t>(rod)] = who;
+    }
+    return text;
+  };
+  drivers();
+  EXPECT_EQ(drivers(), of(all0, 'C'));
+  const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
+  hear(1, one);
+  EXPECT_EQ(drivers(), of(one, 'c')) << "the others of the team stand";
+  hear(2, rest);
+  EXPECT_EQ(drivers(), of(all0, 'c'));
+  desk.seat(1, 0);
+  EXPECT_EQ(drivers(), of(rest, 'c'));
+  desk.seat(2, 0);
+  EXPECT_EQ(drivers(), of(all0, 'C'));
+}
+
+TEST_F(FillingDesk, TheComputerFillsATeamIfTheHostSaysSo) {
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet one = RodSet(all0 & -all0);
+  drivers();
+  hear(1, one);
+  const std::string who = drivers();
+  for (std::size_t rod = 0; rod < 8; ++rod) {
+    EXPECT_EQ(who[rod], (one >> rod & 1) ? 'c' : (all0 >> rod & 1) ? 'C' : '-');
+  }
+}
+
+TEST_F(DeskTest, EightClientsMayHaveARodEach) {
+  for (std::uint32_t client = 1; client <= 8; ++client) hear(client, RodSet(1u << (client - 1)));
+  EXPECT_EQ(drivers(), "cccccccc");
+  EXPECT_EQ(desk.seat(9, 0), nullptr);
+  EXPECT_EQ(desk.remote(9), nullptr);
+}
+
+}  // namespace
+}  // namespace server
