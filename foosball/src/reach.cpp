@@ -10,12 +10,6 @@ double squared(double x) {
   return x * x;
 }
 
-int man_nearest(const RodSpec& rod, double y) {
-  if (rod.men == 1) return 0;
-  const double man = y / rod.spacing + 0.5 * (rod.men - 1);
-  return static_cast<int>(std::lround(std::clamp(man, 0.0, rod.men - 1.0)));
-}
-
 }  // namespace
 
 bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball) {

@@ -30,29 +30,19 @@ constexpr double kDrop = 0.020;            // from here on a bounce is compared 
 constexpr double kNearGround = 0.010;      // a bounce between two ticks [m]
 constexpr std::uint64_t kNoRebound = 60;   // ticks on the ground after a bounce
 
-double squared(double x) {
-  return x * x;
-}
-
 // From a man's boxes to the ball's surface, or more than kTouchGap.
 bool touches(const TableSpec& table, int rod, int man, int character, const RodState& state,
              const vp::Vec3& ball) {
   const vp::SE3 T_table_man = man_pose(table, rod, man, state);
   const vp::Vec3 p = vp::inverse_times(T_table_man, ball);
-  const double limit = squared(table.ball_radius + kTouchGap);
+  const double limit = table.ball_radius + kTouchGap;
   for (const ManBox& box : man_boxes(character)) {
     const double x = std::max(0.0, std::fabs(p.x - box.centre.x) - box.half_extents.x);
     const double y = std::max(0.0, std::fabs(p.y - box.centre.y) - box.half_extents.y);
     const double z = std::max(0.0, std::fabs(p.z - box.centre.z) - box.half_extents.z);
-    if (x * x + y * y + z * z <= limit) return true;
+    if (x * x + y * y + z * z <= limit * limit) return true;
   }
   return false;
-}
-
-int man_nearest(const RodSpec& rod, double y) {
-  if (rod.men == 1) return 0;
-  const double man = y / rod.spacing + 0.5 * (rod.men - 1);
-  return static_cast<int>(std::lround(std::clamp(man, 0.0, rod.men - 1.0)));
 }
 
 int rod_nearest(const TableSpec& table, int team, double x) {

@@ -1,6 +1,9 @@
 // The figures of the table; each says where it comes from.
 #include "foosball/table.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace foosball {
 namespace {
 
@@ -124,6 +127,12 @@ const TableSpec& table_spec(Layout layout) {
 
 double man_offset(const RodSpec& rod, int man) {
   return (man - 0.5 * (rod.men - 1)) * rod.spacing;
+}
+
+int man_nearest(const RodSpec& rod, double y) {
+  if (rod.men == 1) return 0;
+  const double man = y / rod.spacing + 0.5 * (rod.men - 1);
+  return static_cast<int>(std::lround(std::clamp(man, 0.0, rod.men - 1.0)));
 }
 
 std::array<int, 4> rods_of_team(const TableSpec& table, int team) {

@@ -98,6 +98,9 @@ const TableSpec& table_spec(Layout layout);
 // y of a man on its rod at slide 0 [m]; 0 <= man < rod.men.
 double man_offset(const RodSpec& rod, int man);
 
+// The man whose place at slide 0 is nearest to y [m].
+int man_nearest(const RodSpec& rod, double y);
+
 // The rods of a team, from its goal outwards: index into TableSpec::rods by Line.
 std::array<int, 4> rods_of_team(const TableSpec& table, int team);
 
