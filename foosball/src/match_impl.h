@@ -11,6 +11,8 @@
 
 namespace foosball {
 
+inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
+
 inline std::uint64_t to_ticks(double seconds) {
   return static_cast<std::uint64_t>(std::lround(seconds / kTick));
 }

@@ -11,7 +11,6 @@
 namespace foosball {
 namespace {
 
-constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // So long men may fill every place for the ball before the other side has it.
 constexpr double kServeWait = 5.0;  // [s]
 // A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.

@@ -8,7 +8,6 @@
 namespace foosball {
 namespace {
 
-constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // A push in the same breath as the goal is the end of the shot, not a wish to go on.
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
 

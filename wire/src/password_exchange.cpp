@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "sodium_bytes.h"
+
 namespace wire {
 namespace {
 
@@ -16,12 +18,6 @@ using Bytes = std::vector<std::byte>;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
-}
-unsigned char* raw(std::byte* bytes) {
-  return reinterpret_cast<unsigned char*>(bytes);
-}
-const unsigned char* raw(const std::byte* bytes) {
-  return reinterpret_cast<const unsigned char*>(bytes);
 }
 
 // Appends the length, 7 bits a byte, lowest first, and the bytes: the draft's prepend_len.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sodium_bytes.h"
+
 namespace wire {
 namespace {
 
@@ -31,12 +33,6 @@ Nonce nonce_of(std::uint64_t counter) {
   Nonce nonce{};
   for (std::size_t i = 0; i < 8; ++i) nonce[4 + i] = static_cast<unsigned char>(counter >> 8 * i);
   return nonce;
-}
-const unsigned char* raw(const std::byte* bytes) {
-  return reinterpret_cast<const unsigned char*>(bytes);
-}
-unsigned char* raw(std::byte* bytes) {
-  return reinterpret_cast<unsigned char*>(bytes);
 }
 
 // libsodium chooses its code for this machine once; without it the portable one would run.
