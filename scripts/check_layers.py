@@ -56,6 +56,7 @@ LAYERS = {
     'cabinet/include/cabinet/rate_filter.h': 'hand',
     'firmware/': 'firmware',
     'results/': 'results',
+    'profile/': 'profile',
     'server/': 'server',
     'match/': 'match',
     'draw/': 'draw',
@@ -63,6 +64,7 @@ LAYERS = {
     'sandbox/': 'sandbox',
     'foosball/include/foosball/rod_motion.h': 'table',
     'foosball/include/foosball/table.h': 'table',
+    'foosball/include/foosball/tuning.h': 'table',
     'tools/': 'tools',
     'tools/video/': 'video',
     'benchmarks/': 'benchmarks',
@@ -94,7 +96,8 @@ MAY_USE = {
     'cabinet': {'os', 'device-frame', 'hand'},
     'firmware': {'device-frame'},
     'results': set(),
-    'server': {ENGINE_FACE, 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
+    'profile': {ENGINE_FACE, 'table'},
+    'server': {ENGINE_FACE, 'profile', 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
     'match': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     # The client draws from snapshots only: the table's geometry, never the match.

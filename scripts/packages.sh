@@ -17,6 +17,8 @@ build  flatbuffers-compiler  the control messages' code from their description
 build  libflatbuffers-dev    control messages
 build  libsodium-dev         encryption and authentication of what goes over a network
 build  libcli11-dev          command lines
+build  libtomlplusplus-dev   profiles that people edit
+build  libspdlog-dev         logs
 build  libfmt-dev            formatted text of the reports
 build  libexpected-dev       tl::expected, how errors are returned
 build  liburdfdom-dev        robots' descriptions, URDF: the engine's optional part that reads them

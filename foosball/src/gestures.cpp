@@ -10,7 +10,7 @@ namespace {
 constexpr double kPushStroke = 0.035;  // [m]
 // A slower hand is settling, not pushing.
 constexpr double kPushRate = 0.08;  // [m/s]
-// Three characters, three to a revolution: what a wrist turns without changing its grip.
+// Three choices to a revolution: what a wrist turns without changing its grip.
 constexpr double kTurn = 2.0 * vp::kPi / 3.0;
 
 }  // namespace

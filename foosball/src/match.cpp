@@ -30,7 +30,7 @@ bool plausible(const Rules& rules) {
 
 bool plausible(const MatchDesc& desc) {
   return static_cast<int>(desc.layout) < kLayouts && static_cast<int>(desc.mode) < kModes &&
-         plausible(desc.rules);
+         plausible(desc.rules) && in_range(desc.tuning);
 }
 
 bool usable(const RodTarget& target) {
@@ -49,7 +49,8 @@ MatchDesc challenge_of(std::uint32_t date, Layout layout) {
 }
 
 Match::Impl::Impl(const MatchDesc& d)
-    : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built, state.first)) {
+    : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built, state.first, d.tuning)) {
+  state.tuning = d.tuning;
   state.random = Random(d.seed).state();
   state.feed_rod = rod_of(0, Line::attack);
   events.reserve(kMaxEventsPerStep);
@@ -62,6 +63,7 @@ Match::Impl::Impl(const MatchDesc& d)
 void Match::Impl::step(const TickInput& input) {
   events.clear();
   for (const Command& command : input.commands) apply(command);
+  if (!(world->tuning() == state.tuning)) rebuild_world();
   watch_idle(input.rods, !input.commands.empty());
   if (!state.paused) {
     drive_rods(input.rods);
@@ -108,7 +110,17 @@ void Match::Impl::apply(const Command& command) {
     case Command::Kind::touch:
       if (state.attract) enter(Screen::logo);
       break;
+    case Command::Kind::tune:
+      tune(command.value, command.amount);
+      break;
   }
+}
+
+// Takes effect in this tick: the world is built anew.
+void Match::Impl::tune(int index, double value) {
+  if (index >= kTuningValues) return;
+  const TuningField& field = kTuningFields[static_cast<std::size_t>(index)];
+  if (in_range(field, value)) state.tuning.*field.value = value;
 }
 
 // A rod that no hand moves stays where it was when the hand left it.
@@ -161,6 +173,7 @@ void Match::Impl::refresh_view() {
   view.character = state.character;
   view.confirmed = state.confirmed;
   view.screen_seconds = seconds(state.screen_ticks);
+  view.tuning = state.tuning;
   view.events_dropped = events_dropped;
   view.ball_in_play = state.ball_in_play;
   view.ball_visible = !state.ball_parked;

@@ -78,6 +78,7 @@ struct Match::Impl {
   void go_on_after_end();
   int person() const;
   int dice(int n);
+  void tune(int index, double value);
   void rebuild_world();
   void reset_gestures();
 

@@ -6,7 +6,6 @@
 
 #include "foosball/reach.h"
 #include "match_impl.h"
-#include "tuning.h"
 
 namespace foosball {
 namespace {
@@ -54,7 +53,7 @@ void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
 void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
   // A ball pressed against something has contacts without end, and none of them is a hit.
   const vp::Vec3 change = world->ball().velocity - velocity_before;
-  const bool felt = table().ball_mass * vp::norm(change) >= kLeastHit;
+  const bool felt = state.tuning.ball_mass * vp::norm(change) >= kLeastHit;
   for (const vp::ContactEvent& event : world->contacts()) {
     const BallContact contact = ball_contact(event);
     const Tag& other = contact.other;
@@ -304,7 +303,8 @@ bool Match::Impl::find_place(int rod_index, int man, vp::Vec3& place) {
   // Then further off, then beside.
   constexpr double kFurther[] = {0.0, 0.008, 0.016};
   constexpr double kBeside[] = {0.0, 0.03, -0.03, 0.06, -0.06};
-  const double first = rod.line == Line::midfield ? tuning::kServeAhead : tuning::kRestartAhead;
+  const double first =
+      rod.line == Line::midfield ? state.tuning.serve_ahead : state.tuning.restart_ahead;
   const double forward = attack_sign(rod.team);
   const double slide = world->rod(rod_index).slide;
   for (const double beside : kBeside) {

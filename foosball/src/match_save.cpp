@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x34'30'4d'42'46'53;  // "SFBM04"
+constexpr std::uint64_t kMagic = 0x35'30'4d'42'46'53;  // "SFBM05"
 
 template <class Archive, class R>
 void visit_rules(Archive& archive, R& rules) {
@@ -78,10 +78,11 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
     return refuse(
         "The saved match has another table, mode or other rules; create the match with those.");
   }
-  if (saved.built == state.built && saved.first == state.first) {
+  if (saved.built == state.built && saved.first == state.first && saved.tuning == world->tuning()) {
     if (auto result = world->restore(reader.rest()); !result) return result;
   } else {
-    auto rebuilt = std::make_unique<TableWorld>(desc.layout, saved.built, saved.first);
+    auto rebuilt =
+        std::make_unique<TableWorld>(desc.layout, saved.built, saved.first, saved.tuning);
     if (auto result = rebuilt->restore(reader.rest()); !result) return result;
     world = std::move(rebuilt);
   }

@@ -184,6 +184,7 @@ void Match::Impl::start_match() {
   state.last_server = server;
   state.first = server;
   state.last_shot = state.last_goal = {};
+  state.built = state.character;
   rebuild_world();
   start_play(server);
 }
@@ -216,6 +217,7 @@ void Match::Impl::new_set() {
     std::swap(next.sets[0], next.sets[1]);
     std::swap(next.jars[0], next.jars[1]);
     std::swap(state.character[0], state.character[1]);
+    state.built = state.character;
     rebuild_world();
   }
   state.tally = next;
@@ -235,10 +237,10 @@ void Match::Impl::go_on_after_end() {
   enter(Screen::selection);
 }
 
-// The men take on the chosen characters; the rods stay as they are in the hands that hold them.
+// As state.built, first and tuning say. Rods and ball stay as they are.
 void Match::Impl::rebuild_world() {
-  state.built = state.character;
-  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
+  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first, state.tuning);
+  rebuilt->set_ball(world->ball());
   for (int rod = 0; rod < kRods; ++rod) rebuilt->set_rod(rod, world->rod(rod));
   world = std::move(rebuilt);
 }

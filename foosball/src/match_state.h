@@ -115,6 +115,7 @@ struct MatchState {
   std::array<bool, kRods> beyond{};  // the hand has pushed the rod against its stop
 
   std::uint64_t random = 0;
+  Tuning tuning;
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self);
@@ -166,6 +167,9 @@ void MatchState::visit(Archive& archive, Self& self) {
     archive.flag(self.beyond[rod]);
   }
   archive.count(self.random);
+  visit_fields(self.tuning, [&](const TuningField& field, auto& value) {
+    archive.real(value, field.least, field.most);
+  });
 }
 
 template <class Archive, class Self>

@@ -1,6 +1,5 @@
 #include "referee.h"
 
-#include <bit>
 #include <cmath>
 
 namespace foosball {
@@ -71,6 +70,19 @@ int rod_after_possession(const TableSpec& table, int team, Line line) {
   return rods_of_team(table, opponent(team))[static_cast<std::size_t>(to)];
 }
 
+// Where the reaches of two rods overlap, the ball is the nearer one's.
+int nearest_in_reach(const TableSpec& table, std::uint8_t rods_in_reach, double ball_x) {
+  int nearest = kRods;
+  double least = table.length;
+  for (int rod = 0; rod < kRods; ++rod) {
+    const double distance = std::fabs(table.rods[rod].x - ball_x);
+    if ((rods_in_reach >> rod & 1) == 0 || distance >= least) continue;
+    least = distance;
+    nearest = rod;
+  }
+  return nearest;
+}
+
 void BallWatch::reset(const vp::Vec3& ball) {
   *this = {};
   anchor_ = ball;
@@ -80,7 +92,7 @@ BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
                                      const Sight& sight) {
   in_reach_ = sight.rods_in_reach != 0;
   if (in_reach_) {
-    const int rod = std::countr_zero(sight.rods_in_reach);
+    const int rod = nearest_in_reach(table, sight.rods_in_reach, sight.ball.x);
     const bool advanced =
         rod_ == kRods || left_ || place_of(table.rods[rod]) != place_of(table.rods[rod_]);
     if (advanced) ticks_possessed_ = 0;

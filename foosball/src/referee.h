@@ -54,6 +54,9 @@ class BallTouches {
   std::array<std::uint64_t, kManParts> parts_{};  // bit rod * 5 + man
 };
 
+// Of the rods in reach (bits, one at least) the one whose axis is nearest to the ball.
+int nearest_in_reach(const TableSpec& table, std::uint8_t rods_in_reach, double ball_x);
+
 // Watches for a ball that nobody can reach, that nobody plays on, or that somebody holds too long.
 class BallWatch {
  public:

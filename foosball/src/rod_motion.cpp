@@ -7,8 +7,6 @@
 
 #include <algorithm>
 
-#include "tuning.h"
-
 namespace foosball {
 namespace {
 
@@ -16,9 +14,9 @@ namespace {
 // The error is cut so that the speed it asks for stays within the bound: at rest
 // error * stiffness = speed * damping.
 AxisDrive drive_towards(double target, double target_rate, double now, double inertia,
-                        double max_force, double max_rate) {
-  const double stiffness = inertia * tuning::kDriveOmega * tuning::kDriveOmega;
-  const double damping = 2.0 * inertia * tuning::kDriveOmega;
+                        double max_force, double max_rate, double frequency) {
+  const double stiffness = inertia * frequency * frequency;
+  const double damping = 2.0 * inertia * frequency;
   const double furthest = max_rate * damping / stiffness;
   const double rate = std::clamp(target_rate, -max_rate, max_rate);
   const double error = target + rate * kTick - now;
@@ -41,16 +39,24 @@ double step_rate(const AxisDrive& drive, double mass, double position, double ra
 
 }  // namespace
 
-RodDrive rod_drive(const RodSpec& rod, const RodState& now, const RodTarget& target) {
+HandLimits hand_limits(int character, const Tuning& tuning) {
+  const CharacterSpec& c = character_spec(character);
+  return {tuning.hand_force, tuning.hand_torque, tuning.hand_frequency,
+          c.slide_speed * tuning.slide_rate, c.turn_speed * tuning.turn_rate};
+}
+
+RodDrive rod_drive(const RodSpec& rod, const HandLimits& limits, const RodState& now,
+                   const RodTarget& target) {
   const double slide = std::clamp(target.slide, -rod.slide_limit, rod.slide_limit);
   const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
   return {drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide, kSlideInertia,
-                        tuning::kHandForce, tuning::kMaxSlideRate),
-          drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia,
-                        tuning::kHandTorque, tuning::kMaxAngleRate)};
+                        limits.force, limits.slide_rate, limits.frequency),
+          drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia, limits.torque,
+                        limits.angle_rate, limits.frequency)};
 }
 
-RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character) {
+RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
+                       const Tuning& tuning) {
   const CharacterSpec& c = character_spec(character);
   const double men = rod.men * c.mass;
   // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
@@ -58,12 +64,13 @@ RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character
   const double mass = table.rod_mass + men;
   const double axial =
       0.5 * table.rod_mass * table.rod_radius * table.rod_radius + men * gyration * gyration;
-  return {mass, mass + tuning::kHandMass, axial, axial + tuning::kHandInertia};
+  return {hand_limits(character, tuning), mass, mass + tuning.hand_mass, axial,
+          axial + tuning.hand_inertia};
 }
 
 RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
                   const RodTarget& target) {
-  const RodDrive drive = rod_drive(rod, now, target);
+  const RodDrive drive = rod_drive(rod, inertia.limits, now, target);
   RodState next;
   next.slide_rate =
       std::clamp(step_rate(drive.slide, inertia.slide, now.slide, now.slide_rate),

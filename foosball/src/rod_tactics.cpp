@@ -84,7 +84,7 @@ void RodTactics::play(const TableSpec& table, const Sighting& now, const Temper&
       strike(temper);
       break;
     case Stance::recover:
-      recover(temper);
+      recover(table, now, temper);
       break;
   }
   if (stance_ != before) since_ = 0.0;
@@ -107,7 +107,31 @@ void RodTactics::watch(const TableSpec& table, const Sighting& now, const Temper
   }
   const bool behind = now.ball.x < x(table) + kStrikeFrom;
   goal_slide_ = slide_for(table, behind ? now.ball.y : guard_y(table, now));
-  swing_.move(level() + (behind ? kLifted : 0.0), temper.swing);
+  swing_to(table, now, level() + (behind ? kLifted : 0.0), temper.swing);
+}
+
+// A foot that comes down from before the ball would drive it towards its own goal: where the ball
+// is in the way, it comes down so slowly that it only lays itself against it.
+void RodTactics::swing_to(const TableSpec& table, const Sighting& now, double goal,
+                          const AxisLimits& limits) {
+  constexpr double kGently = 2.0;  // [rad/s], of the foot 0.15 m/s
+  const bool comes_back = swing_.position() > goal + 0.05;
+  const bool gently = comes_back && ball_before_foot(table, now);
+  swing_.move(goal, {gently ? kGently : limits.rate, limits.acceleration});
+}
+
+bool RodTactics::ball_before_foot(const TableSpec& table, const Sighting& now) const {
+  const double ahead = now.ball.x - x(table);
+  const double reach = table.rod_height + table.ball_radius;
+  if (!now.ball_in_play || ahead < -table.ball_radius || ahead > reach) return false;
+  if (now.ball.z > 4.0 * table.ball_radius) return false;
+  constexpr double kAir = 0.015;  // [m] for what the delay of sight leaves unknown
+  const RodSpec& rod = spec(table);
+  for (int man = 0; man < rod.men; ++man) {
+    const double beside = now.ball.y - man_offset(rod, man) - slide_.position();
+    if (std::fabs(beside) < kHalfFoot + table.ball_radius + kAir) return true;
+  }
+  return false;
 }
 
 // Where a man should stand: in the path of a ball that comes, else between ball and goal (defence)
@@ -231,8 +255,8 @@ void RodTactics::strike(const Temper& temper) {
   if (swing_.position() > level() + kThrough) stance_ = Stance::recover;
 }
 
-void RodTactics::recover(const Temper& temper) {
-  swing_.move(level(), temper.strike);
+void RodTactics::recover(const TableSpec& table, const Sighting& now, const Temper& temper) {
+  swing_to(table, now, level(), temper.strike);
   if (std::fabs(swing_.position() - level()) < 0.1) stance_ = Stance::watch;
 }
 

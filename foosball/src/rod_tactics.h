@@ -38,7 +38,9 @@ class RodTactics {
   void watch(const TableSpec& table, const Sighting& now, const Temper& temper, Random& random);
   void wind_up(const TableSpec& table, const Sighting& now, const Temper& temper);
   void strike(const Temper& temper);
-  void recover(const Temper& temper);
+  void recover(const TableSpec& table, const Sighting& now, const Temper& temper);
+  void swing_to(const TableSpec& table, const Sighting& now, double goal, const AxisLimits& limits);
+  bool ball_before_foot(const TableSpec& table, const Sighting& now) const;
 
   bool can_strike(const TableSpec& table, const Sighting& now) const;
   void take_aim(const TableSpec& table, const Sighting& now, const Temper& temper, Random& random);

@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-// Rods 150 mm apart, 12 mm under the foot of the average man (notes on a German table).
+// Rods 150 mm apart, 11 mm under the foot of the average man (notes on a German table).
 constexpr double kRodPitch = 0.150;
 constexpr double kRodHeight = 0.084;
 constexpr double kLength = 1.200;
@@ -81,12 +81,106 @@ constexpr TableSpec describe(Layout layout) {
 constexpr std::array<TableSpec, kLayouts> kTables{describe(Layout::paper),
                                                   describe(Layout::tournament)};
 
-// Every foot corner stays within 75 mm of the axis, which is what the end wall leaves a goalie; no
-// head reaches below the top of the ball when the man hangs head down, so that none pins it there.
+// Every foot corner stays within 75 mm of the axis, which is what the end wall and the next rod's
+// men leave; no head reaches below the top of the ball when the man hangs head down, so that none
+// pins it there.
 constexpr std::array<CharacterSpec, kCharacters> kCharacterSpecs{{
-    {"tall and thin", 0.020, 0.020, 0.024, 0.020, 0.046, 0.0735, 0.060, 0.60, 0.82},
-    {"average", 0.024, 0.020, 0.032, 0.022, 0.044, 0.0720, 0.070, 0.60, 0.72},
-    {"small and fat", 0.030, 0.022, 0.044, 0.030, 0.038, 0.0700, 0.085, 0.70, 0.58},
+    {"tall and thin",
+     "hard, straight shots; lets more through",
+     0.020,
+     0.018,
+     0.024,
+     0.020,
+     0.040,
+     0.0735,
+     0.060,
+     0.60,
+     0.80,
+     1.0,
+     1.0,
+     1.0,
+     {{236, 206, 178}, {250, 214, 70}, Headgear::antenna, Face::calm},
+     {330.0, 0.2}},
+    {"average",
+     "a bit of everything",
+     0.024,
+     0.020,
+     0.032,
+     0.022,
+     0.040,
+     0.0730,
+     0.070,
+     0.60,
+     0.72,
+     1.0,
+     1.0,
+     1.0,
+     {{214, 170, 132}, {230, 230, 235}, Headgear::cap, Face::happy},
+     {240.0, 0.4}},
+    {"small and fat",
+     "fills the goal; shoots softly",
+     0.030,
+     0.022,
+     0.044,
+     0.030,
+     0.036,
+     0.0725,
+     0.085,
+     0.70,
+     0.58,
+     1.0,
+     1.0,
+     1.0,
+     {{196, 146, 110}, {120, 220, 130}, Headgear::helmet, Face::sleepy},
+     {140.0, 0.7}},
+    {"spinner",
+     "grips the ball and curls it; weak straight on",
+     0.026,
+     0.020,
+     0.030,
+     0.024,
+     0.040,
+     0.0730,
+     0.065,
+     1.60,
+     0.66,
+     1.0,
+     1.0,
+     1.0,
+     {{150, 200, 190}, {190, 120, 240}, Headgear::visor, Face::sly},
+     {280.0, 0.9}},
+    {"heavy foot",
+     "an anvil on the ball; slow to slide",
+     0.028,
+     0.024,
+     0.034,
+     0.028,
+     0.038,
+     0.0725,
+     0.140,
+     0.55,
+     0.70,
+     0.6,
+     1.0,
+     1.0,
+     {{176, 132, 104}, {235, 110, 50}, Headgear::crown, Face::fierce},
+     {100.0, 0.8}},
+    {"jumper",
+     "sends the ball high over rows; hard to aim",
+     0.024,
+     0.020,
+     0.032,
+     0.022,
+     0.040,
+     0.0730,
+     0.060,
+     0.60,
+     0.76,
+     1.8,
+     1.0,
+     1.0,
+     {{170, 190, 240}, {90, 220, 240}, Headgear::none, Face::robot},
+     {420.0, 0.6}},
 }};
 
 using ManBoxes = std::array<ManBox, kManParts>;
@@ -96,7 +190,9 @@ ManBox slab(ManBox::Part part, double width, double depth, double bottom, double
   return {{0.0, 0.0, 0.5 * (bottom + top)}, {0.5 * depth, 0.5 * width, 0.5 * (top - bottom)}, part};
 }
 
-ManBoxes boxes_of(const CharacterSpec& c) {
+}  // namespace
+
+std::array<ManBox, kManParts> boxes_of(const CharacterSpec& c) {
   constexpr double kFootHeight = 0.024;  // its top is above a ball on the field: no edge to climb
   constexpr double kHip = -0.028;
   constexpr double kShoulder = 0.020;
@@ -109,16 +205,34 @@ ManBoxes boxes_of(const CharacterSpec& c) {
            slab(ManBox::Part::head, 0.016, 0.016, kShoulder, c.head_height)}};
 }
 
-}  // namespace
-
 const CharacterSpec& character_spec(int character) {
   return kCharacterSpecs.at(character);
 }
 
 std::span<const ManBox> man_boxes(int character) {
-  static const std::array<ManBoxes, kCharacters> boxes{
-      boxes_of(kCharacterSpecs[0]), boxes_of(kCharacterSpecs[1]), boxes_of(kCharacterSpecs[2])};
+  static const auto boxes = [] {
+    std::array<ManBoxes, kCharacters> all;
+    for (int c = 0; c < kCharacters; ++c) all[c] = boxes_of(kCharacterSpecs[c]);
+    return all;
+  }();
   return boxes.at(character);
+}
+
+// The foot's lower front edge leads as the man swings; what counts is where the ball's surface is
+// at the height of that edge.
+double field_reach(const TableSpec& table, int character) {
+  const CharacterSpec& c = character_spec(character);
+  const double r = table.ball_radius, half_depth = 0.5 * c.foot_depth;
+  double reach = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double sine = 0.001 * i, cosine = std::sqrt(1.0 - sine * sine);
+    const double edge = table.rod_height - c.foot_reach * cosine + half_depth * sine;  // height
+    if (edge >= 2.0 * r) continue;
+    const double above = std::max(0.0, edge - r);  // the ball's centre
+    reach = std::max(reach, c.foot_reach * sine + half_depth * cosine +
+                                std::sqrt(std::max(0.0, r * r - above * above)));
+  }
+  return reach;
 }
 
 const TableSpec& table_spec(Layout layout) {

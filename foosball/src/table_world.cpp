@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tuning.h"
 #include "vphysics/assert.h"
 
 namespace foosball {
@@ -18,6 +17,9 @@ using vp::Vec3;
 constexpr std::uint32_t kBallCategory = 1;
 constexpr std::uint32_t kTableCategory = 2;
 constexpr std::uint32_t kManCategory = 4;
+
+// The goal swallows: a scored ball stays in the box, so that everyone sees it lie there.
+constexpr vp::Material kGoalBox{0.60, 0.0, 0.010};
 
 // Thick enough that no depth of penetration ever has its way out on the far side.
 constexpr double kWallThickness = 0.20;  // [m]
@@ -48,18 +50,19 @@ vp::Inertia link_inertia(const RodInertia& rod) {
 // Two joints: the slide along the rod, which has no mass of its own, and the turn about it. At each
 // the hand's inertia is felt.
 constexpr int kSlide = 0, kTurn = 1;  // links
-vp::Model rod_model(const TableSpec& table, const RodSpec& rod, int character) {
+vp::Model rod_model(const TableSpec& table, const RodSpec& rod, int character,
+                    const Tuning& tuning) {
   vp::ModelBuilder builder;
   vp::LinkSpec slide;
   slide.joint = vp::PrismaticJoint{};
   slide.T_parent_joint = SE3(kRodAxes, Vec3{rod.x, 0.0, table.rod_height});
-  slide.armature = tuning::kHandMass;
+  slide.armature = tuning.hand_mass;
   slide.forces = {{.lower = -rod.slide_limit, .upper = rod.slide_limit}};
   vp::LinkSpec turn;
   turn.parent = must(builder.add(slide));
   turn.joint = vp::RevoluteJoint{};
-  turn.inertia = link_inertia(rod_inertia(table, rod, character));
-  turn.armature = tuning::kHandInertia;
+  turn.inertia = link_inertia(rod_inertia(table, rod, character, tuning));
+  turn.armature = tuning.hand_inertia;
   must(builder.add(turn));
   return builder.build().value();
 }
@@ -82,10 +85,13 @@ Tag decode_tag(std::uint64_t user_data) {
           static_cast<std::uint8_t>(user_data >> 16), static_cast<std::uint8_t>(user_data >> 24)};
 }
 
-TableWorld::TableWorld(Layout layout, const Characters& characters, int first)
+TableWorld::TableWorld(Layout layout, const Characters& characters, int first, const Tuning& tuning)
     : table_(table_spec(layout)),
       first_(first),
-      world_({.gravity = {0.0, 0.0, -tuning::kGravity}}) {
+      tuning_(tuning),
+      characters_(characters),
+      world_(
+          {.gravity = {0.0, 0.0, -tuning.gravity}, .restitution_threshold = tuning.still_speed}) {
   vp::BodyDesc fixed;
   fixed.motion = vp::Motion::fixed;
   fixed_ = must(world_.create_body(fixed));
@@ -112,15 +118,22 @@ void TableWorld::add_fixed(const vp::Shape& shape, const SE3& T_world_shape,
   must(world_.add_collider(fixed_, desc));
 }
 
+vp::Material TableWorld::field() const {
+  return {tuning_.field_friction, 0.0,
+          tuning_.rolling_resistance};  // bounce: see exaggerate_bounce
+}
+vp::Material TableWorld::wall() const {
+  return {tuning_.wall_friction, tuning_.wall_restitution, 0.0};
+}
+
 void TableWorld::add_field_and_walls() {
-  add_fixed(vp::HalfSpace{}, SE3{}, tuning::kField, Tag::What::field);
+  add_fixed(vp::HalfSpace{}, SE3{}, field(), Tag::What::field);
   const double t = 0.5 * kWallThickness;
   const double h = 0.5 * table_.wall_height;
   const double beyond = table_.goal_depth + kWallThickness;
   const Box side{{0.5 * table_.length + beyond, t, h}};
   for (const double s : ends()) {
-    add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), tuning::kWall,
-              Tag::What::wall);
+    add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), wall(), Tag::What::wall);
   }
   for (const double s : ends()) add_goal(s);
 }
@@ -134,23 +147,21 @@ void TableWorld::add_goal(double side) {
   const double flank = 0.5 * (0.5 * table_.width - post);
   const double h = 0.5 * table_.wall_height;
   for (const double s : ends()) {
-    add_fixed(Box{{depth, flank, h}}, SE3(Vec3{x, s * (post + flank), h}), tuning::kWall,
-              Tag::What::wall);
+    add_fixed(Box{{depth, flank, h}}, SE3(Vec3{x, s * (post + flank), h}), wall(), Tag::What::wall);
   }
   const double lintel = 0.5 * (table_.wall_height - table_.goal_height);
-  add_fixed(Box{{depth, post, lintel}}, SE3(Vec3{x, 0.0, table_.goal_height + lintel}),
-            tuning::kWall, Tag::What::wall);
+  add_fixed(Box{{depth, post, lintel}}, SE3(Vec3{x, 0.0, table_.goal_height + lintel}), wall(),
+            Tag::What::wall);
   const double t = 0.5 * kWallThickness;
   add_fixed(Box{{t, 0.5 * table_.width, h}},
-            SE3(Vec3{side * (front + table_.goal_depth + t), 0.0, h}), tuning::kGoalBox,
-            Tag::What::wall);
+            SE3(Vec3{side * (front + table_.goal_depth + t), 0.0, h}), kGoalBox, Tag::What::wall);
   // A mat that stops a scored ball. It begins where the ball has wholly passed the line, so that no
   // rolling ball is turned by its edge before the goal counts.
   const double mat = 0.5 * table_.goal_depth - table_.ball_radius;
   constexpr double kMatHeight = 0.0005;
   add_fixed(Box{{mat, post, 0.01}},
-            SE3(Vec3{side * (front + table_.goal_depth - mat), 0.0, kMatHeight - 0.01}),
-            tuning::kGoalBox, Tag::What::field);
+            SE3(Vec3{side * (front + table_.goal_depth - mat), 0.0, kMatHeight - 0.01}), kGoalBox,
+            Tag::What::field);
 }
 
 // Each corner is the top face of a slab: the plane through two points of the field's edges, a leg
@@ -170,14 +181,14 @@ void TableWorld::add_corners() {
       const Vec3 y = cross(normal, along);
       const Vec3 centre = foot + 0.5 * rise - half_thickness * normal;
       add_fixed(Box{{0.5 * leg * std::sqrt(2.0), 0.5 * vp::norm(rise), half_thickness}},
-                SE3(Mat3{along, y, normal}, centre), tuning::kField, Tag::What::field);
+                SE3(Mat3{along, y, normal}, centre), field(), Tag::What::field);
     }
   }
 }
 
 void TableWorld::add_ball() {
   const double r = table_.ball_radius;
-  const double m = table_.ball_mass;
+  const double m = tuning_.ball_mass;
   const double i = 0.4 * m * r * r;
   vp::BodyDesc desc;
   desc.inertia = vp::Inertia(m, Vec3{i, i, i});
@@ -185,7 +196,7 @@ void TableWorld::add_ball() {
   ball_ = must(world_.create_body(desc));
   vp::ColliderDesc shape;
   shape.shape = vp::Sphere{r};
-  shape.material = tuning::kBall;
+  shape.material = vp::Material{tuning_.ball_friction, 0.0, 0.0};
   shape.filter = {kBallCategory, kTableCategory | kManCategory};
   shape.user_data = encode({Tag::What::ball});
   must(world_.add_collider(ball_, shape));
@@ -194,7 +205,7 @@ void TableWorld::add_ball() {
 void TableWorld::add_rod(int rod, int character) {
   const RodSpec& spec = table_.rods[rod];
   const CharacterSpec& c = character_spec(character);
-  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, character)}));
+  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, character, tuning_)}));
   const vp::BodyId body = world_.link_body(rods_[rod], kTurn);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
   for (int i = 0; i < spec.men; ++i) {
@@ -205,7 +216,8 @@ void TableWorld::add_rod(int rod, int character) {
       vp::ColliderDesc desc;
       desc.shape = Box{boxes[part].half_extents};
       desc.T_body_shape = T_link_table * SE3(centre);
-      desc.material = {c.foot_friction, c.foot_restitution, 0.0};
+      desc.material = {tuning_.man_friction * c.foot_friction,
+                       std::min(1.0, tuning_.man_restitution * c.foot_restitution), 0.0};
       desc.filter = {kManCategory, kBallCategory};
       desc.user_data = encode({Tag::What::man, static_cast<std::uint8_t>(rod),
                                static_cast<std::uint8_t>(man), static_cast<std::uint8_t>(part)});
@@ -226,7 +238,8 @@ vp::JointDrive joint_drive(const AxisDrive& d) {
 }  // namespace
 
 void TableWorld::drive(int rod, const RodTarget& target) {
-  const RodDrive drive = rod_drive(table_.rods[rod], this->rod(rod), target);
+  const HandLimits limits = hand_limits(characters_[table_.rods[rod].team], tuning_);
+  const RodDrive drive = rod_drive(table_.rods[rod], limits, this->rod(rod), target);
   must(world_.set_drive(rods_[rod], kSlide, 0, joint_drive(drive.slide)));
   must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(drive.angle)));
 }
@@ -259,6 +272,12 @@ void TableWorld::set_ball(const Vec3& position, const Vec3& velocity) {
   must(world_.set_velocity(ball_, {Vec3{}, velocity}));
 }
 
+void TableWorld::set_ball(const BallState& state) {
+  must(world_.set_pose(ball_, state.pose));
+  must(world_.set_velocity(ball_,
+                           {state.pose.unrotate(state.spin), state.pose.unrotate(state.velocity)}));
+}
+
 void TableWorld::park_ball() {
   set_ball(Vec3{0.0, 0.0, 1.0}, Vec3{});
 }
@@ -285,7 +304,9 @@ bool TableWorld::free_for_ball(const Vec3& position) const {
 
 // --- time ----------------------------------------------------------------------------------------
 
-// See tuning::kSagFrom.
+// Midway between two rods lies a strip that feet hardly reach. There the field falls towards the
+// nearer rod, as if it sagged by a millimetre: a ball that stops rolls on to where it can be
+// played. A shot crosses the strip and feels nothing.
 void TableWorld::let_field_sag() {
   const Vec3 ball = world_.pose(ball_).position();
   const bool on_field =
@@ -296,8 +317,8 @@ void TableWorld::let_field_sag() {
     if (std::fabs(rod.x - ball.x) < std::fabs(nearest)) nearest = rod.x - ball.x;
   }
   const bool before_line = std::fabs(ball.x) < 0.5 * table_.length + table_.ball_radius;
-  if (!before_line || std::fabs(nearest) < tuning::kSagFrom) return;
-  const double impulse = table_.ball_mass * tuning::kSagAcceleration * kTick;
+  if (!before_line || std::fabs(nearest) < tuning_.sag_from) return;
+  const double impulse = tuning_.ball_mass * tuning_.sag_acceleration * kTick;
   must(world_.apply_impulse(ball_, {std::copysign(impulse, nearest), 0.0, 0.0}, ball));
 }
 
@@ -307,9 +328,50 @@ vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
   return restored;
 }
 
+// Gives the ball this upward speed, but none that takes it over the ceiling.
+void TableWorld::lift_ball(double speed) {
+  const vp::Vec3 position = world_.pose(ball_).position();
+  const double up = ball().velocity.z;
+  const double room = std::max(0.0, tuning_.hop_ceiling - (position.z - table_.ball_radius));
+  const double most = std::sqrt(2.0 * tuning_.gravity * room);
+  const double wanted = std::min(speed, most);
+  if (wanted == up) return;
+  must(world_.apply_impulse(ball_, {0.0, 0.0, tuning_.ball_mass * (wanted - up)}, position));
+}
+
+// The paper (section 5) exaggerates how the ball bounces off characters and ground, for the eye.
+// Ground: a ball that falls faster than hop_from comes back with field_restitution of its speed;
+// below that no bounce can be seen, and one that dies makes the ball playable.
+// Men: what they give the ball upwards counts hop_gain times; and a ball that came fast leaves them
+// with a hop. There it counts how fast the ball came, not the foot: a shot from rest stays low, a
+// blocked one flies up.
+// All of it is bounded by bounce_most and hop_ceiling, and nothing is added along the field.
+void TableWorld::exaggerate_bounce(const Vec3& velocity_before) {
+  const Tuning& t = tuning_;
+  const double up = ball().velocity.z;
+  double lift = up;
+  for (const vp::ContactEvent& event : world_.contact_events()) {
+    if (event.kind != vp::ContactEvent::Kind::hit) continue;
+    const Tag other = ball_contact(event).other;
+    if (other.what == Tag::What::field && event.approach_speed > t.hop_from) {
+      lift = std::max(lift, t.field_restitution * event.approach_speed);
+    }
+    if (other.what != Tag::What::man) continue;
+    const double sign = decode_tag(event.user_data_a).what == Tag::What::ball ? 1.0 : -1.0;
+    const double came = sign * dot(velocity_before, event.normal) - t.bounce_from;
+    const double bounce = character_spec(characters_[table_.rods[other.rod].team]).bounce;
+    lift = std::max(lift, std::min(t.bounce_most, bounce * t.bounce_gain * came));
+    const double given = up - std::max(0.0, velocity_before.z);
+    if (given > 0.0) lift = std::max(lift, up + (bounce * t.hop_gain - 1.0) * given);
+  }
+  if (lift > 0.0) lift_ball(lift);
+}
+
 bool TableWorld::step() {
   let_field_sag();
+  const Vec3 velocity_before = ball().velocity;
   status_ = must(world_.step(kTick));
+  exaggerate_bounce(velocity_before);
   read_rods();
   return !status_.non_finite;
 }

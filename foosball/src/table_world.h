@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foosball/match.h"
+#include "foosball/tuning.h"
 #include "vphysics/world.h"
 
 namespace foosball {
@@ -49,10 +50,11 @@ class TableWorld {
   // order of the team that is first: its side before the other's, its rods from its goal outwards,
   // each rod's men from the player's left. A world of the other team first, with characters,
   // targets and ball turned by half a revolution about z, then moves exactly turned.
-  TableWorld(Layout layout, const Characters& characters, int first = 0);
+  TableWorld(Layout layout, const Characters& characters, int first = 0, const Tuning& tuning = {});
 
   const TableSpec& table() const { return table_; }
   int first() const { return first_; }
+  const Tuning& tuning() const { return tuning_; }
 
   // Drives a rod towards a target: finite, within the slide limit.
   void drive(int rod, const RodTarget& target);
@@ -61,6 +63,7 @@ class TableWorld {
 
   BallState ball() const;
   void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
+  void set_ball(const BallState& state);
   // Out of everything's way, at rest, for this step.
   void park_ball();
   // A ball that has passed the goal line comes back to it no further than its own radius.
@@ -82,6 +85,8 @@ class TableWorld {
  private:
   void add_fixed(const vp::Shape& shape, const vp::SE3& T_world_shape, const vp::Material& material,
                  Tag::What what);
+  vp::Material field() const;
+  vp::Material wall() const;
   void add_field_and_walls();
   void add_goal(double side);
   // Signs of x or y, first the side where the team that was made first stands.
@@ -91,9 +96,13 @@ class TableWorld {
   void add_rod(int rod, int character);
   void let_field_sag();
   void read_rods();
+  void exaggerate_bounce(const vp::Vec3& velocity_before);
+  void lift_ball(double speed);
 
   const TableSpec& table_;
   int first_;
+  Tuning tuning_;
+  std::array<int, kTeams> characters_;
   vp::World world_;
   vp::BodyId fixed_;
   vp::BodyId ball_;

@@ -2,7 +2,6 @@
 // serve, goals, dead ball, ball out, win.
 #include <limits>
 
-#include "../src/tuning.h"
 #include "match_fixture.h"
 
 namespace foosball {
@@ -110,11 +109,29 @@ TEST_F(MatchTest, CommandsWorkTheScreensAsRodsDo) {
   EXPECT_EQ(count(EventKind::screen), 3);
 }
 
+TEST_F(MatchTest, ATuningCommandTakesEffectInItsTickAndOneOutOfRangeDoesNot) {
+  const auto tune = [&](int index, double amount) {
+    commands.push_back({Command::Kind::tune, 0, static_cast<std::uint8_t>(index), amount});
+    step();
+  };
+  const int gravity = tuning_index("gravity");
+  ASSERT_GE(gravity, 0);
+  tune(gravity, 9.0);
+  EXPECT_EQ(view().tuning.gravity, 9.0);
+  tune(gravity, 1000.0);
+  tune(gravity, std::nan(""));
+  tune(kTuningValues, 1.0);
+  EXPECT_EQ(view().tuning.gravity, 9.0);
+  Tuning expected;
+  expected.gravity = 9.0;
+  EXPECT_TRUE(view().tuning == expected);
+}
+
 TEST_F(MatchTest, WishesOutOfRangeAreIgnored) {
   command(Command::Kind::push, 2);
   EXPECT_EQ(view().screen, Screen::logo);
   command(Command::Kind::push, 0);
-  command(Command::Kind::choose_character, 0, 3);
+  command(Command::Kind::choose_character, 0, kCharacters);
   command(Command::Kind::choose_character, 255, 0);
   commands.push_back({static_cast<Command::Kind>(200), 0, 0});
   step();
@@ -165,7 +182,7 @@ TEST_F(MatchTest, TheBallIsServedToTheMidfieldWithinItsReach) {
                        return event.kind == EventKind::serve;
                      })->team;
   const RodSpec& rod = table().rods[rods_of_team(table(), server)[2]];
-  EXPECT_NEAR(view().ball_position.x, rod.x + attack_sign(server) * tuning::kServeAhead, 0.005);
+  EXPECT_NEAR(view().ball_position.x, rod.x + attack_sign(server) * Tuning{}.serve_ahead, 0.005);
 }
 
 TEST_F(MatchTest, TheServeWaitsWhileMenFillThePlace) {

@@ -28,8 +28,10 @@ struct ShotsReport {
 class ShotGallery {
  public:
   ShotGallery(Layout layout, std::uint64_t seed)
-      : world_(layout, {static_cast<int>(seed % 3), static_cast<int>((seed / 3) % 3)}),
-        characters_{static_cast<int>(seed % 3), static_cast<int>((seed / 3) % 3)},
+      : world_(layout, {static_cast<int>(seed % kCharacters),
+                        static_cast<int>((seed / kCharacters) % kCharacters)}),
+        characters_{static_cast<int>(seed % kCharacters),
+                    static_cast<int>((seed / kCharacters) % kCharacters)},
         random_(seed) {}
 
   void shoot(int shots) {

@@ -42,8 +42,8 @@ TEST_P(Shots, NoneAtUpTo25MetresASecondPassesThroughAManAWallOrTheField) {
       r.shots, r.ticks, r.man_hits, r.table_hits, r.over_the_wall, 1e3 * r.deepest_in_man,
       1e3 * r.deepest_in_table, r.held_steps, 1e3 * r.held_seconds);
   EXPECT_EQ(r.shots, shots);
-  EXPECT_GT(r.man_hits, r.shots / 3) << "shots that hit nothing prove nothing";
-  EXPECT_GT(r.table_hits, r.shots / 3);
+  EXPECT_GT(r.man_hits, r.shots / 4) << "shots that hit nothing prove nothing";
+  EXPECT_GT(r.table_hits, r.shots / 4);
   EXPECT_EQ(r.through_a_man, 0);
   EXPECT_EQ(r.outside, 0);
   EXPECT_LT(r.deepest_in_man, 0.002);

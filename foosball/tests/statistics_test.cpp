@@ -325,12 +325,14 @@ TEST(Reach, IsThatOfTheBestOfAllSlidesAndAngles) {
   }
 }
 
-TEST(Reach, OfARestingBallEnds60MillimetresFromTheAxis) {
+TEST(Reach, OfARestingBallEndsWhereTheFootsEdgePassesOverIt) {
   const TableSpec& table = table_spec(Layout::tournament);
   const RodSpec& rod = table.rods[3];
   for (const double side : {-1.0, 1.0}) {
-    EXPECT_TRUE(can_reach(table, 3, 1, {rod.x + side * 0.060, 0.0, table.ball_radius}));
-    EXPECT_FALSE(can_reach(table, 3, 1, {rod.x + side * 0.061, 0.0, table.ball_radius}));
+    EXPECT_TRUE(can_reach(
+        table, 3, 1, {rod.x + side * (field_reach(table, 1) - 0.001), 0.0, table.ball_radius}));
+    EXPECT_FALSE(can_reach(
+        table, 3, 1, {rod.x + side * (field_reach(table, 1) + 0.001), 0.0, table.ball_radius}));
   }
 }
 

@@ -88,6 +88,13 @@ TEST_P(TableTest, NoTurningManTouchesFieldEndWallOrTheNextRodsMen) {
   }
 }
 
+TEST_P(TableTest, FeetReachFourFifthsOfTheWayBetweenTwoRods) {
+  for (int character = 0; character < kCharacters; ++character) {
+    EXPECT_GT(field_reach(table, character), 0.8 * 0.075)  // 61.4 mm and more
+        << character_spec(character).name;
+  }
+}
+
 TEST_P(TableTest, MenReachEveryLineAlongTheFieldBetweenTheRaisedCorners) {
   for (const RodSpec& rod : table.rods) {
     const double reach = rod.slide_limit + 0.010 + table.ball_radius;  // half the thinnest foot

@@ -271,5 +271,43 @@ TEST_P(TableWorldTest, SavedAndRestoredStepsToTheSameBits) {
   EXPECT_EQ(world.state_hash(), other.state_hash());
 }
 
+// Exaggeration (paper, section 5), with what was measured beside the bound.
+TEST_P(TableWorldTest, ADropOf100MillimetresComesBackToHalfItsHeightAndThenLiesDown) {
+  const double r = table.ball_radius;
+  world.set_ball({table.rods[3].x + 0.075, 0.0, r + 0.100}, {});
+  bool landed = false;
+  double top = 0.0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    ASSERT_TRUE(world.step());
+    const double height = world.ball().pose.position().z - r;
+    landed = landed || height < 0.001;
+    if (landed) top = std::max(top, height);
+  }
+  EXPECT_GT(top, 0.040);  // 48 mm; without exaggeration 9
+  EXPECT_LT(top, 0.060);
+  EXPECT_LT(world.ball().pose.position().z - r, 0.001) << "no bounce without end";
+}
+
+TEST_P(TableWorldTest, NoHopIsHigherThanTheCeilingHoweverTheRodsSpin) {
+  Random random(5);
+  double top = 0.0;
+  for (int shot = 0; shot < 60; ++shot) {
+    world.set_ball({random.between(-0.5, 0.5), random.between(-0.3, 0.3), table.ball_radius},
+                   {random.between(-8.0, 8.0), random.between(-2.0, 2.0), 0.0});
+    for (int tick = 0; tick < 500; ++tick) {
+      for (int rod = 0; rod < kRods; ++rod) {
+        world.drive(rod, {0.0, (rod % 2 == 0 ? 0.1 : -0.1) * tick, 0.0,
+                          rod % 2 == 0 ? 100.0 : -100.0, true});
+      }
+      ASSERT_TRUE(world.step());
+      if (std::fabs(world.ball().pose.position().x) > 0.5 * table.length) break;
+      top = std::max(top, world.ball().pose.position().z - table.ball_radius);
+    }
+  }
+  std::printf("highest hop %.1f mm\n", 1e3 * top);
+  EXPECT_LT(top, world.tuning().hop_ceiling + 0.025);  // 140 mm: a rod lifts it on its way
+  EXPECT_GT(top, 0.5 * world.tuning().hop_ceiling);
+}
+
 }  // namespace
 }  // namespace foosball

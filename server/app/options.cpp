@@ -9,6 +9,7 @@
 #include <map>
 
 #include "os/socket_address.h"
+#include "profile/tuning_profile.h"
 #include "server/exit_code.h"
 
 namespace app {
@@ -92,10 +93,10 @@ struct Raw {
   double minutes = 0.0;
   std::uint32_t date = 0;
   bool change_sides = false;
-  std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed;
+  std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed, tuning;
   std::string password_file, host_password_file;
   double seconds = 0.0, keep_seats = 30.0;
-  bool fast = false, no_real_time = false;
+  bool fast = false, no_real_time = false, list_tuning = false;
 };
 
 void add_match(CLI::App& cli, Options& o, Raw& raw) {
@@ -103,6 +104,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
   cli.add_option("--seed", raw.seed, "of the match and the computer players")->check(check_seed);
+  cli.add_option("--tuning", raw.tuning, "profile of tuning values, TOML; see --list-tuning");
+  cli.add_flag("--list-tuning", raw.list_tuning, "print all tuning values as a profile");
   cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
@@ -257,6 +260,14 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
         Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options"});
   }
   translate(options, raw);
+  if (!raw.tuning.empty()) {
+    auto tuning = profile::load_tuning(raw.tuning);
+    if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});
+    options.match.tuning = *tuning;
+  }
+  if (raw.list_tuning) {
+    return tl::unexpected(Leave{server::kExitOk, profile::format_tuning(options.match.tuning)});
+  }
   return options;
 }
 

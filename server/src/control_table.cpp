@@ -358,7 +358,7 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
   }
   const Seat* seat = seats_.find(connection.client);
   const foosball::Command wish{static_cast<foosball::Command::Kind>(asked.kind), asked.team,
-                               asked.value};
+                               asked.value, asked.amount};
   const Ruling ruling = seat != nullptr ? rule(seat->role, seat->team, wish) : Ruling::no;
   const bool taken =
       ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&

@@ -1,6 +1,7 @@
 #include "server/match_record.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "rod_desk.h"
@@ -16,6 +17,7 @@ static_assert(wire::kScreenCount == foosball::kScreens);
 static_assert(wire::kCharacterCount == foosball::kCharacters);
 static_assert(wire::kEventKindCount == foosball::kEventKinds);
 static_assert(wire::kCommandKindCount == foosball::kCommandKinds);
+static_assert(wire::kTuningCount == foosball::kTuningValues);
 static_assert(wire::kRuleSetCount == foosball::kRuleSets);
 static_assert(wire::kModeCount == foosball::kModes);
 static_assert(wire::kFoulCount == foosball::kFouls);
@@ -69,6 +71,7 @@ static_assert(same(wire::WishKind::time_out, foosball::Command::Kind::time_out))
 static_assert(same(wire::WishKind::feed, foosball::Command::Kind::feed));
 static_assert(same(wire::WishKind::seat, foosball::Command::Kind::seat));
 static_assert(same(wire::WishKind::touch, foosball::Command::Kind::touch));
+static_assert(same(wire::WishKind::tune, foosball::Command::Kind::tune));
 static_assert(same(wire::RodStatus::absent, cabinet::RodStatus::absent));
 static_assert(same(wire::RodStatus::live, cabinet::RodStatus::live));
 static_assert(same(wire::RodStatus::held, cabinet::RodStatus::held));
@@ -125,6 +128,10 @@ wire::JournalHeader to_header(const foosball::MatchDesc& match) {
   header.end_ms = milliseconds(rules.end_seconds);
   header.idle_ms = milliseconds(rules.idle_seconds);
   header.attract_ms = milliseconds(rules.attract_seconds);
+  for (std::size_t i = 0; i < header.tuning.size(); ++i) {
+    const foosball::TuningField& field = foosball::kTuningFields[i];
+    header.tuning[i] = std::bit_cast<std::uint64_t>(match.tuning.*field.value);
+  }
   return header;
 }
 
@@ -154,15 +161,21 @@ foosball::MatchDesc from_header(const wire::JournalHeader& header) {
   rules.end_seconds = header.end_ms / 1000.0;
   rules.idle_seconds = header.idle_ms / 1000.0;
   rules.attract_seconds = header.attract_ms / 1000.0;
+  for (std::size_t i = 0; i < header.tuning.size(); ++i) {
+    match.tuning.*foosball::kTuningFields[i].value = std::bit_cast<double>(header.tuning[i]);
+  }
   return match;
 }
 
 wire::JournalCommand to_record(const foosball::Command& command) {
-  return {static_cast<std::uint8_t>(command.kind), command.team, command.value};
+  const bool tune = command.kind == foosball::Command::Kind::tune;
+  return {static_cast<std::uint8_t>(command.kind), command.team, command.value,
+          tune ? std::bit_cast<std::uint64_t>(command.amount) : 0};
 }
 
 foosball::Command from_record(const wire::JournalCommand& command) {
-  return {static_cast<foosball::Command::Kind>(command.kind), command.team, command.value};
+  return {static_cast<foosball::Command::Kind>(command.kind), command.team, command.value,
+          std::bit_cast<double>(command.amount)};
 }
 
 }  // namespace server

@@ -13,7 +13,7 @@ static_assert(kWishKinds == wire::kWishKindCount);
 
 bool well_formed(const wire::Wish& wish) {
   using Kind = foosball::Command::Kind;
-  if (wish.kind >= kWishKinds || wish.team >= foosball::kTeams) return false;
+  if (wish.team >= foosball::kTeams) return false;
   switch (static_cast<Kind>(wish.kind)) {
     case Kind::choose_character:
       return wish.value < foosball::kCharacters;
@@ -25,6 +25,9 @@ bool well_formed(const wire::Wish& wish) {
     case Kind::restart:
     case Kind::time_out:
       return true;
+    case Kind::tune:
+      return wish.value < foosball::kTuningValues &&
+             in_range(foosball::kTuningFields[wish.value], wish.amount);
     case Kind::seat:
     case Kind::touch:
       return false;
@@ -34,6 +37,8 @@ bool well_formed(const wire::Wish& wish) {
 
 Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& wish) {
   using Kind = foosball::Command::Kind;
+  // Tuning changes the game of all: the host decides.
+  if (wish.kind == Kind::tune) return role == wire::Role::host ? Ruling::yes : Ruling::no;
   const bool for_all = wish.kind == Kind::pause || wish.kind == Kind::restart;
   if (role == wire::Role::watcher) return Ruling::no;
   if (role == wire::Role::player) {

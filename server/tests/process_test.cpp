@@ -15,6 +15,7 @@
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
 #include "process.h"
+#include "server/match_record.h"
 
 namespace server {
 namespace {
@@ -320,7 +321,7 @@ TEST(ServerProgram, SaysThatAReplayDiffers) {
   const std::string path = temp_path("match.sfr");
   std::vector<std::byte> bytes;
   wire::JournalEncoder encoder;
-  encoder.add(wire::JournalHeader{}, bytes);
+  encoder.add(server::to_header({}), bytes);
   for (std::uint64_t tick = 0; tick < 10; ++tick) {
     encoder.add(wire::JournalTick{tick, {}, {}}, bytes);
   }

@@ -13,6 +13,7 @@
 #include "lockstep.h"
 #include "os/file_descriptor.h"
 #include "results/store.h"
+#include "server/match_record.h"
 #include "wire/read_file.h"
 
 namespace {
@@ -202,7 +203,8 @@ TEST(Recording, OfAnotherReleaseSaysWhichFormatItNeeds) {
     std::vector<std::byte> other = whole;
     other[at] ^= std::byte{0x55};
     EXPECT_FALSE(wire::other_journal_format(other)) << "damaged, not of another release";
-    const std::size_t size = std::to_integer<std::size_t>(other[0]);
+    const std::size_t size =
+        std::to_integer<std::size_t>(other[0]) | std::to_integer<std::size_t>(other[1]) << 8;
     const std::uint32_t crc = crc32(std::span(other).subspan(8, size));
     for (std::size_t i = 0; i < 4; ++i) other[4 + i] = static_cast<std::byte>(crc >> 8 * i);
     const auto format = wire::other_journal_format(other);
@@ -230,7 +232,7 @@ std::vector<std::byte> journal(const std::vector<wire::JournalEntry>& entries) {
 }
 
 TEST(Recording, RefusesOneWithoutATickAndNamesIt) {
-  const wire::JournalHeader header;
+  const wire::JournalHeader header = to_header({});
   for (const auto& bytes : {journal({header}), journal({header, wire::JournalEnd{0, 1}})}) {
     const auto opened = Playback::from_bytes(bytes, "x.sfr");
     ASSERT_FALSE(opened);
@@ -240,7 +242,7 @@ TEST(Recording, RefusesOneWithoutATickAndNamesIt) {
 }
 
 TEST(Recording, RefusesRulesThatCannotBePlayedAndNamesTheFile) {
-  wire::JournalHeader header;
+  wire::JournalHeader header = to_header({});
   header.goals_to_win = 0;
   const auto opened = Playback::from_bytes(journal({header, wire::JournalTick{}}), "x.sfr");
   ASSERT_FALSE(opened);

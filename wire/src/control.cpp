@@ -1,6 +1,7 @@
 #include "wire/control.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "control_generated.h"
@@ -55,7 +56,7 @@ auto build(Builder& b, const Refusal& m) {
   return fb::CreateRefusal(b, static_cast<fb::RefusalCode>(m.code), text(b, m.reason, kMaxText));
 }
 auto build(Builder& b, const Wish& m) {
-  return fb::CreateWish(b, m.kind, m.team, m.value);
+  return fb::CreateWish(b, m.kind, m.team, m.value, m.amount);
 }
 auto build(Builder& b, const Ping& m) {
   return fb::CreatePing(b, m.id);
@@ -152,8 +153,9 @@ bool take(const fb::Refusal& t, Refusal& m) {
   return t.code() <= fb::RefusalCode::MAX && take(t.reason(), kMaxText, m.reason);
 }
 bool take(const fb::Wish& t, Wish& m) {
-  m = {t.kind(), t.team(), t.value()};
-  return m.kind < kWishKindCount && m.team < kTeamCount;
+  m = {t.kind(), t.team(), t.value(), t.amount()};
+  const bool kind = m.kind < kWishKindCount || m.kind == number(WishKind::tune);
+  return kind && m.team < kTeamCount && std::isfinite(m.amount);
 }
 bool take(const fb::Ping& t, Ping& m) {
   m.id = t.id();

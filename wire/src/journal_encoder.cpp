@@ -9,9 +9,9 @@
 namespace wire {
 namespace {
 
-// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 12 bits, and of any payload
+// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 77 bits, and of any payload
 // but a keyframe.
-constexpr std::size_t kSmallPayload = 512;
+constexpr std::size_t kSmallPayload = 1024;
 
 void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
   out.insert(out.end(), bytes.begin(), bytes.end());
@@ -43,7 +43,8 @@ std::span<const std::byte> encode(std::span<std::byte> scratch, Describe describ
 }
 
 bool valid(const JournalCommand& c) {
-  return c.kind < kCommandKindCount && c.team < kTeamCount;
+  return c.kind < kCommandKindCount && c.team < kTeamCount &&
+         (c.amount == 0 || c.kind == number(WishKind::tune));
 }
 
 bool valid(const JournalTick& tick) {

@@ -186,7 +186,7 @@ TEST(Journal, TheLargestKeyframeAndTheExtremeRodsPass) {
   high.rods.fill({std::numeric_limits<std::int32_t>::max(), kJournalAngleLimit,
                   std::numeric_limits<std::int32_t>::max(),
                   std::numeric_limits<std::int32_t>::max(), false});
-  low.commands.assign(kMaxJournalCommands, {3, 1, 255});
+  low.commands.assign(kMaxJournalCommands, {8, 1, 255, ~std::uint64_t{0}});
   high.commands = low.commands;
   high.tick = 1;
   const std::vector<JournalEntry> entries{JournalHeader{}, low, high,

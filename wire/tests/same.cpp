@@ -59,7 +59,7 @@ auto tied(const Refusal& m) {
   return std::tie(m.code, m.reason);
 }
 auto tied(const Wish& m) {
-  return std::tie(m.kind, m.team, m.value);
+  return std::tie(m.kind, m.team, m.value, m.amount);
 }
 auto tied(const Ping& m) {
   return std::tie(m.id);
@@ -78,7 +78,7 @@ auto tied(const JournalHeader& e) {
                   e.lead, e.sets_to_win, e.match_ms, e.golden_goal, e.change_sides, e.jarring,
                   e.spin, e.time_outs, e.time_out_ms, e.dead_ball_ms, e.still_ms,
                   e.possession_midfield_ms, e.possession_ms, e.ceremony_ms, e.end_ms, e.idle_ms,
-                  e.attract_ms);
+                  e.attract_ms, e.tuning);
 }
 auto tied(const JournalTick& e) {
   return std::tie(e.tick, e.rods, e.commands);

@@ -17,6 +17,7 @@
 #include "foosball/rod_motion.h"
 #include "foosball/rules.h"
 #include "foosball/table.h"
+#include "foosball/tuning.h"
 #include "vphysics/error.h"
 #include "vphysics/lie.h"
 
@@ -36,12 +37,14 @@ struct Command {
     feed,              // training: team, value = feed_value(): serve to that man from now on
     seat,              // from the server: team, value 1: a computer plays it, 0: people do
     touch,             // from the server: a hand has moved a rod while computers show a match
+    tune,              // value = index into kTuningFields, amount = the new value, if in its range
   };
   Kind kind;
   std::uint8_t team = 0;
   std::uint8_t value = 0;
+  double amount = 0.0;  // tune
 };
-inline constexpr int kCommandKinds = 8;
+inline constexpr int kCommandKinds = 9;
 
 // Command::value of a feed: 0 <= man < kMaxMenOnRod.
 constexpr std::uint8_t feed_value(Line line, int man) {
@@ -91,8 +94,9 @@ inline constexpr std::size_t kMaxEventsPerStep = 128;  // MatchView::events_drop
 struct MatchDesc {
   Layout layout = Layout::tournament;
   std::uint64_t seed = 1;
-  Rules rules;
+  Rules rules{};
   Mode mode = Mode::match;
+  Tuning tuning{};  // at the start; commands change it
 };
 
 // The challenge of a day: date as a number such as 20261122. The same match for everybody.
@@ -149,6 +153,7 @@ struct MatchView {
   // By TableSpec::rods. In the table's frame for both teams: slide along +y, angle right-handed
   // about +y, 0 with the men hanging, full turns counted.
   std::array<RodState, kRods> rods{};
+  Tuning tuning;
   // Since create(): not of the match's state, so neither saved, restored nor hashed.
   std::uint64_t events_dropped = 0;
 };
@@ -157,7 +162,8 @@ class Match {
  public:
   // Refuses with Errc::invalid_argument what cannot be played: a layout, mode or rule that is none,
   // goals not 1 <= goals_to_win <= max_goals <= 99, sets not 1 .. 9, a duration that is negative,
-  // above 3600 s or NaN, or 0 where 0 has no meaning. Any seed will do.
+  // above 3600 s or NaN, or 0 where 0 has no meaning, a tuning out of its ranges.
+  // Any seed will do.
   static vp::Expected<Match> create(const MatchDesc& desc);
   ~Match();
   Match(Match&&) noexcept;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "foosball/table.h"
+#include "foosball/tuning.h"
 
 namespace foosball {
 
@@ -38,17 +39,31 @@ struct AxisDrive {
 struct RodDrive {
   AxisDrive slide, angle;
 };
-RodDrive rod_drive(const RodSpec& rod, const RodState& now, const RodTarget& target);
 
-// What the drive moves.
+// What a hand can do at most with the men of a character.
+struct HandLimits {
+  double force;                   // [N]
+  double torque;                  // [N m]
+  double frequency;               // of the critically damped drives [rad/s]
+  double slide_rate, angle_rate;  // [m/s], [rad/s]
+};
+// Precondition: 0 <= character < kCharacters.
+HandLimits hand_limits(int character, const Tuning& tuning = {});
+
+RodDrive rod_drive(const RodSpec& rod, const HandLimits& limits, const RodState& now,
+                   const RodTarget& target);
+
+// What the drive moves, and with what.
 struct RodInertia {
+  HandLimits limits;
   double rod_and_men;  // without the hand [kg]
   double slide;        // with the hand [kg]
   double axial;        // of rod and men about the axis, without the hand [kg m^2]
   double turn;         // with the hand [kg m^2]
 };
 // Precondition: 0 <= character < kCharacters.
-RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character);
+RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
+                       const Tuning& tuning = {});
 
 // One kTick of a rod that touches nothing but its stops. Precondition: target is finite.
 RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,

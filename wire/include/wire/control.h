@@ -104,6 +104,7 @@ struct Refusal {
 struct Wish {
   std::uint8_t kind = 0;  // WishKind (wire/enums.h)
   std::uint8_t team = 0, value = 0;
+  double amount = 0.0;  // tune
 };
 
 // Either way; the other answers with the same id.

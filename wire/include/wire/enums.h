@@ -49,6 +49,7 @@ enum class WishKind : std::uint8_t {
   feed = 5,
   seat = 6,
   touch = 7,
+  tune = 8,
 };
 
 // Knock::role, Welcome::role, Seat::role: what a client may do. A host may do everything, a player

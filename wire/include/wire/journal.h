@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "wire/limits.h"
+
 namespace wire {
 
 inline constexpr std::int64_t kJournalAngleLimit = 1'000'000'000'000'000;  // [urad], 1e9 rad
@@ -47,6 +49,7 @@ RodTargetValues dequantise_rod(const JournalRod& rod);
 
 struct JournalCommand {
   std::uint8_t kind = 0, team = 0, value = 0;
+  std::uint64_t amount = 0;  // tune: the bits of a double (IEEE 754); else 0
   bool operator==(const JournalCommand&) const = default;
 };
 
@@ -63,6 +66,7 @@ struct JournalHeader {
   std::uint32_t dead_ball_ms = 2000, still_ms = 5000;
   std::uint32_t possession_midfield_ms = 10000, possession_ms = 15000;
   std::uint32_t ceremony_ms = 2500, end_ms = 6000, idle_ms = 60000, attract_ms = 30000;
+  std::array<std::uint64_t, kTuningCount> tuning{};  // in order: the bits of doubles (IEEE 754)
 };
 
 struct JournalTick {

@@ -60,6 +60,12 @@ void describe_journal_header(Codec& codec, H& h) {
   codec.integer(Integer{"end_ms", 32, kAny32, "ms", ""}, h.end_ms);
   codec.integer(Integer{"idle_ms", 32, kAny32, "ms", "0: never"}, h.idle_ms);
   codec.integer(Integer{"attract_ms", 32, kAny32, "ms", "0: never"}, h.attract_ms);
+  codec.array(Group{"tuning", "values of foosball/tuning.h, in its order"}, h.tuning,
+              [&](auto& bits) {
+                codec.integer(Integer{"bits", 64, std::numeric_limits<std::uint64_t>::max(), "",
+                                      "of a double, IEEE 754"},
+                              bits);
+              });
   codec.flag(Flag{"golden_goal", ""}, h.golden_goal);
   codec.flag(Flag{"change_sides", ""}, h.change_sides);
   codec.flag(Flag{"jarring", "is judged"}, h.jarring);
@@ -90,12 +96,19 @@ void describe_journal_tick(Codec& codec, T& tick) {
   });
   codec.list(List{"commands", 7, kMaxJournalCommands, "in the order they were applied"},
              tick.commands, [&](auto& command) {
-               codec.integer(Integer{"kind", 3, kCommandKindCount - 1, "",
+               codec.integer(Integer{"kind", 4, kCommandKindCount - 1, "",
                                      "0 push, 1 choose character, 2 pause, 3 restart, 4 time-out, "
-                                     "5 feed, 6 seat, 7 touch"},
+                                     "5 feed, 6 seat, 7 touch, 8 tune"},
                              command.kind);
                codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
                codec.integer(Integer{"value", 8, 255, "", ""}, command.value);
+               codec.when(Group{"kind", "8 only, tune, then follows:"},
+                          command.kind == number(WishKind::tune), [&] {
+                            codec.integer(
+                                Integer{"amount", 64, std::numeric_limits<std::uint64_t>::max(), "",
+                                        "bits of a double, IEEE 754"},
+                                command.amount);
+                          });
              });
   codec.align();
 }

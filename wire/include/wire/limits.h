@@ -18,10 +18,12 @@ static_assert(kMaxTick <= (std::uint64_t{1} << 62) / kMaxTickUs);
 inline constexpr unsigned kTeamCount = 2;
 inline constexpr unsigned kLayoutCount = 2;  // foosball::Layout
 inline constexpr unsigned kScreenCount = number(Screen::end) + 1;
-inline constexpr unsigned kCharacterCount = 3;  // foosball::CharacterSpec
+inline constexpr unsigned kCharacterCount = 6;  // foosball::CharacterSpec
 inline constexpr unsigned kEventKindCount = number(EventKind::match_drawn) + 1;
-inline constexpr unsigned kWishKindCount = number(WishKind::feed) + 1;  // that a client may send
-inline constexpr unsigned kCommandKindCount = number(WishKind::touch) + 1;
+inline constexpr unsigned kWishKindCount =
+    number(WishKind::feed) + 1;  // that a client may send, and tune
+inline constexpr unsigned kCommandKindCount = number(WishKind::tune) + 1;
+inline constexpr unsigned kTuningCount = 28;  // foosball::kTuningFields
 inline constexpr unsigned kRuleSetCount = number(RuleSet::itsf) + 1;
 inline constexpr unsigned kModeCount = number(Mode::ladder) + 1;
 inline constexpr unsigned kFoulCount = number(Foul::serve) + 1;

@@ -1,0 +1,144 @@
+// The quantities that shape play, tuned to playability, not to reality (paper, section 5.1): each
+// with its name, unit, range and meaning, described once. Part of a match: recorded with it,
+// hashed, and changed while it runs by Command::Kind::tune.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace foosball {
+
+struct Tuning {
+  double gravity = 14.0;
+  double ball_mass = 0.0263;
+  double ball_friction = 0.50;
+  double field_friction = 0.30;
+  double field_restitution = 0.70;
+  double rolling_resistance = 0.00015;
+  double wall_friction = 0.20;
+  double wall_restitution = 0.75;
+  double man_friction = 1.0;
+  double man_restitution = 1.0;
+  double still_speed = 0.25;
+  double hop_from = 0.95;
+  double hop_gain = 2.6;
+  double bounce_gain = 0.40;
+  double bounce_from = 2.0;
+  double bounce_most = 1.9;
+  double hop_ceiling = 0.120;
+  double sag_from = 0.055;
+  double sag_acceleration = 0.45;
+  double hand_mass = 0.40;
+  double hand_inertia = 5.0e-4;
+  double hand_frequency = 250.0;
+  double hand_force = 350.0;
+  double hand_torque = 14.0;
+  double slide_rate = 8.0;
+  double turn_rate = 150.0;
+  double serve_ahead = -0.037;
+  double restart_ahead = 0.034;
+
+  bool operator==(const Tuning&) const = default;
+};
+
+struct TuningField {
+  const char* name;  // of the member, in profiles and on panels
+  const char* unit;  // empty for a plain number
+  double Tuning::*value;
+  double least, most;
+  const char* meaning;  // one sentence: what it is, and what breaks beyond its range
+};
+
+inline constexpr std::array kTuningFields = std::to_array<TuningField>({
+    {"gravity", "m/s^2", &Tuning::gravity, 5.0, 30.0,
+     "Acceleration of the ball towards the field; heavier than the earth's, so that hops are "
+     "short."},
+    {"ball_mass", "kg", &Tuning::ball_mass, 0.010, 0.060,
+     "Mass of the ball; a heavier one is felt more by the hand."},
+    {"ball_friction", "", &Tuning::ball_friction, 0.0, 2.0,
+     "Friction of the ball; a pair takes the geometric mean. A sliding foot drags the ball by it."},
+    {"field_friction", "", &Tuning::field_friction, 0.0, 2.0,
+     "Friction of the field; how soon a ball that slides begins to roll."},
+    {"field_restitution", "", &Tuning::field_restitution, 0.0, 0.85,
+     "Bounce of the field: the share of its speed that a falling ball keeps. More, and it never "
+     "lies still."},
+    {"rolling_resistance", "m", &Tuning::rolling_resistance, 0.0, 0.002,
+     "Lever of the rolling resistance; times gravity over the radius it is the deceleration."},
+    {"wall_friction", "", &Tuning::wall_friction, 0.0, 2.0, "Friction of walls."},
+    {"wall_restitution", "", &Tuning::wall_restitution, 0.0, 0.95,
+     "Bounce of walls; nearer 1, a missed shot never calms down."},
+    {"man_friction", "", &Tuning::man_friction, 0.0, 3.0,
+     "Factor on the friction of every character."},
+    {"man_restitution", "", &Tuning::man_restitution, 0.0, 1.1,
+     "Factor on the restitution of every character."},
+    {"still_speed", "m/s", &Tuning::still_speed, 0.01, 1.0,
+     "Slower approaches do not bounce: the last small hops of a ball end here."},
+    {"hop_from", "m/s", &Tuning::hop_from, 0.0, 2.0,
+     "A ball that falls more slowly stays down: a hop is seen or it is not."},
+    {"hop_gain", "", &Tuning::hop_gain, 1.0, 4.0,
+     "Exaggeration: factor on the upward speed that a man gives the ball."},
+    {"bounce_gain", "", &Tuning::bounce_gain, 0.0, 1.5,
+     "Exaggeration: upward speed of a ball that meets a man, for each m/s beyond bounce_from with "
+     "which it came."},
+    {"bounce_from", "m/s", &Tuning::bounce_from, 0.0, 10.0,
+     "Exaggeration: a ball that comes more slowly is not lifted, so that it can be trapped."},
+    {"bounce_most", "m/s", &Tuning::bounce_most, 0.0, 3.0,
+     "Exaggeration: the most upward speed that a man gives so."},
+    {"hop_ceiling", "m", &Tuning::hop_ceiling, 0.02, 1.0,
+     "No hop takes the ball's lowest point higher than this; above the walls it can leave the "
+     "table."},
+    {"sag_from", "m", &Tuning::sag_from, 0.020, 0.075,
+     "Further than this from the nearest rod the field falls towards it."},
+    {"sag_acceleration", "m/s^2", &Tuning::sag_acceleration, 0.0, 1.0,
+     "How fast a ball gathers speed on that slope; must exceed the rolling resistance."},
+    {"hand_mass", "kg", &Tuning::hand_mass, 0.05, 3.0,
+     "Mass of the hand and handle that move with a rod; more, and a foot is heavy but slow."},
+    {"hand_inertia", "kg m^2", &Tuning::hand_inertia, 5.0e-5, 0.01,
+     "Inertia of the hand and handle that turn with a rod."},
+    {"hand_frequency", "rad/s", &Tuning::hand_frequency, 50.0, 500.0,
+     "Of the critically damped drives: under a hand that accelerates at a the lag is a over its "
+     "square."},
+    {"hand_force", "N", &Tuning::hand_force, 20.0, 2000.0,
+     "The most a hand pushes along a rod: what a pinched ball feels."},
+    {"hand_torque", "N m", &Tuning::hand_torque, 1.0, 100.0, "The most a hand turns a rod with."},
+    {"slide_rate", "m/s", &Tuning::slide_rate, 0.5, 12.0,
+     "No rod slides faster however far its target jumps."},
+    {"turn_rate", "rad/s", &Tuning::turn_rate, 20.0, 160.0,
+     "No rod turns faster however far its target jumps; real rods reach 140 rad/s."},
+    {"serve_ahead", "m", &Tuning::serve_ahead, -0.060, 0.060,
+     "Where the ball is put ahead of the midfield that serves: further ahead and the opponent's "
+     "has "
+     "the first shot; behind the men, the server."},
+    {"restart_ahead", "m", &Tuning::restart_ahead, -0.060, 0.060,
+     "The same at the other rods that restart play."},
+});
+inline constexpr int kTuningValues = static_cast<int>(kTuningFields.size());
+
+// Calls visit(field, value) for each value, in order; of a const Tuning the values are const.
+template <class Self, class Visit>
+constexpr void visit_fields(Self& tuning, Visit&& visit) {
+  for (const TuningField& field : kTuningFields) visit(field, tuning.*field.value);
+}
+
+// Within the field's range; false for what is not a number.
+constexpr bool in_range(const TuningField& field, double value) {
+  return field.least <= value && value <= field.most;
+}
+constexpr bool in_range(const Tuning& tuning) {
+  bool all = true;
+  visit_fields(tuning,
+               [&](const TuningField& f, double value) { all = all && in_range(f, value); });
+  return all;
+}
+static_assert(in_range(Tuning{}));
+
+// -1: no value has this name.
+constexpr int tuning_index(std::string_view name) {
+  for (int i = 0; i < kTuningValues; ++i) {
+    if (name == kTuningFields[static_cast<std::size_t>(i)].name) return i;
+  }
+  return -1;
+}
+
+}  // namespace foosball
