@@ -1,5 +1,5 @@
-// How a computer player works one of its rods: guard, lift the feet out of its own shots' way, wind
-// up and strike. All in the team's frame (computer_sight.h).
+// How the classic player works one of its rods: guard, lift the feet out of its own shots' way,
+// wind up and strike. All in the team's frame (computer_sight.h).
 #pragma once
 
 #include "computer_hand.h"
