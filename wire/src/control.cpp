@@ -25,7 +25,10 @@ auto octets(Builder& b, const std::array<std::byte, kSize>& bytes) {
   return b.CreateVector(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 auto build(Builder& b, const Knock& m) {
-  return fb::CreateKnock(b, m.version, m.role, octets(b, m.sid), octets(b, m.share));
+  // Arguments have no order of their own, and the bytes must not depend on the compiler's.
+  const auto share = octets(b, m.share);
+  const auto sid = octets(b, m.sid);
+  return fb::CreateKnock(b, m.version, m.role, sid, share);
 }
 auto build(Builder& b, const Challenge& m) {
   return fb::CreateChallenge(b, octets(b, m.share));
@@ -48,9 +51,12 @@ auto build(Builder& b, const Roster& m) {
   return fb::CreateRoster(b, b.CreateVector(seats));
 }
 auto build(Builder& b, const Welcome& m) {
+  const auto snapshot_key = octets(b, m.snapshot_key);
+  const auto input_key = octets(b, m.input_key);
+  const auto multicast = text(b, m.multicast, kMaxName);
   return fb::CreateWelcome(b, m.session, m.token, m.udp_port, m.tick_us, m.layout, m.team,
-                           text(b, m.multicast, kMaxName), m.multicast_port, m.rods, m.role,
-                           m.client, octets(b, m.input_key), octets(b, m.snapshot_key));
+                           multicast, m.multicast_port, m.rods, m.role, m.client, input_key,
+                           snapshot_key);
 }
 auto build(Builder& b, const Refusal& m) {
   return fb::CreateRefusal(b, static_cast<fb::RefusalCode>(m.code), text(b, m.reason, kMaxText));
