@@ -93,8 +93,8 @@ Subject foosball_match(const std::string& name, foosball::Layout layout) {
           }};
 }
 
-Subject world_of(const std::string& name, std::shared_ptr<scenes::SceneWorld> scene, double dt,
-                 int warm) {
+Subject world_of(const std::string& name, const std::shared_ptr<scenes::SceneWorld>& scene,
+                 double dt, int warm) {
   for (int i = 0; i < warm; ++i) (void)scene->step(dt);
   return {name, [scene, dt] { (void)scene->world().step(dt); },
           [scene](auto& bytes) { scene->world().snapshot(bytes); },

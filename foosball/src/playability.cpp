@@ -27,7 +27,7 @@ Playability playability_of(const Statistics& s) {
   const double matches = static_cast<double>(s.matches());
   const double ball = static_cast<double>(s.ball_ticks);
   if (minutes < 1.0 || matches == 0.0 || ball == 0.0) return p;
-  p.rallies = rising(s.rally.mean() - 0.5 * s.rally.kWidth, 20.0);
+  p.rallies = rising(s.rally.mean() - 0.5 * decltype(s.rally)::kWidth, 20.0);
   const double on_target = sum(s.shots_on_target);
   const double saved = on_target > 0.0 ? sum(s.saves) / on_target : 0.0;
   p.saves = rising(saved, 1.0 / 3.0) * rising(1.0 - saved, 1.0 / 3.0);

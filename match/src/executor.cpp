@@ -20,6 +20,7 @@ class Pool {
   tl::expected<Effort, std::string> run() {
     const std::int64_t begun = os::monotonic_ns();
     std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(options_.jobs));
     for (int i = 0; i < options_.jobs; ++i) threads.emplace_back([this] { work(); });
     for (std::thread& thread : threads) thread.join();
     effort_.seconds = static_cast<double>(os::monotonic_ns() - begun) * 1e-9;

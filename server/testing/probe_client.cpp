@@ -62,7 +62,7 @@ ProbeClient::ProbeClient(ProbeClient&& other) noexcept
       tcp_(std::exchange(other.tcp_, -1)),
       udp_(std::exchange(other.udp_, -1)),
       reader_(std::move(other.reader_)),
-      sealer_(std::move(other.sealer_)),
+      sealer_(other.sealer_),
       opener_(std::move(other.opener_)),
       welcome_(std::move(other.welcome_)),
       roster_(std::move(other.roster_)),

@@ -15,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-extern char** environ;
-
 namespace video {
 namespace {
 
@@ -42,6 +40,7 @@ std::vector<std::string> command_line(const EncoderOptions& options, bool sound,
 // ffmpeg reads the pictures as its standard input; what it says goes to the file.
 int spawn(std::vector<std::string> words, int pictures, int sound, int complaints, pid_t& process) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

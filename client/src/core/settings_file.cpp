@@ -46,7 +46,7 @@ ReadSettings load_settings(const std::string& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::is_regular_file(path, error)) return {};
   ReadSettings read = parse_settings(read_text(path));
-  for (std::string& problem : read.problems) problem = path + ", " + problem + ".";
+  for (std::string& problem : read.problems) problem.insert(0, path + ", ").push_back('.');
   return read;
 }
 

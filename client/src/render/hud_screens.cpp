@@ -159,7 +159,8 @@ float draw_all_keys(const HudPen& whole) {
   pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
     const float x = -half + 24.0f + (i % columns == 0 ? 0.0f : column + between);
-    const float y = top + 31.0f + 26.0f * static_cast<float>(i / columns);
+    const std::size_t row = i / columns;
+    const float y = top + 31.0f + 26.0f * static_cast<float>(row);
     pen.text(tr(kAllKeys[i].keys), bold, {x, y}, kInk);
     pen.text(tr(kAllKeys[i].meaning), regular, {x + keys + 14.0f, y}, kFaint);
   }

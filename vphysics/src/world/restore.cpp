@@ -5,6 +5,7 @@
 // exchange, so that going back again takes no memory. What can be derived is kept where the state
 // that it follows from is the same: poses of colliders, trees of the broad phase, lists of bodies.
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -140,7 +141,10 @@ void adopt(BodyJoint& joint, const JointState& state) {
 }
 
 bool same_bits(const SE3& a, const SE3& b) {
-  const auto same = [](const Vec3& x, const Vec3& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  const auto same = [](const Vec3& x, const Vec3& y) {
+    const auto bits = [](double d) { return std::bit_cast<std::uint64_t>(d); };
+    return bits(x.x) == bits(y.x) && bits(x.y) == bits(y.y) && bits(x.z) == bits(y.z);
+  };
   const Mat3 &A = a.rotation(), &B = b.rotation();
   return same(a.position(), b.position()) && same(A.cx, B.cx) && same(A.cy, B.cy) &&
          same(A.cz, B.cz);
