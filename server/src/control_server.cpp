@@ -120,8 +120,11 @@ void ControlServer::wait() {
   if (polled_[0].revents & POLLIN) ::eventfd_read(wake_.get(), &count);
 }
 
+// At most so many a pass, so that a crowd at the door holds up nobody inside; poll() tells of the
+// rest.
 void ControlServer::accept_all() {
-  while (true) {
+  constexpr int kAtOnce = 32;
+  for (int i = 0; i < kAtOnce; ++i) {
     sockaddr_storage storage{};
     socklen_t size = sizeof storage;
     auto* generic = reinterpret_cast<sockaddr*>(&storage);

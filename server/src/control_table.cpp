@@ -119,7 +119,10 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
   }
   seat->peer = connection.peer();
   const bool was_away = seat->away();
-  if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) return true;
+  if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) {
+    if (!was_away) lose_seat(seat->client);  // its old connection is gone: the time of grace begins
+    return true;
+  }
   seat->away_since_us = -1;
   count(Count::resumed);
   if (was_away) {
@@ -381,7 +384,7 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish)
 bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
   std::vector<std::uint32_t> voters;
   for (const Seat& s : seats_.all()) {
-    if (s.plays() && !s.away()) voters.push_back(s.client);
+    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.client);
   }
   const auto votes = votes_.cast(seat.client, wish, voters, os::monotonic_us());
   if (votes.passed()) {

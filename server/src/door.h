@@ -26,13 +26,15 @@ class WrongPasswords {
  public:
   static constexpr int kAtOnce = 5;
   static constexpr std::int64_t kEveryUs = 10'000'000;
-  // Networks remembered. Who has more addresses than this guesses kAtOnce times with each.
+  // Networks remembered, each by itself; all others together count as one.
   static constexpr std::size_t kNetworks = 1024;
 
   bool may_try(const std::string& network, std::int64_t now_us) const;
   void note(const std::string& network, std::int64_t now_us);
 
  private:
+  const std::string& account(const std::string& network) const;
+
   std::map<std::string, std::int64_t> paid_until_us_;
 };
 

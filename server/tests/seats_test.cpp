@@ -129,6 +129,18 @@ TEST(WrongPasswords, AFewGuessesANetworkAndThenSlowly) {
   EXPECT_TRUE(door.may_try("b", now)) << "another network";
 }
 
+TEST(WrongPasswords, ManyNetworksGuessNoMoreThanOneWhenTheirPlacesAreTaken) {
+  WrongPasswords door;
+  const std::int64_t now = 1'000'000'000;
+  for (std::size_t i = 0; i < WrongPasswords::kNetworks; ++i) door.note(std::to_string(i), now);
+  int guesses = 0;
+  for (int network = 0; network < 100; ++network) {
+    const std::string name = "new " + std::to_string(network);
+    for (int i = 0; i < 10 && door.may_try(name, now); ++i) door.note(name, now), ++guesses;
+  }
+  EXPECT_EQ(guesses, WrongPasswords::kAtOnce);
+}
+
 // --- the desk: rods of several clients and the computer
 
 struct DeskTest : testing::Test {

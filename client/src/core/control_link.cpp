@@ -221,6 +221,13 @@ bool ControlLink::take(std::span<const std::byte> bytes, std::int64_t now_us) {
 
 // False: the connection is no more.
 bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_us) {
+  // Who has not proven to know the password is not listened to.
+  const bool of_a_proof = std::holds_alternative<wire::Challenge>(message) ||
+                          std::holds_alternative<wire::Refusal>(message);
+  if (stage_ == Stage::proving && !of_a_proof) {
+    drop("it sends what is no message", now_us);
+    return false;
+  }
   if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
     if (stage_ == Stage::greeting) on_welcome(*welcome, now_us);
     return stage_ == Stage::joined;
