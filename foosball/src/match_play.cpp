@@ -250,6 +250,10 @@ void Match::Impl::finish_undecided() {
 // --- putting the ball in play --------------------------------------------------------------------
 
 void Match::Impl::serve_from(int rod, double delay, int man) {
+  if (mode() == Mode::training) {  // always to the man who was asked for
+    rod = state.feed_rod;
+    man = state.feed_man;
+  }
   state.ball_in_play = false;
   state.ball_in_goal = false;
   state.ball_parked = true;

@@ -240,6 +240,7 @@ void Match::Impl::go_on_after_end() {
 // As state.built, first and tuning say. Rods and ball stay as they are.
 void Match::Impl::rebuild_world() {
   auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first, state.tuning);
+  state.touching.clear();  // the new world tells of no contact that ends, those that last begin
   rebuilt->set_ball(world->ball());
   for (int rod = 0; rod < kRods; ++rod) rebuilt->set_rod(rod, world->rod(rod));
   world = std::move(rebuilt);

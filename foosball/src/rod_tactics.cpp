@@ -20,7 +20,7 @@ constexpr double kScrapeFrom = -0.062;  // a ball at rest behind the foot is hoo
 // Faster balls [m/s] are blocked, not struck.
 constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
 
-// Feet of the widest and thinnest character differ by 5 mm from this: the player does not know.
+// Feet of the widest and thinnest character differ by 3 mm from this: the player does not know.
 constexpr double kHalfFoot = 0.012;  // [m]
 constexpr double kSteepest = 0.8;    // tangent of the most oblique shot tried
 

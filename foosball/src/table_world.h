@@ -1,5 +1,6 @@
 // The table as a physical world: field, walls, goals, corners, ball, and eight rods with their men,
-// each rod a one-link articulation driven by a bounded force. Knows nothing of scores and screens.
+// each rod an articulation of two links driven by a bounded force. Knows nothing of scores and
+// screens.
 #pragma once
 
 #include <array>

@@ -51,7 +51,7 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(1, 1024));
   auto* report = cli.add_flag("--report", raw.report,
                               "figures of play, each beside its goal, also against an idle side, a "
-                              "spinner, with one rod, and of the characters");
+                              "spinner, with one rod, and of tall and small against average");
   auto* sprt = cli.add_option("--sprt", raw.sprt,
                               "OLD NEW: play until it is clear whether NEW is the better one")
                    ->type_name("OLD NEW")
@@ -65,7 +65,7 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* balance = cli.add_flag("--balance", raw.balance,
                                "every pair of characters, played by --home: is any beyond 60:40?");
   for (auto* mode : {sprt, robin, balance})
-    mode->excludes(report)->excludes(matches)->excludes(away);
+    mode->excludes(report)->excludes(matches)->excludes(away)->excludes(passive);
   for (auto* mode : {sprt, robin}) mode->excludes(home)->excludes(balance);
   sprt->excludes(robin);
   cli.add_option("--elo0", o.elo0, "sequential test: H0, NEW is better by no more than this");
