@@ -1,5 +1,6 @@
 #include "server/log_writer.h"
 
+#include <fcntl.h>
 #include <limits.h>
 #include <poll.h>
 #include <unistd.h>
@@ -13,15 +14,17 @@
 #include <utility>
 
 #include "os/capabilities.h"
+#include "os/file_descriptor.h"
 
 namespace server {
 
 struct LogWriter::State {
-  explicit State(int descriptor) : fd(descriptor) {}
+  explicit State(int descriptor) : owned(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0)) {}
   void run();
   bool put(const std::string& text);
 
-  const int fd;
+  // Its own: a thread that is given up may still write when the caller's number is another file's.
+  const os::FileDescriptor owned;
   std::mutex mutex;  // all below; never held while writing
   std::condition_variable wake, idle;
   std::string waiting;
@@ -33,7 +36,7 @@ struct LogWriter::State {
 bool LogWriter::State::put(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     // A pipe that is writable takes PIPE_BUF bytes at once.
-    pollfd polled{fd, POLLOUT, 0};
+    pollfd polled{owned.get(), POLLOUT, 0};
     constexpr int kLookAgainMs = 100;
     const int ready = ::poll(&polled, 1, kLookAgainMs);
     if (ready <= 0) {
@@ -42,7 +45,7 @@ bool LogWriter::State::put(const std::string& text) {
       continue;
     }
     const auto part = std::min<std::size_t>(text.size() - at, PIPE_BUF);
-    const ssize_t size = ::write(fd, text.data() + at, part);
+    const ssize_t size = ::write(owned.get(), text.data() + at, part);
     if (size < 0 && errno != EINTR && errno != EAGAIN) return false;
     if (size > 0) at += static_cast<std::size_t>(size);
   }
