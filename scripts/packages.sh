@@ -2,9 +2,8 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make the Debian package),
-# video (recordings as videos), bench (the
-# engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
+# the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
 # WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
 packages_table() {
@@ -18,7 +17,6 @@ build  libflatbuffers-dev    control messages
 build  libsodium-dev         encryption and authentication of what goes over a network
 build  libcli11-dev          command lines
 build  libtomlplusplus-dev   profiles that people edit
-build  libspdlog-dev         logs
 build  libfmt-dev            formatted text of the reports
 build  libexpected-dev       tl::expected, how errors are returned
 build  liburdfdom-dev        robots' descriptions, URDF: the engine's optional part that reads them
