@@ -3,8 +3,8 @@
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
 # Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
-# the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift and rigid compare with), wasm (compile and run the engine as
-# WebAssembly), node (for the peers in WebAssembly, where there is no node already).
+# the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift
+# and rigid compare with), wasm (compile and run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
