@@ -62,6 +62,7 @@ LAYERS = {
     'draw/': 'draw',
     'client/': 'client',
     'sandbox/': 'sandbox',
+    'foosball/include/foosball/assists.h': 'table',
     'foosball/include/foosball/rod_motion.h': 'table',
     'foosball/include/foosball/table.h': 'table',
     'foosball/include/foosball/tuning.h': 'table',
