@@ -45,6 +45,12 @@ void ControlServer::notify(wire::Notice notice) {
   if (outbound_.push(std::move(notice))) ::eventfd_write(wake_.get(), 1);
 }
 
+bool ControlServer::tell_tuning(const wire::Tuning& tuning) {
+  if (!tunings_.push(wire::Tuning(tuning))) return false;
+  ::eventfd_write(wake_.get(), 1);
+  return true;
+}
+
 void ControlServer::stop(const std::string& reason) {
   if (!thread_.joinable()) return;
   bye_reason_ = reason;
@@ -81,6 +87,7 @@ void ControlServer::run() {
   while (!stopping_.load(std::memory_order_acquire)) {
     wait();
     publish_notices();
+    publish_tuning();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       if (polled_[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) serve(*connections_[i]);
     }
@@ -291,6 +298,18 @@ void ControlServer::publish_notices() {
     const bool cleared = notice.level == wire::Notice::Level::cleared;
     options_.log(cleared ? LogLevel::info : LogLevel::warning, notice.text);
     tell(notice);
+  }
+}
+
+// Of several, the last counts.
+void ControlServer::publish_tuning() {
+  wire::Tuning tuning;
+  bool any = false;
+  while (tunings_.pop(tuning)) any = true;
+  if (!any) return;
+  tuning_ = tuning;
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined) send(*connection, tuning);
   }
 }
 

@@ -17,6 +17,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -48,12 +49,12 @@ struct ControlEvent {
   };
   Kind kind = Kind::joined;
   std::uint32_t client = 0;                     // counts up, never used twice
-  std::uint8_t team = wire::kWatchOnly;         // joined
+  std::uint8_t team = wire::kWatchOnly;         // joined, rods
   RodSet rods = 0;                              // joined, back, rods: all that it has
-  std::uint64_t token = 0;                      // joined, back
+  std::uint64_t token = 0;                      // joined, back, rods
   std::array<char, wire::kMaxName + 1> name{};  // joined: what it calls itself, ended by a zero
   wire::SealKey input_key{}, snapshot_key{};
-  os::FileDescriptor socket;   // joined, back, rods, of a client with rods: for its inputs
+  os::FileDescriptor socket;   // joined, back, rods: of who has rods for the first time
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
   os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
   foosball::Command wish{};    // wish
@@ -83,6 +84,8 @@ class ControlServer {
   bool next_event(ControlEvent& event) { return events_.pop(event); }
   // Sent to all and, until cleared, to each who joins. Dropped and counted if 64 are waiting.
   void notify(wire::Notice notice);
+  // Sent to all, and to each who joins until another is. False: try again in the next tick.
+  bool tell_tuning(const wire::Tuning& tuning);
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const std::string& reason);
 
@@ -127,6 +130,7 @@ class ControlServer {
   void release(ControlConnection& connection, Going going);
   void expire(ControlConnection& connection);
   void publish_notices();
+  void publish_tuning();
   void tell(const wire::Notice& notice);
   void tell_tick();
   void say(LogLevel level, const std::string& text);
@@ -173,6 +177,8 @@ class ControlServer {
 
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<wire::Notice, 64> outbound_;
+  SpscQueue<wire::Tuning, 8> tunings_;
+  std::optional<wire::Tuning> tuning_;  // of the match, as it was last told
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kCount)> counts_{};
   std::atomic<bool> stopping_{false};
   std::string bye_reason_;  // written before stopping_

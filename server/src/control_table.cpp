@@ -235,11 +235,13 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   event.rods = seat.rods;
   event.token = seat.ticket;
   seat.name.copy(event.name.data(), event.name.size() - 1);
-  event.input_key = random_key();
+  event.input_key = seat.input_key = random_key();
+  seat.udp_port = udp_port;
   event.snapshot_key = options_.multicast ? options_.group_key : random_key();
   event.listener = connection.peer();
   event.listener.set_port(udp_port);
   event.heard_at = os::local_address(connection.fd());
+  seat.has_socket = seat.plays();
   if (seat.plays()) {
     event.socket = client_socket(connection, event.listener);
     if (!event.socket) {
@@ -269,6 +271,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   connection.client = seat.client;
   send(connection, welcome);
   for (const auto& [topic, notice] : notices_) send(connection, notice);
+  if (tuning_) send(connection, *tuning_);
   roster_changed_ = true;
   return true;
 }
@@ -276,20 +279,38 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
 // --- who has which rods
 // ---------------------------------------------------------------------------
 
+// A seat that gives up its rods watches, and may have rods again, of either team.
 void ControlServer::take_claim(ControlConnection& connection, const wire::Claim& claim) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) return;
-  const auto grant =
-      seats_.grant(seat->team, claim.rods, seat->client, seat->role == wire::Role::host);
-  if (grant.kind != Seats::Grant::Kind::granted || !options_.teams_open) {
-    send(connection, wire::Notice{wire::Notice::Level::info, kClaimTopic,
-                                  options_.teams_open ? grant.sentence : "a recording plays here"});
-    return;
-  }
+  const auto answer = [&](const std::string& why_not) {
+    send(connection, wire::Notice{wire::Notice::Level::info, kClaimTopic, why_not});
+  };
+  if (!options_.teams_open) return answer("a recording plays here");
+  if (connection.role == wire::Role::watcher) return answer("you joined to watch");
+  const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
+  auto grant = Seats::Grant{Seats::Grant::Kind::granted, 0, {}};
+  if (claim.rods != 0)
+    grant = seats_.grant(team, claim.rods, seat->client, seat->role == wire::Role::host);
+  if (grant.kind != Seats::Grant::Kind::granted) return answer(grant.sentence);
   ControlEvent event;
   event.kind = ControlEvent::Kind::rods;
+  if (!seat->has_socket && grant.rods != 0) {
+    auto listener = connection.peer();
+    listener.set_port(seat->udp_port);
+    event.socket = client_socket(connection, listener);
+    if (!event.socket) return answer("the server has no socket left for you: try again");
+    seat->has_socket = true;
+  }
+  seat->rods = grant.rods;
+  seat->team = grant.rods != 0 ? team : wire::kWatchOnly;
+  const bool only_watches = grant.rods == 0 && connection.role == wire::Role::player;
+  seat->role = only_watches ? wire::Role::watcher : connection.role;
   event.client = seat->client;
-  event.rods = seat->rods = grant.rods;
+  event.team = seat->team;
+  event.rods = seat->rods;
+  event.token = seat->ticket;
+  event.input_key = seat->input_key;
   untold_.push_back(std::move(event));
   tell_tick();
   roster_changed_ = true;
@@ -362,7 +383,11 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
   const Seat* seat = seats_.find(connection.client);
   const foosball::Command wish{static_cast<foosball::Command::Kind>(asked.kind), asked.team,
                                asked.value, asked.amount};
-  const Ruling ruling = seat != nullptr ? rule(seat->role, seat->team, wish) : Ruling::no;
+  // Several people at one client may play rods of both teams.
+  const bool plays_it =
+      seat != nullptr && (seat->rods & rods_of_team(options_.layout, wish.team)) != 0;
+  const Ruling ruling =
+      seat != nullptr ? rule(seat->role, plays_it ? wish.team : seat->team, wish) : Ruling::no;
   const bool taken =
       ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
       (ruling == Ruling::yes ? hand_on(seat->client, wish) : put_to_vote(*seat, wish));

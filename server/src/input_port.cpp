@@ -19,6 +19,14 @@ void InputPort::add(const Key& key, os::FileDescriptor socket, RemoteSource& sou
   players_.push_back({key, std::move(socket), &source, {key.seal, key.client}});
 }
 
+bool InputPort::redirect(std::uint32_t client, RemoteSource* source) {
+  const auto player =
+      std::ranges::find_if(players_, [client](const Player& p) { return p.key.client == client; });
+  if (player == players_.end()) return false;
+  player->source = source;
+  return true;
+}
+
 void InputPort::remove(std::uint32_t client) {
   std::erase_if(players_, [client](const Player& p) { return p.key.client == client; });
 }
@@ -68,7 +76,7 @@ void InputPort::take(Player& player, std::span<const std::byte> sealed, std::int
     ++counters_.bad;
   } else if (input.session != session_ || input.token != player.key.token) {
     ++counters_.foreign;
-  } else if (!player.source->accept(input, now_us)) {
+  } else if (player.source == nullptr || !player.source->accept(input, now_us)) {
     ++counters_.stale;
   } else {
     ++counters_.accepted;

@@ -37,6 +37,9 @@ class InputPort {
   };
   // The client's datagrams come by this socket, and go to source. Replaces what it had.
   void add(const Key& key, os::FileDescriptor socket, RemoteSource& source);
+  // Its datagrams go to this source from now on, none: nowhere; what was heard of it counts on, so
+  // that nothing old is taken for new. False: it was never added.
+  bool redirect(std::uint32_t client, RemoteSource* source);
   void remove(std::uint32_t client);
 
   void receive(std::int64_t now_us);
@@ -48,7 +51,7 @@ class InputPort {
   struct Player {
     Key key;
     os::FileDescriptor socket;
-    RemoteSource* source;
+    RemoteSource* source;  // null: has no rods now
     wire::DatagramOpener opener;
   };
   std::span<const std::byte> datagram(int i) const {

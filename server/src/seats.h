@@ -10,6 +10,7 @@
 #include "os/socket_address.h"
 #include "wire/control.h"
 #include "wire/enums.h"
+#include "wire/seal.h"
 
 namespace server {
 
@@ -27,6 +28,9 @@ struct Seat {
   RodSet rods = 0;
   wire::Role role = wire::Role::watcher;
   os::SocketAddress peer;
+  std::uint16_t udp_port = 0;       // where it listens for snapshots
+  wire::SealKey input_key{};        // of its inputs
+  bool has_socket = false;          // the tick has one for its inputs
   std::int64_t away_since_us = -1;  // not negative: lost then, and not back yet
 
   bool away() const { return away_since_us >= 0; }

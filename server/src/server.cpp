@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -43,6 +44,7 @@ struct Server::Impl {
 
   void take_control_events();
   void admit(ControlEvent& event);
+  void change_rods(ControlEvent& event);
   void take_back(ControlEvent& event);
   void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client);
@@ -57,6 +59,7 @@ struct Server::Impl {
   void watch_results();
   MatchScribe::Players players() const;
   void watch_sending();
+  void watch_tuning();
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
   ControlOptions control_options() const;
 
@@ -86,6 +89,7 @@ struct Server::Impl {
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;
+  std::optional<foosball::Tuning> tuning_told;
   bool replay_over = false, journal_told = false, finished = false;
 
   wire::JournalTick next;  // the inputs of the tick under way
@@ -161,7 +165,7 @@ void Server::Impl::take_control_events() {
         take_back(event);
         break;
       case ControlEvent::Kind::rods:
-        desk.seat(event.client, event.rods);
+        change_rods(event);
         break;
       case ControlEvent::Kind::left:
         dismiss(event.client);
@@ -178,6 +182,20 @@ void Server::Impl::admit(ControlEvent& event) {
   ++clients_ever;
   desk.seat(event.client, event.rods);
   listen_to(event);
+}
+
+void Server::Impl::change_rods(ControlEvent& event) {
+  const auto client = std::ranges::find(clients, event.client, &Client::id);
+  if (client == clients.end()) return;
+  const std::uint8_t before = client->team;
+  client->team = event.team;
+  RemoteSource* source = desk.seat(event.client, event.rods);
+  if (!input.redirect(event.client, source) && source != nullptr && event.socket)
+    input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
+  if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&
+      nobody_left_to_play_for(before)) {
+    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
+  }
 }
 
 void Server::Impl::take_back(ControlEvent& event) {
@@ -345,6 +363,16 @@ void Server::Impl::watch_results() {
          problem.empty() ? "results are kept again" : problem);
 }
 
+// Clients show it, and move their own rods by it.
+void Server::Impl::watch_tuning() {
+  const foosball::Tuning& now = match.view().tuning;
+  if (tuning_told == now) return;
+  wire::Tuning tuning;
+  for (std::size_t i = 0; i < tuning.values.size(); ++i)
+    tuning.values[i] = now.*foosball::kTuningFields[i].value;
+  if (control.tell_tuning(tuning)) tuning_told = now;
+}
+
 // Once a second: whether anything of it has reached the network.
 void Server::Impl::watch_sending() {
   constexpr std::uint64_t kEveryTicks = 1000;
@@ -430,6 +458,7 @@ void Server::tick(std::int64_t now_us) {
   s.watch_journal();
   s.watch_results();
   s.watch_sending();
+  s.watch_tuning();
 }
 
 void Server::wait_sent() {

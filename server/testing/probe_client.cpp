@@ -117,8 +117,10 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
     const auto status = reader_.next(message);
     if (status == wire::ControlReader::Status::message) {
       const auto* roster = std::get_if<wire::Roster>(&message);
-      if (roster == nullptr) return message;
-      roster_ = *roster;
+      const auto* tuning = std::get_if<wire::Tuning>(&message);
+      if (roster == nullptr && tuning == nullptr) return message;
+      if (roster != nullptr) roster_ = *roster;
+      if (tuning != nullptr) tuning_ = *tuning;
       continue;
     }
     if (status == wire::ControlReader::Status::broken) return std::nullopt;

@@ -38,9 +38,11 @@ class ProbeClient {
   wire::Hello hello(std::uint8_t team = wire::kWatchOnly) const;
   bool say(const wire::ControlMessage& message);
   bool send_raw(std::span<const std::byte> bytes);  // false when the server has closed
-  // The next message that is no Roster; nothing at the deadline or when the server has closed.
+  // The next message that is no Roster and no Tuning; nothing at the deadline or when the server
+  // has closed.
   std::optional<wire::ControlMessage> hear(int patience_ms = kPatienceMs);
   const wire::Roster& roster() const { return roster_; }  // the last one heard
+  const std::optional<wire::Tuning>& tuning() const { return tuning_; }
   // The next message of this kind, throwing away others.
   template <class Message>
   std::optional<Message> hear_a(int patience_ms = kPatienceMs) {
@@ -75,6 +77,7 @@ class ProbeClient {
   std::optional<wire::StreamOpener> opener_;
   wire::Welcome welcome_;
   wire::Roster roster_;
+  std::optional<wire::Tuning> tuning_;
   wire::DatagramOpener snapshots_;
   std::uint64_t sent_ = 0;
 };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <bit>
 #include <random>
 
 #include "door.h"
@@ -663,6 +664,98 @@ TEST(Rods, AreClaimedAndGivenUpWhileTheGameGoesOnAndAllAreTold) {
   ASSERT_EQ(first.roster().seats.size(), 2u);
   EXPECT_EQ(first.roster().seats[0].rods, one);
   EXPECT_EQ(first.roster().seats[1].rods, rest);
+}
+
+TEST(Rods, AreGivenUpToWatchAndTakenAgainOnTheOtherTeam) {
+  Lockstep table;
+  const auto layout = foosball::MatchDesc{}.layout;
+  ProbeClient client(table.port());
+  const auto welcome = client.join(0);
+  ASSERT_TRUE(welcome);
+  const auto claim = [&](wire::Claim asked) {
+    client.say(asked);
+    client.say(wire::Ping{1});
+    return client.hear_a<wire::Pong>() && client.roster().seats.size() == 1;
+  };
+  ASSERT_TRUE(claim({0, wire::kWatchOnly}));
+  EXPECT_EQ(client.roster().seats[0].rods, 0);
+  EXPECT_EQ(client.roster().seats[0].team, wire::kWatchOnly);
+  const RodSet all1 = rods_of_team(layout, 1), one = RodSet(all1 & -all1);
+  ASSERT_TRUE(claim({one, 1}));
+  EXPECT_EQ(client.roster().seats[0].rods, one);
+  EXPECT_EQ(client.roster().seats[0].team, 1);
+  // Its inputs move that rod: the socket for them was opened anew or never closed.
+  wire::InputDatagram input{.session = welcome->session, .token = welcome->token, .sequence = 9};
+  for (wire::InputRod& rod : input.rods) rod = {true, 0.05f, 0.0, 0.0f, 0.0f};
+  for (int ms = 0; ms < 300; ++ms) {
+    ++input.sequence;
+    ASSERT_TRUE(client.send_input(input));
+    table.tick();
+  }
+  EXPECT_GT(table->match().view().rods[std::countr_zero(one)].slide, 0.03);
+}
+
+TEST(Rods, AWatcherTakesOneAndIsHeard) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  const auto welcome = client.join();
+  ASSERT_TRUE(welcome);
+  const RodSet one = 1;
+  client.say(wire::Claim{one, 0});
+  client.say(wire::Ping{1});
+  ASSERT_TRUE(client.hear_a<wire::Pong>());
+  ASSERT_EQ(client.roster().seats.at(0).rods, one);
+  table.tick();
+  wire::InputDatagram input{.session = welcome->session, .token = welcome->token, .sequence = 9};
+  input.rods[0] = {true, 0.05f, 0.0, 0.0f, 0.0f};
+  for (int ms = 0; ms < 300; ++ms) {
+    ++input.sequence;
+    ASSERT_TRUE(client.send_input(input));
+    table.tick();
+  }
+  EXPECT_GT(table->match().view().rods[0].slide, 0.03);
+}
+
+// Forged or not: a value out of its range changes nothing, a watcher's and a player's neither.
+TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
+  Lockstep table;
+  ProbeClient host(table.port()), second(table.port()), watcher(table.port());
+  ASSERT_TRUE(host.join(0));
+  ASSERT_TRUE(second.join(1));
+  ASSERT_TRUE(watcher.join());
+  const auto all_told = [&](double gravity) {
+    for (ProbeClient* client : {&host, &second, &watcher}) {
+      const bool told = table.tick_until([&] {
+        client->say(wire::Ping{1});
+        return client->hear_a<wire::Pong>() && client->tuning() &&
+               client->tuning()->values[0] == gravity;
+      });
+      if (!told) return false;
+    }
+    return true;
+  };
+  const double usual = foosball::Tuning{}.gravity;
+  ASSERT_TRUE(all_told(usual));
+  const auto tune = [](std::uint8_t value, double amount) {
+    return wire::Wish{number(wire::WishKind::tune), 0, value, amount};
+  };
+  host.say(tune(0, 9.0));
+  EXPECT_TRUE(all_told(9.0));
+  // Two hosts, as all at this machine are: the later word counts, and both are told.
+  second.say(tune(0, 10.0));
+  EXPECT_TRUE(all_told(10.0));
+  ProbeClient forger(table.port());
+  ASSERT_TRUE(forger.join());
+  forger.say(tune(0, 1e6));  // ends the connection: no client of ours sends it
+  EXPECT_TRUE(forger.sees_close());
+  table.tick(20);
+  EXPECT_EQ(table->match().view().tuning.gravity, 10.0);
+  ProbeClient late(table.port());
+  ASSERT_TRUE(late.join());
+  late.say(wire::Ping{1});
+  ASSERT_TRUE(late.hear_a<wire::Pong>());
+  ASSERT_TRUE(late.tuning());
+  EXPECT_EQ(late.tuning()->values[0], 10.0);
 }
 
 }  // namespace

@@ -38,7 +38,10 @@ auto build(Builder& b, const Hello& m) {
                          m.team, m.rods, m.session, m.ticket);
 }
 auto build(Builder& b, const Claim& m) {
-  return fb::CreateClaim(b, m.rods);
+  return fb::CreateClaim(b, m.rods, m.team);
+}
+auto build(Builder& b, const Tuning& m) {
+  return fb::CreateTuning(b, b.CreateVector(m.values.data(), m.values.size()));
 }
 auto build(Builder& b, const Seat& m) {
   return fb::CreateSeat(b, m.client, text(b, m.name, kMaxName), m.team, m.rods, m.role, m.away);
@@ -111,7 +114,16 @@ bool take(const fb::Challenge& t, Challenge& m) {
 }
 bool take(const fb::Claim& t, Claim& m) {
   m.rods = t.rods();
-  return m.rods != 0;
+  m.team = t.team();
+  return is_team(m.team);
+}
+bool take(const fb::Tuning& t, Tuning& m) {
+  if (t.values()->size() != m.values.size()) return false;
+  for (std::size_t i = 0; i < m.values.size(); ++i) {
+    m.values[i] = t.values()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    if (!std::isfinite(m.values[i])) return false;
+  }
+  return true;
 }
 bool take(const fb::Seat& t, Seat& m) {
   m.client = t.client();
@@ -212,6 +224,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Claim>(control.message_as_Claim(), message);
     case fb::Message::Roster:
       return take_as<Roster>(control.message_as_Roster(), message);
+    case fb::Message::Tuning:
+      return take_as<Tuning>(control.message_as_Tuning(), message);
     case fb::Message::NONE:
       break;
   }

@@ -178,7 +178,17 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Knock, fb::CreateKnockDirect(b, 2, 3, &sid, &key))) << "role";
   EXPECT_TRUE(refused(fb::Message::Knock, fb::CreateKnockDirect(b, 2, 1, &key, &key))) << "sid";
   EXPECT_TRUE(refused(fb::Message::Challenge, fb::CreateChallengeDirect(b, &sid))) << "share";
-  EXPECT_TRUE(refused(fb::Message::Claim, fb::CreateClaim(b, 0))) << "no rod";
+  EXPECT_FALSE(refused(fb::Message::Claim, fb::CreateClaim(b, 0))) << "gives up all";
+  EXPECT_FALSE(refused(fb::Message::Claim, fb::CreateClaim(b, 1, 1)));
+  EXPECT_TRUE(refused(fb::Message::Claim, fb::CreateClaim(b, 1, 2))) << "team";
+  const auto tuning = [&](std::size_t count, double value) {
+    const std::vector<double> values(count, value);
+    return fb::CreateTuningDirect(b, &values);
+  };
+  EXPECT_FALSE(refused(fb::Message::Tuning, tuning(kTuningCount, 1e300)));
+  EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount - 1, 1.0))) << "too few";
+  EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount + 1, 1.0))) << "too many";
+  EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount, std::nan("")))) << "no number";
   const auto roster = [&](std::size_t seats, std::uint8_t team) {
     const auto seat = fb::CreateSeatDirect(b, 1, "a", team, 1, 1, false);
     const std::vector all(seats, seat);

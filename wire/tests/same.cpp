@@ -50,7 +50,10 @@ auto tied(const Challenge& m) {
   return std::tie(m.share);
 }
 auto tied(const Claim& m) {
-  return std::tie(m.rods);
+  return std::tie(m.rods, m.team);
+}
+auto tied(const Tuning& m) {
+  return std::tie(m.values);
 }
 auto tied(const Seat& m) {
   return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);

@@ -185,6 +185,13 @@ std::array<std::byte, kSize> octets(unsigned first) {
   return bytes;
 }
 
+Tuning tuning() {
+  Tuning all;
+  for (std::size_t i = 0; i < all.values.size(); ++i)
+    all.values[i] = 0.5 * static_cast<double>(i) - 1.25;
+  return all;
+}
+
 std::vector<std::pair<std::string, ControlMessage>> control() {
   return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
           {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
@@ -199,7 +206,9 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"knock", Knock{2, 1, octets<16>(1), octets<32>(65)}},
           {"challenge", Challenge{octets<32>(17)}},
           {"claim", Claim{0x2A}},
-          {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}}};
+          {"change_of_team", Claim{0xF0, 1}},
+          {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
+          {"tuning", tuning()}};
 }
 
 std::vector<JournalEntry> journal() {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -68,16 +69,18 @@ class Connection {
   std::string address() const;  // "HOST:PORT"
   SceneSample sample(std::int64_t now_us);
   std::vector<wire::EventSnapshot> take_events();
-  std::vector<wire::Notice> notices() const;  // standing ones, oldest first
-  wire::Roster roster() const;                // who is there, and which rods they have
+  std::vector<wire::Notice> notices() const;   // standing ones, oldest first
+  wire::Roster roster() const;                 // who is there, and which rods they have
+  std::optional<wire::Tuning> tuning() const;  // of the match that is joined, once it is known
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
   // that is joined: nothing made of an old match reaches a new one.
   // Asks for something.
   void wish(std::uint64_t session, const wire::Wish& wish);
-  // Wants these rods, by bit, in place of the ones it has: roster() shows when it has them.
-  void claim(std::uint64_t session, std::uint8_t rods);
+  // Wants these rods, by bit, of this team, in place of the ones it has; none: to watch. roster()
+  // shows when it has them.
+  void claim(std::uint64_t session, const wire::Claim& claim);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
   // 20 times a second until nothing was heard from the caller for a second, or until the server is
   // joined anew.

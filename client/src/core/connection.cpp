@@ -56,11 +56,14 @@ SnapshotCounters Connection::counters() const {
 std::int64_t Connection::delay_us() const {
   return impl_->listener.delay_us();
 }
+std::optional<wire::Tuning> Connection::tuning() const {
+  return impl_->link.tuning();
+}
 wire::Roster Connection::roster() const {
   return impl_->link.roster();
 }
-void Connection::claim(std::uint64_t session, std::uint8_t rods) {
-  impl_->link.claim(session, rods);
+void Connection::claim(std::uint64_t session, const wire::Claim& claim) {
+  impl_->link.claim(session, claim);
 }
 void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
   impl_->link.wish(session, wish);

@@ -60,8 +60,13 @@ void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
   ask(wish, session);
 }
 
-void ControlLink::claim(std::uint64_t session, std::uint8_t rods) {
-  if (rods != 0) ask(wire::Claim{rods}, session);
+void ControlLink::claim(std::uint64_t session, const wire::Claim& claim) {
+  ask(claim, session);
+}
+
+std::optional<wire::Tuning> ControlLink::tuning() const {
+  const std::lock_guard lock(mutex_);
+  return tuning_;
 }
 
 void ControlLink::run() {
@@ -239,6 +244,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     roster_ = *roster;
   }
+  if (const auto* tuning = std::get_if<wire::Tuning>(&message)) {
+    const std::lock_guard lock(mutex_);
+    tuning_ = *tuning;
+  }
   if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
     drop(refusal->reason, now_us, true);
     return false;
@@ -285,6 +294,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   const std::lock_guard lock(mutex_);
   asked_.clear();
   roster_ = {};
+  tuning_.reset();
   notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;

@@ -27,8 +27,9 @@ class ControlLink {
   ConnectionStatus status() const;
   std::vector<wire::Notice> notices() const;
   wire::Roster roster() const;
+  std::optional<wire::Tuning> tuning() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
-  void claim(std::uint64_t session, std::uint8_t rods);
+  void claim(std::uint64_t session, const wire::Claim& claim);
 
  private:
   enum class Stage : std::uint8_t {
@@ -79,6 +80,7 @@ class ControlLink {
   ConnectionStatus status_;
   std::map<std::uint32_t, wire::Notice> notices_;
   wire::Roster roster_;
+  std::optional<wire::Tuning> tuning_;
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

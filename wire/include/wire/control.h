@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "wire/limits.h"
+
 namespace wire {
 
 inline constexpr std::uint16_t kControlVersion = 2;
@@ -70,7 +72,13 @@ struct Welcome {
 
 // Client to server: these rods from now on. The answer is a Roster, or a Notice that says why not.
 struct Claim {
-  std::uint8_t rods = 0;  // bit 0 at -x; at least one
+  std::uint8_t rods = 0;           // bit 0 at -x; 0: gives up those it has, and watches
+  std::uint8_t team = kWatchOnly;  // plays for it from now on; kWatchOnly: for the one it has
+};
+
+// Server to client: the tuning values of the match, on joining and after each change.
+struct Tuning {
+  std::array<double, kTuningCount> values{};  // finite, in the order of foosball/tuning.h
 };
 
 // One who has a place at the table.
@@ -130,7 +138,7 @@ struct Bye {
 };
 
 using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
-                                    Challenge, Claim, Roster>;
+                                    Challenge, Claim, Roster, Tuning>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.
