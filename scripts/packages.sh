@@ -24,7 +24,8 @@ build  libtinyxml2-dev       XML of these, with the lines of what is wrong
 build  libtbb-dev            oneTBB: steps of the engine by several threads, its optional part
 build  nlohmann-json3-dev    JSON, the calibration file
 build  libsqlite3-dev        SQLite, the file of results
-build  libglfw3-dev          the window, its keys, mice and gamepads
+build  libglfw3-dev          the window, its keys and mouse
+build  libsdl2-dev           gamepads, by events
 build  libgles-dev           OpenGL ES headers
 build  libglm-dev            vectors and matrices of the renderer
 build  libstb-dev            fonts and PNG files

@@ -13,7 +13,7 @@ constexpr double kPadRate = 1.5;       // [m/s] at full deflection
 constexpr float kDeadZone = 0.12f;     // of a worn stick
 constexpr double kKeySwingRate = 60;   // [rad/s]: a foot at 72 mm strikes with 4.3 m/s
 constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a rod
-constexpr double kNearer = 0.03;       // [m] a rod must be nearer by, to be chosen: no flicker
+constexpr double kStrikes = 6.0;       // [rad/s] slower, a rod is only set right
 // A stalled window does not fling the rods [s]; a window of 10 frames a second is none.
 constexpr double kLongestStep = 0.11;
 constexpr int kMostTaps = 4;  // in one poll
@@ -51,7 +51,9 @@ double towards(double from, double to, double step) {
 Hand::Hand(const HandOptions& options)
     : options_(options),
       lines_{Line{.rate{kReportUs, kRateHoldUs}}, Line{.rate{kReportUs, kRateHoldUs}},
-             Line{.rate{kReportUs, kRateHoldUs}}, Line{.rate{kReportUs, kRateHoldUs}}} {}
+             Line{.rate{kReportUs, kRateHoldUs}}, Line{.rate{kReportUs, kRateHoldUs}}} {
+  for (int away = 0; away < 4 && !options_.has[line_]; ++away) line_ = (line_ + 3) % 4;
+}
 
 void Hand::slide_by(Line& line, double metres, double limit) {
   line.slide = std::clamp(line.slide + metres, -limit, limit);  // no wind-up beyond the stop
@@ -70,11 +72,16 @@ void Hand::mouse_moved(double right_px, double forward_px) {
 }
 
 void Hand::choose(int line) {
-  if (line >= 0 && line < 4) line_ = line;
+  if (line >= 0 && line < 4 && options_.has[line]) line_ = line;
 }
 
 void Hand::cycle(int steps) {
-  line_ = std::clamp(line_ + std::clamp(steps, -4, 4), 0, 3);
+  const int way = steps > 0 ? 1 : -1;
+  for (int left = std::min(std::abs(steps), 4); left > 0; --left) {
+    int next = line_ + way;
+    while (next >= 0 && next < 4 && !options_.has[next]) next += way;
+    if (next >= 0 && next < 4) line_ = next;
+  }
 }
 
 void Hand::key_axis(double slide, double spin) {
@@ -111,22 +118,22 @@ void Hand::release() {
   for (Line& line : lines_) line.moved = line.swinging = false;
 }
 
-void Hand::set_automatic(bool on) {
-  if (on != automatic_) nearest_line_ = -1;
-  automatic_ = on;
+void Hand::place(int rod, double slide, double angle) {
+  if (!std::isfinite(slide) || !std::isfinite(angle)) return;
+  for (int i = 0; i < 4; ++i) {
+    Line& line = lines_[i];
+    if (options_.rods[i] != rod) continue;
+    line.slide = line.sent_slide =
+        std::clamp(slide, -options_.slide_limit[i], options_.slide_limit[i]);
+    line.angle = line.sent_angle = angle;
+    line.moved = true;
+    line.swinging = false;
+  }
 }
 
-void Hand::ball_at(double x, const std::array<double, 8>& rod_x) {
-  if (!automatic_ || !std::isfinite(x) || swing_wanted() != 0) return;
-  const auto distance = [&](int line) { return std::abs(rod_x[options_.rods[line]] - x); };
-  int nearest = nearest_line_ < 0 ? line_ : nearest_line_;
-  const int before = nearest;
-  for (int line = 0; line < 4; ++line) {
-    const double margin = nearest == before ? kNearer : 0;
-    if (distance(line) + margin < distance(nearest)) nearest = line;
-  }
-  if (nearest != nearest_line_) line_ = nearest;
-  nearest_line_ = nearest;
+bool Hand::strikes() const {
+  const RodInput& rod = rods_[options_.rods[line_]];
+  return swing_wanted() != 0 || spin_taps_ != 0 || std::abs(rod.angle_rate) > kStrikes;
 }
 
 int Hand::active_line() const {
@@ -184,6 +191,7 @@ void Hand::poll(std::int64_t now_us) {
     line.rate.update(line.slide - line.sent_slide, line.angle - line.sent_angle, now_us);
     line.sent_slide = line.slide;
     line.sent_angle = line.angle;
+    if (!options_.has[i]) continue;
     rods_[options_.rods[i]] = {
         line.slide, line.angle,     line.rate.slide_rate(), line.rate.angle_rate(),
         now_us,     RodStatus::live};

@@ -11,7 +11,6 @@ using namespace cabinet;
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::array<double, 8> kRodX{-0.525, -0.375, -0.225, -0.075, 0.075, 0.225, 0.375, 0.525};
 
 struct Player {
   static HandOptions options() {
@@ -271,43 +270,48 @@ TEST(Hand, AShoulderButtonChangesTheRodOncePerPress) {
   EXPECT_EQ(p.hand.active_line(), 2);
 }
 
-TEST(Hand, NearestRodIsChosenWithHysteresis) {
-  Player p;
-  p.hand.ball_at(0.3, kRodX);
-  EXPECT_EQ(p.hand.active_line(), 2);  // off until asked for
-  p.hand.set_automatic(true);
-  p.hand.ball_at(0.3, kRodX);
-  EXPECT_EQ(p.hand.active_rod(), 5);
-  const double middle = 0.5 * (kRodX[3] + kRodX[5]);
-  for (int i = 0; i < 20; ++i) {  // a ball that trembles between two rods
-    p.hand.ball_at(middle + (i % 2 == 0 ? 0.01 : -0.01), kRodX);
-    EXPECT_EQ(p.hand.active_rod(), 5);
+TEST(Hand, OfATeamThatIsSharedOnlyTheOwnRodsAreChosenAndLive) {
+  HandOptions options;
+  options.slide_limit = {0.2, 0.2, 0.2, 0.2};
+  options.has = {true, false, false, true};
+  Hand hand(options);
+  EXPECT_EQ(hand.active_line(), 0);  // the first of its rods inwards from the midfield
+  hand.choose(2);
+  EXPECT_EQ(hand.active_line(), 0);
+  hand.cycle(1);
+  EXPECT_EQ(hand.active_line(), 3);
+  hand.cycle(1);
+  EXPECT_EQ(hand.active_line(), 3);
+  hand.cycle(-4);
+  EXPECT_EQ(hand.active_line(), 0);
+  hand.poll(1000);
+  for (int i = 0; i < 4; ++i) {
+    const RodStatus status = hand.rods()[static_cast<std::size_t>(options.rods[i])].status;
+    EXPECT_EQ(status == RodStatus::live, options.has[i]) << i;
   }
-  p.hand.ball_at(middle - 0.02, kRodX);
-  EXPECT_EQ(p.hand.active_rod(), 3);
 }
 
-TEST(Hand, ARodChosenByHandStaysUntilTheNearestChanges) {
+TEST(Hand, GoesOnFromWhereARodWasPlaced) {
   Player p;
-  p.hand.set_automatic(true);
-  p.hand.ball_at(0.2, kRodX);
-  p.hand.choose(0);
-  p.hand.ball_at(0.21, kRodX);
-  EXPECT_EQ(p.hand.active_line(), 0);
-  p.hand.ball_at(-0.4, kRodX);
-  EXPECT_EQ(p.hand.active_line(), 1);
+  const int rod = p.hand.active_rod();
+  p.hand.place(rod, 0.05, 0.4);
+  p.frames(1);
+  EXPECT_NEAR(p.hand.rods()[static_cast<std::size_t>(rod)].slide, 0.05, 1e-12);
+  EXPECT_EQ(p.hand.rods()[static_cast<std::size_t>(rod)].slide_rate, 0.0);  // not a motion
+  p.hand.adopt(rod, -0.1, 0.0);
+  p.frames(1);
+  EXPECT_NEAR(p.hand.rods()[static_cast<std::size_t>(rod)].slide, 0.05, 1e-12);
 }
 
-TEST(Hand, AutomaticChoiceWaitsForAFlick) {
+TEST(Hand, StrikesWhileItHoldsASwing) {
   Player p;
-  p.hand.set_automatic(true);
-  p.hand.ball_at(0.2, kRodX);
+  p.frames(2);
+  EXPECT_FALSE(p.hand.strikes());
   p.hand.key_axis(0, -1);
-  p.hand.ball_at(-0.5, kRodX);
-  EXPECT_EQ(p.hand.active_rod(), 5);
+  EXPECT_TRUE(p.hand.strikes());
   p.hand.key_axis(0, 0);
-  p.hand.ball_at(-0.5, kRodX);
-  EXPECT_EQ(p.hand.active_rod(), 0);
+  p.frames(200);
+  EXPECT_FALSE(p.hand.strikes());
 }
 
 TEST(Hand, NothingNotFiniteComesOut) {
@@ -318,8 +322,7 @@ TEST(Hand, NothingNotFiniteComesOut) {
   p.hand.key_axis(infinite, nan);
   p.hand.pad({.left_x = bad, .left_y = bad, .right_x = bad, .right_y = bad});
   p.hand.adopt(3, nan, infinite);
-  p.hand.set_automatic(true);
-  p.hand.ball_at(nan, kRodX);
+  p.hand.place(3, nan, infinite);
   p.frames(10);
   p.hand.poll(p.now_us - 1'000'000'000);  // a clock that falls
   for (const RodInput& rod : p.hand.rods()) {

@@ -8,7 +8,7 @@ uniform float u_goal_width;   // [m]
 uniform vec3 u_team_colour[2];
 uniform vec3 u_team_lamp[2];
 uniform vec4 u_ball;          // position, radius [m]; radius 0: none
-uniform vec4 u_active_rod;    // x, strength, rod's side of the marker (y), tick of the pulse
+uniform vec2 u_active_rods[4];  // x, strength; 0: no more of them
 out vec4 o_colour;
 
 float box_distance(vec2 p, vec2 half_size) {
@@ -59,8 +59,11 @@ void main() {
   }
   vec3 c = shade(s, v_position, vec3(0.0, 0.0, 1.0), v_shadow, occlusion) * contact;
   // A soft lane of light lies under the rod in hand.
-  float lane = (p.x - u_active_rod.x) / 0.020;
-  c += u_active_rod.y * exp(-lane * lane) * vec3(0.16, 0.20, 0.19) * (0.55 + 0.45 * s.albedo.g * 8.0);
+  for (int i = 0; i < 4; ++i) {
+    if (u_active_rods[i].y <= 0.0) break;
+    float lane = (p.x - u_active_rods[i].x) / 0.020;
+    c += u_active_rods[i].y * exp(-lane * lane) * vec3(0.16, 0.20, 0.19) * (0.55 + 0.45 * s.albedo.g * 8.0);
+  }
   c += m * mix(vec3(0.16, 0.24, 0.26), team, 0.6 * towards) * 0.35;
   // The lamps along the walls and around the goals light the turf at their feet.
   vec2 goal = vec2(u_half_field.x - abs(p.x), max(abs(p.y) - 0.5 * u_goal_width, 0.0));

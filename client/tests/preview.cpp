@@ -110,7 +110,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     const std::string name = shot.name;
     SceneView view;
     view.camera = camera_of(shot, state, size);
-    view.active_rod = shot.screen == 2 && shot.team >= 0 ? (shot.team == 0 ? 3 : 4) : -1;
+    if (shot.screen == 2 && shot.team >= 0) view.active_rods = shot.team == 0 ? 1u << 3 : 1u << 4;
     view.time = 1.0f;
     view.hide_rods = name == "above-hidden-rods";
     view.distinct_teams = name == "distinct";
@@ -118,7 +118,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     hud.state = &state;
     hud.camera = view.camera;
     hud.viewer_team = shot.team;
-    hud.active_rod = view.active_rod;
+    hud.active_rods = view.active_rods;
     hud.view = shot.view;
     hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .own_goal = false, .speed = 7.4f};
     if (name == "above-ceremony")

@@ -87,7 +87,7 @@ class HandToPicture {
   std::deque<Sent> inputs_;
   std::deque<std::pair<std::int64_t, wire::Snapshot>> under_way_;
   SnapshotBuffer buffer_;
-  RodPrediction prediction_{0, foosball::Layout::tournament};
+  RodPrediction prediction_{foosball::Layout::tournament};
 };
 
 struct Latency {
@@ -182,7 +182,7 @@ TEST(RodPrediction, RodsOfOthersAndOfAPausedMatchAreTheServers) {
   wire::Snapshot paused = scripted_play(0.7);
   paused.paused = true;
   for (const wire::Snapshot* server : {&scene, &paused}) {
-    RodPrediction prediction(0, foosball::Layout::tournament);
+    RodPrediction prediction(foosball::Layout::tournament);
     wire::Snapshot drawn = *server;
     for (int i = 1; i < 10; ++i) prediction.update(hand, *server, i * 16 * kMs);
     prediction.apply(drawn);

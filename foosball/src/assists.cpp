@@ -50,8 +50,8 @@ double towards(double from, double to, double most) {
 }  // namespace
 
 Assists::Assists(int team, Layout layout, std::uint8_t rods, const AssistChoice& choice)
-    : team_(team), table_(table_spec(layout)), mine_(rods), choice_(choice) {
-  for (int c = 0; c < kCharacters; ++c) reach_[c] = field_reach(table_, c);
+    : team_(team), table_(&table_spec(layout)), mine_(rods), choice_(choice) {
+  for (int c = 0; c < kCharacters; ++c) reach_[c] = field_reach(*table_, c);
 }
 
 Assists::Ball Assists::ball_of(const AssistView& view) const {
@@ -60,7 +60,7 @@ Assists::Ball Assists::ball_of(const AssistView& view) const {
 }
 
 double Assists::rod_x(int rod) const {
-  return team_of(team_, table_.rods[rod].x);
+  return team_of(team_, table_->rods[rod].x);
 }
 
 // --- automatic rod -------------------------------------------------------------------------------
@@ -82,7 +82,7 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
   const auto time = [&](int rod) { return time_to_act(rod, ball, view.character[team_]); };
   int best = have ? now : -1;
   double least = have ? time(now) - kSoonerBy : 1e9;
-  for (const int rod : rods_of_team(table_, team_)) {  // from the own goal, for either team
+  for (const int rod : rods_of_team(*table_, team_)) {  // from the own goal, for either team
     if ((mine_ >> rod & 1) == 0 || rod == now || time(rod) >= least) continue;
     least = time(rod);
     best = rod;
@@ -95,18 +95,18 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
 // Where a man should stand: in the path of a ball that comes, else between ball and goal.
 double Assists::guard_y(int rod, const Ball& ball) const {
   const double ahead = ball.x - rod_x(rod);
-  if (ball.vx < -kComes && ahead > 0.0) return bounced(table_, ball.y - ball.vy * ahead / ball.vx);
-  const bool goalie = table_.rods[rod].line == Line::goalie;
+  if (ball.vx < -kComes && ahead > 0.0) return bounced(*table_, ball.y - ball.vy * ahead / ball.vx);
+  const bool goalie = table_->rods[rod].line == Line::goalie;
   const double shade = goalie ? kShade : -kShade;
-  const double to_goal = std::max(ball.x + 0.5 * table_.length, table_.ball_radius);
+  const double to_goal = std::max(ball.x + 0.5 * table_->length, table_->ball_radius);
   const double y = ball.y + (shade - ball.y) * std::clamp(ahead / to_goal, 0.0, 1.0);
-  const double mouth = 0.5 * table_.goal_width;
+  const double mouth = 0.5 * table_->goal_width;
   return goalie ? std::clamp(y, -mouth, mouth) : y;
 }
 
 // The slide that brings a man to y: the man who can, and then the least moved.
 double Assists::slide_for(int rod, double y, double from) const {
-  const RodSpec& spec = table_.rods[rod];
+  const RodSpec& spec = table_->rods[rod];
   double best = from, least = 1e9;
   for (int man = 0; man < spec.men; ++man) {
     const double wanted = y - man_offset(spec, man);
@@ -145,10 +145,10 @@ void Assists::follow(int rod, const AssistView& view, const RodTarget& from, int
 
 // Distance between the line from the ball to (goal line, target) and the nearest man in its way.
 double Assists::clearance(const AssistView& view, const Ball& ball, double target) const {
-  const double run = 0.5 * table_.length - ball.x;
+  const double run = 0.5 * table_->length - ball.x;
   double least = 0.06;  // wider is not better
   for (int rod = 0; rod < kRods; ++rod) {
-    const RodSpec& spec = table_.rods[rod];
+    const RodSpec& spec = table_->rods[rod];
     const double ahead = rod_x(rod) - ball.x;
     if (spec.team == team_ || ahead < 0.03) continue;
     const double y = ball.y + (target - ball.y) * ahead / run;
@@ -165,16 +165,16 @@ double Assists::clearance(const AssistView& view, const Ball& ball, double targe
 // play, touches the ball r sin a beyond the foot's side.
 double Assists::aimed_slide(int rod, const AssistView& view, double slide) const {
   const Ball ball = ball_of(view);
-  const RodSpec& spec = table_.rods[rod];
+  const RodSpec& spec = table_->rods[rod];
   const double ahead = ball.x - rod_x(rod), height = view.ball.z;
   const bool there = view.ball_in_play && ahead > kStrikeFrom && ahead < kStrikeTo &&
-                     height < 2.5 * table_.ball_radius && std::fabs(ball.vy) < kTame;
+                     height < 2.5 * table_->ball_radius && std::fabs(ball.vy) < kTame;
   if (!there) return slide;
   const double half_foot = 0.5 * character_spec(view.character[team_]).foot_width;
   const int man = man_nearest(spec, ball.y - slide);
   const double beside = man_offset(spec, man) + slide - ball.y;  // of the foot from the ball
-  const double run = 0.5 * table_.length - ball.x;
-  const double post = 0.5 * table_.goal_width - table_.ball_radius;
+  const double run = 0.5 * table_->length - ball.x;
+  const double post = 0.5 * table_->goal_width - table_->ball_radius;
   double best = 0.0, most = -1e9;
   const auto consider = [&](double target, double foot, double bonus) {
     const double worth = bonus + clearance(view, ball, target) +
@@ -190,7 +190,7 @@ double Assists::aimed_slide(int rod, const AssistView& view, double slide) const
     if (std::fabs(tangent) > kSteepest) continue;
     const double sine = tangent / std::sqrt(1.0 + tangent * tangent);
     if (std::fabs(sine) < 0.04) continue;
-    consider(share * post, -std::copysign(half_foot + table_.ball_radius * std::fabs(sine), sine),
+    consider(share * post, -std::copysign(half_foot + table_->ball_radius * std::fabs(sine), sine),
              0.0);
   }
   const double off = best - beside;
@@ -212,7 +212,7 @@ std::array<RodTarget, kRods> Assists::steer(const AssistView& view, const Assist
   for (int rod = 0; rod < kRods; ++rod) {
     if ((mine_ >> rod & 1) == 0) continue;
     Rod& own = rods_[rod];
-    const Line line = table_.rods[rod].line;
+    const Line line = table_->rods[rod].line;
     const bool held = (hand.held >> rod & 1) != 0;
     const bool guards = line == Line::goalie || line == Line::defence;
     RodTarget& target = targets[rod];
@@ -226,7 +226,7 @@ std::array<RodTarget, kRods> Assists::steer(const AssistView& view, const Assist
     const double slide = team_of(team_, target.slide);
     pull(rod, view, slide, choice_.aim && held && hand.strikes && target.live, ticks);
     if (own.pull == 0.0) continue;
-    const double limit = table_.rods[rod].slide_limit;
+    const double limit = table_->rods[rod].slide_limit;
     target.slide = team_of(team_, std::clamp(slide + own.pull, -limit, limit));
   }
   return targets;

@@ -1,8 +1,8 @@
 // One person at a window: a mouse (slide and spin of the active rod), keys and the wheel (choice of
 // rod), or a gamepad, turned into RodInputs. It knows no window: events are handed in.
 //
-// All four rods of the person are live; only the active one moves by the hand's motion, the others
-// stay where the hand left them.
+// All rods of the person are live; only the active one moves by the hand's motion, the others stay
+// where the hand left them.
 // - Mouse: relative, both axes positions.
 // - Keys: slide by a rate that ramps up; spin is a flick: held back it cocks the feet, held forward
 //   it strikes, let go it hangs the men straight down again.
@@ -26,10 +26,11 @@ inline constexpr double kTapSlide = 0.0054;
 inline constexpr double kSwing = 1.4;
 
 struct HandOptions {
-  std::array<int, 4> rods{0, 1, 3, 5};  // this person's rods, own goal outwards
-  std::array<double, 4> slide_limit{};  // |slide| <= this [m]
-  double slide_sign = 1.0;              // mouse to the right / stick up: +slide times this
-  double angle_sign = 1.0;              // mouse forward swings the feet forward
+  std::array<int, 4> rods{0, 1, 3, 5};              // of this person's team, own goal outwards
+  std::array<bool, 4> has{true, true, true, true};  // those of them that the person plays
+  std::array<double, 4> slide_limit{};              // |slide| <= this [m]
+  double slide_sign = 1.0;  // mouse to the right / stick up: +slide times this
+  double angle_sign = 1.0;  // mouse forward swings the feet forward
   double metres_per_pixel = 0.0006;
   double radians_per_pixel = 0.012;
 };
@@ -47,8 +48,8 @@ class Hand final : public InputSource {
   explicit Hand(const HandOptions& options);
 
   void mouse_moved(double right_px, double forward_px);
-  void choose(int line);                     // 0..3, own goal outwards; others are ignored
-  void cycle(int steps);                     // wheel: +1 outwards, wraps at neither end
+  void choose(int line);  // 0..3, own goal outwards; others, and those it has not, are ignored
+  void cycle(int steps);  // wheel: +1 outwards among those it has, wraps at neither end
   void key_axis(double slide, double spin);  // held keys, each -1, 0, 1
   // Keys that were pressed and let go between two polls, how often, with their sign: each moves the
   // rod by kTapSlide; any spin swings the feet to kSwing for one poll.
@@ -59,10 +60,10 @@ class Hand final : public InputSource {
   // the hand, not the hand the rod. release() makes the next ones count again.
   void adopt(int rod, double slide, double angle);
   void release();
-  // Nearest rod to the ball becomes the active one while automatic choice is on. It stays while a
-  // flick is held. A rod chosen by hand stays until the nearest changes.
-  void set_automatic(bool on);
-  void ball_at(double x, const std::array<double, 8>& rod_x);
+  // Something else has moved a rod of this hand: it goes on from there.
+  void place(int rod, double slide, double angle);
+  // Keys or a stick hold a swing, or the active rod turns as a strike does.
+  bool strikes() const;
 
   int active_line() const;  // 0..3
   int active_rod() const;   // index of the rod on the table
@@ -92,8 +93,6 @@ class Hand final : public InputSource {
   SourceCounters counters_;
   std::string name_ = "hand";
   int line_ = 2;
-  bool automatic_ = false;
-  int nearest_line_ = -1;
   double key_slide_ = 0, key_spin_ = 0;
   int slide_taps_ = 0, spin_taps_ = 0;
   double key_rate_ = 0;  // of the ramp [m/s]

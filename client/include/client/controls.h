@@ -25,8 +25,11 @@ enum class Action : std::uint8_t {
   camera,
   settings,
   help,
+  seats,
+  tuning,
+  time_out,
 };
-inline constexpr int kActions = 16;
+inline constexpr int kActions = 19;
 
 constexpr std::size_t index_of(Action action) {
   return static_cast<std::size_t>(action);

@@ -1,4 +1,4 @@
-// What a person did at the window between two frames, without any window library's types.
+// What a person did between two frames, without any window library's types.
 #pragma once
 
 #include <array>
@@ -26,8 +26,12 @@ struct InputEvents {
   cabinet::PadState pad;
   bool pad_push = false;
   bool pad_pause = false;
-  bool back = false;  // Esc, while the pointer is free
-  int any_key = 0;    // of the window library; 0: none was pressed
+  bool pad_menu = false;
+  bool pad_time_out = false;
+  int pad_up = 0, pad_right = 0;    // presses of its cross, with their sign
+  int held_up = 0, held_right = 0;  // -1, 0, 1: cross or left stick of a pad, as held
+  bool back = false;                // Esc, while the pointer is free
+  int any_key = 0;                  // of the window library; 0: none was pressed
 };
 
 }  // namespace client

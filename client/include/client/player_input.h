@@ -1,4 +1,5 @@
-// A person's hand at this client: window events in, the rods of their team out.
+// One person's hand at this client: what they did in, their rods out, helped by the assists that
+// they chose (foosball/assists.h).
 //
 // The person stands at the long side, as camera.h has it: away from them is along the rod, to their
 // right is towards the other goal.
@@ -10,6 +11,7 @@
 
 #include "cabinet/hand.h"
 #include "client/input_events.h"
+#include "foosball/assists.h"
 #include "foosball/table.h"
 #include "wire/control.h"
 #include "wire/input_datagram.h"
@@ -19,8 +21,9 @@ namespace client {
 
 class PlayerInput {
  public:
-  // Precondition: team is 0 or 1.
-  PlayerInput(std::uint64_t session, int team, foosball::Layout layout);
+  // rods: that the person plays, by bit; those of the other team are ignored. Precondition: team
+  // is 0 or 1.
+  PlayerInput(std::uint64_t session, int team, foosball::Layout layout, std::uint8_t rods = 0xff);
 
   // One frame: what happened at the window, and the newest scene (null: none yet). A scene of
   // another session counts as none. Until there is one, the hand holds no rod, asks for nothing,
@@ -34,23 +37,31 @@ class PlayerInput {
   std::array<wire::InputRod, 8> rods() const;
   // What the events of the last update ask of the match.
   const std::vector<wire::Wish>& wishes() const { return wishes_; }
-  int active_rod() const { return hand_.active_rod(); }
-  bool automatic() const { return automatic_; }
-  void set_automatic(bool on) { automatic_ = on; }
+  int team() const { return team_; }
+  int active_rod() const { return hand_.active_rod(); }  // one of its rods
+  bool automatic() const { return assists_on_.automatic_rod; }
+  void set_assists(const foosball::AssistChoice& choice);
 
  private:
   void move(const InputEvents& events, const wire::Snapshot& scene);
   void collect_wishes(const InputEvents& events, const wire::Snapshot& scene);
   void choose_character(const InputEvents& events, const wire::Snapshot& scene);
+  void choose_rod(const foosball::AssistView& view);
+  void assist(const foosball::AssistView& view, std::int64_t now_us);
+  foosball::AssistHand hand_now() const;
 
   std::uint64_t session_;
   int team_;
   const foosball::TableSpec& table_;
+  std::uint8_t mine_;  // by bit
   cabinet::Hand hand_;
+  foosball::AssistChoice assists_on_;
+  foosball::Assists assists_;
+  int rod_to_take_ = -1;          // by the assist; a rod chosen by hand stays until it changes
+  std::int64_t assisted_us_ = 0;  // up to when
+  std::array<foosball::RodTarget, foosball::kRods> targets_{};
   bool begun_ = false;
-  bool automatic_ = false;
   bool key_was_held_ = false;
-  std::array<double, 8> rod_x_{};
   std::vector<wire::Wish> wishes_;
 };
 

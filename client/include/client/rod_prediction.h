@@ -30,14 +30,17 @@ class RodPrediction {
   // Differences that a wrong lag of so much explains are no differences.
   static constexpr int kLagMarginMs = 8;
 
-  // Precondition: team is 0 or 1.
-  RodPrediction(int team, foosball::Layout layout);
+  explicit RodPrediction(foosball::Layout layout);
 
-  // One frame. hand: as it is sent now; server: the scene to be drawn. Rods that the server does
-  // not have from a client, and all rods of a match that is paused, are as the server has them.
+  // As the server says that the match is tuned.
+  void set_tuning(const foosball::Tuning& tuning) { tuning_ = tuning; }
+
+  // One frame. hand: as it is sent now; server: the scene to be drawn. Rods that the hand does not
+  // drive or the server does not have from a client, and all rods of a match that is paused, are as
+  // the server has them.
   void update(const std::array<wire::InputRod, 8>& hand, const wire::Snapshot& server,
               std::int64_t now_us);
-  // Moves this team's rods in the scene, with their men, to where they are predicted.
+  // Moves the predicted rods in the scene, with their men, to where they are predicted.
   void apply(wire::Snapshot& scene) const;
 
   int lag_ms() const { return lag_ms_; }
@@ -60,8 +63,8 @@ class RodPrediction {
   void correct(Rod& rod, const wire::RodSnapshot& server, double seconds);
 
   const foosball::TableSpec& table_;
-  int team_;
-  std::array<Rod, 4> rods_;
+  foosball::Tuning tuning_;
+  std::array<Rod, foosball::kRods> rods_;
   std::int64_t tick_ = 0, clock_us_ = 0, updated_us_ = 0;
   bool started_ = false;
   int lag_ms_ = 0;

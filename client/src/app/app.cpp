@@ -13,7 +13,7 @@
 #include "app/log.h"
 #include "app/view_motion.h"
 #include "app/window.h"
-#include "client/player_input.h"
+#include "client/crew.h"
 #include "client/rod_prediction.h"
 #include "client/settings_menu.h"
 #include "core/replay_reel.h"
@@ -37,6 +37,20 @@ std::string catalogue_directory() {
   return (program.parent_path().parent_path() / "share" / "locale").string();
 }
 
+foosball::AssistChoice assists_of(const Settings& settings) {
+  return {settings.automatic_rod, settings.goalie_follows, settings.aim};
+}
+
+// What a server says is in no range until it is looked at.
+foosball::Tuning tuning_of(const wire::Tuning& told) {
+  foosball::Tuning tuning;
+  for (std::size_t i = 0; i < told.values.size(); ++i) {
+    const foosball::TuningField& field = foosball::kTuningFields[i];
+    if (foosball::in_range(field, told.values[i])) tuning.*field.value = told.values[i];
+  }
+  return tuning;
+}
+
 class App {
  public:
   App(const Options& options, std::unique_ptr<Connection> connection)
@@ -57,11 +71,16 @@ class App {
   void play_reel(std::int64_t now);
   void hear(std::int64_t now);
   void follow_connection();
+  void follow_roster();
+  int viewer_team() const;
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
+  void drive_rods(std::int64_t now);
+  void hear_of_pads();
   void predict(std::int64_t now);
   void draw(float dt);
+  std::uint8_t active_rods() const;
   std::array<float, 8> rod_shift() const;
   HudState hud(const Camera& camera) const;
   void judge_quality();
@@ -79,7 +98,7 @@ class App {
   std::optional<UiBatch> ui_;
   std::unique_ptr<SoundPlayer> sounds_;
   std::unique_ptr<Connection> connection_;
-  std::unique_ptr<PlayerInput> player_;
+  std::unique_ptr<Crew> crew_;  // of the match that is joined
   std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
   Effects effects_;
@@ -95,10 +114,14 @@ class App {
   MenuHand menu_hand_;
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
+  std::vector<std::string> pad_news_;
+  double pad_news_until_ = 0.0;  // [s]
   ReplayReel reel_;
   std::uint8_t screen_before_ = 0;
   bool replay_ = false;
   ConnectionStatus status_;
+  wire::Roster roster_;
+  foosball::Tuning tuning_;  // of the match, as far as it is known
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
   std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
@@ -197,7 +220,7 @@ void App::apply_settings() {
     if (const std::string error = use_quality(*quality); !error.empty()) log_warning(error);
   }
   window_->set_keys(settings_.keys);
-  if (player_) player_->set_automatic(settings_.automatic_rod);
+  if (crew_) crew_->set_assists(assists_of(settings_));
 }
 
 void App::change_settings() {
@@ -208,8 +231,7 @@ void App::change_settings() {
 
 void App::take_menu_input(const InputEvents& events) {
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
-  const int team = player_ ? status_.welcome.team : -1;
-  const MenuSteps steps = menu_hand_.steps(events, scene, team);
+  const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team());
   // A key that is waited for is no step.
   if (menu_.step(menu_.waits_for_key() ? MenuSteps{.back = events.back} : steps, events.any_key,
                  settings_))
@@ -255,15 +277,30 @@ void App::follow_connection() {
   joins_seen_ = status_.joins;
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
-  player_.reset();
-  prediction_.reset();
-  if (status_.welcome.team < foosball::kTeams) {
-    player_ = std::make_unique<PlayerInput>(status_.welcome.session, status_.welcome.team,
-                                            static_cast<foosball::Layout>(status_.welcome.layout));
-    player_->set_automatic(settings_.automatic_rod);
-    prediction_ = std::make_unique<RodPrediction>(
-        status_.welcome.team, static_cast<foosball::Layout>(status_.welcome.layout));
+  const wire::Welcome& welcome = status_.welcome;
+  const auto layout = static_cast<foosball::Layout>(welcome.layout);
+  crew_ = std::make_unique<Crew>(
+      welcome.session, welcome.team < foosball::kTeams ? welcome.team : 0, layout, welcome.rods);
+  crew_->set_assists(assists_of(settings_));
+  prediction_ = std::make_unique<RodPrediction>(layout);
+}
+
+// Rods may be given to others, and the team may change, while the match goes on.
+void App::follow_roster() {
+  if (!crew_ || status_.link != Link::joined) return;
+  roster_ = connection_->roster();
+  const auto own = std::ranges::find(roster_.seats, status_.welcome.client, &wire::Seat::client);
+  if (own != roster_.seats.end())
+    crew_->grant(own->team < foosball::kTeams ? own->team : crew_->team(), own->rods);
+  if (const auto tuning = connection_->tuning()) {
+    tuning_ = tuning_of(*tuning);
+    prediction_->set_tuning(tuning_);
   }
+}
+
+// Whose side the picture is seen from; -1: this client only watches.
+int App::viewer_team() const {
+  return crew_ && crew_->plays() ? crew_->team() : -1;
 }
 
 void App::say_when_in_step(std::int64_t now) {
@@ -275,6 +312,7 @@ void App::say_when_in_step(std::int64_t now) {
 
 void App::hear(std::int64_t now) {
   follow_connection();
+  follow_roster();
   SceneSample sample = connection_->sample(now);
   if (sample.any) sample_ = std::move(sample);  // else the last scene stands
   const auto events = connection_->take_events();
@@ -282,11 +320,13 @@ void App::hear(std::int64_t now) {
 }
 
 void App::take_input(std::int64_t now) {
-  InputEvents events = window_->poll();
+  window_->poll();
+  InputEvents events = window_->input().take(kAllDevices);
   const bool asked = events.presses[index_of(Action::settings)] % 2 != 0;
   if (menu_.open()) {
     take_menu_input(events);
-    events = {};  // the rods stay as they are
+    window_->forget_input();  // the rods stay as they are
+    events = {};
   } else if (asked) {
     menu_.toggle();
     menu_hand_.restart();
@@ -296,21 +336,42 @@ void App::take_input(std::int64_t now) {
   if (events.toggle_help) show_help_ = !show_help_;
   if (events.presses[index_of(Action::camera)] % 2 != 0) turn_view();
   if (replay_ && (events.push || events.pad_push)) reel_.skip();
-  if (!player_) return;
-  player_->update(events, sample_.any ? &sample_.state : nullptr, now);
-  if (events.toggle_automatic) settings_.automatic_rod = player_->automatic();
-  if (!player_->begun()) return;
-  connection_->drive(player_->session(), player_->rods());
-  for (const wire::Wish& wish : player_->wishes()) connection_->wish(player_->session(), wish);
+  if (crew_) drive_rods(now);
+  window_->forget_input();
+  hear_of_pads();
+}
+
+void App::hear_of_pads() {
+  constexpr double kShown = 8.0;  // [s]
+  if (auto news = window_->take_news(); !news.empty()) {
+    for (const std::string& line : news) log_info(line);
+    pad_news_ = std::move(news);
+    pad_news_until_ = seconds_ + kShown;
+  }
+  if (seconds_ > pad_news_until_) pad_news_.clear();
+}
+
+void App::drive_rods(std::int64_t now) {
+  const auto take = [this](DeviceSet devices) { return window_->input().take(devices); };
+  crew_->update(take, sample_.any ? &sample_.state : nullptr, now);
+  settings_.automatic_rod = crew_->automatic();
+  if (!crew_->begun() || !crew_->plays()) return;
+  connection_->drive(crew_->session(), crew_->rods());
+  for (const wire::Wish& wish : crew_->wishes()) connection_->wish(crew_->session(), wish);
 }
 
 // Last before drawing, so that what the hand did is in this very frame.
 void App::predict(std::int64_t now) {
   if (!sample_.any) return;
   drawn_ = sample_.state;
-  if (!prediction_ || !player_->begun() || !scene_is_current()) return;
-  prediction_->update(player_->rods(), sample_.state, now);
+  if (!prediction_ || !crew_->begun() || !scene_is_current()) return;
+  prediction_->update(crew_->rods(), sample_.state, now);
   prediction_->apply(drawn_);
+}
+
+// What people here hold in their hands; nothing while a goal is shown again.
+std::uint8_t App::active_rods() const {
+  return crew_ && crew_->plays() && !replay_ ? crew_->active_rods() : std::uint8_t{0};
 }
 
 // Handles outside the screen have their own places only where the screen lies in the table.
@@ -322,11 +383,11 @@ HudState App::hud(const Camera& camera) const {
   HudState hud;
   hud.state = sample_.any ? &drawn_ : nullptr;
   hud.camera = camera;
-  hud.viewer_team = player_ ? status_.welcome.team : -1;
+  hud.viewer_team = viewer_team();
   hud.mouse_free = !window_->captured();
   hud.show_help = show_help_;
-  hud.automatic_rod = player_ && player_->automatic();
-  hud.active_rod = player_ && !replay_ ? player_->active_rod() : -1;
+  hud.automatic_rod = settings_.automatic_rod && hud.viewer_team >= 0;
+  hud.active_rods = active_rods();
   hud.view = settings_.view;
   hud.text_scale = settings_.text_scale;
   hud.still = settings_.reduced_flashes;
@@ -340,6 +401,7 @@ HudState App::hud(const Camera& camera) const {
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
+  hud.notices.insert(hud.notices.end(), pad_news_.begin(), pad_news_.end());
   switch (status_.link) {
     case Link::joined:
       if (!scene_is_current())
@@ -367,13 +429,13 @@ void App::draw(float dt) {
   size_ = glm::max(window_->size(), 1);
   SceneView view;
   view.time = static_cast<float>(seconds_);
-  view.active_rod = player_ && !replay_ ? player_->active_rod() : -1;
+  view.active_rods = active_rods();
   view.hide_rods = settings_.hide_rods;
   view.reduced_flashes = settings_.reduced_flashes;
   view.distinct_teams = settings_.distinct_teams;
   view.rod_shift = rod_shift();
   const float shake = settings_.reduced_shake ? 0.0f : effects_.shake();
-  motion_.step(sample_.any ? &drawn_ : nullptr, player_ ? status_.welcome.team : 0, dt, shake);
+  motion_.step(sample_.any ? &drawn_ : nullptr, std::max(viewer_team(), 0), dt, shake);
   view.camera = motion_.camera(settings_.view, size_);
   particles_.set_reduced(settings_.reduced_flashes);
   shift_scene(drawn_, view.rod_shift);
@@ -459,7 +521,6 @@ int App::loop() {
     predict(input_us);
     play_reel(input_us);
     draw(dt);
-    window_->look_at_pad();
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
@@ -469,7 +530,6 @@ int App::loop() {
     }
     drawing = 1e-6 * static_cast<double>(os::monotonic_us() - began - picture_us);
     window_->swap();
-    window_->look_at_pad();
     if (scene_is_current() && !sample_.starving) say_when_in_step(os::monotonic_us());
     meter_.end(os::monotonic_us());
     judge_quality();

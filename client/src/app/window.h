@@ -5,9 +5,10 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
-#include "client/input_events.h"
 #include "client/settings.h"
+#include "core/input_collector.h"
 #include "draw/window.h"
 
 namespace client {
@@ -24,12 +25,12 @@ class Window {
   glm::ivec2 size() const;  // of the framebuffer [px]
   void swap();              // shows the frame; waits for the display's refresh
   void set_keys(const KeyBindings& keys);
-  // What happened since the last call, mouse motion summed up.
-  InputEvents poll();
-  // Looks at the gamepad in between. It has no events, so a button is noticed if it is down at one
-  // of these looks or at a poll; call it where a frame has taken a while.
-  void look_at_pad();
-  void wait(double seconds);  // until the window has news, at most so long
+  // Takes what has happened, by events: nothing that is over by now is lost.
+  void poll();
+  const InputCollector& input() const;   // since the last forget_input()
+  void forget_input();                   // a frame has taken it
+  std::vector<std::string> take_news();  // what a person should read: a gamepad that was unplugged
+  void wait(double seconds);             // until the window has news, at most so long
   bool captured() const;
   std::string renderer() const;  // name of the driver's, for the log
   bool draws_in_software() const;

@@ -1,5 +1,6 @@
 #include "client/player_input.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "wire/enums.h"
@@ -7,10 +8,18 @@
 namespace client {
 namespace {
 
-cabinet::HandOptions hand_options(int team, const foosball::TableSpec& table) {
+std::uint8_t rods_of(int team, const foosball::TableSpec& table) {
+  std::uint8_t rods = 0;
+  for (const int rod : foosball::rods_of_team(table, team))
+    rods |= static_cast<std::uint8_t>(1u << rod);
+  return rods;
+}
+
+cabinet::HandOptions hand_options(int team, const foosball::TableSpec& table, std::uint8_t mine) {
   cabinet::HandOptions options;
   options.rods = foosball::rods_of_team(table, team);
   for (std::size_t i = 0; i < options.rods.size(); ++i) {
+    options.has[i] = (mine >> options.rods[i] & 1) != 0;
     options.slide_limit[i] = table.rods[static_cast<std::size_t>(options.rods[i])].slide_limit;
   }
   // Away from the person is the team's push; feet towards the other goal is a turn against the
@@ -29,30 +38,97 @@ cabinet::PadState turned(const cabinet::PadState& pad) {
   return state;
 }
 
+// What the person sees, as the assists want it.
+foosball::AssistView seen_in(const wire::Snapshot& scene) {
+  foosball::AssistView view;
+  view.ball_in_play = scene.ball_in_play;
+  const auto vec = [](const std::array<float, 3>& v) { return vp::Vec3{v[0], v[1], v[2]}; };
+  view.ball = vec(scene.ball.position);
+  view.velocity = vec(scene.ball.linear_velocity);
+  for (std::size_t i = 0; i < view.rods.size(); ++i) {
+    const wire::RodSnapshot& rod = scene.rods[i];
+    view.rods[i] = {rod.slide, rod.angle, rod.slide_rate, rod.angle_rate};
+  }
+  for (std::size_t team = 0; team < view.character.size(); ++team)
+    view.character[team] = std::min<int>(scene.character[team], foosball::kCharacters - 1);
+  return view;
+}
+
 }  // namespace
 
-PlayerInput::PlayerInput(std::uint64_t session, int team, foosball::Layout layout)
+PlayerInput::PlayerInput(std::uint64_t session, int team, foosball::Layout layout,
+                         std::uint8_t rods)
     : session_(session),
       team_(team),
       table_(foosball::table_spec(layout)),
-      hand_(hand_options(team, table_)) {
-  for (std::size_t i = 0; i < rod_x_.size(); ++i) rod_x_[i] = table_.rods[i].x;
+      mine_(rods & rods_of(team, table_)),
+      hand_(hand_options(team, table_, mine_)),
+      assists_(team, layout, mine_, assists_on_) {}
+
+void PlayerInput::set_assists(const foosball::AssistChoice& choice) {
+  if (choice == assists_on_) return;
+  assists_on_ = choice;
+  assists_ = foosball::Assists(team_, table_.layout, mine_, choice);
 }
 
 void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
                          std::int64_t now_us) {
   wishes_.clear();
-  if (events.toggle_automatic) automatic_ = !automatic_;
-  hand_.set_automatic(automatic_);
+  if (events.toggle_automatic) {
+    foosball::AssistChoice choice = assists_on_;
+    choice.automatic_rod = !choice.automatic_rod;
+    set_assists(choice);
+  }
   const bool known = scene != nullptr && scene->session == session_;
   begun_ = begun_ || known;
-  if (known && scene->ball_in_play) hand_.ball_at(scene->ball.position[0], rod_x_);
+  const foosball::AssistView view = known ? seen_in(*scene) : foosball::AssistView{};
+  choose_rod(view);
   hand_.choose(events.choose_line);
   if (events.wheel != 0) hand_.cycle(events.wheel);
   if (known) move(events, *scene);
   hand_.poll(now_us);
-  if (known) collect_wishes(events, *scene);
+  if (known) {
+    assist(view, now_us);
+    collect_wishes(events, *scene);
+  }
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
+}
+
+// A rod that the assist would take anew is taken; one chosen by hand stays until then.
+void PlayerInput::choose_rod(const foosball::AssistView& view) {
+  if (!assists_on_.automatic_rod) {
+    rod_to_take_ = -1;
+    return;
+  }
+  const int rod = assists_.rod_to_take(view, hand_now(), rod_to_take_);
+  if (rod != rod_to_take_ && rod >= 0)
+    hand_.choose(static_cast<int>(table_.rods[static_cast<std::size_t>(rod)].line));
+  rod_to_take_ = rod;
+}
+
+foosball::AssistHand PlayerInput::hand_now() const {
+  foosball::AssistHand hand;
+  for (std::size_t i = 0; i < hand.targets.size(); ++i) {
+    const cabinet::RodInput& rod = hand_.rods()[i];
+    if (rod.status != cabinet::RodStatus::live) continue;
+    hand.targets[i] = {rod.slide, rod.angle, rod.slide_rate, rod.angle_rate, true};
+  }
+  hand.held = static_cast<std::uint8_t>(1u << hand_.active_rod());
+  hand.strikes = hand_.strikes();
+  return hand;
+}
+
+void PlayerInput::assist(const foosball::AssistView& view, std::int64_t now_us) {
+  constexpr std::int64_t kTickUs = 1000, kLongestUs = 110'000;  // a stalled window flings no rod
+  const bool gap = assisted_us_ == 0 || now_us < assisted_us_ || now_us - assisted_us_ > kLongestUs;
+  const auto ticks = gap ? 0 : static_cast<int>((now_us - assisted_us_) / kTickUs);
+  assisted_us_ = gap ? now_us : assisted_us_ + ticks * kTickUs;
+  targets_ = assists_.steer(view, hand_now(), ticks);
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if ((assists_.following() >> rod & 1) == 0) continue;
+    const foosball::RodTarget& target = targets_[static_cast<std::size_t>(rod)];
+    hand_.place(rod, target.slide, target.angle);
+  }
 }
 
 void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
@@ -75,6 +151,9 @@ void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot
     wishes_.push_back(
         {number(wire::WishKind::pause), team, static_cast<std::uint8_t>(scene.paused ? 0 : 1)});
   }
+  const bool time_out = events.presses[index_of(Action::time_out)] > 0 || events.pad_time_out;
+  if (time_out && screen == wire::Screen::play)
+    wishes_.push_back({number(wire::WishKind::time_out), team, 0});
   if (screen == wire::Screen::selection) choose_character(events, scene);
 }
 
@@ -84,7 +163,8 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
   int wanted = now;
   if (events.choose_line >= 0 && events.choose_line < foosball::kCharacters)
     wanted = events.choose_line;
-  int steps = -events.wheel + events.spin_taps - events.slide_taps;
+  int steps =
+      -events.wheel + events.spin_taps - events.slide_taps - events.pad_up + events.pad_right;
   if (!key_was_held_) steps += static_cast<int>(std::lround(events.key_spin - events.key_slide));
   if (steps != 0)
     wanted =
@@ -98,10 +178,10 @@ std::array<wire::InputRod, 8> PlayerInput::rods() const {
   std::array<wire::InputRod, 8> rods{};
   if (!begun_) return rods;
   for (std::size_t i = 0; i < rods.size(); ++i) {
-    const cabinet::RodInput& input = hand_.rods()[i];
-    if (input.status != cabinet::RodStatus::live) continue;
-    rods[i] = {true, static_cast<float>(input.slide), static_cast<float>(input.angle),
-               static_cast<float>(input.slide_rate), static_cast<float>(input.angle_rate)};
+    const foosball::RodTarget& target = targets_[i];
+    if (!target.live) continue;
+    rods[i] = {true, static_cast<float>(target.slide), static_cast<float>(target.angle),
+               static_cast<float>(target.slide_rate), static_cast<float>(target.angle_rate)};
   }
   return rods;
 }

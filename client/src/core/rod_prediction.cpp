@@ -30,10 +30,8 @@ double beyond(double value, double low, double high) {
 
 }  // namespace
 
-RodPrediction::RodPrediction(int team, foosball::Layout layout)
-    : table_(foosball::table_spec(layout)), team_(team) {
-  const auto rods = foosball::rods_of_team(table_, team);
-  for (std::size_t i = 0; i < rods_.size(); ++i) rods_[i].index = rods[i];
+RodPrediction::RodPrediction(foosball::Layout layout) : table_(foosball::table_spec(layout)) {
+  for (std::size_t i = 0; i < rods_.size(); ++i) rods_[i].index = static_cast<int>(i);
 }
 
 const RodPrediction::Pose& RodPrediction::past(const Rod& rod, int ms_ago) const {
@@ -49,7 +47,7 @@ void RodPrediction::restart(Rod& rod, const wire::RodSnapshot& server) {
 void RodPrediction::advance(Rod& rod, const wire::InputRod& hand, int character,
                             std::int64_t ticks) {
   const foosball::RodSpec& spec = table_.rods[static_cast<std::size_t>(rod.index)];
-  const foosball::RodInertia inertia = foosball::rod_inertia(table_, spec, character);
+  const foosball::RodInertia inertia = foosball::rod_inertia(table_, spec, character, tuning_);
   const foosball::RodTarget target{hand.slide, hand.angle, hand.slide_rate, hand.angle_rate, true};
   for (std::int64_t i = 1; i <= ticks; ++i) {
     rod.state = foosball::step_rod(spec, inertia, rod.state, target);
@@ -98,8 +96,6 @@ void RodPrediction::update(const std::array<wire::InputRod, 8>& hand, const wire
   clock_us_ = gap ? now_us : clock_us_ + ticks * kTickUs;
   updated_us_ = now_us;
   started_ = true;
-  const int character =
-      std::min<int>(server.character[static_cast<std::size_t>(team_)], foosball::kCharacters - 1);
   for (Rod& rod : rods_) {
     const auto i = static_cast<std::size_t>(rod.index);
     const wire::RodSnapshot& seen = server.rods[i];
@@ -108,6 +104,8 @@ void RodPrediction::update(const std::array<wire::InputRod, 8>& hand, const wire
                            seen.source == number(wire::RodSource::client);
     if (gap || !predicted || !rod.predicted) restart(rod, seen);
     rod.predicted = predicted;
+    const auto team = static_cast<std::size_t>(table_.rods[i].team);
+    const int character = std::min<int>(server.character[team], foosball::kCharacters - 1);
     if (predicted) advance(rod, hand[i], character, ticks);
   }
   tick_ += ticks;

@@ -10,9 +10,9 @@ namespace client {
 namespace {
 
 constexpr std::array<const char*, kActions> kActionNames{
-    "slide_away", "slide_near", "spin_right", "spin_left",    "rod_1", "rod_2",
-    "rod_3",      "rod_4",      "next_rod",   "previous_rod", "push",  "pause",
-    "automatic",  "camera",     "settings",   "help"};
+    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",   "rod_2",     "rod_3",
+    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",   "automatic", "camera",
+    "settings",   "help",       "seats",        "tuning",    "time_out"};
 
 struct NamedKey {
   const char* name;
@@ -145,14 +145,17 @@ KeyBindings default_keys() {
   set(Action::rod_2, "2");
   set(Action::rod_3, "3");
   set(Action::rod_4, "4");
-  set(Action::next_rod, "E");
-  set(Action::previous_rod, "Q");
-  set(Action::push, "Space", "Enter");
+  set(Action::next_rod, "PageUp", "E");
+  set(Action::previous_rod, "PageDown", "Q");
+  set(Action::push, "Enter", "Space");
   set(Action::pause, "P");
   set(Action::automatic, "Tab");
   set(Action::camera, "C");
   set(Action::settings, "F2", "O");
   set(Action::help, "F1", "H");
+  set(Action::seats, "F3");
+  set(Action::tuning, "F4");
+  set(Action::time_out, "T");
   return keys;
 }
 

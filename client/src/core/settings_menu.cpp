@@ -44,7 +44,10 @@ constexpr std::array<const char*, kActions> kActionLabels{N_("Slide away"),
                                                           N_("Automatic rod on, off"),
                                                           N_("Camera"),
                                                           N_("Settings"),
-                                                          N_("All keys")};
+                                                          N_("All keys"),
+                                                          N_("Seats"),
+                                                          N_("Tuning"),
+                                                          N_("Time-out")};
 constexpr std::array<const char*, 3> kQualities{N_("automatic"), N_("low"), N_("high")};
 constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system"), "English",
                                                              "한국어", "Deutsch"};

@@ -209,7 +209,7 @@ void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
   const glm::vec2 size(screen);
   const HudPen whole(ui, {{0.0f, 0.0f}, size}, left, hud.text_scale);
   if (hud.state != nullptr && hud.state->screen == number(wire::Screen::play))
-    draw_active_rod(whole, hud, screen);
+    draw_active_rods(whole, hud, screen);
   if (hud.view != View::above) {
     draw_for_reader(whole, hud, screen);
   } else {

@@ -29,8 +29,8 @@ struct HudState {
   bool mouse_free = false;           // the pointer is released: say how to take it back
   bool show_help = false;            // all keys, over whatever is shown
   bool automatic_rod = false;
-  float fps = 0.0f;  // 0: not shown
-  int active_rod = -1;
+  float fps = 0.0f;              // 0: not shown
+  std::uint8_t active_rods = 0;  // in a hand here, by bit
   View view = View::seat;
   float text_scale = 1.0f;
   bool still = false;   // nothing pulses or grows
@@ -45,7 +45,7 @@ struct HudState {
 
 class HudPen;
 void draw_settings(const HudPen& pen, const std::vector<MenuRow>& rows, int chosen);
-void draw_active_rod(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
+void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 
 // From above it is written twice, for both long sides, the upper turned round.
 void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen);

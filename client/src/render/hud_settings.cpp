@@ -45,12 +45,13 @@ void draw_settings(const HudPen& whole, const std::vector<MenuRow>& rows, int ch
            2.0f * half - 30.0f);
 }
 
+namespace {
+
 // A sign above each man and at both ends of the rod: plain to see without colours.
-void draw_active_rod(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
-  if (hud.active_rod < 0 || hud.active_rod >= foosball::kRods) return;
+void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const glm::ivec2& screen) {
   const wire::Snapshot& state = *hud.state;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
-  const auto rod = static_cast<std::size_t>(hud.active_rod);
+  const auto rod = static_cast<std::size_t>(active);
   const foosball::RodSpec& spec = table.rods[rod];
   const Colour& ink = kTeamInk[spec.team == 1 ? 1 : 0];
   const bool above = hud.view == View::above;
@@ -64,17 +65,25 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, const glm::ivec2& s
              pen.from_pixels(inside) + glm::vec2(0, 0.35f * size), colour, 1.0f);
   };
   for (const wire::ManState& man : state.men) {
-    if (man.rod != hud.active_rod) continue;
+    if (man.rod != active) continue;
     const auto& at = man.body.position;
     mark("\u25BC", {at[0], at[1], at[2] + (above ? 0.0f : 0.085f)}, above ? 14.0f : 17.0f, ink);
   }
   const float x = static_cast<float>(spec.x) + hud.rod_shift[rod],
               z = static_cast<float>(table.rod_height);
-  const float end = above ? static_cast<float>(0.42 * table.width)
-                          : std::abs(handle_offset(table, hud.active_rod));
-  const float own = handle_offset(table, hud.active_rod) > 0.0f ? 1.0f : -1.0f;
+  const float end =
+      above ? static_cast<float>(0.42 * table.width) : std::abs(handle_offset(table, active));
+  const float own = handle_offset(table, active) > 0.0f ? 1.0f : -1.0f;
   mark("\u25C6", {x, own * end + (above ? 0.0f : state.rods[rod].slide), z}, 26.0f, kInk);
   if (above) mark("\u25C6", {x, -own * end, z}, 26.0f, kInk);
+}
+
+}  // namespace
+
+void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if ((hud.active_rods >> rod & 1) != 0) draw_active_rod(pen, hud, rod, screen);
+  }
 }
 
 }  // namespace client

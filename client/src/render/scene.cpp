@@ -178,9 +178,23 @@ void Scene::use_layout(foosball::Layout layout) {
   }
 }
 
+// A band of light on the field under each rod in a hand, as the shader has room for.
+void Scene::set_active_lanes(const SceneView& view) const {
+  constexpr std::array<const char*, 4> kLanes{"u_active_rods[0]", "u_active_rods[1]",
+                                              "u_active_rods[2]", "u_active_rods[3]"};
+  const float pulse = view.reduced_flashes ? 0.0f : 0.15f * std::sin(4.0f * view.time);
+  std::size_t lane = 0;
+  for (std::size_t rod = 0; rod < table_->rods.size() && lane < kLanes.size(); ++rod) {
+    if ((view.active_rods >> rod & 1) == 0) continue;
+    const float x = static_cast<float>(table_->rods[rod].x) + view.rod_shift[rod];
+    field_.set(kLanes[lane++], glm::vec2(x, 0.85f + pulse));
+  }
+  while (lane < kLanes.size()) field_.set(kLanes[lane++], glm::vec2(0.0f));
+}
+
 void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) {
   const auto glow = [&](std::size_t rod) {
-    if (static_cast<int>(rod) != view.active_rod) return 0.0f;
+    if ((view.active_rods >> rod & 1) == 0) return 0.0f;
     return 0.30f + (view.reduced_flashes ? 0.0f : 0.08f * std::sin(4.0f * view.time));
   };
   const auto tint = [&](std::size_t rod) {
@@ -253,14 +267,7 @@ void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const
   field_.set("u_team_lamp[1]", kTeamLamp[1]);
   const auto radius = static_cast<float>(table_->ball_radius);
   field_.set("u_ball", glm::vec4(vec(state.ball.position), ball_is_seen(state) ? radius : 0.0f));
-  glm::vec4 lane(0.0f);
-  if (view.active_rod >= 0 && view.active_rod < foosball::kRods) {
-    const auto rod = static_cast<std::size_t>(view.active_rod);
-    const float pulse = view.reduced_flashes ? 0.0f : 0.15f * std::sin(4.0f * view.time);
-    lane = {static_cast<float>(table_->rods[rod].x) + view.rod_shift[rod], 0.85f + pulse, 0.0f,
-            0.0f};
-  }
-  field_.set("u_active_rod", lane);
+  set_active_lanes(view);
   // Over the reflections that are there already; its alpha is their share.
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC_ALPHA);

@@ -20,8 +20,8 @@ namespace client {
 
 struct SceneView {
   Camera camera;
-  int active_rod = -1;  // lit up; -1: none
-  float time = 0.0f;    // [s], for twinkling and pulses
+  std::uint8_t active_rods = 0;  // lit up, by bit
+  float time = 0.0f;             // [s], for twinkling and pulses
   bool hide_rods = false;
   bool reduced_flashes = false;      // nothing pulses
   bool distinct_teams = false;       // team 1 wears stripes
@@ -69,6 +69,7 @@ class Scene {
   void build_static_meshes();
   void build_figures(bool stripes);
   void use_layout(foosball::Layout layout);
+  void set_active_lanes(const SceneView& view) const;
   void place_instances(const wire::Snapshot& state, const SceneView& view);
   void draw_shadows() const;
   void draw_standing() const;

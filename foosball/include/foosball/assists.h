@@ -93,7 +93,7 @@ class Assists {
   void pull(int rod, const AssistView& view, double slide, bool strikes, int ticks);
 
   int team_;
-  const TableSpec& table_;
+  const TableSpec* table_;
   std::uint8_t mine_;
   AssistChoice choice_;
   std::array<double, kCharacters> reach_;  // field_reach()

@@ -1,0 +1,74 @@
+// The people at this client: who of them plays which rods with which devices, and what all of their
+// hands want.
+//
+// Devices that have no rods of their own belong to the first person, who plays with any of them all
+// rods that nobody else here has. A device that is given rods becomes a person by itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <memory>
+#include <vector>
+
+#include "client/devices.h"
+#include "client/player_input.h"
+
+namespace client {
+
+class Crew {
+ public:
+  static constexpr int kFirstPerson = -1;
+
+  // granted: of Welcome, by bit; team: of Welcome, 0 or 1: the first person's.
+  Crew(std::uint64_t session, int team, foosball::Layout layout, std::uint8_t granted);
+
+  // The rods that the server says are this client's, and its team, 0 or 1: other rods are driven no
+  // more.
+  void grant(int team, std::uint8_t rods);
+  // A device, or the first person, plays this rod from now on; a device plays one team: it leaves
+  // its rods of the other one to the first person. Rods that are not granted can be given too: they
+  // are played once they are.
+  void give(int rod, int device);
+  int player_of(int rod) const { return owner_[static_cast<std::size_t>(rod)]; }
+  DeviceSet devices_of(int device) const;
+
+  void set_assists(const foosball::AssistChoice& choice);
+  // One frame. take: what was done with these devices.
+  using Take = std::function<InputEvents(DeviceSet)>;
+  void update(const Take& take, const wire::Snapshot* scene, std::int64_t now_us);
+
+  std::uint64_t session() const { return session_; }
+  int team() const { return team_; }
+  bool plays() const { return !people_.empty(); }
+  std::uint8_t granted() const { return granted_; }
+  bool begun() const { return begun_; }
+  bool automatic() const { return assists_.automatic_rod; }
+  std::array<wire::InputRod, 8> rods() const;
+  std::vector<wire::Wish> wishes() const;
+  std::uint8_t active_rods() const;  // those in somebody's hand, by bit
+  int people() const { return static_cast<int>(people_.size()); }
+
+ private:
+  struct Person {
+    int device;
+    std::uint8_t rods;
+    PlayerInput input;
+  };
+  void seat_people();
+  void seat(int device, int team, std::uint8_t rods);
+  int team_of(int rod) const { return table_.rods[static_cast<std::size_t>(rod)].team; }
+
+  std::uint64_t session_;
+  int team_;
+  foosball::Layout layout_;
+  const foosball::TableSpec& table_;
+  std::uint8_t granted_;
+  std::array<int, foosball::kRods> owner_;
+  foosball::AssistChoice assists_;
+  bool begun_ = false;
+  std::list<Person> people_;
+};
+
+}  // namespace client

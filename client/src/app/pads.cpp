@@ -1,0 +1,145 @@
+#include "app/pads.h"
+
+#define SDL_MAIN_HANDLED
+#include <SDL2/SDL.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "app/log.h"
+
+namespace client {
+namespace {
+
+std::optional<PadButton> meaning_of(int button) {
+  switch (button) {
+    case SDL_CONTROLLER_BUTTON_A:
+      return PadButton::push;
+    case SDL_CONTROLLER_BUTTON_START:
+      return PadButton::pause;
+    case SDL_CONTROLLER_BUTTON_BACK:
+      return PadButton::menu;
+    case SDL_CONTROLLER_BUTTON_Y:
+      return PadButton::time_out;
+    case SDL_CONTROLLER_BUTTON_LEFTSHOULDER:
+      return PadButton::previous_rod;
+    case SDL_CONTROLLER_BUTTON_RIGHTSHOULDER:
+      return PadButton::next_rod;
+    case SDL_CONTROLLER_BUTTON_DPAD_UP:
+      return PadButton::up;
+    case SDL_CONTROLLER_BUTTON_DPAD_DOWN:
+      return PadButton::down;
+    case SDL_CONTROLLER_BUTTON_DPAD_LEFT:
+      return PadButton::left;
+    case SDL_CONTROLLER_BUTTON_DPAD_RIGHT:
+      return PadButton::right;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::string guid_of(int device) {
+  char text[33];
+  SDL_JoystickGetGUIDString(SDL_JoystickGetDeviceGUID(device), text, sizeof text);
+  return text;
+}
+
+}  // namespace
+
+Pads::Pads() {
+  SDL_SetMainReady();
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");                // the program has its own
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // the window is not SDL's
+  started_ = SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER | SDL_INIT_EVENTS) == 0;
+  if (!started_) log_warning(std::string("no gamepads: ") + SDL_GetError());
+}
+
+Pads::~Pads() {
+  for (Place& place : places_) {
+    if (place.pad != nullptr) SDL_GameControllerClose(static_cast<SDL_GameController*>(place.pad));
+  }
+  if (started_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER | SDL_INIT_EVENTS);
+}
+
+int Pads::place_of(std::int32_t instance) const {
+  const auto place = std::ranges::find(places_, instance, &Place::instance);
+  return instance >= 0 && place != places_.end() ? static_cast<int>(place - places_.begin()) : -1;
+}
+
+// The place where one of its model was, else one where none was, else any that is free.
+void Pads::plug_in(int device, InputCollector& into) {
+  const std::string guid = guid_of(device);
+  Place* best = nullptr;
+  int worth = -1;
+  for (Place& place : places_) {
+    if (place.instance >= 0) continue;
+    const int here = place.guid == guid ? 2 : place.guid.empty() ? 1 : 0;
+    if (here > worth) best = &place;
+    worth = std::max(worth, here);
+  }
+  if (best == nullptr) return;  // more than can play
+  SDL_GameController* pad = SDL_GameControllerOpen(device);
+  if (pad == nullptr) return;
+  const std::int32_t instance = SDL_JoystickInstanceID(SDL_GameControllerGetJoystick(pad));
+  if (place_of(instance) >= 0) return SDL_GameControllerClose(pad);  // was told twice
+  const int number = static_cast<int>(best - places_.data());
+  *best = {instance, pad, guid, {}};
+  into.connect(number, true);
+  log_info("gamepad " + std::to_string(number + 1) + ": " + SDL_GameControllerName(pad));
+}
+
+void Pads::unplug(std::int32_t instance, InputCollector& into) {
+  const int number = place_of(instance);
+  if (number < 0) return;
+  Place& place = places_[static_cast<std::size_t>(number)];
+  SDL_GameControllerClose(static_cast<SDL_GameController*>(place.pad));
+  place = {-1, nullptr, place.guid, {}};
+  into.connect(number, false);
+  news_.push_back("gamepad " + std::to_string(number + 1) +
+                  " was unplugged: its rods stay where they are");
+}
+
+void Pads::turn_axis(std::int32_t instance, int axis, int value, InputCollector& into) {
+  const int number = place_of(instance);
+  if (number < 0) return;
+  cabinet::PadState& sticks = places_[static_cast<std::size_t>(number)].sticks;
+  const float share = std::max(static_cast<float>(value) / 32767.0f, -1.0f);
+  if (axis == SDL_CONTROLLER_AXIS_LEFTX) sticks.left_x = share;
+  if (axis == SDL_CONTROLLER_AXIS_LEFTY) sticks.left_y = -share;  // SDL: down positive
+  if (axis == SDL_CONTROLLER_AXIS_RIGHTX) sticks.right_x = share;
+  if (axis == SDL_CONTROLLER_AXIS_RIGHTY) sticks.right_y = -share;
+  into.sticks(number, sticks);
+}
+
+void Pads::poll(InputCollector& into) {
+  if (!started_) return;
+  SDL_Event event;
+  while (SDL_PollEvent(&event) != 0) {
+    switch (event.type) {
+      case SDL_CONTROLLERDEVICEADDED:
+        plug_in(event.cdevice.which, into);
+        break;
+      case SDL_CONTROLLERDEVICEREMOVED:
+        unplug(event.cdevice.which, into);
+        break;
+      case SDL_CONTROLLERBUTTONDOWN:
+      case SDL_CONTROLLERBUTTONUP:
+        if (const auto button = meaning_of(event.cbutton.button))
+          into.button(place_of(event.cbutton.which), *button,
+                      event.type == SDL_CONTROLLERBUTTONDOWN);
+        break;
+      case SDL_CONTROLLERAXISMOTION:
+        turn_axis(event.caxis.which, event.caxis.axis, event.caxis.value, into);
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+std::vector<std::string> Pads::take_news() {
+  return std::exchange(news_, {});
+}
+
+}  // namespace client

@@ -1,0 +1,43 @@
+// Gamepads, by their events: a press that is over before the next frame is there as well. SDL reads
+// them, knows their layouts, and tells when one comes or goes; GLFW, which has the window, only
+// says how a pad stands now. A pad that comes back has the place that it had.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/input_collector.h"
+
+namespace client {
+
+class Pads {
+ public:
+  Pads();  // without a driver for gamepads there are none
+  ~Pads();
+  Pads(const Pads&) = delete;
+  Pads& operator=(const Pads&) = delete;
+
+  void poll(InputCollector& into);
+  // Since the last call: what a person should read, such as that one was unplugged.
+  std::vector<std::string> take_news();
+
+ private:
+  struct Place {
+    std::int32_t instance = -1;  // SDL's; -1: nothing is plugged in
+    void* pad = nullptr;         // SDL_GameController
+    std::string guid;            // of the model that was here last
+    cabinet::PadState sticks;
+  };
+  int place_of(std::int32_t instance) const;  // -1: none
+  void plug_in(int device, InputCollector& into);
+  void unplug(std::int32_t instance, InputCollector& into);
+  void turn_axis(std::int32_t instance, int axis, int value, InputCollector& into);
+
+  bool started_ = false;
+  std::array<Place, kPads> places_;
+  std::vector<std::string> news_;
+};
+
+}  // namespace client

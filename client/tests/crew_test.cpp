@@ -1,0 +1,223 @@
+// Several people at one client, each with devices and rods of their own.
+#include "client/crew.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/input_collector.h"
+#include "scripted_scene.h"
+#include "wire/enums.h"
+
+namespace client {
+namespace {
+
+constexpr std::int64_t kFrame = 16'667;  // [us]
+constexpr std::uint64_t kSession = 1;    // of the scripted scenes
+constexpr std::uint8_t kTeam0 = 0b00101011, kAll = 0xff;
+constexpr int kPad1 = static_cast<int>(Device::pad_1), kPad2 = static_cast<int>(Device::pad_2);
+
+int key(const char* name) {
+  return key_of_name(name);
+}
+
+// --- what is collected ---------------------------------------------------------------------------
+
+TEST(InputCollector, PressesThatAreOverBeforeTheFrameCount) {
+  InputCollector input;
+  input.connect(1, true);
+  for (int i = 0; i < 3; ++i) {
+    input.button(1, PadButton::next_rod, true);
+    input.button(1, PadButton::next_rod, false);
+  }
+  input.button(1, PadButton::push, true);
+  input.button(1, PadButton::push, false);
+  const InputEvents events = input.take(bit_of(Device::pad_2));
+  EXPECT_EQ(events.wheel, 3);
+  EXPECT_TRUE(events.pad_push);
+  EXPECT_TRUE(events.has_pad);
+  EXPECT_FALSE(input.take(bit_of(Device::pad_1)).pad_push) << "another pad";
+  input.clear();
+  EXPECT_EQ(input.take(kAllDevices).wheel, 0);
+}
+
+TEST(InputCollector, AStickThatIsFlickedBetweenTwoFramesStrikes) {
+  InputCollector input;
+  input.connect(0, true);
+  input.sticks(0, {.right_x = 0.9f});
+  input.sticks(0, {.right_x = 0.05f});
+  EXPECT_EQ(input.take(kAllDevices).spin_taps, 1);
+  input.clear();
+  input.sticks(0, {.right_x = -0.9f});
+  EXPECT_EQ(input.take(kAllDevices).spin_taps, 0) << "held: the stick itself";
+  EXPECT_EQ(input.take(kAllDevices).pad.right_x, -0.9f);
+}
+
+TEST(InputCollector, TheTwoHalvesOfTheKeyboardAreTwoDevices) {
+  InputCollector input;
+  input.key(key("Up"), true);
+  input.key(key("A"), true);
+  input.mouse_moved(5.0, 7.0);
+  const InputEvents arrows = input.take(bit_of(Device::keys_1)),
+                    letters = input.take(bit_of(Device::keys_2)), all = input.take(kAllDevices);
+  EXPECT_EQ(arrows.key_slide, 1.0);
+  EXPECT_EQ(arrows.key_spin, 0.0);
+  EXPECT_EQ(letters.key_slide, 0.0);
+  EXPECT_EQ(letters.key_spin, -1.0);
+  EXPECT_EQ(letters.mouse_right, 0.0);
+  EXPECT_EQ(all.key_slide, 1.0);
+  EXPECT_EQ(all.key_spin, -1.0);
+  EXPECT_EQ(all.mouse_forward, 7.0);
+}
+
+TEST(InputCollector, APadThatIsUnpluggedLetsEverythingGo) {
+  InputCollector input;
+  input.connect(0, true);
+  input.sticks(0, {.left_y = 1.0f, .right_x = -1.0f});
+  input.connect(0, false);
+  input.clear();
+  const InputEvents events = input.take(kAllDevices);
+  EXPECT_FALSE(events.has_pad);
+  EXPECT_EQ(events.pad.left_y, 0.0f);
+  EXPECT_EQ(events.pad.right_x, 0.0f);
+  input.connect(9, true);  // no such place
+  input.button(-1, PadButton::push, true);
+}
+
+// --- who plays what ------------------------------------------------------------------------------
+
+struct Table {
+  explicit Table(std::uint8_t granted) : crew(kSession, 0, foosball::Layout::tournament, granted) {
+    for (auto& rod : scene.rods) rod.slide = rod.angle = 0;
+    for (int pad = 0; pad < 2; ++pad) input.connect(pad, true);
+    frame();
+  }
+  void frame() {
+    now += kFrame;
+    crew.update([&](DeviceSet devices) { return input.take(devices); }, &scene, now);
+    input.clear();
+  }
+  InputCollector input;
+  wire::Snapshot scene = scripted_play(0.0);
+  Crew crew;
+  std::int64_t now = 0;
+};
+
+TEST(Crew, OnePersonHasAllDevicesUntilOneIsGivenRods) {
+  Table table(kTeam0);
+  EXPECT_EQ(table.crew.people(), 1);
+  EXPECT_EQ(table.crew.devices_of(Crew::kFirstPerson), kAllDevices);
+  for (int rod = 0; rod < 8; ++rod)
+    EXPECT_EQ(table.crew.rods()[static_cast<std::size_t>(rod)].driven, (kTeam0 >> rod & 1) != 0);
+  table.crew.give(0, kPad1);
+  table.crew.give(1, kPad1);
+  EXPECT_EQ(table.crew.people(), 2);
+  EXPECT_EQ(table.crew.devices_of(Crew::kFirstPerson) & bit_of(Device::pad_1), 0);
+}
+
+// Mouse, and two gamepads: three people, two teams, each moves the own rod in hand and no other.
+TEST(Crew, ThreePeopleAtOneClientPlayEachTheirOwnRods) {
+  Table table(kAll);
+  for (const int rod : {0, 1}) table.crew.give(rod, kPad1);
+  for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
+  table.frame();
+  EXPECT_EQ(table.crew.people(), 3);
+  EXPECT_EQ(table.crew.active_rods(), 1u << 3 | 1u << 1 | 1u << 4);
+  table.input.mouse_moved(0.0, 40.0);
+  table.input.sticks(0, {.left_y = 1.0f});
+  table.input.sticks(1, {.left_y = 1.0f});
+  for (int i = 0; i < 5; ++i) table.frame();
+  const auto rods = table.crew.rods();
+  for (int rod = 0; rod < 8; ++rod) {
+    const auto& r = rods[static_cast<std::size_t>(rod)];
+    EXPECT_TRUE(r.driven) << rod;
+    EXPECT_EQ(r.slide != 0.0f, (table.crew.active_rods() >> rod & 1) != 0) << rod;
+  }
+  EXPECT_GT(rods[1].slide, 0.01f);
+  EXPECT_LT(rods[4].slide, -0.01f) << "away from who sits opposite";
+}
+
+TEST(Crew, AnUnpluggedPadLeavesItsRodsWhereTheyAre) {
+  Table table(kTeam0);
+  table.crew.give(0, kPad1);
+  table.crew.give(1, kPad1);
+  table.input.sticks(0, {.left_y = 1.0f});
+  for (int i = 0; i < 5; ++i) table.frame();
+  table.input.connect(0, false);
+  const auto before = table.crew.rods();
+  for (int i = 0; i < 20; ++i) table.frame();
+  const auto after = table.crew.rods();
+  EXPECT_TRUE(after[1].driven);
+  EXPECT_EQ(after[1].slide, before[1].slide);
+}
+
+TEST(Crew, RodsThatTheServerGivesToOthersAreDrivenNoMore) {
+  Table table(kTeam0);
+  table.crew.give(0, kPad1);
+  table.crew.grant(0, 0b00101000);
+  table.frame();
+  EXPECT_FALSE(table.crew.rods()[0].driven);
+  EXPECT_FALSE(table.crew.rods()[1].driven);
+  EXPECT_TRUE(table.crew.rods()[3].driven);
+  table.crew.grant(0, 0);
+  table.frame();
+  EXPECT_FALSE(table.crew.plays());
+  EXPECT_EQ(table.crew.active_rods(), 0);
+  table.crew.grant(1, 0b11010100);
+  table.frame();
+  EXPECT_EQ(table.crew.team(), 1);
+  EXPECT_TRUE(table.crew.rods()[4].driven);
+}
+
+TEST(Crew, ADeviceThatIsGivenARodOfTheOtherTeamLeavesTheFirst) {
+  Table table(kAll);
+  table.crew.give(0, kPad1);
+  table.crew.give(7, kPad1);
+  EXPECT_EQ(table.crew.player_of(0), Crew::kFirstPerson);
+  EXPECT_EQ(table.crew.player_of(7), kPad1);
+  table.crew.give(12, kPad1);
+  table.crew.give(3, 99);  // no such device
+  EXPECT_EQ(table.crew.player_of(3), Crew::kFirstPerson);
+}
+
+TEST(Crew, EachPersonAsksForTheOwnTeam) {
+  Table table(kAll);
+  for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
+  table.input.button(1, PadButton::time_out, true);
+  table.frame();
+  ASSERT_EQ(table.crew.wishes().size(), 1u);
+  EXPECT_EQ(table.crew.wishes()[0].kind, number(wire::WishKind::time_out));
+  EXPECT_EQ(table.crew.wishes()[0].team, 1);
+}
+
+// --- assists -------------------------------------------------------------------------------------
+
+TEST(CrewAssists, TheGoalieFollowsAShotWhileTheHandIsElsewhereAndIsTakenWhereItStands) {
+  Table table(kTeam0);
+  table.crew.set_assists({.goalie_follows = true});
+  table.scene.ball.position = {0.1f, 0.08f, 0.0173f};
+  table.scene.ball.linear_velocity = {-1.5f, 0.0f, 0.0f};
+  for (int i = 0; i < 20; ++i) table.frame();
+  const float goalie = table.crew.rods()[0].slide;
+  EXPECT_NEAR(goalie, 0.08f, 0.005f);
+  EXPECT_EQ(table.crew.rods()[3].slide, 0.0f);
+  table.input.key(key("1"), true);
+  table.frame();
+  EXPECT_EQ(table.crew.active_rods(), 1);
+  EXPECT_NEAR(table.crew.rods()[0].slide, goalie, 1e-6f);
+}
+
+TEST(CrewAssists, TheRodThatCanActNextIsTakenAndOneChosenByHandStays) {
+  Table table(kTeam0);
+  table.crew.set_assists({.automatic_rod = true});
+  table.scene.ball.position = {-0.2f, 0.0f, 0.0173f};
+  table.scene.ball.linear_velocity = {-3.0f, 0.0f, 0.0f};
+  table.frame();
+  EXPECT_EQ(table.crew.active_rods(), 1u << 1);
+  table.input.key(key("4"), true);
+  for (int i = 0; i < 5; ++i) table.frame();
+  EXPECT_EQ(table.crew.active_rods(), 1u << 5);
+}
+
+}  // namespace
+}  // namespace client

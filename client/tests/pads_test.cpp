@@ -1,0 +1,62 @@
+// Gamepads as SDL tells of them: a virtual one, plugged in, pressed and unplugged.
+#include "app/pads.h"
+
+#define SDL_MAIN_HANDLED
+#include <SDL2/SDL.h>
+#include <gtest/gtest.h>
+
+namespace client {
+namespace {
+
+struct VirtualPad {
+  VirtualPad()
+      : device(SDL_JoystickAttachVirtual(SDL_JOYSTICK_TYPE_GAMECONTROLLER, SDL_CONTROLLER_AXIS_MAX,
+                                         SDL_CONTROLLER_BUTTON_MAX, 0)) {}
+  // Found by its number of now: numbers move when another is unplugged.
+  SDL_Joystick* joystick() const {
+    return SDL_JoystickFromInstanceID(SDL_JoystickGetDeviceInstanceID(device));
+  }
+  void set(SDL_GameControllerButton button, bool down) const {
+    ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick(), button, down ? 1 : 0), 0) << SDL_GetError();
+    SDL_JoystickUpdate();  // as the driver does at each of its events
+  }
+  int device;
+};
+
+TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
+  Pads pads;
+  InputCollector input;
+  const VirtualPad pad;
+  ASSERT_GE(pad.device, 0) << SDL_GetError();
+  pads.poll(input);
+  ASSERT_TRUE(input.connected(0));
+  for (int i = 0; i < 2; ++i) {
+    pad.set(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER, true);
+    pad.set(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER, false);
+  }
+  pad.set(SDL_CONTROLLER_BUTTON_A, true);
+  pad.set(SDL_CONTROLLER_BUTTON_A, false);
+  pads.poll(input);
+  InputEvents events = input.take(bit_of(Device::pad_1));
+  EXPECT_EQ(events.wheel, 2);
+  EXPECT_TRUE(events.pad_push);
+  input.clear();
+  ASSERT_EQ(SDL_JoystickSetVirtualAxis(pad.joystick(), SDL_CONTROLLER_AXIS_LEFTY, -32768), 0);
+  SDL_JoystickUpdate();
+  pads.poll(input);
+  EXPECT_EQ(input.take(bit_of(Device::pad_1)).pad.left_y, 1.0f) << "up is positive";
+  SDL_JoystickDetachVirtual(pad.device);
+  SDL_JoystickUpdate();
+  pads.poll(input);
+  EXPECT_FALSE(input.connected(0));
+  EXPECT_EQ(input.take(kAllDevices).pad.left_y, 0.0f);
+  const auto news = pads.take_news();
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_NE(news[0].find("gamepad 1 was unplugged"), std::string::npos);
+  const VirtualPad again;
+  pads.poll(input);
+  EXPECT_TRUE(input.connected(0)) << "has the place that it had";
+}
+
+}  // namespace
+}  // namespace client
