@@ -266,7 +266,7 @@ TEST(Network, TwoPeopleShareATeam) {
   const auto ann = started(player_at(table.port()));
   ASSERT_TRUE(ann && in_play(*ann));
   const std::uint8_t all = ann->status().welcome.rods, one = all & -all;
-  ann->claim(ann->status().welcome.session, one);
+  ann->claim(ann->status().welcome.session, {.rods = one});
   ASSERT_TRUE(eventually([&] {
     const auto seats = ann->roster().seats;
     return seats.size() == 1 && seats[0].rods == one;
