@@ -182,6 +182,7 @@ void Match::Impl::refresh_view() {
   view.ball_pose = ball.pose;
   view.ball_spin = ball.spin;
   for (int rod = 0; rod < kRods; ++rod) view.rods[rod] = world->rod(rod);
+  view.men = world->men();
   refresh_match_view();
 }
 
@@ -257,6 +258,10 @@ vp::Expected<void> Match::restore(std::span<const std::byte> bytes) {
 }
 std::uint64_t Match::state_hash() const {
   return hash_match(impl_->desc, impl_->state, *impl_->world);
+}
+
+RodState with_man(const RodState& rod, const ManState& man) {
+  return {rod.slide, man.angle, rod.slide_rate, man.angle_rate};
 }
 
 vp::SE3 man_pose(const TableSpec& table, int rod, int man, const RodState& state) {

@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x35'30'4d'42'46'53;  // "SFBM05"
+constexpr std::uint64_t kMagic = 0x36'30'4d'42'46'53;  // "SFBM06"
 
 template <class Archive, class R>
 void visit_rules(Archive& archive, R& rules) {

@@ -242,7 +242,12 @@ void Match::Impl::rebuild_world() {
   auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first, state.tuning);
   state.touching.clear();  // the new world tells of no contact that ends, those that last begin
   rebuilt->set_ball(world->ball());
-  for (int rod = 0; rod < kRods; ++rod) rebuilt->set_rod(rod, world->rod(rod));
+  for (int rod = 0; rod < kRods; ++rod) {
+    rebuilt->set_rod(rod, world->rod(rod));
+    for (int man = 0; man < table().rods[rod].men; ++man) {
+      rebuilt->set_man(rod, man, world->men()[rod][man]);
+    }
+  }
   world = std::move(rebuilt);
 }
 

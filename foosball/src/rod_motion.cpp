@@ -6,26 +6,26 @@
 #include "foosball/rod_motion.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "vphysics/lie.h"
 
 namespace foosball {
 namespace {
 
 // A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
-// The error is cut so that the speed it asks for stays within the bound: at rest
-// error * stiffness = speed * damping.
+// The error is cut so that the speed v which the drive comes to stays within the bound: there
+// stiffness * error + damping * (rate - v) = 0.
 AxisDrive drive_towards(double target, double target_rate, double now, double inertia,
                         double max_force, double max_rate, double frequency) {
   const double stiffness = inertia * frequency * frequency;
   const double damping = 2.0 * inertia * frequency;
-  const double furthest = max_rate * damping / stiffness;
   const double rate = std::clamp(target_rate, -max_rate, max_rate);
   const double error = target + rate * kTick - now;
-  return {now + std::clamp(error, -furthest, furthest), rate, stiffness, damping, max_force};
+  const double time = damping / stiffness;
+  return {now + std::clamp(error, -(max_rate + rate) * time, (max_rate - rate) * time), rate,
+          stiffness, damping, max_force};
 }
-
-// The heaviest rod's inertia serves all: a lighter one is only damped a little more.
-constexpr double kSlideInertia = 1.9;     // [kg]
-constexpr double kAngleInertia = 1.2e-3;  // [kg m^2]
 
 double step_rate(const AxisDrive& drive, double mass, double position, double rate) {
   constexpr double h = kTick;
@@ -45,14 +45,31 @@ HandLimits hand_limits(int character, const Tuning& tuning) {
           c.slide_speed * tuning.slide_rate, c.turn_speed * tuning.turn_rate};
 }
 
-RodDrive rod_drive(const RodSpec& rod, const HandLimits& limits, const RodState& now,
-                   const RodTarget& target) {
+AxisDrive slide_drive(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
+                      const RodTarget& target) {
   const double slide = std::clamp(target.slide, -rod.slide_limit, rod.slide_limit);
   const bool against_stop = slide != target.slide && slide * target.slide_rate > 0.0;
-  return {drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide, kSlideInertia,
-                        limits.force, limits.slide_rate, limits.frequency),
-          drive_towards(target.angle, target.angle_rate, now.angle, kAngleInertia, limits.torque,
-                        limits.angle_rate, limits.frequency)};
+  const HandLimits& limits = inertia.limits;
+  return drive_towards(slide, against_stop ? 0.0 : target.slide_rate, now.slide, inertia.slide,
+                       limits.force, limits.slide_rate, limits.frequency);
+}
+
+AxisDrive angle_drive(const RodInertia& inertia, double angle, const RodTarget& target) {
+  const HandLimits& limits = inertia.limits;
+  return drive_towards(target.angle, target.angle_rate, angle, inertia.turn, limits.torque,
+                       limits.angle_rate, limits.frequency);
+}
+
+double turns_ahead(double angle, double hand_angle) {
+  constexpr double kTurn = 2.0 * vp::kPi;
+  return kTurn * std::nearbyint((angle - hand_angle) / kTurn);
+}
+
+AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,
+                    const RodTarget& target) {
+  RodTarget his = target;
+  his.angle += turns_ahead(angle, hand_angle);
+  return angle_drive(inertia, angle, his);
 }
 
 RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
@@ -61,21 +78,28 @@ RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character
   const double men = rod.men * c.mass;
   // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
   const double gyration = 0.6 * c.foot_reach;
+  const double man_axial = c.mass * gyration * gyration;
   const double mass = table.rod_mass + men;
   const double axial =
-      0.5 * table.rod_mass * table.rod_radius * table.rod_radius + men * gyration * gyration;
-  return {hand_limits(character, tuning), mass, mass + tuning.hand_mass, axial,
-          axial + tuning.hand_inertia};
+      0.5 * table.rod_mass * table.rod_radius * table.rod_radius + rod.men * man_axial;
+  return {.limits = hand_limits(character, tuning),
+          .rod_and_men = mass,
+          .slide = mass + tuning.hand_mass,
+          .axial = axial,
+          .turn = axial + tuning.hand_inertia,
+          .man = c.mass,
+          .man_axial = man_axial};
 }
 
 RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
                   const RodTarget& target) {
-  const RodDrive drive = rod_drive(rod, inertia.limits, now, target);
+  const AxisDrive slide = slide_drive(rod, inertia, now, target);
+  const AxisDrive angle = angle_drive(inertia, now.angle, target);
   RodState next;
   next.slide_rate =
-      std::clamp(step_rate(drive.slide, inertia.slide, now.slide, now.slide_rate),
+      std::clamp(step_rate(slide, inertia.slide, now.slide, now.slide_rate),
                  (-rod.slide_limit - now.slide) / kTick, (rod.slide_limit - now.slide) / kTick);
-  next.angle_rate = step_rate(drive.angle, inertia.turn, now.angle, now.angle_rate);
+  next.angle_rate = step_rate(angle, inertia.turn, now.angle, now.angle_rate);
   next.slide = now.slide + kTick * next.slide_rate;
   next.angle = now.angle + kTick * next.angle_rate;
   return next;

@@ -296,7 +296,8 @@ void StatisticsObserver::find_touches(const MatchView& view, std::span<const Eve
     const int man = man_nearest(spec, view.ball_position.y - view.rods[rod].slide);
     const double beside = view.ball_position.y - man_offset(spec, man) - view.rods[rod].slide;
     if (std::fabs(beside) > reach) continue;
-    if (touches(table, rod, man, character, view.rods[rod], view.ball_position)) {
+    const RodState state = with_man(view.rods[rod], view.men[rod][man]);
+    if (touches(table, rod, man, character, state, view.ball_position)) {
       touch(view, rod, man);
     }
   }
@@ -309,7 +310,7 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
   if (!same) begin_touch(view, rod, man);
   touch_.last = now_;
   // The foot's velocity where the ball is.
-  const RodState& state = view.rods[rod];
+  const RodState state = with_man(view.rods[rod], view.men[rod][man]);
   const double dx = view.ball_position.x - table.rods[rod].x;
   const double dz = view.ball_position.z - table.rod_height;
   const vp::Vec3 foot{state.angle_rate * dz, state.slide_rate, -state.angle_rate * dx};
@@ -317,7 +318,7 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
   touch_.departure_vx = view.ball_velocity.x;
   touch_.drive = std::max(touch_.drive, -attack_sign(touch_.team) * foot.x);
   if (speed > 0.0) touch_.stroke = std::max(touch_.stroke, dot(foot, view.ball_velocity) / speed);
-  rods_[rod].spin_from = state.angle;
+  rods_[rod].spin_from = view.rods[rod].angle;
 }
 
 void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {

@@ -39,31 +39,51 @@ void must([[maybe_unused]] const vp::Expected<void>& result) {
   VP_ASSERT(result.has_value());
 }
 
-// Rod with its men, which are balanced about the axis as on tournament tables, so that a rod let go
-// stays as it is. Link frame: z along the rod.
+// A rod with its men, which are balanced about the axis as on tournament tables, so that a rod let
+// go stays as it is. Link frame: z along the rod.
 vp::Inertia link_inertia(const RodInertia& rod) {
   constexpr double kHalfLength = 0.55;
   const double across = rod.rod_and_men * kHalfLength * kHalfLength / 3.0;
   return {rod.rod_and_men, Vec3{across, across, rod.axial}};
 }
 
-// Two joints: the slide along the rod, which has no mass of its own, and the turn about it. At each
-// the hand's inertia is felt.
-constexpr int kSlide = 0, kTurn = 1;  // links
-vp::Model rod_model(const TableSpec& table, const RodSpec& rod, int character,
+// Where the i-th man from the player's left stands on his row.
+int man_from_left(const RodSpec& rod, int i) {
+  return rod.team == 0 ? i : rod.men - 1 - i;
+}
+
+// Links. A row slides as one; the slide has no mass of its own.
+// On a rod (tournament) its men are parts of the link that turns.
+// Hinged men (paper, section 5.1) are links of their own, each balanced about the rod's axis; there
+// is no pipe, and the link that turns is the hand alone, which nothing touches. A man is as heavy
+// to the ball as a row on a rod, by the armature of his hinge: so a character strikes alike on both
+// tables, and without an obstacle he moves as the hand does.
+constexpr int kSlide = 0, kTurn = 1, kFirstMan = 2;
+vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const RodInertia& inertia,
                     const Tuning& tuning) {
+  const bool hinged = hinged_men(table.layout);
   vp::ModelBuilder builder;
   vp::LinkSpec slide;
   slide.joint = vp::PrismaticJoint{};
   slide.T_parent_joint = SE3(kRodAxes, Vec3{rod.x, 0.0, table.rod_height});
-  slide.armature = tuning.hand_mass;
+  slide.armature = hinged ? inertia.slide - rod.men * inertia.man : tuning.hand_mass;
   slide.forces = {{.lower = -rod.slide_limit, .upper = rod.slide_limit}};
   vp::LinkSpec turn;
   turn.parent = must(builder.add(slide));
   turn.joint = vp::RevoluteJoint{};
-  turn.inertia = link_inertia(rod_inertia(table, rod, character, tuning));
-  turn.armature = tuning.hand_inertia;
+  if (!hinged) turn.inertia = link_inertia(inertia);
+  turn.armature = hinged ? inertia.turn : tuning.hand_inertia;
   must(builder.add(turn));
+  for (int i = 0; hinged && i < rod.men; ++i) {
+    vp::LinkSpec man;
+    man.parent = turn.parent;
+    man.joint = vp::RevoluteJoint{};
+    man.T_parent_joint = SE3(Vec3{0.0, 0.0, man_offset(rod, man_from_left(rod, i))});
+    man.inertia =
+        vp::Inertia(inertia.man, Vec3{inertia.man_axial, inertia.man_axial, inertia.man_axial});
+    man.armature = inertia.turn - inertia.man_axial;
+    must(builder.add(man));
+  }
   return builder.build().value();
 }
 
@@ -205,14 +225,17 @@ void TableWorld::add_ball() {
 void TableWorld::add_rod(int rod, int character) {
   const RodSpec& spec = table_.rods[rod];
   const CharacterSpec& c = character_spec(character);
-  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, character, tuning_)}));
-  const vp::BodyId body = world_.link_body(rods_[rod], kTurn);
+  inertias_[rod] = rod_inertia(table_, spec, character, tuning_);
+  rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, inertias_[rod], tuning_)}));
+  const bool hinged = hinged_men(table_.layout);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
   for (int i = 0; i < spec.men; ++i) {
-    const int man = spec.team == 0 ? i : spec.men - 1 - i;  // from the player's left
+    const int man = man_from_left(spec, i);
+    const vp::BodyId body = world_.link_body(rods_[rod], hinged ? kFirstMan + i : kTurn);
+    const Vec3 place{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // on the link
     const auto boxes = man_boxes(character);
     for (std::size_t part = 0; part < boxes.size(); ++part) {
-      const Vec3 centre = boxes[part].centre + Vec3{0.0, man_offset(spec, man), 0.0};
+      const Vec3 centre = boxes[part].centre + place;
       vp::ColliderDesc desc;
       desc.shape = Box{boxes[part].half_extents};
       desc.T_body_shape = T_link_table * SE3(centre);
@@ -238,24 +261,51 @@ vp::JointDrive joint_drive(const AxisDrive& d) {
 }  // namespace
 
 void TableWorld::drive(int rod, const RodTarget& target) {
-  const HandLimits limits = hand_limits(characters_[table_.rods[rod].team], tuning_);
-  const RodDrive drive = rod_drive(table_.rods[rod], limits, this->rod(rod), target);
-  must(world_.set_drive(rods_[rod], kSlide, 0, joint_drive(drive.slide)));
-  must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(drive.angle)));
+  const RodSpec& spec = table_.rods[rod];
+  const RodInertia& inertia = inertias_[rod];
+  const RodState& now = this->rod(rod);
+  const AxisDrive hand = angle_drive(inertia, now.angle, target);
+  must(world_.set_drive(rods_[rod], kSlide, 0,
+                        joint_drive(slide_drive(spec, inertia, now, target))));
+  must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(hand)));
+  if (!hinged_men(table_.layout)) return;
+  const std::span<const double> q = world_.coordinates(rods_[rod]);
+  for (int i = 0; i < spec.men; ++i) {
+    const int link = kFirstMan + i;
+    must(world_.set_drive(rods_[rod], link, 0,
+                          joint_drive(man_drive(inertia, q[link], now.angle, target))));
+  }
 }
 
-// Both joints have one coordinate, so that a link's index is its coordinate's.
+// All joints have one coordinate, so that a link's index is its coordinate's.
 void TableWorld::read_rods() {
+  const bool hinged = hinged_men(table_.layout);
   for (int rod = 0; rod < kRods; ++rod) {
     const std::span<const double> q = world_.coordinates(rods_[rod]);
     const std::span<const double> v = world_.velocities(rods_[rod]);
+    const RodSpec& spec = table_.rods[rod];
     rod_states_[rod] = {q[kSlide], q[kTurn], v[kSlide], v[kTurn]};
+    for (int i = 0; i < spec.men; ++i) {
+      const int link = hinged ? kFirstMan + i : kTurn;
+      man_states_[rod][man_from_left(spec, i)] = {q[link] - turns_ahead(q[link], q[kTurn]),
+                                                  v[link]};
+    }
   }
 }
 
 void TableWorld::set_rod(int rod, const RodState& state) {
   must(world_.set_joint_state(rods_[rod], kSlide, 0, state.slide, state.slide_rate));
   must(world_.set_joint_state(rods_[rod], kTurn, 0, state.angle, state.angle_rate));
+  for (int man = 0; man < table_.rods[rod].men; ++man) {
+    set_man(rod, man, {state.angle, state.angle_rate});
+  }
+  read_rods();
+}
+
+void TableWorld::set_man(int rod, int man, const ManState& state) {
+  if (!hinged_men(table_.layout)) return;
+  const int link = kFirstMan + man_from_left(table_.rods[rod], man);
+  must(world_.set_joint_state(rods_[rod], link, 0, state.angle, state.angle_rate));
   read_rods();
 }
 

@@ -1,6 +1,6 @@
-// The table as a physical world: field, walls, goals, corners, ball, and eight rods with their men,
-// each rod an articulation of two links driven by a bounded force. Knows nothing of scores and
-// screens.
+// The table as a physical world: field, walls, goals, corners, ball, and eight rows of men, each
+// row an articulation driven by bounded forces: men on a rod, or each hinged at his shoulder
+// (hinged_men()). Knows nothing of scores and screens.
 #pragma once
 
 #include <array>
@@ -60,7 +60,10 @@ class TableWorld {
   // Drives a rod towards a target: finite, within the slide limit.
   void drive(int rod, const RodTarget& target);
   const RodState& rod(int rod) const { return rod_states_[rod]; }
+  const ManStates& men() const { return man_states_; }
+  // With all its men.
   void set_rod(int rod, const RodState& state);
+  void set_man(int rod, int man, const ManState& state);  // one alone, if he is hinged
 
   BallState ball() const;
   void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
@@ -108,7 +111,9 @@ class TableWorld {
   vp::BodyId fixed_;
   vp::BodyId ball_;
   std::array<vp::ArticulationId, kRods> rods_{};
+  std::array<RodInertia, kRods> inertias_{};
   std::array<RodState, kRods> rod_states_{};  // read once a step: all ask for them
+  ManStates man_states_{};
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };

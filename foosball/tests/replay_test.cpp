@@ -17,7 +17,7 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x438e88a580d88191u;
+constexpr std::uint64_t kGolden = 0x5b7aaf9ea290a9d7u;
 
 struct Players {
   explicit Players(std::uint64_t seed, double skill = 0.9)

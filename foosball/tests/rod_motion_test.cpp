@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "../src/random.h"
 #include "../src/table_world.h"
@@ -14,7 +15,7 @@ namespace foosball {
 namespace {
 
 struct Difference {
-  double slide = 0.0, angle = 0.0;
+  double slide = 0.0, angle = 0.0, man = 0.0;
 };
 
 // Drives every rod of a table and its prediction with the same hand; the largest difference.
@@ -37,10 +38,14 @@ Difference compare(Layout layout, int character, int ticks, Hand&& hand) {
       const RodState simulated = world.rod(rod);
       worst.slide = std::max(worst.slide, std::fabs(simulated.slide - predicted[rod].slide));
       worst.angle = std::max(worst.angle, std::fabs(simulated.angle - predicted[rod].angle));
+      for (int man = 0; man < table.rods[rod].men; ++man) {
+        const double angle = world.men()[rod][man].angle;
+        worst.man = std::max(worst.man, std::fabs(angle - predicted[rod].angle));
+      }
     }
   }
-  std::printf("layout %d, character %d: within %.2g m, %.2g rad\n", static_cast<int>(layout),
-              character, worst.slide, worst.angle);
+  std::printf("layout %d, character %d: within %.2g m, %.2g rad, men %.2g rad\n",
+              static_cast<int>(layout), character, worst.slide, worst.angle, worst.man);
   return worst;
 }
 
@@ -70,6 +75,33 @@ TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
         });
     EXPECT_LT(worst.slide, kRodSlideTolerance);
     EXPECT_LT(worst.angle, kRodAngleTolerance);
+    EXPECT_LT(worst.man, kRodAngleTolerance) << "a free man moves as his hand does";
+  }
+}
+
+// The response of a spring and damper that is critically damped with what it moves comes nearer
+// from one side: no overshoot, whatever the men weigh.
+TEST_P(RodMotionTest, TheDrivesAreCriticallyDampedForEveryCharacter) {
+  const TableSpec& table = table_spec(GetParam());
+  for (int character = 0; character < kCharacters; ++character) {
+    for (const RodSpec& spec : table.rods) {
+      const RodInertia inertia = rod_inertia(table, spec, character);
+      const RodState rest{};
+      const RodTarget target{0.001, 0.01, 0.0, 0.0, true};
+      for (const auto& [drive, mass] :
+           {std::pair{slide_drive(spec, inertia, rest, target), inertia.slide},
+            std::pair{angle_drive(inertia, rest.angle, target), inertia.turn}}) {
+        const double ratio = drive.damping / (2.0 * std::sqrt(drive.stiffness * mass));
+        EXPECT_NEAR(ratio, 1.0, 1e-12) << character;
+      }
+      RodState rod{};
+      for (int tick = 0; tick < 100; ++tick) {
+        rod = step_rod(spec, inertia, rod, target);
+        ASSERT_LE(rod.slide, target.slide + 1e-9);
+        ASSERT_LE(rod.angle, target.angle + 1e-9);
+      }
+      EXPECT_NEAR(rod.angle, target.angle, 1e-6);
+    }
   }
 }
 

@@ -111,7 +111,8 @@ class ShotGallery {
     const int man = random_.below(table().rods[rod].men);
     const auto boxes = man_boxes(characters_[table().rods[rod].team]);
     const ManBox& box = boxes[random_.below(static_cast<int>(boxes.size()))];
-    const vp::SE3 T_world_man = man_pose(table(), rod, man, world_.rod(rod));
+    const vp::SE3 T_world_man =
+        man_pose(table(), rod, man, with_man(world_.rod(rod), world_.men()[rod][man]));
     return T_world_man * box.centre - from;
   }
 
@@ -126,6 +127,7 @@ class ShotGallery {
         world_.drive(rod, motion_[rod]);
         before_[rod] = world_.rod(rod);
       }
+      men_before_ = world_.men();
       const vp::Vec3 from = world_.ball().pose.position();
       world_.step();
       ++report_.ticks;
@@ -147,8 +149,10 @@ class ShotGallery {
       if (std::fabs(to.x - table().rods[rod].x) > 0.15) continue;
       const RodSpec& spec = table().rods[rod];
       for (int man = 0; man < spec.men; ++man) {
-        const vp::SE3 T_before = man_pose(table(), rod, man, before_[rod]);
-        const vp::SE3 T_after = man_pose(table(), rod, man, world_.rod(rod));
+        const vp::SE3 T_before =
+            man_pose(table(), rod, man, with_man(before_[rod], men_before_[rod][man]));
+        const vp::SE3 T_after =
+            man_pose(table(), rod, man, with_man(world_.rod(rod), world_.men()[rod][man]));
         if (std::fabs(to.y - T_after.position().y) > 0.1) continue;
         for (const ManBox& box : man_boxes(characters_[spec.team])) {
           const vp::Vec3 a = inverse_times(T_before, from) - box.centre;
@@ -199,6 +203,7 @@ class ShotGallery {
   Random random_;
   std::array<RodTarget, kRods> motion_{};
   std::array<RodState, kRods> before_{};
+  ManStates men_before_{};
   ShotsReport report_;
 };
 

@@ -32,6 +32,9 @@ struct Script {
   void tick(int count = 1) {
     for (int i = 0; i < count; ++i) {
       view.ball_position = view.ball_position + kTick * view.ball_velocity;
+      for (int rod = 0; rod < kRods; ++rod) {
+        view.men[rod].fill({view.rods[rod].angle, view.rods[rod].angle_rate});
+      }
       observer.observe(view, events, hands);
       events.clear();
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "../src/random.h"
@@ -63,7 +64,7 @@ TEST_P(Symmetry, AWorldOfTheOtherTeamFirstMovesTurnedToTheBit) {
   TableWorld world(GetParam(), {0, 2}, 0), other(GetParam(), {2, 0}, 1);
   Hands hands(7);
   Random places(8);
-  long hits = 0, two_at_once = 0;
+  long hits = 0, two_at_once = 0, left_behind = 0;
   for (int tick = 0; tick < 120'000; ++tick) {
     if (tick % 3000 == 0) {
       const vp::Vec3 place{places.between(-0.55, 0.55), places.between(-0.3, 0.3), 0.05};
@@ -89,10 +90,19 @@ TEST_P(Symmetry, AWorldOfTheOtherTeamFirstMovesTurnedToTheBit) {
       ASSERT_TRUE(p.slide == -q.slide && p.angle == -q.angle && p.slide_rate == -q.slide_rate &&
                   p.angle_rate == -q.angle_rate)
           << "tick " << tick << " rod " << rod;
+      const int men = world.table().rods[rod].men;
+      for (int man = 0; man < men; ++man) {
+        const ManState& m = world.men()[rod][man];
+        const ManState& n = other.men()[across(rod)][men - 1 - man];
+        ASSERT_TRUE(m.angle == -n.angle && m.angle_rate == -n.angle_rate)
+            << "tick " << tick << " rod " << rod << " man " << man;
+        left_behind += std::fabs(m.angle - p.angle) > 0.1 ? 1 : 0;
+      }
     }
   }
   EXPECT_GT(hits, 1'500);
   EXPECT_GT(two_at_once, 20);
+  EXPECT_EQ(left_behind > 100, hinged_men(GetParam())) << left_behind;
 }
 
 // Between two rows the order of solving shows: with both worlds made from team 0, 4 of these 400

@@ -16,7 +16,7 @@ void put_pose(const vp::SE3& T_world_body, wire::PoseVelocity& out) {
                      static_cast<float>(q.w)};
 }
 
-// A man's origin lies on the rod's axis, so the rod's turn does not move it.
+// A man's origin lies on the rod's axis, so his turn does not move it.
 wire::ManState man_state(const foosball::TableSpec& table, int rod, int man,
                          const foosball::RodState& state) {
   wire::ManState out;
@@ -33,7 +33,8 @@ void put_men(const foosball::MatchView& view, wire::Snapshot& snapshot) {
   snapshot.men.clear();
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     for (int man = 0; man < table.rods[rod].men; ++man) {
-      snapshot.men.push_back(man_state(table, rod, man, view.rods[rod]));
+      snapshot.men.push_back(
+          man_state(table, rod, man, foosball::with_man(view.rods[rod], view.men[rod][man])));
     }
   }
 }

@@ -24,6 +24,9 @@ foosball::MatchView view_of(foosball::Layout layout) {
   view.ball_spin = {10.0, 20.0, -30.0};
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     view.rods[rod] = {0.01 * rod - 0.03, 0.7 * rod - 2.0, 0.5 - 0.1 * rod, 20.0 - 5.0 * rod};
+    for (int man = 0; man < foosball::kMaxMenOnRod; ++man) {
+      view.men[rod][man] = {view.rods[rod].angle + 0.3 * man, 20.0 - 5.0 * rod - man};
+    }
   }
   return view;
 }
@@ -54,6 +57,21 @@ TEST(SnapshotBuilder, CarriesScoreScreenAndBall) {
   EXPECT_FLOAT_EQ(s.ball.angular_velocity[2], -30.0f);
 }
 
+TEST(SnapshotBuilder, ShowsEachManAtHisOwnAngle) {
+  const foosball::MatchView view = view_of(foosball::Layout::paper);
+  wire::Snapshot snapshot;
+  build_snapshot(view, snapshot);
+  for (const wire::ManState& man : snapshot.men) {
+    const double angle = view.men[man.rod][man.man].angle;
+    // A half turn about y: (0, sin, 0, cos), of either sign.
+    const auto& q = man.body.orientation;
+    EXPECT_NEAR(std::fabs(q[1] * std::sin(0.5 * angle) + q[3] * std::cos(0.5 * angle)), 1.0, 1e-6);
+    EXPECT_NEAR(q[0], 0.0, 1e-6);
+    EXPECT_NEAR(q[2], 0.0, 1e-6);
+  }
+  EXPECT_FLOAT_EQ(snapshot.rods[3].angle, static_cast<float>(view.rods[3].angle));
+}
+
 // A man's velocity against the difference of its poses a microsecond apart.
 TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
   const double dt = 1e-6;
@@ -63,7 +81,7 @@ TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
   const foosball::TableSpec& table = foosball::table_spec(view.layout);
   const vp::Vec3 foot{0.0, 0.0, -0.072};
   for (const wire::ManState& man : snapshot.men) {
-    foosball::RodState state = view.rods[man.rod];
+    foosball::RodState state = foosball::with_man(view.rods[man.rod], view.men[man.rod][man.man]);
     const vp::SE3 before = foosball::man_pose(table, man.rod, man.man, state);
     state.slide += state.slide_rate * dt;
     state.angle += state.angle_rate * dt;

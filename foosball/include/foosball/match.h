@@ -24,6 +24,7 @@
 namespace foosball {
 
 using RodTargets = std::array<RodTarget, kRods>;
+using ManStates = std::array<std::array<ManState, kMaxMenOnRod>, kRods>;
 
 // Requests of a client and news from the server, applied at the start of a tick if the screen
 // allows them.
@@ -153,6 +154,7 @@ struct MatchView {
   // By TableSpec::rods. In the table's frame for both teams: slide along +y, angle right-handed
   // about +y, 0 with the men hanging, full turns counted.
   std::array<RodState, kRods> rods{};
+  ManStates men{};  // each man's own angle, within half a turn of his rod's
   Tuning tuning;
   // Since create(): not of the match's state, so neither saved, restored nor hashed.
   std::uint64_t events_dropped = 0;
@@ -187,7 +189,10 @@ class Match {
   std::unique_ptr<Impl> impl_;
 };
 
-// Pose of a man in the world: origin on the rod's axis.
+// A rod as one of its men follows it: with his angle.
+RodState with_man(const RodState& rod, const ManState& man);
+
+// Pose of a man in the world, whose rod, as he follows it, has this state: origin on its axis.
 vp::SE3 man_pose(const TableSpec& table, int rod, int man, const RodState& state);
 
 }  // namespace foosball

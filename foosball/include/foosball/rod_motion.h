@@ -21,8 +21,15 @@ struct RodTarget {
   bool live = false;
 };
 
+// The slide of a row, and the angle of the hand that turns it: what a rod does.
 struct RodState {
   double slide, angle, slide_rate, angle_rate;  // as simulated [m, rad, m/s, rad/s]
+};
+
+// A man's own angle about his shoulder. On a rod it is the rod's; a hinged man (Layout::paper) has
+// the hand's angle but while something holds him.
+struct ManState {
+  double angle, angle_rate;  // [rad], [rad/s]
 };
 
 // A spring and damper with a bounded force:
@@ -35,11 +42,6 @@ struct AxisDrive {
   double max_force;  // [N] | [N m]
 };
 
-// The drive of both axes for one kTick, from where the rod is now. Precondition: target is finite.
-struct RodDrive {
-  AxisDrive slide, angle;
-};
-
 // What a hand can do at most with the men of a character.
 struct HandLimits {
   double force;                   // [N]
@@ -50,20 +52,32 @@ struct HandLimits {
 // Precondition: 0 <= character < kCharacters.
 HandLimits hand_limits(int character, const Tuning& tuning = {});
 
-RodDrive rod_drive(const RodSpec& rod, const HandLimits& limits, const RodState& now,
-                   const RodTarget& target);
-
 // What the drive moves, and with what.
 struct RodInertia {
   HandLimits limits;
-  double rod_and_men;  // without the hand [kg]
-  double slide;        // with the hand [kg]
-  double axial;        // of rod and men about the axis, without the hand [kg m^2]
-  double turn;         // with the hand [kg m^2]
+  double rod_and_men;     // without the hand [kg]
+  double slide;           // with the hand [kg]
+  double axial;           // of rod and men about the axis, without the hand [kg m^2]
+  double turn;            // with the hand [kg m^2]
+  double man, man_axial;  // of one man: mass [kg]; about the axis [kg m^2]
 };
 // Precondition: 0 <= character < kCharacters.
 RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
                        const Tuning& tuning = {});
+
+// The drives of the axes for one kTick, from where the rod is now: each critically damped with the
+// inertia that it moves. Precondition: target is finite.
+AxisDrive slide_drive(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
+                      const RodTarget& target);
+AxisDrive angle_drive(const RodInertia& inertia, double angle, const RodTarget& target);
+
+// The drive of a hinged man: the hand's, towards that of the hand's turns which is nearest to him,
+// so that he is never more than half a turn behind: a man who is held while the hand spins on slips
+// and does not wind up.
+AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,
+                    const RodTarget& target);
+// The whole turns that such a man is ahead of his hand [rad].
+double turns_ahead(double angle, double hand_angle);
 
 // One kTick of a rod that touches nothing but its stops. Precondition: target is finite.
 RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,

@@ -23,10 +23,15 @@ inline constexpr int kMaxMenOnRod = 5;
 inline constexpr double kTick = 0.001;  // [s]; every process counts in these
 
 enum class Layout : std::uint8_t {
-  paper,       // 4 men on each of the 8 rods
-  tournament,  // 1-2-5-3
+  paper,       // 4 men in each of the 8 rows, each hinged at his shoulder
+  tournament,  // 1-2-5-3, fixed to rods
 };
 inline constexpr int kLayouts = 2;
+
+// Paper, section 5.1: its men hang from hinges of their own, and there is no pipe that joins them.
+constexpr bool hinged_men(Layout layout) {
+  return layout == Layout::paper;
+}
 
 // The way a team attacks along x, and the way its players push a rod along y: the players of team 0
 // stand on the -y side with their own goal to the left, those of team 1 opposite.
@@ -67,7 +72,7 @@ struct CharacterVoice {
 };
 
 // A character a team can choose (paper, section 5: tall and thin attacks well, small and fat
-// defends well). The man's body is a set of boxes fixed to the rod, stacked from sole to crown.
+// defends well). The man's body is a set of boxes, stacked from sole to crown.
 struct CharacterSpec {
   const char* name;
   const char* specialty;  // one line: its strength and its weakness

@@ -81,7 +81,10 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   factored_ = true;
   find_change(1.0, zero_);
   fall_ = change_;
-  if (constant_) find_lines();
+  if (constant_) {
+    find_lines();
+    find_responses();
+  }
   refresh();
 }
 
@@ -113,14 +116,88 @@ void Articulation::find_lines() {
     const Vec3 z = detail::pose_of(data_.work(), static_cast<int>(i)).rotation().cz;
     const double way = dot(z, line[i].rotation().cz) > 0.0 ? 1.0 : -1.0;
     const bool turns = node.kind != NodeKind::prismatic;
-    on_line_.push_back({turns ? way * node.pitch : way, turns ? way : 0.0, 0.0, 0.0});
+    on_line_.push_back({.slides = turns ? way * node.pitch : way,
+                        .turns = turns ? way : 0.0,
+                        .slide = 0.0,
+                        .turn = 0.0,
+                        .sine = 0.0,
+                        .cosine = 1.0});
   }
   for (int l = 0; l < model_.links(); ++l) {
     const int node = model_.tree().places[static_cast<std::size_t>(l)].node;
     const SE3 T = vp::T_world_link(model_, data_, l);
     T_world_line_.push_back(node == kWorld ? T : line[static_cast<std::size_t>(node)]);
     T_line_link_.push_back(Inv(T_world_line_.back()) * T);
+    const SE3& X = T_line_link_.back();
+    const bool plain = X.rotation().cx == Vec3{1, 0, 0} && X.rotation().cy == Vec3{0, 1, 0} &&
+                       X.rotation().cz == Vec3{0, 0, 1} && X.position().x == 0.0 &&
+                       X.position().y == 0.0;
+    is_plain_.push_back(node != kWorld && plain ? 1 : 0);
   }
+  keeps_twists_ = std::all_of(is_plain_.begin(), is_plain_.end(), [](auto p) { return p != 0; });
+}
+
+void Articulation::find_responses() {
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const auto dof = static_cast<std::uint32_t>(i);
+    const auto row = factor_.joint_row(dof);
+    const bool feels_others = std::any_of(row.y + 1, row.y + factor_.depth_of_dof(dof),
+                                          [](double y) { return y != 0.0; });
+    if (feels_others || dofs[i].passive || dofs[i].locked || fall_[i] != 0.0) {
+      responses_.clear();
+      return;
+    }
+    responses_.push_back(row.response);
+  }
+}
+
+// So far that no stop gets a row (add_stops(), articulations.cpp).
+bool Articulation::stops_are_far(double h) const {
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const JointDof& dof = dofs[i];
+    if (dof.coordinate < 0) continue;
+    const double x = q[static_cast<std::size_t>(dof.coordinate)];
+    const double near = h * (2.0 * std::fabs(v[i]) + 1.0);
+    if (dof.lower - x > -near || dof.upper - x < near) return false;
+  }
+  return true;
+}
+
+// p = push - gain (v + response p)
+bool Articulation::settle_alone(double h) {
+  if (responses_.empty() || !stops_are_far(h)) return false;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    JointDof& dof = dofs[i];
+    const double x = dof.coordinate < 0 ? 0.0 : q[static_cast<std::size_t>(dof.coordinate)];
+    const Motor motor = motor_of(dof, h, x);
+    const double p = (motor.push - motor.gain * v[i]) / (1.0 + motor.gain * responses_[i]);
+    dof.drive_impulse = std::clamp(p, -motor.most, motor.most);
+    v[i] += responses_[i] * dof.drive_impulse;
+  }
+  if (!remote) update_twists();
+  return true;
+}
+
+void Articulation::set_remote(const collide::Bounds& box) {
+  remote = true;
+  remote_box = box;
+  remote_q_ = q;
+}
+
+double Articulation::slides_since_remote(double h) const {
+  const auto& nodes = model_.tree().nodes;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (on_line_[i].slides == 0.0) continue;
+    const auto k = static_cast<std::size_t>(nodes[i].q), d = static_cast<std::size_t>(nodes[i].v);
+    sum += std::fabs(on_line_[i].slides) * (std::fabs(q[k] - remote_q_[k]) + h * std::fabs(v[d]));
+  }
+  return sum;
+}
+
+Vec3 Articulation::line_of(int link) const {
+  const auto l = static_cast<std::size_t>(link);
+  return constant_ && is_plain_[l] ? T_world_line_[l].rotation().cz : Vec3{};
 }
 
 void Articulation::place_on_lines() {
@@ -135,6 +212,24 @@ void Articulation::place_on_lines() {
     on.slide += on_line_[static_cast<std::size_t>(node.parent)].slide;
     on.turn += on_line_[static_cast<std::size_t>(node.parent)].turn;
   }
+  // Men of a row turn together: one sine serves them all.
+  const OnLine* last = nullptr;
+  for (OnLine& on : on_line_) {
+    if (on.turn == 0.0) {
+      on.sine = 0.0;
+      on.cosine = 1.0;
+      continue;
+    }
+    if (!last || on.turn != last->turn) {
+      const auto [s, c] = sin_cos(on.turn);
+      on.sine = s;
+      on.cosine = c;
+    } else {
+      on.sine = last->sine;
+      on.cosine = last->cosine;
+    }
+    last = &on;
+  }
 }
 
 SE3 Articulation::T_world_link(int link) const {
@@ -144,11 +239,12 @@ SE3 Articulation::T_world_link(int link) const {
   const SE3& X = T_world_line_[l];
   if (node == kWorld) return X;
   const OnLine& on = on_line_[static_cast<std::size_t>(node)];
-  const auto [s, c] = sin_cos(on.turn);
+  const double s = on.sine, c = on.cosine;
   const Mat3& R = X.rotation();
   const SE3 moved(Mat3{c * R.cx + s * R.cy, c * R.cy - s * R.cx, R.cz},
                   X.position() + on.slide * R.cz);
-  return moved * T_line_link_[l];
+  if (!is_plain_[l]) return moved * T_line_link_[l];
+  return SE3(moved.rotation(), moved.position() + T_line_link_[l].position().z * R.cz);
 }
 
 void Articulation::update_factor() {
@@ -221,7 +317,7 @@ void Articulation::advance(double h) {
   }
   if (constant_) {  // a coordinate for each velocity; and it keeps its twists
     for (std::size_t i = 0; i < v.size(); ++i) q[i] += h * v[i];
-    place_on_lines();
+    if (!remote) place_on_lines();
     return;
   }
   if (!floating_.empty()) {

@@ -1,10 +1,12 @@
 // An articulation of a world: a model, its state, and what a step does to it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "collide/bounds.h"
 #include "solve/link_side.h"
 #include "vphysics/multibody/dynamics.h"
 #include "vphysics/world.h"
@@ -22,6 +24,19 @@ struct JointDof {
   JointDrive drive;
   double drive_impulse = 0.0;  // warm start
 };
+
+// A motor for h. With f = k (p - q - h v) + d (v_t - v) its impulse is push - gain v, v being the
+// velocity after it, and at most `most`; without a motor both are 0.
+struct Motor {
+  double push = 0.0, gain = 0.0, most = 0.0;
+};
+inline Motor motor_of(const JointDof& dof, double h, double position) {
+  const JointDrive& d = dof.drive;
+  const double most = h * std::min(d.max_force, dof.forces.motor_limit);
+  const double gain = h * (h * d.stiffness + d.damping);
+  if (!(gain > 0.0 && most > 0.0)) return {};
+  return {h * (d.stiffness * (d.position - position) + d.damping * d.velocity), gain, most};
+}
 
 class Articulation {
  public:
@@ -44,6 +59,11 @@ class Articulation {
   // a point of it, in the world frame.
   void refresh();
   SE3 T_world_link(int link) const;
+  // The line along which the link slides and about which it turns, all of its motion: a unit vector
+  // through its origin, in the world frame. Zero: it moves otherwise.
+  Vec3 line_of(int link) const;
+  // Moving on takes nothing from its links' velocities: they are on such lines.
+  bool keeps_twists() const { return keeps_twists_; }
   se3 link_velocity(int link, const Vec3& point) const {
     return twists_ ? factor_.twist_at(link, point) : twist_in_data(link, point);
   }
@@ -56,6 +76,11 @@ class Articulation {
 
   // For the solver: the response of the present configuration, and nothing pushed yet. end_solve()
   // takes over what it did, corrections of the coordinates within the limits.
+  // What that does for an articulation that nothing touches and of which no joint feels another, at
+  // the first instant of a step: its motors, whose impulses for h are known at once. False, and
+  // nothing done, where it needs the solver.
+  bool settle_alone(double h);
+  bool settles_alone() const { return !responses_.empty(); }
   solve::SolverArticulation begin_solve();
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();
@@ -63,6 +88,7 @@ class Articulation {
 
   // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step
+  bool touched = false;      // by a contact of this instant, in the stage of impacts
   // With what the solver has done so far it will move; end_solve() may change its velocities yet.
   void mark_moving();
   void advance_sub_step(double h);
@@ -70,6 +96,14 @@ class Articulation {
   // it is refreshed it tells what a link's mean velocity over the step has more than that.
   void end_sub_steps(double dt);
   se3 drift_of(int link, const Vec3& point) const { return factor_.twist_at(link, point); }
+
+  // --- where nothing can meet it (remote.cpp): q and v go on; what follows from them waits for
+  // refresh()
+  bool can_be_remote = false, remote = false;
+  collide::Bounds remote_box;  // of all its links, with how far they may slide
+  void set_remote(const collide::Bounds& box);
+  // At most how far a link has slid since, and slides in h more [m].
+  double slides_since_remote(double h) const;
 
   bool in_range() const;
   // Where it was when the step began, at rest.
@@ -80,6 +114,8 @@ class Articulation {
   void update_factor();
   void update_twists();
   void find_lines();
+  void find_responses();
+  bool stops_are_far(double h) const;
   void place_on_lines();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
@@ -102,17 +138,24 @@ class Articulation {
   struct OnLine {
     double slides, turns;  // for one of its own coordinate
     double slide, turn;
+    double sine, cosine;  // of the turn
   };
-  std::vector<OnLine> on_line_;    // of each node
-  std::vector<SE3> T_world_line_;  // of each link: its line,
-  std::vector<SE3> T_line_link_;   // and where it is on that at zero coordinates
-  bool factored_ = false;          // for this configuration, without damping
-  bool twists_ = false;            // the factor has the links' velocities, else the data
+  std::vector<OnLine> on_line_;         // of each node
+  std::vector<SE3> T_world_line_;       // of each link: its line,
+  std::vector<SE3> T_line_link_;        // and where it is on that at zero coordinates
+  std::vector<std::uint8_t> is_plain_;  // that is a way along the line, without a rotation
+  bool keeps_twists_ = false;           // all are
+  // What a unit impulse of each motor gives its own coordinate; empty: joints feel one another, or
+  // have more than motors and stops.
+  std::vector<double> responses_;
+  bool factored_ = false;  // for this configuration, without damping
+  bool twists_ = false;    // the factor has the links' velocities, else the data
   bool regular_ = false;
 
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
   std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, velocity_, shift_;
+  std::vector<double> remote_q_;
   std::vector<WholeTree> whole_;
   std::vector<double> fall_;  // the acceleration of a constant one
 };

@@ -14,7 +14,16 @@ constexpr std::size_t kContactsReady = 32;
 constexpr std::size_t kRowsOfDof = 5;
 
 // Links are bodies for all that collides; their pose and velocity are copies.
-void World::Impl::follow(const Articulation& art) {
+void World::Impl::follow(Articulation& art) {
+  if (art.remote) {
+    art.remote = false;
+    art.refresh();
+    for (const std::uint32_t b : art.bodies) remote_bodies[b] = 0;
+  }
+  follow_poses(art);
+  follow_velocities(art, false);
+}
+void World::Impl::follow_poses(const Articulation& art) {
   ready_for_queries = false;
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
@@ -22,7 +31,6 @@ void World::Impl::follow(const Articulation& art) {
     body.T = art.T_world_link(body.link);
     body.moved();
   }
-  follow_velocities(art, false);
 }
 // Carrying: what changes was carried by contacts and joints (contacts.cpp).
 void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
@@ -53,6 +61,7 @@ void World::Impl::integrate_articulations(double dt) {
   for (Articulation& art : articulations) {
     if (art.sub_stepped) continue;  // its forces have been felt
     art.mark_start();
+    if (art.remote) continue;  // balanced: no force but its motors'
     bool changed = false;
     if (!art.integrate_forces(dt, changed)) {
       status.non_finite = true;
@@ -75,15 +84,12 @@ class JointRows {
   }
 
   bool add_motor(double h, JointDof& dof) {
-    const JointDrive& d = dof.drive;
-    const double most = h * std::min(d.max_force, dof.forces.motor_limit);
-    const double gain = h * (h * d.stiffness + d.damping);
-    if (!(gain > 0.0 && most > 0.0)) return false;
-    solve::JointRow& motor =
-        add(h * (d.stiffness * (d.position - q_) + d.damping * d.velocity) / gain, -most, most);
-    motor.softness = 1.0 / gain;
-    motor.impulse = std::clamp(dof.drive_impulse, -most, most);
-    motor.remember = &dof.drive_impulse;
+    const Motor motor = motor_of(dof, h, q_);
+    if (motor.most <= 0.0) return false;
+    solve::JointRow& row = add(motor.push / motor.gain, -motor.most, motor.most);
+    row.softness = 1.0 / motor.gain;
+    row.impulse = std::clamp(dof.drive_impulse, -motor.most, motor.most);
+    row.remember = &dof.drive_impulse;
     return true;
   }
   // Spring, dry friction, and limits that give way.
@@ -147,6 +153,15 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (of == JointRowsOf::sub_step && !art.sub_stepped) continue;
+    if (of == JointRowsOf::first_instant && !art.sub_stepped && !art.touched &&
+        art.settle_alone(h)) {
+      if (!art.remote) follow_velocities(art, false);
+      continue;
+    }
+    if (art.remote) {
+      if (of != JointRowsOf::first_instant) continue;  // its stops hold as they were solved
+      follow(art);
+    }
     const bool first =
         of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
@@ -162,7 +177,7 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
 
 void World::Impl::begin_solve_articulations() {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
-    solver_articulations[a] = articulations[a].begin_solve();
+    if (!articulations[a].remote) solver_articulations[a] = articulations[a].begin_solve();
   }
 }
 
@@ -171,6 +186,7 @@ void World::Impl::end_solve_articulations(bool first) {
     if (row.remember) *row.remember = row.impulse;
   }
   for (Articulation& art : articulations) {
+    if (art.remote) continue;
     const Articulation::Change change = art.end_solve();
     if (change == Articulation::Change::none || stop_if_out_of_range(art)) continue;
     follow_velocities(art, first);
@@ -184,6 +200,10 @@ void World::Impl::advance_articulations(double h) {
     art.advance(h);
     if (stop_if_out_of_range(art)) {
       hold(art.bodies.front());
+    } else if (art.remote) {
+      ready_for_queries = false;
+    } else if (art.keeps_twists() && !art.sub_stepped) {
+      follow_poses(art);
     } else {
       follow(art);
     }

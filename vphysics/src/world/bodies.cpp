@@ -114,6 +114,7 @@ void World::Impl::list_bodies() {
     }
   }
   sort_movers_by_region();
+  list_remote_articulations();
 }
 
 namespace {

@@ -155,6 +155,15 @@ void World::Impl::carry(std::uint32_t body, const Vec3& change_w, const Vec3& ch
   remove_carried(forced[body].v, change_v);
 }
 
+void World::Impl::note_touched_articulations() {
+  for (Articulation& art : articulations) art.touched = false;
+  for (const solve::ContactConstraint& c : contacts) {
+    for (const std::uint32_t i : {c.a, c.b}) {
+      if (bodies[i].is_link) articulations[bodies[i].articulation].touched = true;
+    }
+  }
+}
+
 void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
     // An impact: contacts found at the start of the step take part with fresh impulses.
@@ -172,6 +181,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   for (const solve::ContactConstraint& c : contacts) {
     if (c.swept) in_contact[c.a] = in_contact[c.b] = 1;
   }
+  note_touched_articulations();
   add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
   if (contacts.empty() && joint_rows.empty()) return;
   refresh_solver_bodies();

@@ -228,6 +228,7 @@ Expected<void> World::debug_draw(const DebugDrawOptions& options, DebugDraw& dra
     if (!(size > 0.0 && size <= kLargestSize))
       return refuse("debug_draw: every size and scale must be positive and at most 1e6");
   }
+  impl_->look_at_all();
   Impl::Drawing(*impl_, options, draw).draw();
   return {};
 }

@@ -65,6 +65,9 @@ struct alignas(64) Body {
   double mass = 0.0;
   se3 prescribed;         // kinematic: body frame
   collide::Bounds local;  // of its bounded colliders, body frame
+  // Of a link that moves along and about a line alone: of its bounded colliders, wherever it turns,
+  // about its origin in the world's axes. Empty for all else.
+  collide::Bounds around_line;
   collide::Bounds bounds;
   std::uint32_t generation = 0;
   std::uint32_t articulation = kNone;
@@ -252,6 +255,8 @@ struct World::Impl {
   collide::CastScratch world_cast;
   collide::PartsScratch parts_scratch;
 
+  std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
+
   // Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
   // both are within the kept ones; what never meets by its filters is left out. They outlast steps,
   // but decide nothing: what is near enough is found among them anew in every round.
@@ -330,7 +335,8 @@ struct World::Impl {
 
   // articulations.cpp
   void reserve_link_rows();
-  void follow(const Articulation& articulation);
+  void follow(Articulation& articulation);  // remote no longer
+  void follow_poses(const Articulation& articulation);
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);
   void add_joint_rows(double h, double dt, JointRowsOf of);
@@ -340,6 +346,15 @@ struct World::Impl {
   bool stop_if_out_of_range(Articulation& articulation);
   void hold(std::uint32_t body);
 
+  // remote.cpp
+  bool can_be_remote(const Articulation& articulation) const;
+  void list_remote_articulations();
+  bool is_near_mover(const collide::Bounds& box) const;
+  void meet_remote(double h);
+  void make_remote();
+  void look_at(Articulation& articulation);
+  void look_at_all();
+
   // step.cpp
   void begin_step(double dt);
   void begin_impact_stage();
@@ -347,7 +362,10 @@ struct World::Impl {
   void integrate_forces(double dt);
   solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
   void refresh_solver_bodies();
+  void note_touched_articulations();
   void refresh_motions(double h);
+  void refresh_motion_of(std::uint32_t body, double h);
+  void refresh_ways(double h);
   void pose_colliders(std::uint32_t body);
   const collide::Bounds& bounds_at_pose(std::uint32_t body);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
@@ -502,6 +520,7 @@ struct World::Impl {
 
   // pairs.cpp
   void refresh_bounds(double h);
+  void refresh_bounds_of(std::uint32_t body, double h);
   bool keep_discrete_bounds();
   void find_discrete_pairs(double h);
   void keep_bounds(std::uint32_t body, double h);
@@ -582,6 +601,7 @@ Mat3 turned(const Mat3& R, const Vec3& turn);
 // Orders a pair by creation.
 ColliderPair make_pair(const std::vector<Collider>& colliders, std::uint32_t i, std::uint32_t j);
 bool should_meet(const Collider& a, const Collider& b);
+bool may_meet(const Body& a, const Body& b);
 BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index);
 ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t index);
 // Mixes a word into a digest.

@@ -21,6 +21,8 @@ bool can_move(const Body& body) {
   return body.motion != Motion::fixed;
 }
 
+}  // namespace
+
 // Whether any collider of the one may meet any of the other; links of one articulation never do.
 bool may_meet(const Body& a, const Body& b) {
   if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
@@ -28,6 +30,8 @@ bool may_meet(const Body& a, const Body& b) {
   const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
   return pushable || a.has_sensor || b.has_sensor;
 }
+
+namespace {
 
 bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const Collider& cb) {
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
@@ -45,21 +49,28 @@ double travel(const Body& body, const collide::Motion& m, double h) {
   if (!can_move(body)) return 0.0;
   return (norm(m.v) + norm(m.w) * body.reach) * h;
 }
+// The same of the body's own bounds: where they hold however it turns, turning does not count.
+double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
+  return collide::empty(body.around_line) ? travel(body, m, h) : norm(m.v) * h;
+}
 
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (!candidates_are_stale && body.alive && !can_move(body)) continue;
-    movable[i] = body.alive && can_move(body);
-    if (!body.alive || body.first_collider == kNone) {
-      bounds[i] = {};
-    } else if (body.unbounded) {
-      bounds[i] = bounds_at_pose(i);
-    } else {
-      bounds[i] = grown(bounds_at_pose(i), desc.contact_slop + travel(body, motions[i], h));
-    }
+    if (!remote_bodies[i]) refresh_bounds_of(i, h);
+  }
+}
+void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
+  const Body& body = bodies[i];
+  if (!candidates_are_stale && body.alive && !can_move(body)) return;
+  movable[i] = body.alive && can_move(body);
+  if (!body.alive || body.first_collider == kNone) {
+    bounds[i] = {};
+  } else if (body.unbounded) {
+    bounds[i] = bounds_at_pose(i);
+  } else {
+    bounds[i] = grown(bounds_at_pose(i), desc.contact_slop + travel_of_bounds(body, motions[i], h));
   }
 }
 
@@ -67,6 +78,10 @@ const collide::Bounds& World::Impl::bounds_at_pose(std::uint32_t index) {
   Body& body = bodies[index];
   if (body.bounded) return body.bounds;
   body.bounded = true;
+  if (!collide::empty(body.around_line)) {
+    const Vec3 at = body.T.position();
+    return body.bounds = {at + body.around_line.lower, at + body.around_line.upper};
+  }
   body.bounds =
       collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
   if (body.unbounded) {
@@ -268,7 +283,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
 void World::Impl::keep_bounds(std::uint32_t index, double h) {
   const collide::Bounds& now = bounds[index];
   const double margin = kCandidateSlops * desc.contact_slop +
-                        kCandidateSteps * travel(bodies[index], motions[index], h);
+                        kCandidateSteps * travel_of_bounds(bodies[index], motions[index], h);
   kept_bounds[index] = collide::empty(now) ? now : grown(now, margin);
 }
 

@@ -96,6 +96,7 @@ collide::Sweep sweep_of(const collide::MovingShape& m) {
 
 void World::Impl::find_strays() {
   if (ready_for_queries) return;
+  look_at_all();
   ready_for_queries = true;
   strays.clear();
   strays.reserve(colliders.size());

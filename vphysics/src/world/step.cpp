@@ -114,6 +114,7 @@ void World::Impl::prescribe_velocity(Body& body, double dt) {
 void World::Impl::integrate_forces(double dt) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& body = bodies[i];
+    if (remote_bodies[i]) continue;
     if (!body.alive || body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
     forced[i] = {body.w, body.v};
     if (body.is_link) continue;
@@ -123,6 +124,7 @@ void World::Impl::integrate_forces(double dt) {
   }
   integrate_articulations(dt);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (remote_bodies[i]) continue;
     const Body& body = bodies[i];
     if (!body.alive || joins_sub_steps(body)) continue;
     const bool stopped = !body.is_link && stop_if_out_of_range(i, start_poses[i]);
@@ -165,11 +167,16 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
+// Of links only those that touch something: there may be many, and few of them do.
 void World::Impl::refresh_solver_bodies() {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!body.alive || (body.is_link && body.first_collider == kNone)) continue;
-    solver_bodies[i] = solver_body(i, reference_point(body));
+    if (body.alive && !body.is_link) solver_bodies[i] = solver_body(i, reference_point(body));
+  }
+  for (const solve::ContactConstraint& c : contacts) {
+    for (const std::uint32_t i : {c.a, c.b}) {
+      if (bodies[i].is_link) solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
+    }
   }
 }
 
@@ -189,12 +196,22 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (body.is_link && body.first_collider == kNone) continue;
-    const bool stands = held[i] || !body.alive || body.motion == Motion::fixed;
-    motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
-                        : motion_of(body, drift[i], in_contact[i] ? 0.0 : h);
+    if (!remote_bodies[i]) refresh_motion_of(i, h);
   }
+}
+void World::Impl::refresh_motion_of(std::uint32_t i, double h) {
+  const Body& body = bodies[i];
+  if (body.is_link && body.first_collider == kNone) return;
+  const bool stands = held[i] || !body.alive || body.motion == Motion::fixed;
+  motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
+                      : motion_of(body, drift[i], in_contact[i] ? 0.0 : h);
+}
+
+// Motions and bounds for the rest of the step.
+void World::Impl::refresh_ways(double h) {
+  refresh_motions(h);
+  refresh_bounds(h);
+  meet_remote(h);
 }
 
 namespace {
@@ -357,8 +374,8 @@ void World::Impl::run_impacts(double dt) {
   const auto stage = in(Stage::impacts);
   double time = 0.0;
   end_links(dt, sub_steps_taken);
-  refresh_motions(dt);
-  refresh_bounds(dt);
+  refresh_ways(dt);
+  make_remote();
   find_discrete_pairs(dt);
   find_swept_pairs(dt);
   find_discrete_contacts(dt);
@@ -367,8 +384,7 @@ void World::Impl::run_impacts(double dt) {
     solve_contacts(h, dt, solves == 0);
     if (solves == 0) remember_impulses(contacts, 1.0);
     report_contacts(contacts, time);
-    refresh_motions(h);
-    refresh_bounds(h);
+    refresh_ways(h);
     find_swept_pairs(h);
     double t = next_impact(h);
     if (t >= 0.0 && solves >= desc.max_impacts_per_step) {
@@ -383,8 +399,7 @@ void World::Impl::run_impacts(double dt) {
     if (last) return;
     time += t;
     ++counters.impacts;
-    refresh_motions(dt - time);
-    refresh_bounds(dt - time);
+    refresh_ways(dt - time);
     find_swept_pairs(dt - time);
   }
 }

@@ -155,6 +155,24 @@ Expected<void> World::destroy_body(BodyId id) {
   return {};
 }
 
+namespace {
+
+// Of all places to which a turn about its z takes a box, that axis being the unit vector `line` in
+// the outer frame: of a cylinder. Empty if there is no such line.
+collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
+  if (line == Vec3{}) return {};
+  const double x = std::max(-box.lower.x, box.upper.x), y = std::max(-box.lower.y, box.upper.y);
+  const double radius = std::sqrt(x * x + y * y);
+  const double half = 0.5 * (box.upper.z - box.lower.z), middle = 0.5 * (box.upper.z + box.lower.z);
+  const auto extent = [&](double u) {
+    return std::fabs(u) * half + radius * std::sqrt(std::max(0.0, 1.0 - u * u));
+  };
+  const Vec3 extents{extent(line.x), extent(line.y), extent(line.z)};
+  return collide::grown({middle * line - extents, middle * line + extents}, 1e-12 * radius);
+}
+
+}  // namespace
+
 Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
   Body* body = impl_->find(body_handle);
   if (!body) return stale("add_collider", "the body");
@@ -197,6 +215,10 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
     c.size = size_of(c.geometry);
     body->reach = reach_of(*body);
+    if (body->is_link) {
+      const Articulation& art = impl_->articulations[body->articulation];
+      body->around_line = bounds_around(art.line_of(body->link), body->local);
+    }
     body->least_size = std::min(body->least_size, c.size);
   }
   impl_->lists_are_stale = true;
@@ -219,6 +241,7 @@ SE3 World::pose(BodyId id) const {
   const Body* body = impl_->find(id);
   VP_ASSERT(body && "pose: the body does not exist (any more)");
   if (!body) return {};
+  if (body->is_link) impl_->look_at(impl_->articulations[body->articulation]);
   return body->is_link ? impl_->articulations[body->articulation].T_world_link(body->link)
                        : body->T;
 }
@@ -229,7 +252,8 @@ se3 World::velocity(BodyId id) const {
   if (!body) return {};
   if (body->motion == Motion::kinematic) return body->prescribed;
   if (body->is_link) {
-    const Articulation& art = impl_->articulations[body->articulation];
+    Articulation& art = impl_->articulations[body->articulation];
+    impl_->look_at(art);
     const SE3 T = art.T_world_link(body->link);
     const se3 V = art.link_velocity(body->link, T.position());
     return {T.unrotate(V.w), T.unrotate(V.v)};

@@ -1,0 +1,98 @@
+// Articulations that nothing can meet: their links are not gone through one by one.
+//
+// A step moves the coordinates of a remote articulation; poses, velocities and bounds of its links
+// are made when something comes near or somebody asks for them (follow()). Which pairs meet is
+// found anew in every round from the bounds, so remoteness changes what a step costs and nothing
+// that it computes.
+//
+// Only of links that move along and about one line, whose motors need no solver: where they turn to
+// then changes no bounds (Body::around_line), and how far they slide is known from few coordinates.
+#include <algorithm>
+#include <cmath>
+
+#include "world/impl.h"
+
+namespace vp {
+namespace {
+
+// With more bodies that move than this each articulation's test would cost more than it saves.
+constexpr std::size_t kFewMovers = 8;
+// How far a remote articulation may slide before it is looked at anew [m]; and how far a body must
+// be from that for it to become remote, so that none changes to and fro.
+constexpr double kSlide = 0.03, kClear = 0.01;
+
+}  // namespace
+
+// As long as no body or collider comes or goes.
+bool World::Impl::can_be_remote(const Articulation& art) const {
+  if (!art.keeps_twists() || !art.settles_alone()) return false;
+  for (const std::uint32_t b : art.bodies) {
+    if (bodies[b].first_collider == kNone) continue;
+    for (const Body& other : bodies) {
+      const bool tested = !other.is_link && other.motion != Motion::fixed;  // as movers
+      if (other.alive && !tested && may_meet(bodies[b], other)) return false;
+    }
+  }
+  return true;
+}
+
+void World::Impl::list_remote_articulations() {
+  const bool few = !some_are_not && desc.sleep_after <= 0.0 && movers.size() <= kFewMovers;
+  remote_bodies.assign(bodies.size(), 0);
+  for (Articulation& art : articulations) {
+    look_at(art);
+    art.can_be_remote = few && can_be_remote(art);
+  }
+}
+
+bool World::Impl::is_near_mover(const collide::Bounds& box) const {
+  return std::any_of(movers.begin(), movers.end(),
+                     [&](std::uint32_t m) { return overlap(box, bounds[m]); });
+}
+
+// After the bounds of those that are not remote: whom a mover may meet within h, or who has slid
+// far, is looked at from now on.
+void World::Impl::meet_remote(double h) {
+  for (Articulation& art : articulations) {
+    if (!art.remote) continue;
+    if (art.slides_since_remote(h) + desc.contact_slop < kSlide && !is_near_mover(art.remote_box))
+      continue;
+    follow(art);
+    for (const std::uint32_t b : art.bodies) {
+      refresh_motion_of(b, h);
+      refresh_bounds_of(b, h);
+    }
+  }
+}
+
+// At the start of the stage of impacts.
+void World::Impl::make_remote() {
+  for (Articulation& art : articulations) {
+    if (art.remote || !art.can_be_remote || art.sub_stepped) continue;
+    collide::Bounds box;
+    Vec3 line;
+    for (const std::uint32_t b : art.bodies) {
+      if (bodies[b].first_collider == kNone) continue;
+      box = merged(box, bounds_at_pose(b));
+      line = art.line_of(bodies[b].link);
+    }
+    const Vec3 along = kSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};
+    box = collide::grown({box.lower - along, box.upper + along}, desc.contact_slop);
+    if (is_near_mover(collide::grown(box, kClear))) continue;
+    art.set_remote(box);
+    for (const std::uint32_t b : art.bodies) {
+      remote_bodies[b] = 1;
+      bounds[b] = {};
+    }
+  }
+}
+
+// For whoever asks where links are.
+void World::Impl::look_at(Articulation& art) {
+  if (art.remote) follow(art);
+}
+void World::Impl::look_at_all() {
+  for (Articulation& art : articulations) look_at(art);
+}
+
+}  // namespace vp
