@@ -112,7 +112,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     view.camera = camera_of(shot, state, size);
     if (shot.screen == 2 && shot.team >= 0) view.active_rods = shot.team == 0 ? 1u << 3 : 1u << 4;
     view.time = 1.0f;
-    view.hide_rods = name == "above-hidden-rods";
+    if (name == "above-hidden-rods") view.rods = RodsShown::off;
     view.distinct_teams = name == "distinct";
     HudState hud;
     hud.state = &state;

@@ -175,6 +175,37 @@ TEST(RodPrediction, MenMoveWithTheirRodAndOthersStay) {
   }
 }
 
+// A hinged man whom the ball holds: the hand is seen at once, he is where the server has him.
+TEST(RodPrediction, AManWhoIsHeldStaysWhereTheServerHasHim) {
+  wire::Snapshot server = scripted_play(0.0, foosball::Layout::paper);
+  for (auto& rod : server.rods) rod = {0, 0, 0, 0, 1, 2};
+  place_men(server);
+  const auto turned = [](float angle) {
+    return std::array<float, 4>{0, std::sin(0.5f * angle), 0, std::cos(0.5f * angle)};
+  };
+  constexpr int kHeldMan = 2;
+  for (wire::ManState& man : server.men) {
+    if (man.rod == kRod && man.man == kHeldMan) man.body.orientation = turned(-0.6f);
+  }
+  RodPrediction prediction(foosball::Layout::paper);
+  Hand hand = HandToPicture::at(0.02f);
+  prediction.update(hand, server, 16 * kMs);
+  hand[kRod].angle = 0.9f;
+  for (int frame = 2; frame < 6; ++frame) prediction.update(hand, server, frame * 16 * kMs);
+  wire::Snapshot drawn = server;
+  prediction.apply(drawn);
+  ASSERT_GT(drawn.rods[kRod].angle, 0.3f);
+  int of_row = 0;
+  for (const wire::ManState& man : drawn.men) {
+    if (man.rod != kRod) continue;
+    ++of_row;
+    const auto expected = man.man == kHeldMan ? turned(-0.6f) : turned(drawn.rods[kRod].angle);
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(man.body.orientation[k], expected[k], 1e-5) << int{man.man};
+  }
+  EXPECT_EQ(of_row, 4);
+}
+
 TEST(RodPrediction, RodsOfOthersAndOfAPausedMatchAreTheServers) {
   const Hand hand = HandToPicture::at(0.05f);
   wire::Snapshot scene = scripted_play(0.7);  // no rod of team 0 moves by a client but as scripted

@@ -16,7 +16,8 @@ Settings unusual() {
   s.volume = 0.25f;
   s.quality = QualityChoice::high;
   s.text_scale = 1.4f;
-  s.reduced_flashes = s.reduced_shake = s.distinct_teams = s.hide_rods = true;
+  s.reduced_flashes = s.reduced_shake = s.distinct_teams = true;
+  s.rods = RodsShown::on;
   s.automatic_rod = s.goalie_follows = s.aim = true;
   s.language = Language::korean;
   s.view = View::above;
@@ -110,6 +111,19 @@ TEST_F(SettingsFile, ThatCannotBeWrittenIsASentence) {
   ASSERT_FALSE(saved);
   EXPECT_NE(saved.error().find(path), std::string::npos);
   EXPECT_FALSE(save_settings({}, ""));
+}
+
+TEST(Settings, RodsAreDrawnWhereTheTableHasThemUnlessTheyAreAskedForOrAway) {
+  using enum foosball::Layout;
+  EXPECT_FALSE(rods_are_drawn(Settings{}.rods, paper));
+  EXPECT_TRUE(rods_are_drawn(Settings{}.rods, tournament));
+  for (const foosball::Layout layout : {paper, tournament}) {
+    EXPECT_TRUE(rods_are_drawn(RodsShown::on, layout));
+    EXPECT_FALSE(rods_are_drawn(RodsShown::off, layout));
+  }
+  // Files of before there was a third way.
+  EXPECT_EQ(parse_settings("hide_rods = yes\n").settings.rods, RodsShown::off);
+  EXPECT_EQ(parse_settings("hide_rods = no\n").settings.rods, RodsShown::as_on_the_table);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client/controls.h"
+#include "foosball/table.h"
 
 namespace client {
 
@@ -20,6 +21,13 @@ inline constexpr int kViews = 4;
 enum class QualityChoice : std::uint8_t { automatic, low, high };
 enum class Language : std::uint8_t { automatic, english, korean, german };
 inline constexpr int kLanguages = 4;
+// Rods in the picture: where the table has rods (men of the paper's layout hang from none), always,
+// never.
+enum class RodsShown : std::uint8_t { as_on_the_table, on, off };
+inline constexpr int kRodsShown = 3;
+constexpr bool rods_are_drawn(RodsShown rods, foosball::Layout layout) {
+  return rods == RodsShown::as_on_the_table ? !foosball::hinged_men(layout) : rods == RodsShown::on;
+}
 
 // Keys by the window library's number (GLFW: US layout); 0: none. Two for each action.
 using KeyBindings = std::array<std::array<int, 2>, kActions>;
@@ -34,7 +42,7 @@ struct Settings {
   bool distinct_teams = false;   // teams told apart by pattern and shape, colours for all eyes
   Language language = Language::automatic;
   View view = View::seat;
-  bool hide_rods = false;
+  RodsShown rods = RodsShown::as_on_the_table;
   bool automatic_rod = false;  // assists, each by itself
   bool goalie_follows = false;
   bool aim = false;

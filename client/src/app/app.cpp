@@ -430,7 +430,7 @@ void App::draw(float dt) {
   SceneView view;
   view.time = static_cast<float>(seconds_);
   view.active_rods = active_rods();
-  view.hide_rods = settings_.hide_rods;
+  view.rods = settings_.rods;
   view.reduced_flashes = settings_.reduced_flashes;
   view.distinct_teams = settings_.distinct_teams;
   view.rod_shift = rod_shift();

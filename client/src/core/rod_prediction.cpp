@@ -23,6 +23,15 @@ double squared(double x) {
   return x * x;
 }
 
+// A man this far from his hand is held [rad]; nearer ones follow it the more. A ball that he hits
+// sets a free man back by less than half of it.
+constexpr float kHeld = 0.25f;
+float share_of_lead(float apart) {
+  constexpr float kTurn = 6.2831853f;
+  const float nearest = std::fabs(std::remainder(apart, kTurn));
+  return std::clamp(2.0f - 2.0f * nearest / kHeld, 0.0f, 1.0f);
+}
+
 // From outside the range [low, high], how far.
 double beyond(double value, double low, double high) {
   return value < low ? value - low : value > high ? value - high : 0.0;
@@ -124,16 +133,20 @@ void RodPrediction::apply(wire::Snapshot& scene) const {
         std::clamp(rod.state.slide + rod.offset.slide, -spec.slide_limit, spec.slide_limit));
     const auto angle = static_cast<float>(rod.state.angle + rod.offset.angle);
     const float moved = slide - drawn.slide, half_turn = 0.5f * (angle - drawn.angle);
+    const float hand = drawn.angle;
     drawn.slide = slide;
     drawn.angle = angle;
     drawn.slide_rate = static_cast<float>(rod.state.slide_rate);
     drawn.angle_rate = static_cast<float>(rod.state.angle_rate);
-    // Each man moves as his rod does, from wherever he hangs on it: q' = (turn about y) q.
-    const float s = std::sin(half_turn), c = std::cos(half_turn);
+    // Each man moves as his rod does: q' = (turn about y) q. One whom something holds (he is
+    // hinged, Layout::paper) stays where the server has him: the hand's lead would turn him through
+    // it.
     for (wire::ManState& man : scene.men) {
       if (man.rod != rod.index) continue;
       man.body.position[1] += moved;
       const auto [x, y, z, w] = man.body.orientation;
+      const float share = share_of_lead(2.0f * std::atan2(y, w) - hand);
+      const float s = std::sin(share * half_turn), c = std::cos(share * half_turn);
       man.body.orientation = {c * x + s * z, c * y + s * w, c * z - s * x, c * w - s * y};
     }
   }

@@ -67,6 +67,7 @@ bool read_word(std::string_view text, const std::array<const char*, N>& words, E
 
 constexpr std::array<const char*, 3> kQualityWords{"auto", "low", "high"};
 constexpr std::array<const char*, kViews> kViewWords{"seat", "above", "follow", "spectator"};
+constexpr std::array<const char*, kRodsShown> kRodsWords{"table", "yes", "no"};
 constexpr std::array<const char*, kLanguages> kLanguageWords{"auto", "en", "ko", "de"};
 
 bool read_keys(std::string_view text, std::array<int, 2>& keys) {
@@ -115,7 +116,13 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
     return read_word(value, kLanguageWords, s.language) ? "" : "auto, en, ko or de";
   if (name == "view")
     return read_word(value, kViewWords, s.view) ? "" : "seat, above, follow or spectator";
-  if (name == "hide_rods") return flag(s.hide_rods);
+  if (name == "rods") return read_word(value, kRodsWords, s.rods) ? "" : "table, yes or no";
+  if (name == "hide_rods") {  // written before there was a third way
+    bool hide = false;
+    if (!read_flag(value, hide)) return "yes or no";
+    s.rods = hide ? RodsShown::off : RodsShown::as_on_the_table;
+    return "";
+  }
   if (name == "automatic_rod") return flag(s.automatic_rod);
   if (name == "goalie_follows") return flag(s.goalie_follows);
   if (name == "aim") return flag(s.aim);
@@ -220,7 +227,7 @@ std::string format_settings(const Settings& s) {
   out << "distinct_teams = " << yes_no(s.distinct_teams) << "\n";
   out << "language = " << kLanguageWords[static_cast<std::size_t>(s.language)] << "\n";
   out << "view = " << kViewWords[static_cast<std::size_t>(s.view)] << "\n";
-  out << "hide_rods = " << yes_no(s.hide_rods) << "\n";
+  out << "rods = " << kRodsWords[static_cast<std::size_t>(s.rods)] << "\n";
   out << "automatic_rod = " << yes_no(s.automatic_rod) << "\n";
   out << "goalie_follows = " << yes_no(s.goalie_follows) << "\n";
   out << "aim = " << yes_no(s.aim) << "\n";

@@ -17,7 +17,7 @@ enum Row : int {
   row_text,
   row_language,
   row_view,
-  row_hide_rods,
+  row_rods,
   row_teams,
   row_flashes,
   row_shake,
@@ -53,6 +53,8 @@ constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system")
                                                              "한국어", "Deutsch"};
 constexpr std::array<const char*, kViews> kViewNames{N_("seat"), N_("from above (cabinet)"),
                                                      N_("follow the ball"), N_("spectator")};
+constexpr std::array<const char*, kRodsShown> kRodsNames{N_("as on the table"), N_("on"),
+                                                         N_("off")};
 
 template <class Enum>
 void turn(Enum& value, int way, int count) {
@@ -129,7 +131,7 @@ std::vector<MenuRow> SettingsMenu::rows(const Settings& s) const {
       {N_("Text size"), percent(s.text_scale), false},
       {N_("Language"), kLanguageNames[static_cast<std::size_t>(s.language)]},
       {N_("View"), kViewNames[static_cast<std::size_t>(s.view)]},
-      {N_("Rods in the picture"), on_off(!s.hide_rods)},
+      {N_("Rods in the picture"), kRodsNames[static_cast<std::size_t>(s.rods)]},
       {N_("Teams by pattern and shape"), on_off(s.distinct_teams)},
       {N_("Reduced flashes"), on_off(s.reduced_flashes)},
       {N_("Reduced shake"), on_off(s.reduced_shake)},
@@ -171,8 +173,8 @@ bool SettingsMenu::change(int way, Settings& s) {
     case row_view:
       turn(s.view, way, kViews);
       break;
-    case row_hide_rods:
-      flip(s.hide_rods);
+    case row_rods:
+      turn(s.rods, way, kRodsShown);
       break;
     case row_teams:
       flip(s.distinct_teams);

@@ -228,7 +228,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
 // All that stands on the field or around it.
 void Scene::draw_standing() const {
   rim_mesh_.draw();
-  if (!rods_hidden_) {
+  if (rods_drawn_) {
     for (const GpuMesh& rod : rod_meshes_) rod.draw();
   }
   for (const GpuMesh& figures : figure_meshes_) figures.draw();
@@ -360,7 +360,7 @@ float Scene::ball_visibility(const wire::Snapshot& state, const SceneView& view,
   use_layout(static_cast<foosball::Layout>(state.layout));
   post_.resize(screen);
   place_instances(state, view);
-  rods_hidden_ = view.hide_rods;
+  rods_drawn_ = rods_are_drawn(view.rods, table_->layout);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glEnable(GL_CULL_FACE);
@@ -430,7 +430,7 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   use_layout(static_cast<foosball::Layout>(state.layout));
   post_.resize(screen);
   if (view.distinct_teams != stripes_) build_figures(view.distinct_teams);
-  rods_hidden_ = view.hide_rods;
+  rods_drawn_ = rods_are_drawn(view.rods, table_->layout);
   place_instances(state, view);
   load_particles(particles);
   glEnable(GL_DEPTH_TEST);

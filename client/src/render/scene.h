@@ -8,6 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "client/settings.h"
 #include "foosball/table.h"
 #include "render/camera.h"
 #include "render/gpu_mesh.h"
@@ -22,7 +23,7 @@ struct SceneView {
   Camera camera;
   std::uint8_t active_rods = 0;  // lit up, by bit
   float time = 0.0f;             // [s], for twinkling and pulses
-  bool hide_rods = false;
+  RodsShown rods = RodsShown::as_on_the_table;
   bool reduced_flashes = false;      // nothing pulses
   bool distinct_teams = false;       // team 1 wears stripes
   std::array<float, 8> rod_shift{};  // along x, of what is drawn [m]: see shift_scene()
@@ -97,7 +98,7 @@ class Scene {
   GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
   std::array<GpuMesh, kKinds> figure_meshes_;  // by team, then character
-  bool stripes_ = false, rods_hidden_ = false;
+  bool stripes_ = false, rods_drawn_ = true;
   std::array<std::vector<Instance>, kKinds> men_;
   draw::GlVertexArray particle_array_;
   draw::GlBuffer particle_buffer_;
