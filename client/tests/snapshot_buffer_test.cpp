@@ -112,6 +112,18 @@ TEST_F(Buffer, ASessionThatGoesOnKeepsItsScene) {
   EXPECT_TRUE(buffer.sample(on_time(50)).any);
 }
 
+TEST_F(Buffer, ASessionThatGoesOnAfterALossIsSeenAtOnceAndItsOldSnapshotsAreStillOld) {
+  for (std::uint64_t t = 0; t < 5000; ++t) push(t);
+  buffer.begin_session(kSession, 1000);
+  EXPECT_EQ(push(5600), Verdict::taken) << "0.6 s later: no jump";
+  EXPECT_EQ(push(4500), Verdict::old);
+  EXPECT_EQ(buffer.counters().implausible, 0u);
+  EXPECT_EQ(buffer.counters().lost, 0u) << "what was sent while nobody listened is not lost";
+  wire::Snapshot forged = at_tick(5601);
+  forged.sequence = ~std::uint64_t{0};
+  EXPECT_EQ(buffer.push(forged, on_time(5601)), Verdict::implausible);
+}
+
 TEST_F(Buffer, DelayGrowsWithJitterAndMotionStaysEven) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> late(0, 4000);

@@ -70,6 +70,10 @@ std::size_t seal_datagram(const SealKey& key, std::uint32_t id, std::uint64_t co
   return size;
 }
 
+void DatagramOpener::use(const SealKey& key, std::uint32_t id) {
+  if (!usable_ || key != key_ || id != id_) *this = DatagramOpener(key, id);
+}
+
 bool DatagramOpener::taken(std::uint64_t counter) const {
   if (!any_ || counter > newest_) return false;
   return newest_ - counter >= kWindow || seen_[counter % kWindow];

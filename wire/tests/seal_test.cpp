@@ -84,6 +84,18 @@ TEST_F(Opening, AForgedFarFutureCounterMovesNothing) {
   EXPECT_EQ(open(sealed(11, text)), SealVerdict::good);
 }
 
+// A client that comes back to a multicast group is told the same key again.
+TEST_F(Opening, WhatWasTakenStaysTakenWhenTheSameKeyIsUsedAgain) {
+  ASSERT_EQ(open(sealed(10, text)), SealVerdict::good);
+  opener.use(key_of(1), 7);
+  EXPECT_EQ(open(sealed(10, text)), SealVerdict::replayed);
+  EXPECT_EQ(open(sealed(9, text)), SealVerdict::good) << "in the window, and not taken yet";
+  opener.use(key_of(2), 7);
+  EXPECT_EQ(open(sealed(10, text, key_of(2))), SealVerdict::good) << "another key's counters";
+  opener.use(key_of(2), 8);
+  EXPECT_EQ(open(sealed(10, text, key_of(2), 8)), SealVerdict::good);
+}
+
 TEST(SealedStream, ComesOutOfAnyPieces) {
   StreamSealer sealer(key_of(3));
   std::mt19937_64 random(1);

@@ -92,7 +92,9 @@ class SnapshotBuffer {
   SnapshotCounters counters_;
   int doubted_ = 0;  // in a row, agreeing with one another
   std::uint64_t doubted_tick_ = 0, doubted_sequence_ = 0;
+  // Since the last begin_session(), of which counters() tells the losses.
   std::uint64_t first_sequence_ = 0, newest_sequence_ = 0, in_session_ = 0, lost_before_ = 0;
+  std::uint64_t last_sequence_ = 0;  // the newest of the session, whenever it came
 
   std::array<std::int64_t, kWindow> offsets_{};  // arrival - simulated time
   std::size_t offset_count_ = 0, offset_next_ = 0;

@@ -26,6 +26,7 @@ void SnapshotBuffer::begin_session(std::uint64_t session, std::uint32_t tick_us)
   events_.clear();
   playing_ = any_event_ = false;
   doubted_ = 0;
+  last_sequence_ = 0;
 }
 
 SnapshotCounters SnapshotBuffer::counters() const {
@@ -39,6 +40,7 @@ void SnapshotBuffer::count_sequence(std::uint64_t sequence, bool newest) {
   if (in_session_ == 0) first_sequence_ = newest_sequence_ = sequence;
   first_sequence_ = std::min(first_sequence_, sequence);
   newest_sequence_ = std::max(newest_sequence_, sequence);
+  last_sequence_ = std::max(last_sequence_, sequence);
   ++in_session_;
   ++counters_.received;
   if (!newest) ++counters_.reordered;
@@ -65,9 +67,9 @@ bool SnapshotBuffer::jumps(const wire::Snapshot& snapshot, std::int64_t arrival_
   const std::int64_t passed = std::max<std::int64_t>(0, arrival_us - last_arrival_us_);
   const auto ahead = static_cast<std::uint64_t>((passed + kAheadUs) / tick_us_);
   const wire::Snapshot& newest = kept_.back();
-  const bool later = snapshot.sequence > newest_sequence_;
+  const bool later = snapshot.sequence > last_sequence_;
   return snapshot.tick > newest.tick + ahead ||
-         (later && snapshot.sequence - newest_sequence_ > ahead) ||
+         (later && snapshot.sequence - last_sequence_ > ahead) ||
          (later && snapshot.tick + kKept < newest.tick);
 }
 

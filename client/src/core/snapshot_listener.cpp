@@ -56,7 +56,8 @@ tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welc
     return tl::unexpected("There is no way to the server's UDP port " + os::to_text(inputs) +
                           ": check this machine's network.");
   }
-  opener_ = {welcome.snapshot_key, welcome.multicast.empty() ? welcome.client : 0};
+  // A group's key is the same after a lost connection.
+  opener_.use(welcome.snapshot_key, welcome.multicast.empty() ? welcome.client : 0);
   input_key_ = welcome.input_key;
   client_ = welcome.client;
   sealed_ = 0;

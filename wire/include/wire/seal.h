@@ -53,6 +53,10 @@ class DatagramOpener {
   DatagramOpener() = default;  // opens nothing
   DatagramOpener(const SealKey& key, std::uint32_t id) : key_(key), id_(id), usable_(true) {}
 
+  // From now on opens what this key and id seal. The window of a key that stays is kept: what was
+  // taken before is not taken again.
+  void use(const SealKey& key, std::uint32_t id);
+
   // good: the datagram is the first `size` bytes of plain. Else plain is unspecified.
   SealVerdict open(std::span<const std::byte> sealed, std::span<std::byte> plain,
                    std::size_t& size);
