@@ -59,14 +59,16 @@ constexpr int kBacklog = 128;  // a crowd at the door must not fill the kernel's
 
 tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options,
                                               os::SocketAddress address) {
-  auto tcp = bound_socket(SOCK_STREAM, address);
-  if (!tcp) return tl::unexpected(tcp.error());
-  if (::listen(tcp->get(), kBacklog) != 0) return tl::unexpected(last_error());
-  const std::uint16_t port = os::local_address(tcp->get()).port();
-  address.set_port(port);
+  // UDP first: its port is one socket's alone, so that of two servers that start at one moment one
+  // has both ports. TCP's SO_REUSEADDR lets both bind, and then listen(2) may fail for both.
   auto udp = bound_socket(SOCK_DGRAM, address);
   if (!udp) return tl::unexpected(udp.error());
   if (!prepare_udp(udp->get(), options, address)) return tl::unexpected(last_error());
+  const std::uint16_t port = os::local_address(udp->get()).port();
+  address.set_port(port);
+  auto tcp = bound_socket(SOCK_STREAM, address);
+  if (!tcp) return tl::unexpected(tcp.error());
+  if (::listen(tcp->get(), kBacklog) != 0) return tl::unexpected(last_error());
   return PortPair{std::move(*tcp), std::move(*udp), port};
 }
 
@@ -111,7 +113,7 @@ tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
   const auto address = os::parse_address(options.listen, options.port);
   if (!address) return tl::unexpected(SocketError{});
   auto ports = open_once(options, *address);
-  // A free TCP port whose UDP twin is taken: another free one will do.
+  // A free UDP port whose TCP twin is taken: another free one will do.
   constexpr int kMaxTries = 16;
   for (int i = 1; i < kMaxTries && options.port == 0 && !ports && ports.error().occupied(); ++i) {
     ports = open_once(options, *address);

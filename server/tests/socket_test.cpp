@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <barrier>
+#include <thread>
+#include <vector>
+
 namespace server {
 namespace {
 
@@ -29,6 +34,34 @@ TEST(OpenPorts, SaysThatAnAddressIsNone) {
   const auto ports = open_ports(options);
   ASSERT_FALSE(ports);
   EXPECT_TRUE(contains(sentence(options, ports.error()), "\"everywhere\" is no address"));
+}
+
+// With TCP's port taken first both could bind it, and both be refused when they listened.
+TEST(OpenPorts, OfServersThatStartAtOneMomentExactlyOneHasThePort) {
+  constexpr int kServers = 4, kRounds = 200;
+  for (int round = 0; round < kRounds; ++round) {
+    NetworkOptions options;
+    {
+      const auto free = open_ports(options);
+      ASSERT_TRUE(free);
+      options.port = free->port;
+    }
+    std::barrier together(kServers), all_tried(kServers);
+    std::atomic<int> opened{0}, refused{0};
+    std::vector<std::thread> servers;
+    for (int i = 0; i < kServers; ++i) {
+      servers.emplace_back([&] {
+        together.arrive_and_wait();
+        const auto ports = open_ports(options);
+        opened += ports ? 1 : 0;
+        refused += !ports && ports.error().occupied() ? 1 : 0;
+        all_tried.arrive_and_wait();  // whoever has the port keeps it until all have tried
+      });
+    }
+    for (auto& server : servers) server.join();
+    ASSERT_EQ(opened, 1) << round;
+    ASSERT_EQ(refused, kServers - 1) << round;
+  }
 }
 
 }  // namespace
