@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "os/capabilities.h"
+
 namespace cabinet {
 namespace {
 
@@ -46,6 +48,7 @@ void LineKeeper::close(int fd) {
 }
 
 void LineKeeper::run() {
+  os::drop_capabilities(true);  // a device may be root's to open
   while (true) {
     work_.wait();  // interrupted by a signal, it finds nothing to do
     // Asked first: who asks has said before what is to be closed. An ask after this look wakes

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 
+#include "os/capabilities.h"
 #include "os/file_descriptor.h"
 #include "server/byte_ring.h"
 
@@ -231,6 +232,7 @@ JournalFile::JournalFile(const JournalFileOptions& options, std::shared_ptr<Writ
   std::promise<void> end;
   ended_ = end.get_future();
   thread_ = std::thread([writer = writer_, end = std::move(end)]() mutable {
+    os::drop_capabilities(false);  // its file is open
     writer->run();
     end.set_value();
   });

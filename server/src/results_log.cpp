@@ -7,6 +7,7 @@
 #include <semaphore>
 #include <utility>
 
+#include "os/capabilities.h"
 #include "results/store.h"
 #include "server/spsc_queue.h"
 
@@ -110,6 +111,7 @@ ResultsLog::ResultsLog(const ResultsLogOptions& options)
   std::promise<void> end;
   ended_ = end.get_future();
   thread_ = std::thread([keeper = keeper_, end = std::move(end)]() mutable {
+    os::drop_capabilities(true);  // it opens its file again after a failure
     keeper->run();
     end.set_value();
   });
