@@ -55,12 +55,19 @@ bool SocketAddress::same_host(const SocketAddress& other) const {
   return IN6_ARE_ADDR_EQUAL(&v6_.sin6_addr, &other.v6_.sin6_addr);
 }
 
-std::string SocketAddress::network() const {
+std::string SocketAddress::machine() const {
   if (const auto v4 = as_ipv4(*this)) {
     return {reinterpret_cast<const char*>(&*v4), sizeof *v4};
   }
+  std::string key(reinterpret_cast<const char*>(v6_.sin6_addr.s6_addr), sizeof v6_.sin6_addr);
+  if (IN6_IS_ADDR_LINKLOCAL(&v6_.sin6_addr)) key += std::to_string(v6_.sin6_scope_id);
+  return key;
+}
+
+std::string SocketAddress::network() const {
+  if (as_ipv4(*this) || IN6_IS_ADDR_LINKLOCAL(&v6_.sin6_addr)) return machine();
   constexpr std::size_t kPrefixBytes = 8;
-  return {reinterpret_cast<const char*>(v6_.sin6_addr.s6_addr), kPrefixBytes};
+  return machine().substr(0, kPrefixBytes);
 }
 
 std::string SocketAddress::host() const {

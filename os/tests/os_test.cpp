@@ -94,6 +94,25 @@ TEST(SocketAddress, AMappedAddressIsTheHostThatItIs) {
   EXPECT_NE(v6.network(), parse_address("2001:db8:0:1::8", 1)->network());
 }
 
+TEST(SocketAddress, MachinesOfOneNetworkAreToldApartAndLinkLocalOnesAreNoNetwork) {
+  const SocketAddress one = *parse_address("2001:db8::7", 1),
+                      other = *parse_address("2001:db8::8", 1);
+  EXPECT_NE(one.machine(), other.machine());
+  EXPECT_EQ(one.machine(), parse_address("2001:db8::7", 9)->machine()) << "whatever the port";
+  EXPECT_EQ(parse_address("192.0.2.7", 1)->machine(),
+            parse_address("::ffff:192.0.2.7", 1)->machine());
+  EXPECT_NE(parse_address("192.0.2.7", 1)->machine(), parse_address("192.0.2.8", 1)->machine());
+  const SocketAddress lan = *parse_address("fe80::1", 1), neighbour = *parse_address("fe80::2", 1);
+  EXPECT_NE(lan.network(), neighbour.network()) << "every LAN has the prefix fe80::/64";
+  EXPECT_EQ(lan.network(), lan.machine());
+  const SocketAddress end = *parse_address("febf::1", 1), beyond = *parse_address("fec0::1", 1);
+  EXPECT_NE(end.network(), parse_address("febf::2", 1)->network());
+  EXPECT_EQ(beyond.network(), parse_address("fec0::2", 1)->network());
+  sockaddr_in6 on_second = lan.ipv6();
+  on_second.sin6_scope_id = 2;
+  EXPECT_NE(SocketAddress(on_second).machine(), lan.machine()) << "of another interface";
+}
+
 TEST(SocketAddress, OfASocketIsWhereItIsBound) {
   const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const SocketAddress any = loopback(0);

@@ -99,6 +99,7 @@ void ControlServer::run() {
     }
     watch_seats();
     if (std::exchange(roster_changed_, false)) send_roster();
+    drop_those_who_do_not_read();
     std::erase_if(connections_, [](const auto& c) { return c->state == State::dead; });
     tell_tick();
   }
@@ -188,7 +189,6 @@ void ControlServer::serve(ControlConnection& connection) {
   if (!connection.receive()) {
     if (connection.wrong_password()) {
       count(Count::wrong_passwords);
-      wrong_passwords_.note(connection.peer().network(), os::monotonic_us());
       say(LogLevel::warning, os::to_text(connection.peer()) + " gave a wrong password");
     } else if (connection.broke_off()) {
       count(Count::bad_messages);
@@ -197,7 +197,8 @@ void ControlServer::serve(ControlConnection& connection) {
     return;
   }
   wire::ControlMessage message;
-  while (connection.state == State::greeting || connection.state == State::joined) {
+  while (!connection.unread &&
+         (connection.state == State::greeting || connection.state == State::joined)) {
     const auto status = connection.next(message);
     if (status == wire::ControlReader::Status::need_more) return;
     if (status == wire::ControlReader::Status::broken) {
@@ -228,11 +229,21 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
   }
 }
 
+// Takes no seat away, so that whoever sends may go on with the seats that it holds.
 void ControlServer::send(ControlConnection& connection, const wire::ControlMessage& message) {
-  if (connection.state == State::dead) return;
-  if (!connection.send(message, options_.limits.unsent_bytes)) {
+  if (connection.state == State::dead || connection.unread) return;
+  connection.unread = !connection.send(message, options_.limits.unsent_bytes);
+}
+
+// Each one's going is news to the others, who may not read it either.
+void ControlServer::drop_those_who_do_not_read() {
+  for (bool again = true; again;) {
+    const auto slow = std::ranges::find_if(
+        connections_, [](const auto& c) { return c->unread && c->state != State::dead; });
+    again = slow != connections_.end();
+    if (!again) continue;
     count(Count::slow_dropped);
-    drop(connection, "does not read what it is sent");
+    drop(**slow, "does not read what it is sent");
   }
 }
 

@@ -48,7 +48,8 @@ struct ControlEvent {
     wish,
   };
   Kind kind = Kind::joined;
-  std::uint32_t client = 0;                     // counts up, never used twice
+  // Counts up, never used twice. Of a wish: whose it is; 0: it was voted for.
+  std::uint32_t client = 0;
   std::uint8_t team = wire::kWatchOnly;         // joined, rods
   RodSet rods = 0;                              // joined, back, rods: all that it has
   std::uint64_t token = 0;                      // joined, back, rods
@@ -127,6 +128,7 @@ class ControlServer {
   void refuse(ControlConnection& connection, wire::Refusal::Code code, const std::string& reason);
   void reject(ControlConnection& connection, const std::string& reason);
   void drop(ControlConnection& connection, const std::string& why);
+  void drop_those_who_do_not_read();
   void release(ControlConnection& connection, Going going);
   void expire(ControlConnection& connection);
   void publish_notices();
@@ -165,7 +167,7 @@ class ControlServer {
   Connections connections_;
   Seats seats_;
   Votes votes_;
-  WrongPasswords wrong_passwords_;
+  PasswordTries password_tries_;
   std::map<std::uint32_t, wire::Notice> notices_;  // standing, by topic
   std::deque<ControlEvent> untold_;                // the tick has not been told yet
   std::vector<pollfd> polled_;

@@ -22,6 +22,8 @@ constexpr std::uint32_t kVoteTopic = 200;
 constexpr std::uint32_t kClaimTopic = 300;
 // More seats than the roster names would not be seen.
 constexpr std::size_t kMostSeats = wire::kMaxSeats;
+// Of a wish that was voted for.
+constexpr std::uint32_t kEverybody = 0;
 
 // A stranger's name, fit for a log.
 std::string printable(const std::string& name) {
@@ -64,11 +66,12 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
                : "nobody joins from another machine here: start the server with --password-file");
     return;
   }
-  if (!wrong_passwords_.may_try(connection.peer().network(), os::monotonic_us())) {
+  if (!password_tries_.charge(connection.peer(), os::monotonic_us())) {
     refuse(connection, wire::Refusal::Code::password,
            "too many wrong passwords from your network: wait a minute");
     return;
   }
+  connection.try_charged = true;
   const wire::PasswordExchange exchange(wire::PasswordExchange::Side::server, *password,
                                         wire::exchange_channel(role == wire::Role::host),
                                         knock.sid);
@@ -87,6 +90,8 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
     release(connection, Going::left);
     return;
   }
+  // Sealed, it could not be read without the right password.
+  if (std::exchange(connection.try_charged, false)) password_tries_.refund(connection.peer());
   if (!connection.sealed() && trusted(connection)) connection.role = wire::Role::host;
   if (hello.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
@@ -147,9 +152,10 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
            "the server is full: try again when somebody has left");
     return false;
   }
-  const bool here = connection.peer().is_loopback();
-  if (seats_.from_network(connection.peer().network()) >=
-      (here ? limits.per_local_address : limits.per_address)) {
+  const auto& peer = connection.peer();
+  const bool here = peer.is_loopback();
+  if (seats_.of_machine(peer) >= (here ? limits.per_local_address : limits.per_address) ||
+      (!here && seats_.of_network(peer) >= limits.per_network)) {
     refuse(connection, wire::Refusal::Code::full,
            "too many connections from your address: close one first");
     return false;
@@ -405,16 +411,19 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish)
   return true;
 }
 
-// Those who are away do not vote, and nobody waits for them.
+// One machine, one vote, however many seats it has: more connections are no more people. Those who
+// are away do not vote, and nobody waits for them.
 bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
-  std::vector<std::uint32_t> voters;
+  std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
-    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.client);
+    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.peer.machine());
   }
-  const auto votes = votes_.cast(seat.client, wish, voters, os::monotonic_us());
+  std::ranges::sort(voters);
+  voters.erase(std::ranges::unique(voters).begin(), voters.end());
+  const auto votes = votes_.cast(seat.peer.machine(), wish, voters, os::monotonic_us());
   if (votes.passed()) {
     tell({wire::Notice::Level::cleared, vote_topic(wish), "agreed"});
-    return hand_on(seat.client, wish);
+    return hand_on(kEverybody, wish);
   }
   tell({wire::Notice::Level::info, vote_topic(wish),
         seat.name + " asks for " + what_for(wish) + ": " + std::to_string(votes.votes) + " of " +

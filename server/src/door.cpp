@@ -11,22 +11,39 @@ bool RateLimit::take(std::int64_t now_us) {
   return true;
 }
 
-// Where no more networks can be remembered, all that are not share one account.
-const std::string& WrongPasswords::account(const std::string& network) const {
+const std::string& RateLimits::account(const std::string& name) const {
   static const std::string kTheOthers;
-  return paid_until_us_.size() < kNetworks || paid_until_us_.contains(network) ? network
-                                                                               : kTheOthers;
+  return paid_until_us_.size() < kNames || paid_until_us_.contains(name) ? name : kTheOthers;
 }
 
-bool WrongPasswords::may_try(const std::string& network, std::int64_t now_us) const {
-  const auto known = paid_until_us_.find(account(network));
-  return known == paid_until_us_.end() || known->second + kEveryUs - now_us <= kAtOnce * kEveryUs;
+bool RateLimits::may_take(const std::string& name, std::int64_t now_us) const {
+  const auto known = paid_until_us_.find(account(name));
+  return known == paid_until_us_.end() ||
+         known->second + every_us_ - now_us <= at_once_ * every_us_;
 }
 
-void WrongPasswords::note(const std::string& network, std::int64_t now_us) {
+void RateLimits::take(const std::string& name, std::int64_t now_us) {
   std::erase_if(paid_until_us_, [&](const auto& entry) { return entry.second <= now_us; });
-  std::int64_t& paid = paid_until_us_[account(network)];
-  paid = std::max(paid, now_us) + kEveryUs;
+  std::int64_t& paid = paid_until_us_[account(name)];
+  paid = std::max(paid, now_us) + every_us_;
+}
+
+void RateLimits::give_back(const std::string& name) {
+  const auto known = paid_until_us_.find(account(name));
+  if (known != paid_until_us_.end()) known->second -= every_us_;
+}
+
+bool PasswordTries::charge(const os::SocketAddress& from, std::int64_t now_us) {
+  const std::string machine = from.machine(), network = from.network();
+  if (!networks_.may_take(network, now_us) || !machines_.may_take(machine, now_us)) return false;
+  networks_.take(network, now_us);
+  machines_.take(machine, now_us);
+  return true;
+}
+
+void PasswordTries::refund(const os::SocketAddress& to) {
+  networks_.give_back(to.network());
+  machines_.give_back(to.machine());
 }
 
 }  // namespace server

@@ -39,9 +39,14 @@ void Seats::remove(std::uint32_t client) {
   std::erase_if(seats_, [client](const Seat& s) { return s.client == client; });
 }
 
-int Seats::from_network(const std::string& network) const {
-  return static_cast<int>(
-      std::ranges::count_if(seats_, [&](const Seat& s) { return s.peer.network() == network; }));
+int Seats::of_machine(const os::SocketAddress& peer) const {
+  return static_cast<int>(std::ranges::count_if(
+      seats_, [key = peer.machine()](const Seat& s) { return s.peer.machine() == key; }));
+}
+
+int Seats::of_network(const os::SocketAddress& peer) const {
+  return static_cast<int>(std::ranges::count_if(
+      seats_, [key = peer.network()](const Seat& s) { return s.peer.network() == key; }));
 }
 
 RodSet Seats::taken_from(std::uint32_t client) const {

@@ -47,7 +47,8 @@ class Seats {
   Seat* find_ticket(std::uint64_t ticket);
   Seat& add(Seat seat) { return seats_.emplace_back(std::move(seat)); }
   void remove(std::uint32_t client);
-  int from_network(const std::string& network) const;
+  int of_machine(const os::SocketAddress& peer) const;
+  int of_network(const os::SocketAddress& peer) const;
 
   struct Grant {
     enum class Kind : std::uint8_t { granted, taken, other_team, none };

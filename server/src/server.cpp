@@ -48,7 +48,9 @@ struct Server::Impl {
   void take_back(ControlEvent& event);
   void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client);
-  bool nobody_left_to_play_for(std::uint8_t leavers_team) const;
+  void take_wish(const ControlEvent& event);
+  bool plays(std::uint32_t client) const;
+  bool pause_is_abandoned() const;
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
   void tell_match();
@@ -86,6 +88,7 @@ struct Server::Impl {
   std::unique_ptr<ResultsLog> results;  // or none
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
+  bool paused_by_watcher = false;  // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;
@@ -171,7 +174,7 @@ void Server::Impl::take_control_events() {
         dismiss(event.client);
         break;
       case ControlEvent::Kind::wish:
-        if (!options.replay) next.commands.push_back(to_record(event.wish));
+        take_wish(event);
         break;
     }
   }
@@ -193,7 +196,7 @@ void Server::Impl::change_rods(ControlEvent& event) {
   if (!input.redirect(event.client, source) && source != nullptr && event.socket)
     input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
   if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&
-      nobody_left_to_play_for(before)) {
+      pause_is_abandoned()) {
     next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
   }
 }
@@ -232,22 +235,36 @@ void Server::Impl::dismiss(std::uint32_t client) {
   const auto leaver =
       std::find_if(clients.begin(), clients.end(), [&](const Client& c) { return c.id == client; });
   if (leaver == clients.end()) return;
-  const std::uint8_t team = leaver->team;
+  const bool played = leaver->team < foosball::kTeams;
   clients.erase(leaver);
   desk.seat(client, 0);
   input.remove(client);
   broadcaster.remove(client);
-  // A pause is for those who made it: the match goes on when they have left.
-  if (!options.replay && nobody_left_to_play_for(team)) {
+  if (!options.replay && (played || clients.empty()) && pause_is_abandoned()) {
     next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
   }
 }
 
-// The last player has left, or the last of those who only watched.
-bool Server::Impl::nobody_left_to_play_for(std::uint8_t leavers_team) const {
-  if (leavers_team == wire::kWatchOnly) return clients.empty();
-  return std::none_of(clients.begin(), clients.end(),
-                      [](const Client& c) { return c.team < foosball::kTeams; });
+void Server::Impl::take_wish(const ControlEvent& event) {
+  if (options.replay) return;
+  if (event.wish.kind == foosball::Command::Kind::pause && event.wish.value != 0) {
+    paused_by_watcher = event.client != 0 && !plays(event.client);
+  }
+  next.commands.push_back(to_record(event.wish));
+}
+
+bool Server::Impl::plays(std::uint32_t client) const {
+  return std::any_of(clients.begin(), clients.end(), [client](const Client& c) {
+    return c.id == client && c.team < foosball::kTeams;
+  });
+}
+
+// The players' pause ends with the last of them; a host's who watches, with the last who is there.
+bool Server::Impl::pause_is_abandoned() const {
+  if (clients.empty()) return true;
+  return !paused_by_watcher && std::none_of(clients.begin(), clients.end(), [](const Client& c) {
+    return c.team < foosball::kTeams;
+  });
 }
 
 // False when there is no tick to step: a client is awaited, or a recording is over.

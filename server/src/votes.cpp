@@ -12,16 +12,16 @@ bool same_question(const foosball::Command& a, const foosball::Command& b) {
 
 }  // namespace
 
-Votes::Count Votes::cast(std::uint32_t client, const foosball::Command& wish,
-                         std::span<const std::uint32_t> voters, std::int64_t now_us) {
+Votes::Count Votes::cast(const std::string& voter, const foosball::Command& wish,
+                         std::span<const std::string> voters, std::int64_t now_us) {
   auto vote =
       std::ranges::find_if(open_, [&](const Vote& v) { return same_question(v.wish, wish); });
   if (vote == open_.end()) vote = open_.insert(vote, {wish, now_us + kOpenUs, {}});
-  if (std::ranges::find(vote->in_favour, client) == vote->in_favour.end()) {
-    vote->in_favour.push_back(client);
+  if (std::ranges::find(vote->in_favour, voter) == vote->in_favour.end()) {
+    vote->in_favour.push_back(voter);
   }
   // Of those who have left since, no vote counts.
-  const auto here = [&](std::uint32_t who) {
+  const auto here = [&](const std::string& who) {
     return std::ranges::find(voters, who) != voters.end();
   };
   const Count count{static_cast<int>(std::ranges::count_if(vote->in_favour, here)),

@@ -1,8 +1,10 @@
-// What concerns everybody at the table is done when more than half of the players want it.
+// What concerns everybody at the table is done when more than half of the machines that play want
+// it.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "foosball/match.h"
@@ -17,9 +19,9 @@ class Votes {
     int votes = 0, needed = 0;
     bool passed() const { return votes >= needed; }
   };
-  // voters: all who may vote now, the client among them. A vote that passed is over.
-  Count cast(std::uint32_t client, const foosball::Command& wish,
-             std::span<const std::uint32_t> voters, std::int64_t now_us);
+  // voters: all who may vote now, each once, the voter among them. A vote that passed is over.
+  Count cast(const std::string& voter, const foosball::Command& wish,
+             std::span<const std::string> voters, std::int64_t now_us);
   // The next vote whose time is over, forgotten by this call. False: none.
   bool expire(std::int64_t now_us, foosball::Command& wish);
   bool any() const { return !open_.empty(); }
@@ -28,7 +30,7 @@ class Votes {
   struct Vote {
     foosball::Command wish;
     std::int64_t until_us;
-    std::vector<std::uint32_t> in_favour;
+    std::vector<std::string> in_favour;
   };
   std::vector<Vote> open_;
 };

@@ -280,6 +280,22 @@ TEST(Control, APauseEndsWhenTheLastPlayerLeaves) {
   EXPECT_TRUE(table.tick_until([&] { return !paused(); }));
 }
 
+TEST(Control, AHostsPauseOutlastsThePlayers) {
+  Lockstep table;
+  ProbeClient host(table.port()), player(table.port());
+  ASSERT_TRUE(host.join() && player.join(0));
+  start_play(table, host);
+  const auto paused = [&] { return table->match().view().paused; };
+  host.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  ASSERT_TRUE(table.tick_until(paused));
+  player.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  table.tick(3);
+  EXPECT_TRUE(paused());
+  host.say_goodbye();
+  EXPECT_TRUE(table.tick_until([&] { return !paused(); }));
+}
+
 TEST(Control, APauseEndsWhenTheLastWatcherLeavesAnExhibition) {
   Lockstep table;
   ProbeClient watcher(table.port()), another(table.port());
@@ -459,6 +475,45 @@ TEST(Seat, IsTakenAgainThoughTheServerHasNotNoticedTheLoss) {
   EXPECT_EQ(table->clients(), 1);
 }
 
+// Who comes back and does not read goes again, in the middle of being told so.
+TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
+  const std::string name(40, 'n');
+  const auto size_of = [](const wire::ControlMessage& message) { return bytes_of(message).size(); };
+  const auto notice = [](wire::Notice::Level level, const std::string& text) {
+    return wire::ControlMessage(wire::Notice{level, 1'000'001, text});
+  };
+  const RodSet rods = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const auto lost = notice(wire::Notice::Level::warning,
+                           name + " was lost: rods " + to_text(rods) + " are kept for 30 s");
+  const auto back = notice(wire::Notice::Level::cleared, name + " is back");
+  Lockstep table([&](ServerOptions& o) {
+    keep_seats(o);
+    o.limits.unsent_bytes =
+        size_of(wire::Welcome{}) + size_of(wire::Tuning{}) + size_of(lost) + size_of(back) - 1;
+  });
+  auto player = std::make_unique<ProbeClient>(table.port());
+  wire::Hello hello = player->hello(0);
+  hello.name = name;
+  const auto before = player->join(hello);
+  ProbeClient other(table.port()), again(table.port());
+  ASSERT_TRUE(before && other.join(1));
+  player->leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  again.resume(*before);
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.slow_dropped == 1; }));
+  const std::string log = table.log();
+  EXPECT_NE(log.find(name + " at 127.0.0.1"), std::string::npos);
+  EXPECT_NE(log.find(" is back"), std::string::npos);
+  std::size_t named = 0;
+  for (std::size_t at = log.find(" is back"); at != std::string::npos;
+       at = log.find(" is back", at + 1)) {
+    const std::size_t line = log.rfind('\n', at) + 1;
+    named += log.compare(line, name.size(), name) == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(named, 1u) << log;
+  EXPECT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+}
+
 TEST(Seat, IsFreeAtOnceAfterAGoodByeAndInTimeWithoutOne) {
   Lockstep table([](ServerOptions& o) { o.limits.seat_kept_us = 100'000; });
   ProbeClient polite(table.port()), next(table.port()), last(table.port());
@@ -563,13 +618,37 @@ TEST(Password, OfAGuestMakesNoHost) {
 
 TEST(Password, IsGuessedSlowly) {
   Lockstep table(want_password);
-  for (int i = 0; i < WrongPasswords::kAtOnce; ++i) {
+  for (int i = 0; i < PasswordTries::kAtOnce; ++i) {
     ProbeClient guess(table.port());
     ASSERT_TRUE(guess.prove("guess " + std::to_string(i)));
     EXPECT_FALSE(guess.join());
   }
-  ProbeClient one_more(table.port());
+  ProbeClient one_more(table.port()), neighbour(table.port(), "127.0.0.2");
   EXPECT_FALSE(one_more.prove("open sesame")) << "not even with the right one, for a while";
+  EXPECT_TRUE(neighbour.prove("open sesame") && neighbour.join(0)) << "from another machine";
+}
+
+// Many connections at once are no way round the limit.
+TEST(Password, IsChargedWhenItIsTriedAndNotWhenItIsFoundWrong) {
+  Lockstep table(want_password);
+  std::vector<std::unique_ptr<ProbeClient>> guesses;
+  int answered = 0;
+  for (int i = 0; i < 3 * PasswordTries::kAtOnce; ++i) {
+    guesses.push_back(std::make_unique<ProbeClient>(table.port()));
+    answered += guesses.back()->prove("guess " + std::to_string(i)) ? 1 : 0;
+  }
+  EXPECT_EQ(answered, PasswordTries::kAtOnce);
+}
+
+TEST(Password, ThatIsRightCostsNothing) {
+  Lockstep table(want_password);
+  for (int i = 0; i < 3 * PasswordTries::kAtOnce; ++i) {
+    ProbeClient guest(table.port());
+    ASSERT_TRUE(guest.prove("open sesame") && guest.join()) << i;
+    guest.say_goodbye();
+    ASSERT_TRUE(table.tick_until(
+        [&] { return table->counters().control.left == static_cast<std::uint64_t>(i) + 1; }));
+  }
 }
 
 TEST(Password, WithoutOneNobodyJoinsFromAfar) {
@@ -590,7 +669,7 @@ TEST(Password, WhatIsSealedAndThenTurnedEndsTheConnection) {
 
 TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
   Lockstep table(want_password);
-  ProbeClient first(table.port()), second(table.port()), watcher(table.port());
+  ProbeClient first(table.port()), second(table.port(), "127.0.0.2"), watcher(table.port());
   ASSERT_TRUE(first.prove("open sesame") && first.join(0));
   ASSERT_TRUE(second.prove("open sesame") && second.join(1));
   ASSERT_TRUE(watcher.prove("open sesame") && watcher.join());
@@ -608,6 +687,33 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
   second.say(restart);
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
+}
+
+TEST(Votes, AGuestWithSeveralSeatsHasOneVote) {
+  Lockstep table(want_password);
+  std::vector<std::unique_ptr<ProbeClient>> greedy;
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if ((all0 >> rod & 1) == 0) continue;
+    greedy.push_back(std::make_unique<ProbeClient>(table.port()));
+    ASSERT_TRUE(greedy.back()->prove("open sesame") && greedy.back()->join(0, RodSet(1u << rod)));
+  }
+  ProbeClient other(table.port(), "127.0.0.2");
+  ASSERT_TRUE(other.prove("open sesame") && other.join(1));
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  other.say(wire::Wish{push, 1, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  for (auto& seat : greedy) {
+    seat->say(restart);
+    EXPECT_NE(notice_of(other).find("1 of 2 votes"), std::string::npos);
+  }
+  table.tick(5);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
+  other.say(restart);
+  EXPECT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::logo; }));
 }
 
 // --- two people, one team

@@ -79,6 +79,20 @@ TEST_F(SeatsTest, RodsOfBothTeamsAreForThisMachineUnlessTheHostSaysSo) {
   EXPECT_EQ(seats.grant(wire::kWatchOnly, 1, 0, true).kind, Kind::none);
 }
 
+TEST_F(SeatsTest, AreCountedByMachineAndByNetwork) {
+  std::uint32_t client = 0;
+  for (const char* host : {"2001:db8::1", "2001:db8::1", "2001:db8::2", "fe80::1", "192.0.2.1"}) {
+    Seat seat = seat_of(++client, wire::kWatchOnly, 0);
+    seat.peer = *os::parse_address(host, 1);
+    seats.add(seat);
+  }
+  const auto peer = [](const char* host) { return *os::parse_address(host, 2); };
+  EXPECT_EQ(seats.of_machine(peer("2001:db8::1")), 2);
+  EXPECT_EQ(seats.of_network(peer("2001:db8::1")), 3);
+  EXPECT_EQ(seats.of_network(peer("fe80::2")), 0);
+  EXPECT_EQ(seats.of_machine(peer("192.0.2.2")), 0);
+}
+
 TEST_F(SeatsTest, ATicketFindsItsSeatAndZeroNone) {
   seats.add(seat_of(1, 0, all0));
   EXPECT_EQ(seats.find_ticket(1001)->client, 1u);
@@ -87,58 +101,102 @@ TEST_F(SeatsTest, ATicketFindsItsSeatAndZeroNone) {
   EXPECT_EQ(to_text(RodSet(0b1011)), "1, 2 and 4");
 }
 
+using Voters = std::vector<std::string>;
+
 TEST(Votes, MoreThanHalfOfThoseWhoPlayNowDecide) {
   const foosball::Command restart{foosball::Command::Kind::restart, 0, 0};
-  const std::vector<std::uint32_t> one{1}, two{1, 2}, three{1, 2, 3}, four{1, 2, 3, 4};
-  EXPECT_TRUE(Votes().cast(1, restart, one, 0).passed());
+  const Voters one{"a"}, two{"a", "b"}, three{"a", "b", "c"}, four{"a", "b", "c", "d"};
+  EXPECT_TRUE(Votes().cast("a", restart, one, 0).passed());
   Votes votes;
-  EXPECT_FALSE(votes.cast(1, restart, two, 0).passed());
-  EXPECT_FALSE(votes.cast(1, restart, two, 1).passed()) << "one vote each";
-  EXPECT_TRUE(votes.cast(2, {foosball::Command::Kind::restart, 1, 0}, two, 2).passed());
+  EXPECT_FALSE(votes.cast("a", restart, two, 0).passed());
+  EXPECT_FALSE(votes.cast("a", restart, two, 1).passed()) << "one vote each";
+  EXPECT_TRUE(votes.cast("b", {foosball::Command::Kind::restart, 1, 0}, two, 2).passed());
   EXPECT_FALSE(votes.any());
   Votes of_four;
-  EXPECT_FALSE(of_four.cast(1, restart, four, 0).passed());
-  EXPECT_FALSE(of_four.cast(2, restart, four, 0).passed());
-  EXPECT_TRUE(of_four.cast(3, restart, four, 0).passed());
+  EXPECT_FALSE(of_four.cast("a", restart, four, 0).passed());
+  EXPECT_FALSE(of_four.cast("b", restart, four, 0).passed());
+  EXPECT_TRUE(of_four.cast("c", restart, four, 0).passed());
   Votes left;
-  EXPECT_FALSE(left.cast(9, restart, three, 0).passed()) << "who has left does not count";
-  EXPECT_EQ(left.cast(1, restart, three, 0).votes, 1);
+  EXPECT_FALSE(left.cast("x", restart, three, 0).passed()) << "who has left does not count";
+  EXPECT_EQ(left.cast("a", restart, three, 0).votes, 1);
 }
 
 TEST(Votes, AQuestionIsForgottenInTime) {
   Votes votes;
   const foosball::Command pause{foosball::Command::Kind::pause, 0, 1};
-  const std::vector<std::uint32_t> two{1, 2};
-  votes.cast(1, pause, two, 1000);
+  const Voters two{"a", "b"};
+  votes.cast("a", pause, two, 1000);
   foosball::Command over{};
   EXPECT_FALSE(votes.expire(1000 + Votes::kOpenUs - 1, over));
   EXPECT_TRUE(votes.expire(1000 + Votes::kOpenUs, over));
   EXPECT_EQ(over.kind, pause.kind);
-  EXPECT_FALSE(votes.cast(2, pause, two, 2 + Votes::kOpenUs + 1000).passed());
+  EXPECT_FALSE(votes.cast("b", pause, two, 2 + Votes::kOpenUs + 1000).passed());
 }
 
-TEST(WrongPasswords, AFewGuessesANetworkAndThenSlowly) {
-  WrongPasswords door;
-  std::int64_t now = 1'000'000'000;
-  int guesses = 0;
-  for (int second = 0; second < 1000; ++second, now += 1'000'000) {
-    for (int i = 0; i < 100 && door.may_try("a", now); ++i) door.note("a", now), ++guesses;
+// --- passwords
+
+constexpr std::int64_t kNow = 1'000'000'000;
+
+os::SocketAddress address(const std::string& text) {
+  return *os::parse_address(text, 4242);
+}
+
+// How many tries these addresses have in a time, a hundred a second each. So much time has passed.
+int tries(PasswordTries& door, const std::vector<std::string>& from, int seconds) {
+  int count = 0;
+  for (int second = 0; second < seconds; ++second) {
+    for (int i = 0; i < 100; ++i) {
+      for (const auto& host : from) {
+        count += door.charge(address(host), kNow + 1'000'000 * second) ? 1 : 0;
+      }
+    }
   }
+  return count;
+}
+
+TEST(PasswordTries, AreAFewAMachineAndThenSlow) {
+  PasswordTries door;
+  const int guesses = tries(door, {"192.0.2.1"}, 1000);
   EXPECT_GE(guesses, 100);
-  EXPECT_LE(guesses, WrongPasswords::kAtOnce + 1000 / 10 + 1);
-  EXPECT_TRUE(door.may_try("b", now)) << "another network";
+  EXPECT_LE(guesses, PasswordTries::kAtOnce + 1000 / 10 + 1);
+  EXPECT_TRUE(door.charge(address("192.0.2.2"), kNow + 1'000'000'000)) << "another machine";
 }
 
-TEST(WrongPasswords, ManyNetworksGuessNoMoreThanOneWhenTheirPlacesAreTaken) {
-  WrongPasswords door;
-  const std::int64_t now = 1'000'000'000;
-  for (std::size_t i = 0; i < WrongPasswords::kNetworks; ++i) door.note(std::to_string(i), now);
-  int guesses = 0;
-  for (int network = 0; network < 100; ++network) {
-    const std::string name = "new " + std::to_string(network);
-    for (int i = 0; i < 10 && door.may_try(name, now); ++i) door.note(name, now), ++guesses;
+TEST(PasswordTries, ThatWereRightAreGivenBack) {
+  PasswordTries door;
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(door.charge(address("2001:db8::1"), kNow));
+    door.refund(address("2001:db8::1"));
   }
-  EXPECT_EQ(guesses, WrongPasswords::kAtOnce);
+  EXPECT_EQ(tries(door, {"2001:db8::1"}, 1), PasswordTries::kAtOnce) << "and no more than that";
+}
+
+TEST(PasswordTries, OfANeighbourLockNobodyOut) {
+  PasswordTries door;
+  tries(door, {"2001:db8::1", "fe80::1"}, 10);
+  EXPECT_TRUE(door.charge(address("2001:db8::2"), kNow + 10'000'000)) << "of the same /64";
+  EXPECT_TRUE(door.charge(address("fe80::2"), kNow + 10'000'000)) << "of the same LAN";
+}
+
+TEST(PasswordTries, OfAWholeIpv6NetworkAreBounded) {
+  PasswordTries door;
+  std::vector<std::string> hosts;
+  for (int i = 1; i <= 2000; ++i) hosts.push_back("2001:db8::" + std::to_string(i));
+  EXPECT_LE(tries(door, hosts, 10), PasswordTries::kNetworkAtOnce + 4 + 1);
+  EXPECT_TRUE(door.charge(address("2001:db8:0:1::1"), kNow)) << "other networks have their own";
+  EXPECT_TRUE(door.charge(address("192.0.2.1"), kNow)) << "and their machines are remembered";
+}
+
+TEST(RateLimits, ManyNamesHaveNoMoreThanOneWhenTheirPlacesAreTaken) {
+  constexpr int kAtOnce = 5;
+  RateLimits limits(kAtOnce, 10'000'000);
+  for (std::size_t i = 0; i < RateLimits::kNames; ++i) limits.take(std::to_string(i), kNow);
+  int taken = 0;
+  for (int number = 0; number < 100; ++number) {
+    const std::string name = "new " + std::to_string(number);
+    for (int i = 0; i < 10 && limits.may_take(name, kNow); ++i) limits.take(name, kNow), ++taken;
+  }
+  EXPECT_EQ(taken, kAtOnce);
 }
 
 // --- the desk: rods of several clients and the computer

@@ -29,7 +29,12 @@ class SocketAddress {
   bool is_any() const;                               // 0.0.0.0, ::
   bool is_multicast() const;                         // 224.0.0.0/4, ff00::/8
   bool same_host(const SocketAddress& other) const;  // whatever the ports
-  // Whose neighbours share limits: an IPv4 address, or the first 64 bits of an IPv6 one.
+  // Keys for limits, whatever the port. One machine: the whole address, and of a link-local one the
+  // interface too.
+  std::string machine() const;
+  // All that one owner can have addresses in: of IPv4 the address itself, of IPv6 the first 64
+  // bits. Link-local addresses (fe80::/10) share those 64 bits on every LAN: there it is the
+  // machine.
   std::string network() const;
   std::string host() const;  // "127.0.0.1", "::1"
 

@@ -37,7 +37,8 @@ struct ControlLimits {
   int connections = 32;               // who is in: joined, or away and expected back
   int greeting = 64;                  // who has not joined yet, in all; beyond, the oldest of
                                       // the network that has most of them must go
-  int per_address = 8;                // who is in, of one network elsewhere
+  int per_address = 8;                // who is in, of one machine elsewhere
+  int per_network = 16;               // who is in, of one IPv6 network (/64) elsewhere
   int per_local_address = 32;         // of this machine: all share one address
   std::int64_t hello_us = 5'000'000;  // from the connection to the Hello, however it trickles in
   std::int64_t seat_kept_us = 30'000'000;  // for a player who was lost
