@@ -22,11 +22,12 @@ class ByteWriter {
   }
   void flag(const bool& x) { choice(x, 2); }
   void man(const int& x, int end) { choice(x + 1, end + 1); }
-  void count(const std::uint64_t& x) {
+  void any(const std::uint64_t& x) {
     for (int i = 0; i < 8; ++i) out_.push_back(static_cast<std::byte>(x >> (8 * i)));
   }
+  void count(const std::uint64_t& x, std::uint64_t /*most*/) { any(x); }
   void real(const double& x, double /*low*/, double /*high*/) {
-    count(std::bit_cast<std::uint64_t>(x));
+    any(std::bit_cast<std::uint64_t>(x));
   }
 
  private:
@@ -52,7 +53,12 @@ class ByteReader {
     choice(above, end + 1);
     x = above - 1;
   }
-  void count(std::uint64_t& x) { x = take(8); }
+  void any(std::uint64_t& x) { x = take(8); }
+  // A whole number in [0, most].
+  void count(std::uint64_t& x, std::uint64_t most) {
+    const std::uint64_t value = take(8);
+    if (require(value <= most)) x = value;
+  }
   // A number in [low, high]; NaN is an error.
   void real(double& x, double low, double high) {
     const auto value = std::bit_cast<double>(take(8));

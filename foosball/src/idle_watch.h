@@ -33,7 +33,7 @@ class IdleWatch {
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
-    archive.count(self.ticks_);
+    archive.count(self.ticks_, kMaxIdle);
     for (int rod = 0; rod < kRods; ++rod) {
       archive.real(self.slide_[rod], -kAny, kAny);
       archive.real(self.angle_[rod], -kAny, kAny);
@@ -41,6 +41,7 @@ class IdleWatch {
   }
 
  private:
+  static constexpr std::uint64_t kMaxIdle = std::uint64_t{1} << 47;  // as long as a match lasts
   // What a sensor's noise or a table that is leant on does not reach.
   static constexpr double kSlide = 0.003;  // [m]
   static constexpr double kAngle = 0.05;   // [rad]

@@ -50,6 +50,7 @@ MatchDesc challenge_of(std::uint32_t date, Layout layout) {
 
 Match::Impl::Impl(const MatchDesc& d)
     : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built, state.first, d.tuning)) {
+  state.seed = d.seed;
   state.tuning = d.tuning;
   state.random = Random(d.seed).state();
   state.feed_rod = rod_of(0, Line::attack);

@@ -11,8 +11,6 @@
 
 namespace foosball {
 
-inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
-
 inline std::uint64_t to_ticks(double seconds) {
   return static_cast<std::uint64_t>(std::lround(seconds / kTick));
 }
@@ -64,6 +62,7 @@ struct Match::Impl {
   void run_screen();
   void run_play();
   void run_time_out();
+  void begin_training(int team);
   void ask_time_out(int team);
   void feed(int team, int value);
   void watch_idle(const RodTargets& hands, bool commanded);

@@ -10,14 +10,10 @@
 namespace foosball {
 namespace {
 
-// So long men may fill every place for the ball before the other side has it.
-constexpr double kServeWait = 5.0;  // [s]
 // A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.
 constexpr double kLeastHit = 0.003;  // [N s]
 // A ball that a defender touches so soon after an attacker goes on as a deflected shot.
 constexpr double kDeflection = 0.3;  // [s]
-// A goal waits so long at most for the rod that shot to stop or to have gone round (15).
-constexpr double kReview = 0.3;  // [s]
 // A hand that reaches the rod's stop faster slams it (16.3).
 constexpr double kSlam = 2.5;           // [m/s]
 constexpr int kJarsUntilTechnical = 2;  // (16.4)

@@ -35,7 +35,7 @@ void visit_rules(Archive& archive, R& rules) {
 
 template <class Archive, class Count, class Desc, class State>
 void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
-  archive.count(magic);
+  archive.any(magic);
   archive.choice(desc.layout, kLayouts);
   archive.choice(desc.mode, kModes);
   visit_rules(archive, desc.rules);
@@ -49,6 +49,33 @@ struct ByteHash {
   }
   std::uint64_t value = 0xcbf29ce484222325u;
 };
+
+// What no match is ever in, though each field by itself is in its range.
+bool consistent(const MatchDesc& desc, const MatchState& s) {
+  const Rules& rules = desc.rules;
+  const TableSpec& table = table_spec(desc.layout);
+  const bool plays = s.screen == Screen::play;
+  const auto man_of = [&](int rod, int man) { return man < table.rods[rod].men; };
+  const auto touch_ok = [&](const Touch& touch) {
+    return touch.tick <= s.tick && man_of(touch.rod, touch.man);
+  };
+  // Counts of what began with the match.
+
+  bool ok = s.screen_ticks <= s.tick && s.play_ticks <= s.tick &&
+            s.tally.set_ticks <= s.play_ticks && s.idle.ticks() <= s.tick;
+  ok = ok && touch_ok(s.touch) && touch_ok(s.touch_of[0]) && touch_ok(s.touch_of[1]);
+  // The ball is in one place, and in play where there is play.
+  ok = ok && !(s.ball_in_play && (s.ball_parked || !plays)) && (plays || !s.paused);
+  // Stops that have a time of their own.
+  ok = ok && s.time_out_left <= ticks_of(rules.time_out_seconds) &&
+       (s.time_out_left == 0 || (plays && !s.attract));
+  for (int team = 0; team < kTeams; ++team) {
+    const bool over = s.screen == Screen::end && s.last_scorer == team;
+    ok = ok && s.tally.sets[team] < rules.sets_to_win + (over ? 1 : 0) &&
+         s.tally.time_outs[team] <= rules.time_outs;
+  }
+  return ok && man_of(s.serve_rod, s.serve_man) && man_of(s.feed_rod, s.feed_man);
+}
 
 tl::unexpected<vp::Error> refuse(const char* why) {
   return tl::unexpected(vp::Error{vp::Errc::bad_data, why});
@@ -78,6 +105,7 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
     return refuse(
         "The saved match has another table, mode or other rules; create the match with those.");
   }
+  if (!consistent(desc, saved)) return refuse("No match can be in the state that was saved.");
   if (saved.built == state.built && saved.first == state.first && saved.tuning == world->tuning()) {
     if (auto result = world->restore(reader.rest()); !result) return result;
   } else {
@@ -95,7 +123,7 @@ std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const T
   ByteHash hash;
   ByteWriter writer(hash);
   visit_head(writer, kMagic, desc, state);
-  writer.count(world.state_hash());
+  writer.any(world.state_hash());
   return hash.value;
 }
 

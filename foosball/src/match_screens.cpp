@@ -54,6 +54,13 @@ void Match::Impl::run_play() {
   }
 }
 
+// For whoever pushed, unless a computer did.
+void Match::Impl::begin_training(int team) {
+  state.confirmed = {true, true};
+  if (state.feed_man < 0)
+    state.feed_rod = rod_of(state.computer[team] ? person() : team, Line::attack);
+}
+
 // (9.1) Ends after its time, or as soon as both sides push.
 void Match::Impl::run_time_out() {
   --state.time_out_left;
@@ -117,7 +124,7 @@ void Match::Impl::push(int team) {
       break;
     case Screen::selection:
       state.confirmed[team] = true;
-      if (mode() == Mode::training) state.confirmed = {true, true};
+      if (mode() == Mode::training) begin_training(team);
       if (state.confirmed[0] && state.confirmed[1]) start_match();
       break;
     case Screen::play:
@@ -157,6 +164,7 @@ void Match::Impl::enter(Screen screen) {
   if (screen == Screen::logo) {
     state.attract = false;
     state.rung = 0;
+    state.feed_man = -1;
     state.idle.reset();
   }
   reset_gestures();
@@ -175,7 +183,7 @@ int Match::Impl::dice(int n) {
 
 // From the selection: a new match, the serve decided by lot (3).
 void Match::Impl::start_match() {
-  if (mode() == Mode::challenge) state.random = Random(desc.seed).state();
+  if (mode() == Mode::challenge) state.random = Random(state.seed).state();
   if (mode() == Mode::challenge || state.attract) {
     for (int& character : state.character) character = dice(kCharacters);
   }

@@ -20,6 +20,20 @@ inline constexpr double kMaxDuration = 3600.0;  // [s]
 // A rod turned further than this [rad] has been held by nobody: two million revolutions.
 inline constexpr double kMaxAngle = 1e7;
 
+// No match lasts longer [ticks]: 8900 years. Below 2^48, as a snapshot's tick must be, and with
+// room for more matches after it.
+inline constexpr std::uint64_t kMaxTicks = std::uint64_t{1} << 47;
+constexpr std::uint64_t ticks_of(double seconds) {
+  return static_cast<std::uint64_t>(seconds / kTick + 0.5);
+}
+inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
+// So long men may fill every place for the ball before the other side has it.
+inline constexpr double kServeWait = 5.0;  // [s]
+// A goal waits so long at most for the rod that shot to stop or to have gone round (15).
+inline constexpr double kReview = 0.3;  // [s]
+// Bit rod * kMaxMenOnRod + man.
+inline constexpr std::uint64_t kAllMen = (std::uint64_t{1} << (kRods * kMaxMenOnRod)) - 1;
+
 // A man's touch of the ball.
 struct Touch {
   int rod = 0, man = 0;
@@ -30,7 +44,7 @@ struct Touch {
   static void visit(Archive& archive, Self& self) {
     archive.choice(self.rod, kRods);
     archive.choice(self.man, kMaxMenOnRod);
-    archive.count(self.tick);
+    archive.count(self.tick, kMaxTicks);
     archive.flag(self.any);
   }
 };
@@ -53,13 +67,14 @@ struct Tally {
       archive.choice(self.time_outs[team], kMaxCount + 1);
       archive.choice(self.jars[team], kMaxCount + 1);
     }
-    archive.count(self.set_ticks);
+    archive.count(self.set_ticks, kMaxTicks);
     archive.flag(self.golden_goal);
     archive.flag(self.set_over);
   }
 };
 
 struct MatchState {
+  std::uint64_t seed = 0;  // of the description: a challenge draws from it anew at each start
   std::uint64_t tick = 0;
   Screen screen = Screen::logo;
   bool paused = false;
@@ -106,7 +121,8 @@ struct MatchState {
   // What was last seen.
   Shot last_goal, last_shot;
   bool last_goal_own = false;
-  int feed_rod = 3, feed_man = -1;  // training: where the ball is served
+  // Training: where the ball is served. No man: nobody has asked, and it is whose push began.
+  int feed_rod = 0, feed_man = -1;
 
   // The rods: where each is held while no hand is on it.
   std::array<RodTarget, kRods> hold{};
@@ -138,7 +154,8 @@ void visit_shot(Archive& archive, S& shot) {
 
 template <class Archive, class Self>
 void MatchState::visit(Archive& archive, Self& self) {
-  archive.count(self.tick);
+  archive.any(self.seed);
+  archive.count(self.tick, kMaxTicks);
   archive.choice(self.screen, kScreens);
   archive.flag(self.paused);
   Tally::visit(archive, self.tally);
@@ -151,8 +168,8 @@ void MatchState::visit(Archive& archive, Self& self) {
   archive.choice(self.first, kTeams);
   archive.flag(self.attract);
   archive.choice(self.rung, kLadderRungs);
-  archive.count(self.screen_ticks);
-  archive.count(self.play_ticks);
+  archive.count(self.screen_ticks, kMaxTicks);
+  archive.count(self.play_ticks, kMaxTicks);
   archive.choice(self.last_scorer, kTeams);
   IdleWatch::visit(archive, self.idle);
   visit_ball(archive, self);
@@ -166,7 +183,7 @@ void MatchState::visit(Archive& archive, Self& self) {
     SpinWatch::visit(archive, self.spins[rod]);
     archive.flag(self.beyond[rod]);
   }
-  archive.count(self.random);
+  archive.any(self.random);
   visit_fields(self.tuning, [&](const TuningField& field, auto& value) {
     archive.real(value, field.least, field.most);
   });
@@ -179,23 +196,23 @@ void MatchState::visit_ball(Archive& archive, Self& self) {
   archive.flag(self.ball_in_goal);
   archive.choice(self.serve_rod, kRods);
   archive.man(self.serve_man, kMaxMenOnRod);
-  archive.count(self.serve_in);
-  archive.count(self.serve_waits);
+  archive.count(self.serve_in, ticks_of(kServeDelay));
+  archive.count(self.serve_waits, ticks_of(kServeWait));
   archive.choice(self.last_server, kTeams);
   archive.choice(self.last_toucher, kTeams);
   archive.flag(self.served);
-  archive.count(self.touched);
+  archive.count(self.touched, kAllMen);
   BallTouches::visit(archive, self.touching);
   Touch::visit(archive, self.touch);
   for (auto& touch : self.touch_of) Touch::visit(archive, touch);
   archive.flag(self.shot_pending);
   BallWatch::visit(archive, self.watch);
-  archive.count(self.review_ticks);
+  archive.count(self.review_ticks, ticks_of(kReview) + 1);
 }
 
 template <class Archive, class Self>
 void MatchState::visit_stops(Archive& archive, Self& self) {
-  archive.count(self.time_out_left);
+  archive.count(self.time_out_left, ticks_of(kMaxDuration));
   archive.choice(self.time_out_team, kTeams);
   for (auto& ready : self.ready) archive.flag(ready);
   archive.flag(self.fouled);

@@ -47,7 +47,8 @@ class BallTouches {
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
-    for (auto& part : self.parts_) archive.count(part);
+    constexpr std::uint64_t kAll = (std::uint64_t{1} << (kRods * kMaxMenOnRod)) - 1;
+    for (auto& part : self.parts_) archive.count(part, kAll);
   }
 
  private:
@@ -90,13 +91,16 @@ class BallWatch {
     archive.choice(self.rod_, kRods + 1);
     archive.flag(self.in_reach_);
     archive.flag(self.left_);
-    archive.count(self.ticks_possessed_);
-    archive.count(self.ticks_unreached_);
-    archive.count(self.ticks_stopped_);
-    archive.count(self.ticks_untouched_);
+    for (auto* ticks : {&self.ticks_possessed_, &self.ticks_unreached_, &self.ticks_stopped_,
+                        &self.ticks_untouched_}) {
+      archive.count(*ticks, kMaxWatched);
+    }
   }
 
  private:
+  // Longer than any rule allows [ticks]; a verdict ends each count.
+  static constexpr std::uint64_t kMaxWatched = std::uint64_t{1} << 32;
+
   vp::Vec3 anchor_;                    // the ball has stayed near this point
   int rod_ = kRods;                    // of possession; kRods: none yet
   bool in_reach_ = false;              // now

@@ -223,6 +223,7 @@ TEST_F(ItsfTest, Article15_2ASpinIntoTheOwnGoalCounts) {
   shoot({-0.625, 0.05, 0.0174}, {}, 0);
   arrange([&](MatchState& state, TableWorld&) {
     state.touch.rod = state.touch_of[0].rod = goalie;
+    state.touch.man = state.touch_of[0].man = 0;
     state.spins[goalie].reset(0.0);
     for (int i = 0; i <= 70; ++i) state.spins[goalie].update(0.1 * i, i == 70);
     ASSERT_TRUE(state.spins[goalie].spun());

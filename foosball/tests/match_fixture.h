@@ -107,8 +107,9 @@ class MatchTest : public testing::Test {
   // A ball on its way, that two men have touched.
   void shoot(const vp::Vec3& from, const vp::Vec3& velocity, int toucher = 0) {
     arrange([&](MatchState& state, TableWorld& world) {
+      state.screen = Screen::play;
       state.ball_in_play = true;
-      state.ball_parked = false;
+      state.ball_parked = state.ball_in_goal = false;
       state.touched = 0b11;
       state.last_toucher = toucher;
       const int rod = rods_of_team(table(), toucher)[3];

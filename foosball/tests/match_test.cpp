@@ -69,6 +69,8 @@ TEST_F(MatchTest, RodsNeverWaitForAMenu) {
     arrange([&](MatchState& state, TableWorld&) {
       state.screen = screen;
       state.screen_ticks = 0;
+      state.ball_in_play = false;
+      state.ball_parked = true;
     });
     move(1, -0.04, 0.5 * vp::kPi, 0.2);
     EXPECT_NEAR(view().rods[1].slide, -0.04, 0.0005) << static_cast<int>(screen);

@@ -210,6 +210,56 @@ TEST_F(ModesTest, TrainingNeedsNoOpponentAndServesToTheManAskedForAgainAndAgain)
   EXPECT_GE(count(EventKind::serve), 1) << "a ball left lying is served again";
 }
 
+TEST_F(ModesTest, TrainingServesToTheSideThatBeganItUntilAManIsAskedFor) {
+  for (const int team : {0, 1}) {
+    make(Mode::training);
+    command(Command::Kind::push, team);
+    command(Command::Kind::push, team);
+    run(0.7);
+    ASSERT_NE(last(EventKind::serve), nullptr);
+    EXPECT_EQ(last(EventKind::serve)->rod, rods_of_team(table(), team)[3]) << team;
+    EXPECT_EQ(last(EventKind::serve)->team, team);
+    // Whoever comes next begins anew.
+    command(Command::Kind::feed, team, feed_value(Line::defence, 1));
+    command(Command::Kind::restart);
+    command(Command::Kind::push, 1 - team);
+    command(Command::Kind::push, 1 - team);
+    run(0.7);
+    EXPECT_EQ(last(EventKind::serve)->rod, rods_of_team(table(), 1 - team)[3]) << team;
+    events.clear();
+  }
+}
+
+TEST_F(ModesTest, ASavedChallengeIsThatOfItsDay) {
+  const MatchDesc day = challenge_of(20261122, Layout::tournament);
+  const auto first_serves = [&](Match& of) {
+    std::vector<int> seen;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const std::vector<Command> again{{Command::Kind::restart}, {Command::Kind::push, 0}};
+      of.step({input.rods, again});
+      seen.push_back(of.view().character[0]);
+      seen.push_back(of.view().character[1]);
+      seen.push_back(of.view().next_server);
+    }
+    return seen;
+  };
+  Match original = *Match::create(day);
+  std::vector<std::byte> saved;
+  original.snapshot(saved);
+  const auto expected = first_serves(original);
+  int others = 0;
+  for (std::uint32_t date = 20270101; date < 20270106; ++date) {
+    Match other = *Match::create(challenge_of(date, Layout::tournament));
+    const std::uint64_t hash = other.state_hash();
+    ASSERT_TRUE(other.restore(saved));
+    EXPECT_NE(other.state_hash(), hash);
+    EXPECT_EQ(first_serves(other), expected) << date;
+    Match own = *Match::create(challenge_of(date, Layout::tournament));
+    others += first_serves(own) != expected ? 1 : 0;
+  }
+  EXPECT_GT(others, 0) << "days differ";
+}
+
 TEST_F(ModesTest, AFeedThatIsNoMansIsIgnored) {
   make(Mode::training);
   push(0);

@@ -178,8 +178,9 @@ class Match {
   // Appends the whole state: rules, screens, world. Refuses nothing.
   void snapshot(std::vector<std::byte>& bytes) const;
   // Refuses with Errc::bad_data, and is then unchanged: bytes that are truncated, corrupt or of
-  // another version, and a match of another layout or other rules than this one's. The seed may
-  // differ. events() is empty afterwards; view() is that of the saved match.
+  // another version, a match of another layout or other rules than this one's, and a state that no
+  // match is ever in. The seed may differ: it is the saved one's from then on. events() is empty
+  // afterwards; view() is that of the saved match.
   vp::Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;
 
