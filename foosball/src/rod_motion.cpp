@@ -62,7 +62,8 @@ AxisDrive angle_drive(const RodInertia& inertia, double angle, const RodTarget& 
 
 double turns_ahead(double angle, double hand_angle) {
   constexpr double kTurn = 2.0 * vp::kPi;
-  return kTurn * std::nearbyint((angle - hand_angle) / kTurn);
+  const double ahead = angle - hand_angle;
+  return std::fabs(ahead) <= vp::kPi ? 0.0 : kTurn * std::nearbyint(ahead / kTurn);
 }
 
 AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,

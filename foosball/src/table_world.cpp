@@ -272,8 +272,9 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   const std::span<const double> q = world_.coordinates(rods_[rod]);
   for (int i = 0; i < spec.men; ++i) {
     const int link = kFirstMan + i;
-    must(world_.set_drive(rods_[rod], link, 0,
-                          joint_drive(man_drive(inertia, q[link], now.angle, target))));
+    const AxisDrive man =
+        q[link] == now.angle ? hand : man_drive(inertia, q[link], now.angle, target);
+    must(world_.set_drive(rods_[rod], link, 0, joint_drive(man)));
   }
 }
 

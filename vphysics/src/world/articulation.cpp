@@ -73,7 +73,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       start = std::clamp(start, dof.lower, dof.upper);
     }
   }
-  start_q_ = moved_q_ = q;
+  start_q_ = moved_q_ = remote_q_ = q;
   const auto& nodes = model.tree().nodes;
   constant_ = !damped_ && std::all_of(nodes.begin(), nodes.end(), continues_axis);
   forward_kinematics<double>(model_, data_, q, v);
