@@ -100,10 +100,10 @@ MAY_USE = {
     'profile': {ENGINE_FACE, 'table'},
     'server': {ENGINE_FACE, 'profile', 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
-    'match': {ENGINE_FACE, 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
+    'match': {ENGINE_FACE, 'profile', 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     # The client draws from snapshots only: the table's geometry, never the match.
     'draw': set(),
-    'client': {ENGINE_FACE, 'os', 'draw', 'table', 'wire', 'device-frame', 'hand'},
+    'client': {ENGINE_FACE, 'os', 'draw', 'profile', 'table', 'wire', 'device-frame', 'hand'},
     # Has its worlds in its own process; knows of no match and no wire.
     'sandbox': {ENGINE_FACE, 'os', 'draw', 'scenes'},
     # A recording drawn as the client draws it: here, and only here, server and client meet.

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "match/player.h"
+#include "profile/tuning_profile.h"
 
 namespace app {
 namespace {
@@ -29,7 +30,7 @@ std::string check_player(const std::string& name) {
 }
 
 struct Raw {
-  std::string home = "classic", away = "classic", layout = "tournament";
+  std::string home = "classic", away = "classic", layout = "tournament", tuning;
   bool report = false, balance = false, passive = false;
   std::vector<std::string> sprt, round_robin;
 };
@@ -39,6 +40,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* away = cli.add_option("--away", raw.away, "the second player")->check(check_player);
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
+  cli.add_option("--tuning", raw.tuning,
+                 "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
   cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
   auto* passive = cli.add_flag("--passive", raw.passive,
                                "the same as --away idle: what an idle side makes of play");
@@ -86,6 +89,11 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
 
 std::string translate(Options& o, const Raw& raw) {
   o.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
+  if (!raw.tuning.empty()) {
+    const auto tuning = profile::load_tuning(raw.tuning);
+    if (!tuning) return tuning.error();
+    o.tuning = *tuning;
+  }
   o.players = {raw.home, raw.passive ? "idle" : raw.away};
   if (raw.report) o.mode = Mode::report;
   if (raw.balance) o.mode = Mode::balance;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foosball/table.h"
+#include "foosball/tuning.h"
 
 namespace app {
 
@@ -17,6 +18,7 @@ struct Options {
   std::vector<std::string> players{"classic",
                                    "classic"};  // by the mode: home and away, old and new
   foosball::Layout layout = foosball::Layout::tournament;
+  foosball::Tuning tuning{};
   std::uint64_t seed = 1;
   std::uint64_t matches = 100;
   std::uint64_t max_matches = 2000;  // of a sequential test

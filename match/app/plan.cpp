@@ -22,12 +22,13 @@ SeriesDesc base_of(const Options& o) {
   desc.seed = o.seed;
   desc.max_ticks = static_cast<std::uint64_t>(o.max_minutes * 60.0 / foosball::kTick);
   desc.max_games = o.matches;
+  desc.tuning = o.tuning;
   return desc;
 }
 
 match::ReportPlan report_plan(const Options& o) {
   const SeriesDesc base = base_of(o);
-  return {o.players[0], o.players[1], o.layout, o.seed, base.max_ticks, o.matches};
+  return {o.players[0], o.players[1], o.layout, o.seed, base.max_ticks, o.matches, o.tuning};
 }
 
 std::vector<SeriesDesc> round_robin(const Options& o) {

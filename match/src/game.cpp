@@ -31,7 +31,8 @@ class Game {
  public:
   Game(const GameDesc& desc, Recording recording)
       : desc_(desc),
-        header_(server::to_header({desc.layout, desc.seed, {}})),
+        header_(server::to_header(
+            {.layout = desc.layout, .seed = desc.seed, .rules = {}, .tuning = desc.tuning})),
         match_(*foosball::Match::create(server::from_header(header_))),
         sink_(played_.journal) {
     for (int team = 0; team < kTeams; ++team) {

@@ -259,6 +259,7 @@ std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
   base.seed = plan.seed;
   base.max_ticks = plan.max_ticks;
   base.max_games = plan.matches;
+  base.tuning = plan.tuning;
   std::vector<SeriesDesc> series(kParts, base);
   series[kPaper].layout = plan.layout == foosball::Layout::paper ? foosball::Layout::tournament
                                                                  : foosball::Layout::paper;

@@ -1,6 +1,7 @@
 #include "match/series.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace match {
 
@@ -19,6 +20,13 @@ std::string SeriesDesc::text() const {
       text += std::to_string(value);
     }
   };
+  // Of those that are not the defaults, all digits: another tuning is another series.
+  visit_fields(tuning, [&](const foosball::TuningField& field, double value) {
+    if (value == foosball::Tuning{}.*field.value) return;
+    char digits[40];
+    std::snprintf(digits, sizeof digits, " %.17g", value);
+    text += std::string(", ") + field.name + digits;
+  });
   add("test", test);
   add("band", band);
   return text;
@@ -33,6 +41,7 @@ GameDesc Series::game(std::uint64_t index) const {
   game.seed = desc_.seed + index / 2;
   game.variant = static_cast<int>(first);
   game.max_ticks = desc_.max_ticks;
+  game.tuning = desc_.tuning;
   if (desc_.draw_characters) {
     game.characters = drawn_characters(game.seed);
   } else {

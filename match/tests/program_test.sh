@@ -32,12 +32,18 @@ refuses '--matches' --matches many
 refuses 'not exist' --record "$folder/none"
 refuses 'choose a file' --checkpoint "$folder/none/file"
 refuses '--nonsense' --nonsense
+printf 'gravity = 9.0\nhop_gain = heavy\n' >"$folder/garbage.toml"
+refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
+refuses 'cannot be read' --tuning "$folder/none.toml"
 
 # A few seconds of play a match; the totals with all distributions are in the JSON.
 options=(--quiet --matches 8 --max-minutes 0.05 --home classic:0.9 --away classic:0.3)
 "$match" "${options[@]}" --json "$folder/threads.json" --record "$folder" --checkpoint "$folder/whole" >"$folder/out"
 digest=$(grep digest "$folder/out")
 recordings=("$folder"/*.sfr)
+echo 'gravity = 9.0' >"$folder/light.toml"
+"$match" "${options[@]}" --tuning "$folder/light.toml" >"$folder/light"
+[[ $(grep digest "$folder/light") != "$digest" ]] || fail "--tuning changes nothing"
 [[ ${#recordings[@]} == 8 ]] || fail "${#recordings[@]} recordings of 8 matches"
 "$replay" "${recordings[0]}" | grep -q 'is the match that was played' || fail "a recording does not replay"
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -81,6 +82,28 @@ std::string format_tuning(const Tuning& tuning) {
                         value == static_cast<double>(static_cast<long>(value)) ? ".0" : "");
   });
   return text;
+}
+
+tl::expected<void, std::string> save_tuning(const Tuning& tuning, const std::string& path) {
+  namespace fs = std::filesystem;
+  const auto failed =
+      tl::unexpected("Cannot write the profile " + path + ": make its folder writable.");
+  std::error_code error;
+  fs::create_directories(fs::path(path).parent_path(), error);
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    return tl::unexpected(path + " is no file: choose another name for the profile.");
+  if (fs::exists(path, error) && !load_tuning(path))
+    fs::copy_file(path, path + ".bad", fs::copy_options::overwrite_existing, error);
+  const std::string beside = path + ".new";
+  {
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file << format_tuning(tuning);
+    file.close();
+    if (!file) return failed;
+  }
+  fs::rename(beside, path, error);
+  if (error) return failed;
+  return {};
 }
 
 }  // namespace profile

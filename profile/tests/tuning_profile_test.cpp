@@ -1,6 +1,10 @@
 #include "profile/tuning_profile.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include <string>
 
@@ -62,6 +66,23 @@ TEST(TuningProfile, RefusesFilesThatAreNone) {
   EXPECT_NE(load_tuning("/nowhere/x.toml").error().find("cannot be read"), std::string::npos);
   EXPECT_FALSE(load_tuning("/"));
   EXPECT_FALSE(load_tuning("/dev/zero"));
+}
+
+TEST(TuningProfile, IsSavedWholeAndWhatWasNoProfileIsKeptBeside) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / ("profiles" + std::to_string(::getpid()));
+  const std::string path = (folder / "new" / "mine.toml").string();
+  Tuning tuning;
+  tuning.gravity = 9.0;
+  ASSERT_TRUE(save_tuning(tuning, path));
+  EXPECT_TRUE(load_tuning(path).value() == tuning);
+  std::ofstream(path) << "gravity = \"garbage";
+  ASSERT_TRUE(save_tuning({}, path));
+  EXPECT_TRUE(load_tuning(path).value() == Tuning{});
+  EXPECT_TRUE(fs::exists(path + ".bad"));
+  EXPECT_FALSE(save_tuning({}, folder.string()));
+  EXPECT_FALSE(save_tuning({}, "/proc/nowhere/x.toml"));
+  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct GameDesc {
   std::uint64_t seed = 1;             // of the match and of both players
   int variant = 0;                    // other seeds of the players: 0, or 1 with changed sides
   std::uint64_t max_ticks = 600'000;  // stepped; then the side that is ahead has won
+  foosball::Tuning tuning{};          // in its ranges
   bool operator==(const GameDesc&) const = default;
 };
 

@@ -30,6 +30,7 @@ struct ReportPlan {
   foosball::Layout layout = foosball::Layout::tournament;
   std::uint64_t seed = 1, max_ticks = 600'000;
   std::uint64_t matches = 100;
+  foosball::Tuning tuning{};
 };
 std::vector<SeriesDesc> report_series(const ReportPlan& plan);
 // Precondition: the series of that plan, in their order.

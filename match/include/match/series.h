@@ -24,6 +24,7 @@ struct SeriesDesc {
   std::uint64_t seed = 1;  // of the first pair
   std::uint64_t max_ticks = 600'000;
   std::uint64_t max_games = 100;        // even
+  foosball::Tuning tuning{};            // of every game
   bool draw_characters = true;          // for each side of each pair from its seed; else
   std::array<int, 2> characters{1, 1};  // those of the players
   std::optional<SequentialTest> test;   // of the first player's score; none: by max_games

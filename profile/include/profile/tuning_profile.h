@@ -21,5 +21,9 @@ tl::expected<foosball::Tuning, std::string> load_tuning(const std::string& path)
 // The whole profile, each value with its unit, range and meaning as a comment; parse_tuning() of it
 // gives the same values bit for bit.
 std::string format_tuning(const foosball::Tuning& tuning);
+// Writes it so that a profile is there whole or as it was before; makes its folder. A file there
+// that is no profile is kept beside it (".bad").
+tl::expected<void, std::string> save_tuning(const foosball::Tuning& tuning,
+                                            const std::string& path);
 
 }  // namespace profile
