@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/window.h"
+#include "client/menu.h"
 #include "draw/image.h"
 #include "render/hud.h"
 #include "render/scene.h"
@@ -46,7 +47,46 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"above-hidden-rods", 2.4, 2, 0, View::above},
                            {"follow", 2.4, 2, 0, View::follow},
                            {"spectator", 0.35, 2, -1, View::spectator},
-                           {"distinct", 2.4, 2, 0}};
+                           {"distinct", 2.4, 2, 0},
+                           {"distinct-2", 1.62, 2, 1},
+                           {"distinct-above", 1.62, 2, 0, View::above},
+                           {"distinct-follow", 0.9, 2, 1, View::follow},
+                           {"seats", 4.6, 2, 0},
+                           {"above-seats", 4.6, 2, 0, View::above},
+                           {"tuning", 4.6, 2, 0},
+                           {"tuning-read-only", 4.6, 2, 0},
+                           {"two-a-side", 2.4, 2, 0},
+                           {"goalie-in-hand", 0.9, 2, 0},
+                           {"attack-in-hand", 1.62, 2, 0},
+                           {"above-goalie-in-hand", 0.9, 2, 0, View::above},
+                           {"follow-goalie-in-hand", 0.9, 2, 1, View::follow}};
+
+// As a person sees it who shares the table with others.
+MenuPage menu_page(Menu::Page page, int row, bool host = true) {
+  static SeatsView seats;
+  seats.client = 1;
+  seats.role = number(host ? wire::Role::host : wire::Role::player);
+  seats.scene = scripted_play(0.0);
+  seats.scene.screen = number(wire::Screen::play);
+  seats.scene.time_outs_left = {2, 1};
+  seats.roster.seats = {{1, "me", 0, 0b00101011, 2, false},
+                        {2, "Annemarie", 1, 0b11000000, 1, true},
+                        {3, "지훈", 1, 0b00010000, 1, false},
+                        {4, "an onlooker", wire::kWatchOnly, 0, 0, false}};
+  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::restart, 0),
+                    "Annemarie asks for a restart: 1 of 2 votes. Ask for it too to agree"}};
+  static Crew crew(1, 0, foosball::Layout::tournament, 0b00101011);
+  crew.give(0, static_cast<int>(Device::pad_1));
+  static Settings settings;
+  Menu menu("/nowhere");
+  foosball::Tuning tuning;
+  tuning.hop_gain = 3.2;
+  menu.tuning().hear(1, tuning, host);
+  const Menu::Context context{settings, seats, &crew};
+  menu.toggle(page);
+  menu.step({.down = row - 1}, 0, context);
+  return menu.page(context);
+}
 
 Camera camera_of(const Shot& shot, const wire::Snapshot& state, const glm::ivec2& size) {
   CameraView view{.team = std::max(shot.team, 0), .closeness = shot.screen == 1 ? 0.62f : 0.0f};
@@ -111,9 +151,11 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     SceneView view;
     view.camera = camera_of(shot, state, size);
     if (shot.screen == 2 && shot.team >= 0) view.active_rods = shot.team == 0 ? 1u << 3 : 1u << 4;
+    if (name.ends_with("goalie-in-hand")) view.active_rods = shot.team == 0 ? 1u : 1u << 7;
+    if (name == "attack-in-hand") view.active_rods = 1u << 5;
     view.time = 1.0f;
     if (name == "above-hidden-rods") view.rods = RodsShown::off;
-    view.distinct_teams = name == "distinct";
+    view.distinct_teams = name.starts_with("distinct");
     HudState hud;
     hud.state = &state;
     hud.camera = view.camera;
@@ -127,9 +169,15 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     hud.replay = name == "ceremony";
     hud.statistics = {TeamStatistics{14, 6, 0, 9.3f, 71.0f}, TeamStatistics{9, 11, 1, 7.8f, 54.0f}};
     if (name.ends_with("settings")) {
-      SettingsMenu menu;
-      hud.menu = menu.rows(Settings{});
-      hud.menu_row = 4;
+      hud.menu = menu_page(Menu::Page::settings, 5);
+    }
+    if (name == "seats" || name == "above-seats") hud.menu = menu_page(Menu::Page::seats, 4);
+    if (name == "tuning") hud.menu = menu_page(Menu::Page::tuning, 12);
+    if (name == "tuning-read-only") hud.menu = menu_page(Menu::Page::tuning, 1, false);
+    if (name == "two-a-side") {
+      view.active_rods = hud.active_rods = 0b00011010;
+      hud.rod_names = {"gamepad 1", "gamepad 1", "gamepad 2",     "mouse",
+                       "gamepad 2", "mouse",     "Annemarie ...", "Annemarie ..."};
     }
     if (std::strcmp(shot.name, "lost") == 0) {
       hud.connection_message = "Physics server lost: waiting at 127.0.0.1:4750";

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "app/window.h"
+#include "client/menu.h"
 #include "draw/image.h"
 #include "render/hud.h"
 #include "render/scene.h"
@@ -276,18 +277,39 @@ TEST_P(RenderTest, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingForThe
   EXPECT_TRUE(told(2, false, true));
 }
 
+// The page with its longest words: of the rod, of the value and of what went wrong.
+MenuPage menu_page(Menu::Page page) {
+  static SeatsView seats;
+  seats.scene = scripted_play(0.35);
+  seats.roster.seats = {{1, "me", 0, 1, 2, false}, {2, std::string(64, 'W'), 1, 0x80, 1, true}};
+  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::pause, 1),
+                    "somebody with a long name asks for a pause: 1 of 3 votes. Ask for it too"}};
+  static Crew crew(1, 0, foosball::Layout::tournament, 1);
+  static Settings settings;
+  Menu menu("/nowhere");
+  menu.tuning().hear(1, foosball::Tuning{}, true);
+  menu.toggle(page);
+  const Menu::Context context{settings, seats, &crew};
+  menu.step({.down = page == Menu::Page::tuning ? 28 : 1}, 0, context);
+  MenuPage shown = menu.page(context);
+  if (page == Menu::Page::tuning)
+    shown.problem =
+        "/home/somebody/.config/space-foosball/tuning/mine.toml:3: gravity must be a "
+        "number from 5 to 30 m/s^2";
+  return shown;
+}
+
 // Every screen, in windows of every shape, in each language, at the largest text: nothing reaches
 // over an edge (but for the soft rim of a letter).
 TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
   if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
   constexpr float kRim = 6.0f;  // [px]
-  SettingsMenu menu;
   for (const char* language : {"en", "de", "ko"}) {
     use_language(language, CLIENT_CATALOGUES);
     UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
     for (const glm::ivec2 size : {glm::ivec2(480, 640), glm::ivec2(640, 360), glm::ivec2(320, 240),
                                   glm::ivec2(3840, 600), glm::ivec2(1280, 720)}) {
-      for (int shown = 0; shown < 5 * 2 * 4; ++shown) {
+      for (int shown = 0; shown < 5 * 2 * 6; ++shown) {
         wire::Snapshot state = scripted_play(0.35);
         state.screen = static_cast<std::uint8_t>(shown % 5);
         HudState hud;
@@ -310,7 +332,10 @@ TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
           hud.connection_detail =
               "It answers nothing: start it with ./play --server, or name another.";
         }
-        if (more == 3) hud.menu = menu.rows(Settings{});
+        if (more >= 3) {
+          hud.menu = menu_page(static_cast<Menu::Page>(more - 3));
+          hud.rod_names.fill("Maximiliane von und zu");
+        }
         draw_hud(words, hud, size);
         const UiBatch::Bounds& b = words.bounds();
         EXPECT_GT(b.low.x, -kRim) << language << " " << size.x << "x" << size.y << " " << shown;

@@ -13,7 +13,11 @@ for source in list((client / 'src').rglob('*.cpp')):
     # Adjacent string literals are one sentence.
     for call in re.findall(r'\b(?:tr|N_)\(((?:\s*"(?:[^"\\]|\\.)*")+)\s*\)', source.read_text(encoding='utf-8')):
         sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', call)))
-if len(sentences) < 60:
+# The panel shows what each tuning value means.
+tuning = (client.parent / 'foosball/include/foosball/tuning.h').read_text(encoding='utf-8')
+for meaning in re.findall(r'&Tuning::\w+, [^"]*?((?:"(?:[^"\\]|\\.)*"\s*)+)\}', tuning):
+    sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', meaning)))
+if len(sentences) < 100:
     sys.exit(f'only {len(sentences)} sentences found: has the way they are marked changed?')
 catalogues = sorted((client / 'po').glob('*.po'))
 if len(catalogues) < 2:

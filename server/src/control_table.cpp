@@ -6,6 +6,7 @@
 #include "os/clock.h"
 #include "os/socket_address.h"
 #include "socket.h"
+#include "wire/limits.h"
 #include "wire/snapshot.h"
 #include "wish_rules.h"
 
@@ -16,9 +17,8 @@ using State = ControlConnection::State;
 
 // Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
 constexpr std::size_t kMostUntold = 256;
-// Topics of notices: of a seat that is kept, and of a vote, by what it is about.
+// Topics of notices: of a seat that is kept; of a vote, see wire/limits.h; of a claim.
 constexpr std::uint32_t kAwayTopic = 1'000'000;
-constexpr std::uint32_t kVoteTopic = 200;
 constexpr std::uint32_t kClaimTopic = 300;
 // More seats than the roster names would not be seen.
 constexpr std::size_t kMostSeats = wire::kMaxSeats;
@@ -35,7 +35,7 @@ std::string printable(const std::string& name) {
 }
 
 std::uint32_t vote_topic(const foosball::Command& wish) {
-  return kVoteTopic + 2 * static_cast<std::uint32_t>(wish.kind) + wish.value;
+  return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
 }
 
 const char* what_for(const foosball::Command& wish) {

@@ -6,35 +6,34 @@
 #include <vector>
 
 #include "client/input_events.h"
+#include "client/menu_page.h"
 #include "client/settings.h"
 #include "wire/snapshot.h"
 
 namespace client {
 
-struct MenuRow {
-  std::string label, value;  // English; the screen translates
-  bool translate_value = true;
-  int number = 0;  // after the label; 0: none
-};
-
-// One step at a time: what a person asks of a menu in a frame.
-struct MenuSteps {
-  int down = 0, right = 0;  // negative: up, left
-  bool confirm = false, back = false;
-};
-
-// Turns a frame's events into steps: arrows, wheel, mouse motion, and a team's rods: any of them
-// spun by kSpinStep goes to the next row, slid by kSlideStep changes the value.
+// Turns a frame's events into steps: arrows, wheel, mouse motion, a gamepad's cross, and a team's
+// rods: any of them spun by kSpinStep goes to the next row, slid by kSlideStep changes the value.
+// What is held repeats after kHoldUs.
 class MenuHand {
  public:
   static constexpr double kMouseStep = 60.0;  // [px]
   static constexpr double kSpinStep = 0.7;    // [rad]
   static constexpr double kSlideStep = 0.04;  // [m]
+  static constexpr std::int64_t kHoldUs = 400'000, kRepeatUs = 60'000;
   // scene: null while there is none; team: -1 for who has no rods.
-  MenuSteps steps(const InputEvents& events, const wire::Snapshot* scene, int team);
+  MenuSteps steps(const InputEvents& events, const wire::Snapshot* scene, int team,
+                  std::int64_t now_us = 0);
   void restart();
 
  private:
+  // How many steps a direction that is held makes now.
+  struct Held {
+    int way = 0;
+    std::int64_t next_us = 0;
+    int steps(int held, std::int64_t now_us);
+  };
+  Held held_down_, held_right_;
   double mouse_down_ = 0.0, mouse_right_ = 0.0;
   bool rods_known_ = false;
   std::array<double, 8> slide_{}, angle_{};
@@ -45,6 +44,7 @@ class SettingsMenu {
   bool open() const { return open_; }
   void toggle();
   int row() const { return row_; }
+  void select(int row) { row_ = row; }  // one that there is
   bool waits_for_key() const { return open_ && waits_; }
   std::vector<MenuRow> rows(const Settings& settings) const;
   // key: pressed in this frame, 0: none; for a row of the controls that waits for one.

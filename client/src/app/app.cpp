@@ -14,8 +14,8 @@
 #include "app/view_motion.h"
 #include "app/window.h"
 #include "client/crew.h"
+#include "client/menu.h"
 #include "client/rod_prediction.h"
-#include "client/settings_menu.h"
 #include "core/replay_reel.h"
 #include "draw/image.h"
 #include "os/clock.h"
@@ -51,6 +51,13 @@ foosball::Tuning tuning_of(const wire::Tuning& told) {
   return tuning;
 }
 
+bool asks_for_menu(const InputEvents& events) {
+  bool asks = events.pad_menu;
+  for (const Action action : {Action::settings, Action::seats, Action::tuning})
+    asks = asks || events.presses[index_of(action)] % 2 != 0;
+  return asks;
+}
+
 class App {
  public:
   App(const Options& options, std::unique_ptr<Connection> connection)
@@ -66,7 +73,10 @@ class App {
   void read_settings();
   void apply_settings();
   void change_settings();
-  void take_menu_input(const InputEvents& events);
+  void take_menu_input(const InputEvents& events, std::int64_t now);
+  void open_menu(const InputEvents& events);
+  SeatsView seats_view() const;
+  Menu::Context menu_context();
   void turn_view();
   void play_reel(std::int64_t now);
   void hear(std::int64_t now);
@@ -76,13 +86,15 @@ class App {
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
-  void drive_rods(std::int64_t now);
+  void drive_rods(bool menu, std::int64_t now);
+  void tune(std::int64_t now);
   void hear_of_pads();
   void predict(std::int64_t now);
   void draw(float dt);
   std::uint8_t active_rods() const;
   std::array<float, 8> rod_shift() const;
-  HudState hud(const Camera& camera) const;
+  HudState hud(const Camera& camera);
+  std::array<std::string, 8> rod_names() const;
   void judge_quality();
   std::string take_screenshot();
   void say_figures(double seconds) const;
@@ -110,7 +122,8 @@ class App {
   wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
   bool show_help_ = false;
   Settings settings_;
-  SettingsMenu menu_;
+  Menu menu_{tuning_directory()};
+  SeatsView seats_;  // what the page of seats is made of
   MenuHand menu_hand_;
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
@@ -229,13 +242,48 @@ void App::change_settings() {
     log_warning(saved.error());
 }
 
-void App::take_menu_input(const InputEvents& events) {
+SeatsView App::seats_view() const {
+  SeatsView view;
+  view.client = status_.welcome.client;
+  view.role = status_.welcome.role;
+  view.roster = roster_;
+  if (sample_.any) view.scene = sample_.state;
+  for (int pad = 0; pad < kPads; ++pad) {
+    if (window_->input().connected(pad)) view.pads |= bit_of(pad_device(pad));
+  }
+  view.notices = connection_->notices();
+  return view;
+}
+
+Menu::Context App::menu_context() {
+  const bool joined = status_.link == Link::joined;
+  return {settings_, seats_, joined ? crew_.get() : nullptr};
+}
+
+void App::open_menu(const InputEvents& events) {
+  const auto asked = [&](Action action) { return events.presses[index_of(action)] % 2 != 0; };
+  if (asked(Action::settings) || events.pad_menu) menu_.toggle(Menu::Page::settings);
+  if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
+  if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
+  menu_hand_.restart();
+}
+
+void App::take_menu_input(const InputEvents& events, std::int64_t now) {
+  const bool waits = menu_.waits_for_key();
+  // A key that is waited for is no step, and opens no page.
+  const auto pressed = [&](Action action) {
+    return !waits && events.presses[index_of(action)] % 2 != 0;
+  };
+  if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
+  if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
-  const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team());
-  // A key that is waited for is no step.
-  if (menu_.step(menu_.waits_for_key() ? MenuSteps{.back = events.back} : steps, events.any_key,
-                 settings_))
-    change_settings();
+  const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
+  const Menu::Outcome outcome =
+      menu_.step(waits ? MenuSteps{.back = events.back} : steps, events.any_key, menu_context());
+  if (outcome.settings_changed) change_settings();
+  if (!crew_) return;
+  if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
+  for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
 }
 
 void App::turn_view() {
@@ -322,23 +370,32 @@ void App::hear(std::int64_t now) {
 void App::take_input(std::int64_t now) {
   window_->poll();
   InputEvents events = window_->input().take(kAllDevices);
-  const bool asked = events.presses[index_of(Action::settings)] % 2 != 0;
-  if (menu_.open()) {
-    take_menu_input(events);
-    window_->forget_input();  // the rods stay as they are
+  seats_ = seats_view();
+  const bool menu = menu_.open();  // the rods stay as they are
+  if (menu) {
+    take_menu_input(events, now);
     events = {};
-  } else if (asked) {
-    menu_.toggle();
-    menu_hand_.restart();
+  } else if (asks_for_menu(events)) {
+    open_menu(events);
   } else if (events.back) {
     window_->close();
   }
+  tune(now);
   if (events.toggle_help) show_help_ = !show_help_;
   if (events.presses[index_of(Action::camera)] % 2 != 0) turn_view();
   if (replay_ && (events.push || events.pad_push)) reel_.skip();
-  if (crew_) drive_rods(now);
+  if (crew_) drive_rods(menu, now);
   window_->forget_input();
   hear_of_pads();
+}
+
+void App::tune(std::int64_t now) {
+  if (!crew_ || status_.link != Link::joined) return;
+  const auto told = connection_->tuning();
+  menu_.tuning().hear(crew_->session(), told ? std::optional(tuning_of(*told)) : std::nullopt,
+                      status_.welcome.role == number(wire::Role::host));
+  for (const wire::Wish& wish : menu_.tuning().wishes(now))
+    connection_->wish(crew_->session(), wish);
 }
 
 void App::hear_of_pads() {
@@ -351,8 +408,10 @@ void App::hear_of_pads() {
   if (seconds_ > pad_news_until_) pad_news_.clear();
 }
 
-void App::drive_rods(std::int64_t now) {
-  const auto take = [this](DeviceSet devices) { return window_->input().take(devices); };
+void App::drive_rods(bool menu, std::int64_t now) {
+  const auto take = [&](DeviceSet devices) {
+    return menu ? InputEvents{} : window_->input().take(devices);
+  };
   crew_->update(take, sample_.any ? &sample_.state : nullptr, now);
   settings_.automatic_rod = crew_->automatic();
   if (!crew_->begun() || !crew_->plays()) return;
@@ -379,7 +438,22 @@ std::array<float, 8> App::rod_shift() const {
   return settings_.view == View::above ? settings_.handle_offset : std::array<float, 8>{};
 }
 
-HudState App::hud(const Camera& camera) const {
+// Who plays what, at the handles, where several do.
+std::array<std::string, 8> App::rod_names() const {
+  std::array<std::string, 8> names;
+  const auto screen = static_cast<wire::Screen>(drawn_.screen);
+  const bool shown = screen == wire::Screen::play || screen == wire::Screen::logo || menu_.open();
+  if (!crew_ || !sample_.any || !shown || replay_) return names;
+  const auto all = names_at_rods(seats_, *crew_);
+  for (std::size_t rod = 0; rod < names.size(); ++rod) {
+    const RodName& name = all[rod];
+    names[rod] = name.translate && !name.text.empty() ? tr(name.text.c_str()) : name.text;
+    if (name.number > 0) names[rod] += " " + std::to_string(name.number);
+  }
+  return names;
+}
+
+HudState App::hud(const Camera& camera) {
   HudState hud;
   hud.state = sample_.any ? &drawn_ : nullptr;
   hud.camera = camera;
@@ -396,8 +470,8 @@ HudState App::hud(const Camera& camera) const {
   hud.goal = story_.last_goal();
   hud.since_foul = story_.since_foul();
   hud.statistics = story_.statistics();
-  if (menu_.open()) hud.menu = menu_.rows(settings_);
-  hud.menu_row = menu_.row();
+  hud.menu = menu_.page(menu_context());
+  hud.rod_names = rod_names();
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);

@@ -87,17 +87,35 @@ void MenuHand::restart() {
   *this = MenuHand();
 }
 
-MenuSteps MenuHand::steps(const InputEvents& events, const wire::Snapshot* scene, int team) {
+int MenuHand::Held::steps(int held, std::int64_t now_us) {
+  if (held != way) {
+    way = held;
+    next_us = now_us + kHoldUs;
+    return 0;
+  }
+  if (way == 0 || now_us < next_us) return 0;
+  next_us = now_us + kRepeatUs;
+  return way;
+}
+
+MenuSteps MenuHand::steps(const InputEvents& events, const wire::Snapshot* scene, int team,
+                          std::int64_t now_us) {
   const auto pressed = [&](Action action) { return events.presses[index_of(action)]; };
   MenuSteps steps;
   steps.down = pressed(Action::slide_near) - pressed(Action::slide_away) - events.wheel;
   steps.right = pressed(Action::spin_right) - pressed(Action::spin_left);
+  steps.down -= events.pad_up;
+  steps.right += events.pad_right;
+  const auto held = [](double key, int pad) { return pad != 0 ? pad : static_cast<int>(key); };
+  steps.down += held_down_.steps(-held(events.key_slide, events.held_up), now_us);
+  steps.right += held_right_.steps(held(events.key_spin, events.held_right), now_us);
   mouse_down_ -= events.mouse_forward;
   mouse_right_ += events.mouse_right;
   steps.down += whole_steps(mouse_down_, kMouseStep);
   steps.right += whole_steps(mouse_right_, kMouseStep);
   steps.confirm = events.push || events.pad_push;
-  steps.back = events.back || events.pad_pause || pressed(Action::settings) % 2 != 0;
+  steps.back =
+      events.back || events.pad_pause || events.pad_menu || pressed(Action::settings) % 2 != 0;
   if (scene == nullptr || team < 0) return steps;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene->layout));
   for (std::size_t i = 0; i < scene->rods.size(); ++i) {

@@ -199,7 +199,7 @@ void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& s
   const float help_height = draw_help(pen, hud);
   draw_notices(pen, hud, hud.view == View::above ? std::max(help_height, 74.0f) : help_height);
   if (!hud.connection_message.empty()) draw_connection(pen, hud);
-  if (!hud.menu.empty()) draw_settings(pen, hud.menu, hud.menu_row);
+  if (!hud.menu.rows.empty()) draw_menu(pen, hud.menu);
 }
 
 }  // namespace
@@ -210,6 +210,7 @@ void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
   const HudPen whole(ui, {{0.0f, 0.0f}, size}, left, hud.text_scale);
   if (hud.state != nullptr && hud.state->screen == number(wire::Screen::play))
     draw_active_rods(whole, hud, screen);
+  if (hud.state != nullptr) draw_rod_names(whole, hud, screen);
   if (hud.view != View::above) {
     draw_for_reader(whole, hud, screen);
   } else {

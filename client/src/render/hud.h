@@ -2,10 +2,12 @@
 // connection.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "client/settings_menu.h"
+#include "client/menu_page.h"
+#include "client/settings.h"
 #include "core/match_story.h"
 #include "render/camera.h"
 #include "render/ui_batch.h"
@@ -39,12 +41,13 @@ struct HudState {
   GoalStory goal;
   float since_foul = 1e3f;  // [s]
   std::array<TeamStatistics, 2> statistics;
-  std::vector<MenuRow> menu;  // the settings screen; empty: closed
-  int menu_row = 0;
+  MenuPage menu;                         // no rows: closed
+  std::array<std::string, 8> rod_names;  // who plays each, to be shown at its handle
 };
 
 class HudPen;
-void draw_settings(const HudPen& pen, const std::vector<MenuRow>& rows, int chosen);
+void draw_menu(const HudPen& pen, const MenuPage& page);
+void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 
 // From above it is written twice, for both long sides, the upper turned round.

@@ -21,17 +21,19 @@ struct KeyHelp {
   const char* keys;
   const char* meaning;
 };
-constexpr std::array<KeyHelp, 12> kAllKeys{
+constexpr std::array<KeyHelp, 14> kAllKeys{
     {{N_("Mouse"), N_("forward and back slides, sideways spins")},
      {"1 2 3 4", N_("take goalie, defence, midfield, attack")},
      {N_("Wheel, Q E"), N_("next rod")},
      {"Tab", N_("rod nearest to the ball by itself")},
      {N_("Arrows, WASD"), N_("slide and spin by keys")},
      {N_("Gamepad"), N_("sticks slide and spin, shoulders change rod")},
+     {N_("Gamepad buttons"), N_("A push, Start pause, Back menu, Y time-out")},
      {N_("Space, click"), N_("push: begin, confirm")},
      {"P", N_("pause")},
      {"C", N_("camera: seat, above, follow, spectator")},
-     {"F2, O", N_("settings")},
+     {"F2 F3 F4", N_("settings, seats, tuning")},
+     {"T", N_("time-out")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};
 constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3", N_("or")},
@@ -151,7 +153,7 @@ float draw_all_keys(const HudPen& whole) {
   }
   const float column = keys + 14.0f + meaning, between = 34.0f;
   const bool two = whole.half_width > column + 0.5f * between + 26.0f;
-  const std::size_t columns = two ? 2 : 1, rows = kAllKeys.size() / columns;
+  const std::size_t columns = two ? 2 : 1, rows = (kAllKeys.size() + columns - 1) / columns;
   const float half = 0.5f * (two ? 2.0f * column + between : column) + 24.0f;
   const float height = 26.0f * static_cast<float>(rows) + 26.0f;
   const HudPen pen = whole.fitting(half + 4.0f, height + 40.0f);

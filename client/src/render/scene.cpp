@@ -197,6 +197,8 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
     if ((view.active_rods >> rod & 1) == 0) return 0.0f;
     return 0.30f + (view.reduced_flashes ? 0.0f : 0.08f * std::sin(4.0f * view.time));
   };
+  // Above 1 it is striped too.
+  const auto rod_glow = [&](std::size_t rod) { return glow(rod) > 0.0f ? 1.0f + glow(rod) : 0.0f; };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
     return state.rods[rod].status == number(wire::RodStatus::held)
@@ -208,7 +210,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
     glm::mat4 m = glm::rotate(glm::mat4(1.0f), state.rods[rod].angle, glm::vec3(0, 1, 0));
     m[3] = {static_cast<float>(spec.x) + view.rod_shift[rod], state.rods[rod].slide,
             static_cast<float>(table_->rod_height), 1.0f};
-    rod_meshes_[rod].set_instances(std::array{make_instance(m, tint(rod), glow(rod))});
+    rod_meshes_[rod].set_instances(std::array{make_instance(m, tint(rod), rod_glow(rod))});
   }
   for (auto& men : men_) men.clear();
   static const glm::mat4 kFacingBack =

@@ -34,4 +34,23 @@ inline constexpr unsigned kMenOnRod = 5;
 inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
 inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 
+// Notice::topic of a vote says what it is about, so that a client can offer to agree: a wish of
+// that kind and value.
+inline constexpr std::uint32_t kVoteTopics = 200;
+struct VoteTopic {
+  WishKind kind;
+  std::uint8_t value;
+};
+constexpr std::uint32_t vote_topic(WishKind kind, std::uint8_t value) {
+  return kVoteTopics + 2u * number(kind) + (value & 1u);
+}
+constexpr bool is_vote_topic(std::uint32_t topic) {
+  return topic >= kVoteTopics && topic < kVoteTopics + 2 * kWishKindCount;
+}
+// Precondition: is_vote_topic().
+constexpr VoteTopic vote_of(std::uint32_t topic) {
+  return {static_cast<WishKind>((topic - kVoteTopics) / 2),
+          static_cast<std::uint8_t>((topic - kVoteTopics) % 2)};
+}
+
 }  // namespace wire

@@ -1,0 +1,55 @@
+// The menu: pages of settings, seats and tuning, worked alike with keys, mouse, gamepad or rods.
+// Its first row chooses the page.
+#pragma once
+
+#include <optional>
+
+#include "client/input_events.h"
+#include "client/menu_page.h"
+#include "client/seats_menu.h"
+#include "client/settings_menu.h"
+#include "client/tuning_menu.h"
+
+namespace client {
+
+class Menu {
+ public:
+  enum class Page : std::uint8_t { settings, seats, tuning };
+  static constexpr int kPages = 3;
+
+  explicit Menu(std::string profiles) : tuning_(std::move(profiles)) {}
+
+  bool open() const { return open_; }
+  // The page's key was pressed: opens it, or closes the menu that shows it.
+  void toggle(Page page);
+  bool waits_for_key() const {
+    return open_ && page_ == Page::settings && settings_.waits_for_key();
+  }
+  TuningMenu& tuning() { return tuning_; }
+
+  struct Context {
+    Settings& settings;
+    const SeatsView& seats;
+    Crew* crew;  // null: not joined
+  };
+  struct Outcome {
+    bool settings_changed = false;
+    SeatsAsked asked;
+  };
+  // key: pressed in this frame, 0: none.
+  Outcome step(const MenuSteps& steps, int key, const Context& context);
+  MenuPage page(const Context& context) const;  // no rows: closed
+
+ private:
+  int rows(const Context& context) const;
+  void go_to(Page page);
+
+  bool open_ = false;
+  Page page_ = Page::settings;
+  int row_ = 0;  // 0: the row that chooses the page
+  SettingsMenu settings_;
+  SeatsMenu seats_;
+  TuningMenu tuning_;
+};
+
+}  // namespace client

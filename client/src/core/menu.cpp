@@ -1,0 +1,78 @@
+#include "client/menu.h"
+
+#include <algorithm>
+#include <utility>
+
+#define N_(english) english  // for xgettext: render/translate.h
+
+namespace client {
+
+void Menu::toggle(Page page) {
+  open_ = !open_ || page != page_;
+  if (settings_.open() != (open_ && page == Page::settings)) settings_.toggle();
+  if (open_ && page != page_) row_ = 1;
+  page_ = page;
+  row_ = std::max(row_, 1);
+  if (page == Page::tuning) tuning_.find_profiles();
+}
+
+void Menu::go_to(Page page) {
+  open_ = false;
+  page_ = page;
+  toggle(page);
+  row_ = 0;
+}
+
+int Menu::rows(const Context& context) const {
+  int rows = 0;
+  if (page_ == Page::settings) rows = static_cast<int>(settings_.rows(context.settings).size());
+  if (page_ == Page::seats && context.crew != nullptr) rows = seats_.rows(context.seats);
+  if (page_ == Page::tuning) rows = tuning_.rows();
+  return rows + 1;
+}
+
+Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context) {
+  Outcome outcome;
+  if (!open_) return outcome;
+  if (!waits_for_key()) {
+    if (steps.back) {
+      toggle(page_);
+      return outcome;
+    }
+    const int count = rows(context);
+    row_ = ((std::min(row_, count - 1) + steps.down) % count + count) % count;
+  }
+  MenuSteps inside = steps;
+  inside.down = 0;
+  if (row_ == 0) {
+    const int way = steps.right != 0 ? steps.right : steps.confirm ? 1 : 0;
+    if (way != 0)
+      go_to(static_cast<Page>(((static_cast<int>(page_) + way) % kPages + kPages) % kPages));
+    return outcome;
+  }
+  if (page_ == Page::settings) {
+    if (!settings_.waits_for_key()) settings_.select(row_ - 1);
+    outcome.settings_changed = settings_.step(inside, key, context.settings);
+  } else if (page_ == Page::seats && context.crew != nullptr) {
+    outcome.asked = seats_.step(context.seats, row_ - 1, inside, *context.crew);
+  } else if (page_ == Page::tuning) {
+    tuning_.step(row_ - 1, inside);
+  }
+  return outcome;
+}
+
+MenuPage Menu::page(const Context& context) const {
+  constexpr std::array<const char*, kPages> kTitles{N_("Settings"), N_("Seats"), N_("Tuning")};
+  MenuPage page;
+  if (!open_) return page;
+  if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
+  if (page_ == Page::seats && context.crew != nullptr)
+    page = seats_.page(context.seats, *context.crew, row_ - 1);
+  if (page_ == Page::tuning) page = tuning_.page(row_ - 1);
+  page.title = kTitles[static_cast<std::size_t>(page_)];
+  page.rows.insert(page.rows.begin(), MenuRow{.label = N_("Page"), .value = page.title});
+  page.chosen = row_;
+  return page;
+}
+
+}  // namespace client

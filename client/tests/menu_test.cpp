@@ -1,0 +1,277 @@
+// The pages of the menu: tuning and seats, without a picture.
+#include "client/menu.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "profile/tuning_profile.h"
+#include "scripted_scene.h"
+#include "wire/enums.h"
+#include "wire/limits.h"
+
+namespace client {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000;  // [us]
+
+int row_of(const MenuPage& page, const std::string& label) {
+  for (std::size_t i = 0; i < page.rows.size(); ++i) {
+    if (page.rows[i].label == label) return static_cast<int>(i);
+  }
+  ADD_FAILURE() << "no row " << label;
+  return -1;
+}
+
+// --- tuning --------------------------------------------------------------------------------------
+
+class TuningPanel : public testing::Test {
+ protected:
+  TuningPanel()
+      : folder((std::filesystem::path(testing::TempDir()) /
+                ("tuning" + std::to_string(::getpid()) +
+                 testing::UnitTest::GetInstance()->current_test_info()->name()))
+                   .string()),
+        menu(folder) {
+    std::filesystem::create_directories(folder);
+    menu.hear(1, told, true);
+  }
+  ~TuningPanel() override { std::filesystem::remove_all(folder); }
+  int row(const std::string& label) const { return row_of(menu.page(0), label); }
+  // A server that grants every wish, for so long; what it was asked.
+  std::vector<wire::Wish> grant(std::int64_t long_us, std::uint64_t session = 1) {
+    std::vector<wire::Wish> all;
+    for (const std::int64_t end = now + long_us; now < end; now += 16'000) {
+      for (const wire::Wish& wish : menu.wishes(now)) {
+        all.push_back(wish);
+        told.*foosball::kTuningFields[wish.value].value = wish.amount;
+      }
+      menu.hear(session, told, true);
+    }
+    return all;
+  }
+  std::string folder;
+  foosball::Tuning told;
+  std::int64_t now = kSecond;
+  TuningMenu menu;
+};
+
+TEST_F(TuningPanel, HasEveryValueAndChangesEachWithinItsRange) {
+  for (const foosball::TuningField& field : foosball::kTuningFields) {
+    for (const int way : {1, -1}) {
+      for (int i = 0; i < 400; ++i) menu.step(row(field.name), {.right = way});
+      EXPECT_EQ(menu.wanted().*field.value, way > 0 ? field.most : field.least) << field.name;
+    }
+    menu.step(row(field.name), {.confirm = true});
+    EXPECT_EQ(menu.wanted().*field.value, foosball::Tuning{}.*field.value) << field.name;
+  }
+  EXPECT_TRUE(grant(kSecond).empty()) << "all as they were";
+}
+
+TEST_F(TuningPanel, AsksNoFasterThanAServerHearsAndUntilItIsGranted) {
+  for (const foosball::TuningField& field : foosball::kTuningFields)
+    menu.step(row(field.name), {.right = 1});
+  const foosball::Tuning wanted = menu.wanted();
+  const auto asked = grant(4 * kSecond);
+  EXPECT_EQ(asked.size(), foosball::kTuningFields.size());
+  EXPECT_TRUE(told == wanted);
+  EXPECT_GE(4 * kSecond / TuningMenu::kEveryUs, static_cast<std::int64_t>(asked.size()));
+  EXPECT_TRUE(grant(kSecond).empty());
+}
+
+TEST_F(TuningPanel, GivesUpAWishThatHasNoEffectAndSaysSo) {
+  menu.step(row("gravity"), {.right = 1});
+  int asked = 0;
+  for (int i = 0; i < 600; ++i, now += 16'000) {
+    asked += static_cast<int>(menu.wishes(now).size());
+    menu.hear(1, told, true);
+  }
+  EXPECT_EQ(asked, TuningMenu::kTries);
+  EXPECT_NE(menu.page(0).problem.find("gravity"), std::string::npos);
+  EXPECT_TRUE(menu.wanted() == told);
+}
+
+TEST_F(TuningPanel, ForgetsWhatWasWantedOfAServerThatRestarted) {
+  menu.step(row("gravity"), {.right = 5});
+  menu.hear(2, std::nullopt, true);
+  EXPECT_TRUE(menu.wishes(now).empty());
+  menu.hear(2, told, true);
+  EXPECT_TRUE(menu.wishes(now).empty());
+}
+
+TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
+  told.gravity = 9.5;
+  menu.hear(1, told, false);
+  for (int i = 0; i < menu.rows(); ++i) {
+    if (i == row("Save as this profile")) continue;
+    menu.step(i, {.right = 1});
+    menu.step(i, {.confirm = true});
+  }
+  EXPECT_TRUE(menu.wishes(now).empty());
+  const MenuPage page = menu.page(row("gravity"));
+  EXPECT_EQ(page.rows[static_cast<std::size_t>(row("gravity"))].value, "9.5 m/s^2");
+  EXPECT_TRUE(page.rows[static_cast<std::size_t>(row("gravity"))].fixed);
+}
+
+TEST_F(TuningPanel, SavesLoadsAndResets) {
+  menu.step(row("gravity"), {.right = 5});
+  grant(kSecond);
+  const foosball::Tuning mine = told;
+  menu.step(row("Save as this profile"), {.confirm = true});
+  menu.step(row("All values to their defaults"), {.confirm = true});
+  grant(kSecond);
+  EXPECT_TRUE(told == foosball::Tuning{});
+  menu.step(row("Load the profile"), {.confirm = true});
+  grant(kSecond);
+  EXPECT_TRUE(told == mine);
+  EXPECT_TRUE(profile::load_tuning(folder + "/profile-1.toml").value() == mine);
+}
+
+TEST_F(TuningPanel, SaysFileAndLineOfAProfileThatIsNone) {
+  std::ofstream(folder + "/a.toml") << "gravity = 9\nhop_gain = \"much\"\n";
+  menu.find_profiles();
+  menu.step(row("Profile"), {.right = -1});
+  ASSERT_EQ(menu.page(0).rows[0].value, "a");
+  menu.step(row("Load the profile"), {.confirm = true});
+  EXPECT_NE(menu.page(0).problem.find("a.toml:2: hop_gain must be a number"), std::string::npos);
+  EXPECT_TRUE(menu.wishes(now).empty()) << "nothing of it is taken";
+}
+
+// --- seats ---------------------------------------------------------------------------------------
+
+struct SeatsPage {
+  SeatsPage() {
+    view.client = 1;
+    view.role = number(wire::Role::player);
+    view.scene = scripted_play(0.0);
+    view.scene.screen = number(wire::Screen::play);
+    view.scene.time_outs_left = {2, 2};
+    view.roster.seats = {{1, "me", 0, 0b00101011, 1, false}, {2, "Ann", 1, 0b11000000, 1, false}};
+    view.pads = bit_of(Device::pad_2);
+  }
+  SeatsAsked at(const std::string& label, const MenuSteps& steps) {
+    return menu.step(view, row_of(menu.page(view, crew, 0), label), steps, crew);
+  }
+  SeatsView view;
+  Crew crew{1, 0, foosball::Layout::tournament, 0b00101011};
+  SeatsMenu menu;
+};
+
+TEST(SeatsMenu, ARodGoesRoundAllDevicesAndToNobody) {
+  SeatsPage page;
+  std::set<int> players;
+  int given_up = 0;
+  for (int i = 0; i < 6; ++i) {
+    const SeatsAsked asked = page.menu.step(page.view, 0, {.right = 1}, page.crew);
+    players.insert(page.crew.player_of(0));
+    if (!asked.claim) continue;
+    EXPECT_EQ(asked.claim->rods, 0b00101010);
+    EXPECT_EQ(asked.claim->team, 0);
+    ++given_up;
+  }
+  // First person, mouse, both halves of the keyboard and the one pad that is plugged in.
+  EXPECT_EQ(players.size(), 5u);
+  EXPECT_EQ(given_up, 1);
+}
+
+TEST(SeatsMenu, AnotherClientsRodCannotBeTaken) {
+  SeatsPage page;
+  const SeatsAsked asked = page.menu.step(page.view, 7, {.right = 1}, page.crew);
+  EXPECT_FALSE(asked.claim);
+  EXPECT_TRUE(page.menu.page(page.view, page.crew, 7).rows[7].fixed);
+  EXPECT_EQ(page.menu.page(page.view, page.crew, 7).rows[7].value, "Ann");
+}
+
+TEST(SeatsMenu, SidesAreChangedAndRodsGivenUp) {
+  SeatsPage page;
+  SeatsAsked asked = page.at("Take all free rods of a team", {.confirm = true});
+  ASSERT_TRUE(asked.claim);
+  EXPECT_EQ(asked.claim->team, 1);
+  EXPECT_EQ(asked.claim->rods, 0b00010100) << "those that Ann has not";
+  asked = page.at("Give up all rods and watch", {.confirm = true});
+  ASSERT_TRUE(asked.claim);
+  EXPECT_EQ(asked.claim->rods, 0);
+}
+
+TEST(SeatsMenu, VotesAreStartedAndAnswered) {
+  SeatsPage page;
+  SeatsAsked asked = page.at("Back to the start", {.confirm = true});
+  ASSERT_EQ(asked.wishes.size(), 1u);
+  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::restart));
+  asked = page.at("Time-out", {.confirm = true});
+  ASSERT_EQ(asked.wishes.size(), 1u);
+  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::time_out));
+  page.view.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::pause, 1),
+                        "Ann asks for a pause: 1 of 2 votes"},
+                       {wire::Notice::Level::info, 7, "something else"}};
+  asked = page.at("Agree to the vote", {.confirm = true});
+  ASSERT_EQ(asked.wishes.size(), 1u);
+  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::pause));
+  EXPECT_EQ(asked.wishes[0].value, 1);
+}
+
+TEST(SeatsMenu, NamesStandAtTheRodsOnceMoreThanOnePlays) {
+  SeatsPage page;
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[7].text, "Ann");
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[0].text, "you");
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[2].text, "") << "nobody's";
+  page.view.roster.seats.pop_back();
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[0].text, "") << "alone";
+  page.crew.give(0, static_cast<int>(Device::pad_2));
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[0].number, 2);
+}
+
+// --- all pages -----------------------------------------------------------------------------------
+
+TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
+  SeatsPage seats;
+  Settings settings;
+  Menu menu("");
+  const Menu::Context context{settings, seats.view, &seats.crew};
+  menu.toggle(Menu::Page::settings);
+  menu.step({.down = -1}, 0, context);
+  std::set<std::string> titles;
+  for (int i = 0; i < Menu::kPages; ++i) {
+    titles.insert(menu.page(context).title);
+    menu.step({.right = 1}, 0, context);
+  }
+  EXPECT_EQ(titles.size(), 3u);
+  menu.step({.back = true}, 0, context);
+  EXPECT_TRUE(menu.page(context).rows.empty());
+  menu.toggle(Menu::Page::tuning);
+  EXPECT_EQ(menu.page(context).title, "Tuning");
+  menu.toggle(Menu::Page::tuning);
+  EXPECT_FALSE(menu.open());
+}
+
+TEST(Menu, StandsWithoutAServer) {
+  Settings settings;
+  const SeatsView nothing;
+  Menu menu("");
+  const Menu::Context context{settings, nothing, nullptr};
+  for (const auto page : {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning}) {
+    menu.toggle(page);
+    for (int i = 0; i < 80; ++i) menu.step({.down = 1, .confirm = i % 3 == 0}, 0, context);
+    EXPECT_FALSE(menu.page(context).rows.empty());
+  }
+}
+
+TEST(MenuHand, WhatIsHeldRepeatsAndACrossStepsOnce) {
+  MenuHand hand;
+  InputEvents events;
+  events.pad_right = 1;
+  events.held_right = 1;
+  int steps = hand.steps(events, nullptr, -1, kSecond).right;
+  EXPECT_EQ(steps, 1);
+  events.pad_right = 0;
+  for (std::int64_t now = kSecond; now < 2 * kSecond; now += 16'000)
+    steps += hand.steps(events, nullptr, -1, now).right;
+  EXPECT_GE(steps, 8);
+  EXPECT_LE(steps, 12);
+}
+
+}  // namespace
+}  // namespace client
