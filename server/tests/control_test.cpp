@@ -497,6 +497,11 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   const auto before = player->join(hello);
   ProbeClient other(table.port()), again(table.port());
   ASSERT_TRUE(before && other.join(1));
+  // What comes back is sent the tuning too, once the tick has told it.
+  ASSERT_TRUE(table.tick_until([&] {
+    other.say(wire::Ping{1});
+    return other.hear_a<wire::Pong>() && other.tuning();
+  }));
   player->leave();
   ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
   again.resume(*before);
