@@ -117,7 +117,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
   glFinish();
   const double scene_done = cpu();
   use_language(language, PREVIEW_CATALOGUES);
-  auto font = Font::load({}, catalogue_file());
+  auto font = Font::load({}, catalogue_file(), "지훈");
   const double font_done = cpu();
   auto ui = font ? UiBatch::create(std::move(*font)) : tl::unexpected(font.error());
   if (!scene || !ui) {

@@ -32,7 +32,7 @@ refuses '--matches' --matches many
 refuses 'not exist' --record "$folder/none"
 refuses 'choose a file' --checkpoint "$folder/none/file"
 refuses '--nonsense' --nonsense
-printf 'gravity = 9.0\nhop_gain = heavy\n' >"$folder/garbage.toml"
+printf 'gravity = 9.0\nhop_gain = true\n' >"$folder/garbage.toml"
 refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
 refuses 'cannot be read' --tuning "$folder/none.toml"
 

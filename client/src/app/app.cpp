@@ -82,6 +82,7 @@ class App {
   void hear(std::int64_t now);
   void follow_connection();
   void follow_roster();
+  void learn_names();
   int viewer_team() const;
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
@@ -127,6 +128,7 @@ class App {
   MenuHand menu_hand_;
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
+  std::string names_;                  // of people, whose letters the font has
   std::vector<std::string> pad_news_;
   double pad_news_until_ = 0.0;  // [s]
   ReplayReel reel_;
@@ -206,7 +208,7 @@ std::string App::use_texts() {
   constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
   language_ = kCodes[static_cast<std::size_t>(settings_.language)];
   use_language(language_, catalogue_directory());
-  auto font = Font::load(options_.font_directory, catalogue_file());
+  auto font = Font::load(options_.font_directory, catalogue_file(), names_);
   if (!font) return font.error();
   auto ui = UiBatch::create(std::move(*font));
   if (!ui) return ui.error();
@@ -337,6 +339,7 @@ void App::follow_connection() {
 void App::follow_roster() {
   if (!crew_ || status_.link != Link::joined) return;
   roster_ = connection_->roster();
+  learn_names();
   const auto own = std::ranges::find(roster_.seats, status_.welcome.client, &wire::Seat::client);
   if (own != roster_.seats.end())
     crew_->grant(own->team < foosball::kTeams ? own->team : crew_->team(), own->rods);
@@ -344,6 +347,16 @@ void App::follow_roster() {
     tuning_ = tuning_of(*tuning);
     prediction_->set_tuning(tuning_);
   }
+}
+
+// A name may have letters that no sentence of the language has.
+void App::learn_names() {
+  constexpr std::size_t kMost = 4096;  // bytes: a crowd of strangers does not fill the atlas
+  std::string names = names_;
+  for (const wire::Seat& seat : roster_.seats) names += seat.name;
+  if (names.size() > kMost || hangul_of(names) == hangul_of(names_)) return;
+  names_ = names;
+  if (const std::string error = use_texts(); !error.empty()) log_warning(error);
 }
 
 // Whose side the picture is seen from; -1: this client only watches.

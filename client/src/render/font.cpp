@@ -29,7 +29,7 @@ std::vector<std::uint32_t> wanted_characters() {
   for (std::uint32_t c = 0x20; c < 0x7F; ++c) codes.push_back(c);
   for (std::uint32_t c = 0xA1; c <= 0xFF; ++c) codes.push_back(c);
   for (const std::uint32_t c : {0x2013u, 0x2014u, 0x2019u, 0x2026u, 0x2190u, 0x2191u, 0x2192u,
-                                0x2193u, 0x25CFu, 0x25CBu, 0x25B2u, 0x25BCu, 0x25C6u}) {
+                                0x2193u, 0x21B5u, 0x25CFu, 0x25CBu, 0x25B2u, 0x25BCu, 0x25C6u}) {
     codes.push_back(c);
   }
   return codes;
@@ -62,24 +62,28 @@ std::uint32_t next_character(std::string_view& utf8) {
 }
 
 tl::expected<Font, std::string> Font::load(const std::string& directory,
-                                           const std::string& catalogue) {
+                                           const std::string& catalogue, const std::string& names) {
   auto font = load_from(draw::font_directories(directory));
-  if (font && !catalogue.empty()) font->add_hangul(catalogue);
+  if (font && (!catalogue.empty() || !hangul_of(names).empty())) font->add_hangul(catalogue, names);
   return font;
 }
 
-// Each syllable that the catalogue has, once.
-void Font::add_hangul(const std::string& catalogue) {
-  const std::vector<unsigned char> bytes = read_all(catalogue);
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+std::vector<std::uint32_t> hangul_of(std::string_view utf8) {
   std::vector<std::uint32_t> codes;
-  while (!text.empty()) {
-    const std::uint32_t code = next_character(text);
+  while (!utf8.empty()) {
+    const std::uint32_t code = next_character(utf8);
     if (code >= 0xAC00 && code <= 0xD7A3) codes.push_back(code);
   }
-  for (const std::uint32_t code : {0xD55Cu, 0xAD6Du, 0xC5B4u}) codes.push_back(code);
   std::sort(codes.begin(), codes.end());
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  return codes;
+}
+
+void Font::add_hangul(const std::string& catalogue, const std::string& names) {
+  const std::vector<unsigned char> bytes =
+      catalogue.empty() ? std::vector<unsigned char>() : read_all(catalogue);
+  const std::string text(bytes.begin(), bytes.end());
+  const std::vector<std::uint32_t> codes = hangul_of(text + names + "한국어");
   const std::string directory = "/usr/share/fonts/truetype/nanum/";
   add_face(Face::regular, directory + "NanumGothic.ttf", codes);
   add_face(Face::bold, directory + "NanumGothicBold.ttf", codes);

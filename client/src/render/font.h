@@ -39,10 +39,11 @@ class Font {
  public:
   // Looks for DejaVu Sans where Debian, other systems and the page keep it; directory, if not
   // empty, is looked into first. The error says which package to install. catalogue: a
-  // translation's file; its Hangul is taken from Nanum Gothic, and shows as '?' where that is not
-  // installed.
+  // translation's file; its Hangul, and that of the names, is taken from Nanum Gothic, and shows as
+  // '?' where that is not installed.
   static tl::expected<Font, std::string> load(const std::string& directory = {},
-                                              const std::string& catalogue = {});
+                                              const std::string& catalogue = {},
+                                              const std::string& names = {});
   // The same, in these places only.
   static tl::expected<Font, std::string> load_from(const std::vector<std::string>& directories);
 
@@ -62,7 +63,7 @@ class Font {
   const Glyph& find(Face face, std::uint32_t code) const;
   void add_glyph(const stbtt_fontinfo& info, int index, float scale, Glyph& glyph);
   bool add_face(Face face, const std::string& path, const std::vector<std::uint32_t>& codes);
-  void add_hangul(const std::string& catalogue);
+  void add_hangul(const std::string& catalogue, const std::string& names);
   void finish_atlas();
 
   std::array<Glyphs, 2> faces_;
@@ -71,6 +72,9 @@ class Font {
   glm::ivec2 cursor_{0, 0};
   int row_height_ = 0;
 };
+
+// The Hangul of a text, each syllable once, in order.
+std::vector<std::uint32_t> hangul_of(std::string_view utf8);
 
 // The next character of UTF-8 text, which must not be empty; takes it off the front. 0xFFFD for a
 // byte that begins none.
