@@ -827,6 +827,19 @@ TEST(Rods, AWatcherTakesOneAndIsHeard) {
   EXPECT_GT(table->match().view().rods[0].slide, 0.03);
 }
 
+TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {
+  Lockstep table;
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.join(0, 0xff));
+  client.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  const auto character = static_cast<std::uint8_t>((table->match().view().character[1] + 1) % 3);
+  client.say(wire::Wish{number(wire::WishKind::choose_character), 1, character});
+  EXPECT_TRUE(
+      table.tick_until([&] { return table->match().view().character[1] == character; }, 5000));
+}
+
 // Forged or not: a value out of its range changes nothing, a watcher's and a player's neither.
 TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   Lockstep table;

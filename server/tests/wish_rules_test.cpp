@@ -36,6 +36,24 @@ TEST(WishRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
   EXPECT_EQ(rule(wire::Role::host, 0, {Kind::push, 1, 0}), Ruling::no);
 }
 
+TEST(WishRules, TheHostTunesAndNobodyElse) {
+  for (const std::uint8_t team : {std::uint8_t{0}, std::uint8_t{1}, wire::kWatchOnly}) {
+    EXPECT_EQ(rule(wire::Role::host, team, {Kind::tune, 0, 3, 1.0}), Ruling::yes);
+    EXPECT_EQ(rule(wire::Role::player, team, {Kind::tune, 0, 3, 1.0}), Ruling::no);
+    EXPECT_EQ(rule(wire::Role::watcher, team, {Kind::tune, 0, 3, 1.0}), Ruling::no);
+  }
+  const auto formed = [](int value, double amount) {
+    return well_formed(
+        {static_cast<std::uint8_t>(Kind::tune), 0, static_cast<std::uint8_t>(value), amount});
+  };
+  for (int value = 0; value < foosball::kTuningValues; ++value) {
+    const auto& field = foosball::kTuningFields[static_cast<std::size_t>(value)];
+    EXPECT_TRUE(formed(value, field.least) && formed(value, field.most)) << field.name;
+    EXPECT_FALSE(formed(value, field.least - 1.0) || formed(value, field.most + 1.0)) << field.name;
+  }
+  EXPECT_FALSE(formed(foosball::kTuningValues, 1.0));
+}
+
 TEST(WishRules, AFewAtOnceAndThenAFewASecond) {
   const std::int64_t start = 7'000'000'000;
   WishAllowance allowance;
