@@ -219,5 +219,23 @@ TEST(CrewAssists, TheRodThatCanActNextIsTakenAndOneChosenByHandStays) {
   EXPECT_EQ(table.crew.active_rods(), 1u << 5);
 }
 
+TEST(CrewAssists, NoRodIsMovedBetweenPlaysOrInAPause) {
+  for (const auto screen : {wire::Screen::selection, wire::Screen::play}) {
+    wire::Snapshot scene = scripted_play(0.0);
+    for (auto& rod : scene.rods) rod.angle = 1.2f;
+    scene.screen = number(screen);
+    scene.paused = screen == wire::Screen::play;
+    scene.ball.position = {0.3f, 0.1f, 0.0173f};
+    Crew crew(kSession, 0, foosball::Layout::tournament, kTeam0);
+    crew.set_assists({true, true, true});
+    for (int i = 1; i < 30; ++i)
+      crew.update([](DeviceSet) { return InputEvents{}; }, &scene, i * kFrame);
+    for (const std::size_t rod : {0u, 1u}) {
+      EXPECT_NEAR(crew.rods()[rod].angle, 1.2f, 1e-6f) << rod;
+      EXPECT_NEAR(crew.rods()[rod].slide, scene.rods[rod].slide, 1e-6f) << rod;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace client

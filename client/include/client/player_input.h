@@ -48,6 +48,7 @@ class PlayerInput {
   void choose_character(const InputEvents& events, const wire::Snapshot& scene);
   void choose_rod(const foosball::AssistView& view);
   void assist(const foosball::AssistView& view, std::int64_t now_us);
+  void rest();
   foosball::AssistHand hand_now() const;
 
   std::uint64_t session_;

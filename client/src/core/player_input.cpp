@@ -88,7 +88,9 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
   if (known) move(events, *scene);
   hand_.poll(now_us);
   if (known) {
-    assist(view, now_us);
+    const bool in_play = scene->screen == number(wire::Screen::play) && !scene->paused;
+    if (in_play) assist(view, now_us);
+    if (!in_play) rest();
     collect_wishes(events, *scene);
   }
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
@@ -129,6 +131,13 @@ void PlayerInput::assist(const foosball::AssistView& view, std::int64_t now_us) 
     const foosball::RodTarget& target = targets_[static_cast<std::size_t>(rod)];
     hand_.place(rod, target.slide, target.angle);
   }
+}
+
+// Between plays rods work the screens: a rod that an assist turned would choose for the person.
+void PlayerInput::rest() {
+  if (assisted_us_ != 0) assists_ = foosball::Assists(team_, table_.layout, mine_, assists_on_);
+  assisted_us_ = 0;
+  targets_ = hand_now().targets;
 }
 
 void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
