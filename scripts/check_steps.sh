@@ -34,6 +34,7 @@ step_docs() {
   python3 scripts/check_docs.py
   python3 scripts/rigid_tables.py --self-test
   python3 scripts/plot_rigid.py --self-test
+  python3 scripts/plot_study.py --self-test
   python3 scripts/readme_figures.py --self-test
   python3 scripts/readme_figures.py --check
 }

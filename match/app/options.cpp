@@ -31,7 +31,7 @@ std::string check_player(const std::string& name) {
 
 struct Raw {
   std::string home = "classic", away = "classic", layout = "tournament", tuning;
-  bool report = false, balance = false, passive = false;
+  bool report = false, balance = false, study = false, passive = false;
   std::vector<std::string> sprt, round_robin;
 };
 
@@ -40,8 +40,9 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* away = cli.add_option("--away", raw.away, "the second player")->check(check_player);
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  cli.add_option("--tuning", raw.tuning,
-                 "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
+  auto* tuning = cli.add_option(
+      "--tuning", raw.tuning,
+      "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
   cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
   auto* passive = cli.add_flag("--passive", raw.passive,
                                "the same as --away idle: what an idle side makes of play");
@@ -71,6 +72,14 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
     mode->excludes(report)->excludes(matches)->excludes(away)->excludes(passive);
   for (auto* mode : {sprt, robin}) mode->excludes(home)->excludes(balance);
   sprt->excludes(robin);
+  auto* study = cli.add_flag("--study", raw.study,
+                             "what the tuning values do to play: --matches at each point of a "
+                             "design, in both layouts, played by --home (docs/tuning-study.md)");
+  study->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance);
+  study->excludes(away)->excludes(passive)->excludes(tuning);
+  cli.add_option("--samples", o.samples, "points of a study that fill the space of the values")
+      ->needs(study)
+      ->check(CLI::Range(0, 100'000));
   cli.add_option("--elo0", o.elo0, "sequential test: H0, NEW is better by no more than this");
   cli.add_option("--elo1", o.elo1, "sequential test: H1, NEW is better by this");
   cli.add_option("--alpha", o.alpha, "share of wrong decisions for H1")
@@ -97,6 +106,7 @@ std::string translate(Options& o, const Raw& raw) {
   o.players = {raw.home, raw.passive ? "idle" : raw.away};
   if (raw.report) o.mode = Mode::report;
   if (raw.balance) o.mode = Mode::balance;
+  if (raw.study) o.mode = Mode::study;
   if (!raw.sprt.empty()) {
     o.mode = Mode::sprt;
     o.players = {raw.sprt[1], raw.sprt[0]};  // NEW is the first: the test is about its score

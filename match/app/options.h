@@ -11,7 +11,7 @@
 
 namespace app {
 
-enum class Mode { matches, report, sprt, round_robin, balance };
+enum class Mode { matches, report, sprt, round_robin, balance, study };
 
 struct Options {
   Mode mode = Mode::matches;
@@ -22,6 +22,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::uint64_t matches = 100;
   std::uint64_t max_matches = 2000;  // of a sequential test
+  std::uint64_t samples = 64;        // of a study
   double max_minutes = 10.0;         // of a match
   double elo0 = 0.0, elo1 = 20.0, alpha = 0.05, beta = 0.05;
   int jobs = 1;

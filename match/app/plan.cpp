@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 #include "match/rating.h"
+#include "match/study.h"
 
 namespace app {
 namespace {
@@ -29,6 +31,10 @@ SeriesDesc base_of(const Options& o) {
 match::ReportPlan report_plan(const Options& o) {
   const SeriesDesc base = base_of(o);
   return {o.players[0], o.players[1], o.layout, o.seed, base.max_ticks, o.matches, o.tuning};
+}
+
+match::StudyPlan study_plan(const Options& o) {
+  return {o.players[0], o.seed, base_of(o).max_ticks, o.matches, o.samples};
 }
 
 std::vector<SeriesDesc> round_robin(const Options& o) {
@@ -155,6 +161,28 @@ Results of_round_robin(const Options& o, const std::vector<Series>& series) {
   return results;
 }
 
+// The best points by playability, and all figures for the files.
+Results of_study(const Options& o, const std::vector<Series>& series) {
+  Results results;
+  results.figures = match::study_figures(study_plan(o), series);
+  std::vector<std::pair<double, std::string>> rows;
+  std::uint64_t digest = 0;
+  for (const Series& s : series) digest = match::mix_seed(digest ^ s.digest());
+  for (const match::Figure& f : results.figures) {
+    if (f.name == "playability") rows.push_back({f.value, f.section});
+  }
+  std::ranges::stable_sort(rows, std::greater<>(), [](const auto& row) { return row.first; });
+  constexpr std::size_t kShown = 12;
+  results.text =
+      line("playability of %zu points and layouts, the best first; --csv has all\n", rows.size());
+  for (std::size_t i = 0; i < std::min(kShown, rows.size()); ++i) {
+    results.text += line("  %.3f  ", rows[i].first) + rows[i].second + "\n";
+  }
+  results.text +=
+      line("\ndigest of all matches %016llx\n", static_cast<unsigned long long>(digest));
+  return results;
+}
+
 Results of_balance(const Options& o, const std::vector<Series>& series) {
   Results results;
   results.text = "characters, both sides played by " + o.players[0] + "\n";
@@ -195,6 +223,8 @@ std::vector<SeriesDesc> series_of(const Options& o) {
       return round_robin(o);
     case Mode::balance:
       return balance(o);
+    case Mode::study:
+      return match::study_series(study_plan(o));
   }
   return {};
 }
@@ -215,6 +245,8 @@ Results results_of(const Options& o, const std::vector<Series>& series) {
       return of_round_robin(o, series);
     case Mode::balance:
       return of_balance(o, series);
+    case Mode::study:
+      return of_study(o, series);
   }
   return {};
 }
