@@ -17,12 +17,20 @@ using Judgment = Figure::Judgment;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+std::string format(double value) {
+  if (std::isnan(value)) return "-";
+  char text[40];
+  const double size = std::fabs(value);
+  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
+  return text;
+}
+
 struct Goal {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  const char* text = "";
+  std::string text = "";
 };
-Goal at_most(double high, const char* text) {
+Goal at_most(double high, const std::string& text) {
   return {.high = high, .text = text};
 }
 Goal at_least(double low, const char* text) {
@@ -43,7 +51,7 @@ class List {
     figures.push_back({section_, name, value, unit, "", Judgment::none});
   }
   void add(const char* name, double value, const char* unit, const Goal& goal) {
-    const Judgment judgment = *goal.text == 0                           ? Judgment::none
+    const Judgment judgment = goal.text.empty()                         ? Judgment::none
                               : std::isnan(value)                       ? Judgment::unknown
                               : value >= goal.low && value <= goal.high ? Judgment::pass
                                                                         : Judgment::falls_short;
@@ -114,11 +122,17 @@ void add_ball(List& list, const Statistics& s) {
            at_most(1.0, "at most 1"));
   list.add("nobody can reach the ball", percent(s.unreachable_ticks, s.ball_ticks), "% of ball",
            at_most(10.0, "below 10"));
+  // By the rules that the matches are played by: a ball out of reach is dead after so long, one in
+  // reach that nobody plays on after so long.
+  const foosball::Rules rules = foosball::arcade_rules();
+  const auto within = [](double limit) {
+    return at_most(limit + 0.1, "at most " + format(limit) + " (rule)");
+  };
   list.add("  longest", static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
-           at_most(6.1, "at most 6 (dead ball)"));
+           within(rules.dead_ball_seconds));
   list.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball");
   list.add("longest stuck", static_cast<double>(s.longest_stuck_ticks) * foosball::kTick, "s",
-           at_most(6.1, "at most 6 (dead ball)"));
+           within(rules.still_seconds > 0.0 ? rules.still_seconds : rules.possession_seconds));
   list.add("dead balls", per_minute(s.dead_balls, s.play_ticks), "a minute",
            at_most(1.0, "below 1"));
 }
@@ -141,14 +155,6 @@ void add_play(List& list, const Statistics& s) {
   const double n = static_cast<double>(decided);
   const double z = n > 0 ? (static_cast<double>(s.wins[1]) - 0.5 * n) / std::sqrt(0.25 * n) : kNone;
   list.add("  from chance", z, "z", {-2.0, 2.0, "-2 to 2"});
-}
-
-std::string format(double value) {
-  if (std::isnan(value)) return "-";
-  char text[40];
-  const double size = std::fabs(value);
-  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
-  return text;
 }
 
 const char* word(Judgment judgment) {
