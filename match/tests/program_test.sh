@@ -74,6 +74,21 @@ if [[ -n $mpi ]]; then
   done
   launch 3 "$mpi" "${options[@]}" --json "$folder/ranks.json" --checkpoint "$folder/cut-mpi" >"$folder/out"
   same "$folder/ranks.json" "resumed by 3 ranks"
+
+  # A rank that is killed ends the job with it; what was finished is not lost, nor played again.
+  lost=(--quiet --matches 24 --max-minutes 0.3)
+  "$match" "${lost[@]}" --json "$folder/none-lost.json" >/dev/null
+  launch 3 "$mpi" "${lost[@]}" --checkpoint "$folder/lost" >/dev/null 2>&1 &
+  job=$!
+  finished() { if [[ -f $folder/lost ]]; then echo $(($(wc -l <"$folder/lost") - 1)); else echo 0; fi; }
+  until (($(finished) >= 2)) || ! kill -0 $job 2>/dev/null; do sleep 0.02; done
+  kill -KILL "$(pgrep -n -f -- "--checkpoint $folder/lost")"  # the rank that started last
+  wait $job && fail "a job with a killed rank ended as if nothing were"
+  kept=$(finished)
+  ((kept >= 2 && kept < 24)) || fail "a rank was killed, and $kept of 24 matches were finished"
+  launch 2 "$mpi" "${lost[@]}" --checkpoint "$folder/lost" --json "$folder/lost.json" >"$folder/out"
+  cmp -s "$folder/none-lost.json" "$folder/lost.json" || fail "after a lost rank: other figures"
+  grep -q "^$((24 - kept)) matches played" "$folder/out" || fail "after a lost rank: $kept were finished, then $(grep played "$folder/out")"
 fi
 echo "program_test: $failures failures"
 [[ $failures == 0 ]]
