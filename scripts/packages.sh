@@ -31,6 +31,7 @@ build  libglm-dev            vectors and matrices of the renderer
 build  libstb-dev            fonts and PNG files
 build  libimgui-dev          the sandbox's panel
 build  libopenal-dev         sound
+build  python3               the built-in characters as C++; layer check, document check
 build  gettext               the client's sentences in other languages
 play   libegl1               EGL at run time
 play   libgles2              OpenGL ES at run time
@@ -40,7 +41,6 @@ play   fonts-nanum           Hangul on the screen
 play   xauth                 who may draw on that display: xvfb-run asks it
 play   xvfb                  a display for machines without one
 check  git                   which files a change touches
-check  python3               layer check, document check
 check  clang                 the second compiler, sanitizers and fuzzing
 check  libclang-rt-14-dev    the run-time libraries of clang's sanitizers and libFuzzer
 check  clang-format          formatting

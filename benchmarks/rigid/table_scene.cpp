@@ -13,7 +13,16 @@ const foosball::TableSpec& spec() {
 }
 
 constexpr scenes::Material kField{0.3, 0.3, 0.00015}, kWall{0.2, 0.75, 0.0}, kBall{0.5, 0.0, 0.0};
-constexpr int kCharacter = 0;
+// A man of its own, so that no change of the game's characters changes what is compared.
+constexpr foosball::CharacterBody kMan{.foot_width = 0.020,
+                                       .foot_depth = 0.018,
+                                       .foot_reach = 0.0735,
+                                       .torso_width = 0.024,
+                                       .torso_depth = 0.020,
+                                       .head_height = 0.040,
+                                       .mass = 0.060,
+                                       .friction = 0.60,
+                                       .restitution = 0.80};
 
 void add_fixed(scenes::Scene& scene, const scenes::Shape& shape, const Vec3& at,
                const scenes::Material& material) {
@@ -58,7 +67,7 @@ void add_ball(scenes::Scene& scene, const Vec3& at, const Vec3& velocity) {
 // The slide has no mass of its own but the hand's; the turn carries rod and men.
 vp::Expected<vp::Model> rod_model(const foosball::RodSpec& rod) {
   const foosball::TableSpec& t = spec();
-  const foosball::CharacterSpec& man = foosball::character_spec(kCharacter);
+  const foosball::CharacterBody& man = kMan;
   const double mass = t.rod_mass + rod.men * man.mass;
   constexpr double kHalfLength = 0.55, kGyration = 0.6;  // [m]; of a man's reach
   const double swing = kGyration * man.foot_reach;
@@ -84,16 +93,16 @@ vp::Expected<vp::Model> rod_model(const foosball::RodSpec& rod) {
 }
 
 vp::Expected<void> add_men(vp::World& world, vp::BodyId rod, const foosball::RodSpec& where) {
-  const foosball::CharacterSpec& man = foosball::character_spec(kCharacter);
+  const foosball::CharacterBody& man = kMan;
   for (int i = 0; i < where.men; ++i) {
     // The rod's z is the table's y, its y the table's -z.
-    for (const foosball::ManBox& box : foosball::man_boxes(kCharacter)) {
+    for (const foosball::ManBox& box : foosball::boxes_of(man)) {
       const Vec3 &c = box.centre, &h = box.half_extents;
       vp::ColliderDesc desc;
       desc.shape = vp::Box{{h.x, h.z, h.y}};
       desc.T_body_shape = SE3(Vec3{c.x, -c.z, c.y + foosball::man_offset(where, i)});
-      desc.material.friction = man.foot_friction;
-      desc.material.restitution = man.foot_restitution;
+      desc.material.friction = man.friction;
+      desc.material.restitution = man.restitution;
       if (const auto added = world.add_collider(rod, desc); !added) {
         return tl::make_unexpected(added.error());
       }

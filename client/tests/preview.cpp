@@ -125,7 +125,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
                  ui ? "" : ui.error().c_str());
     return 1;
   }
-  ui->set_pictures((*scene)->portraits(), Scene::portrait_cells());
+  ui->set_pictures((*scene)->portraits(), (*scene)->portrait_cells());
   glFinish();
   std::printf("set up: scene %.0f ms, font %.0f ms of CPU time\n", 1e3 * (scene_done - begin),
               1e3 * (font_done - scene_done));

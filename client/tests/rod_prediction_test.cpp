@@ -66,8 +66,10 @@ class HandToPicture {
     }
     const auto& table = foosball::table_spec(foosball::Layout::tournament);
     const wire::InputRod& in = applied_[kRod];
-    rod_ = foosball::step_rod(table.rods[kRod], foosball::rod_inertia(table, table.rods[kRod], 0),
-                              rod_, {in.slide, in.angle, 0, 0, true});
+    rod_ = foosball::step_rod(
+        table.rods[kRod],
+        foosball::rod_inertia(table, table.rods[kRod], foosball::built_in_characters()[0].body),
+        rod_, {in.slide, in.angle, 0, 0, true});
     if (rod_.slide > blocked_at) rod_ = {blocked_at, rod_.angle, 0.0, rod_.angle_rate};
     state_.tick = state_.sequence = static_cast<std::uint64_t>(now_us_ / kMs) + 1;
     state_.rods[kRod].slide = static_cast<float>(rod_.slide);

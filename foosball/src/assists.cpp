@@ -51,7 +51,7 @@ double towards(double from, double to, double most) {
 
 Assists::Assists(int team, Layout layout, std::uint8_t rods, const AssistChoice& choice)
     : team_(team), table_(&table_spec(layout)), mine_(rods), choice_(choice) {
-  for (int c = 0; c < kCharacters; ++c) reach_[c] = field_reach(*table_, c);
+  reach_ = field_reach(*table_, seen_);
 }
 
 Assists::Ball Assists::ball_of(const AssistView& view) const {
@@ -63,12 +63,20 @@ double Assists::rod_x(int rod) const {
   return team_of(team_, table_->rods[rod].x);
 }
 
+double Assists::reach_of(const CharacterBody& body) const {
+  if (!(body == seen_)) {
+    seen_ = body;
+    reach_ = field_reach(*table_, body);
+  }
+  return reach_;
+}
+
 // --- automatic rod -------------------------------------------------------------------------------
 
 // Seconds until the ball is within the feet's reach of the rod: 0 while it is.
-double Assists::time_to_act(int rod, const Ball& ball, int character) const {
+double Assists::time_to_act(int rod, const Ball& ball, double reach) const {
   const double ahead = ball.x - rod_x(rod);
-  const double beyond = std::fabs(ahead) - reach_[character];
+  const double beyond = std::fabs(ahead) - reach;
   const double closing = ahead > 0.0 ? -ball.vx : ball.vx;
   if (beyond <= 0.0) return closing < -kComes ? std::max(0.0, -0.1 * closing) : 0.0;
   if (closing > kComes) return beyond / closing;
@@ -79,7 +87,8 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
   if (!choice_.automatic_rod || !view.ball_in_play || hand.strikes) return now;
   const Ball ball = ball_of(view);
   const bool have = now >= 0 && (mine_ >> now & 1) != 0;
-  const auto time = [&](int rod) { return time_to_act(rod, ball, view.character[team_]); };
+  const double reach = reach_of(view.bodies[team_]);
+  const auto time = [&](int rod) { return time_to_act(rod, ball, reach); };
   int best = have ? now : -1;
   double least = have ? time(now) - kSoonerBy : 1e9;
   for (const int rod : rods_of_team(*table_, team_)) {  // from the own goal, for either team
@@ -170,7 +179,7 @@ double Assists::aimed_slide(int rod, const AssistView& view, double slide) const
   const bool there = view.ball_in_play && ahead > kStrikeFrom && ahead < kStrikeTo &&
                      height < 2.5 * table_->ball_radius && std::fabs(ball.vy) < kTame;
   if (!there) return slide;
-  const double half_foot = 0.5 * character_spec(view.character[team_]).foot_width;
+  const double half_foot = 0.5 * view.bodies[team_].foot_width;
   const int man = man_nearest(spec, ball.y - slide);
   const double beside = man_offset(spec, man) + slide - ball.y;  // of the foot from the ball
   const double run = 0.5 * table_->length - ball.x;

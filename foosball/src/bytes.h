@@ -34,6 +34,14 @@ class ByteWriter {
   Out& out_;
 };
 
+// FNV-1a of the bytes it is given. Takes no memory: the recorder hashes between two ticks.
+struct ByteHash {
+  void push_back(std::byte b) {
+    value = (value ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
+  }
+  std::uint64_t value = 0xcbf29ce484222325u;
+};
+
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> in) : in_(in) {}

@@ -78,7 +78,7 @@ void ComputerPlayer::Impl::come_to(const MatchView& view) {
     for (const int rod : rods_of_team(table_spec(layout), team)) rods.emplace_back(team, rod);
   }
   if (screen != view.screen && view.screen == Screen::selection) {
-    wanted_character = random.below(kCharacters);
+    wanted_character = random.below(view.characters);
     spin_to = rods[kScreenRod].swing().position();
   }
   screen = view.screen;

@@ -30,12 +30,20 @@ bool plausible(const Rules& rules) {
 
 bool plausible(const MatchDesc& desc) {
   return static_cast<int>(desc.layout) < kLayouts && static_cast<int>(desc.mode) < kModes &&
-         plausible(desc.rules) && in_range(desc.tuning);
+         plausible(desc.rules) && in_range(desc.tuning) && in_range(desc.characters);
 }
 
 bool usable(const RodTarget& target) {
   return target.live && std::isfinite(target.slide) && std::isfinite(target.slide_rate) &&
          std::isfinite(target.angle_rate) && std::fabs(target.angle) <= kMaxAngle;
+}
+
+// Both teams begin with the second character, or the only one.
+MatchState first_state(const MatchDesc& desc) {
+  MatchState state;
+  const int first = std::min(1, static_cast<int>(desc.characters.size()) - 1);
+  state.character = state.built = {first, first};
+  return state;
 }
 
 double seconds(std::uint64_t ticks) {
@@ -48,8 +56,8 @@ MatchDesc challenge_of(std::uint32_t date, Layout layout) {
   return {.layout = layout, .seed = date, .rules = challenge_rules(), .mode = Mode::challenge};
 }
 
-Match::Impl::Impl(const MatchDesc& d)
-    : desc(d), world(std::make_unique<TableWorld>(d.layout, state.built, state.first, d.tuning)) {
+Match::Impl::Impl(const MatchDesc& d) : desc(d), state(first_state(d)) {
+  world = std::make_unique<TableWorld>(d.layout, bodies_of(d, state), state.first, d.tuning);
   state.seed = d.seed;
   state.tuning = d.tuning;
   state.random = Random(d.seed).state();
@@ -90,7 +98,7 @@ void Match::Impl::apply(const Command& command) {
       if (!state.paused) push(command.team);
       break;
     case Command::Kind::choose_character:
-      if (command.value < kCharacters) choose(command.team, command.value);
+      if (command.value < characters()) choose(command.team, command.value);
       break;
     case Command::Kind::pause:
       state.paused = command.value != 0 && state.screen == Screen::play && !state.attract;
@@ -171,7 +179,9 @@ void Match::Impl::refresh_view() {
   view.rule_set = rules().set;
   view.screen = state.screen;
   view.paused = state.paused;
+  view.characters = characters();
   view.character = state.character;
+  view.bodies = bodies_of(desc, state);
   view.confirmed = state.confirmed;
   view.screen_seconds = seconds(state.screen_ticks);
   view.tuning = state.tuning;
@@ -230,8 +240,8 @@ vp::Expected<Match> Match::create(const MatchDesc& desc) {
     return tl::unexpected(vp::Error{
         vp::Errc::invalid_argument,
         "The match cannot be played: check layout, mode, goals (1 <= to win <= most <= 99), sets "
-        "(1 to 9 to win; a timed set of several needs a golden goal) and durations (above 0, at "
-        "most 3600 s)."});
+        "(1 to 9 to win; a timed set of several needs a golden goal), durations (above 0, at most "
+        "3600 s), tuning and characters (1 to 12, within their ranges)."});
   }
   return Match(std::make_unique<Impl>(desc));
 }

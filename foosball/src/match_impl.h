@@ -27,6 +27,7 @@ struct Match::Impl {
 
   const TableSpec& table() const { return world->table(); }
   const Rules& rules() const { return desc.rules; }
+  int characters() const { return static_cast<int>(desc.characters.size()); }
   Mode mode() const { return state.attract ? Mode::match : desc.mode; }
 
   // match.cpp

@@ -161,7 +161,7 @@ bool Match::Impl::judge_spin() {
 void Match::Impl::judge_possession() {
   const BallState ball = world->ball();
   BallWatch::Sight sight{.ball = ball.pose.position(), .velocity = ball.velocity};
-  sight.rods_in_reach = rods_in_reach(table(), state.built, sight.ball);
+  sight.rods_in_reach = rods_in_reach(table(), view.bodies, sight.ball);
   sight.touched = state.touching.any() || (state.touch.any && state.touch.tick == state.tick);
   const auto verdict = state.watch.update(table(), rules(), sight);
   if (verdict == BallWatch::Verdict::alive) return;

@@ -33,22 +33,15 @@ void visit_rules(Archive& archive, R& rules) {
   archive.real(rules.attract_seconds, 0.0, kMaxDuration);
 }
 
-template <class Archive, class Count, class Desc, class State>
-void visit_head(Archive& archive, Count& magic, Desc& desc, State& state) {
+template <class Archive, class Magic, class Digest, class Desc, class State>
+void visit_head(Archive& archive, Magic& magic, Digest& characters, Desc& desc, State& state) {
   archive.any(magic);
+  archive.any(characters);
   archive.choice(desc.layout, kLayouts);
   archive.choice(desc.mode, kModes);
   visit_rules(archive, desc.rules);
   MatchState::visit(archive, state);
 }
-
-// FNV-1a of the bytes it is given. Takes no memory: the recorder hashes between two ticks.
-struct ByteHash {
-  void push_back(std::byte b) {
-    value = (value ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
-  }
-  std::uint64_t value = 0xcbf29ce484222325u;
-};
 
 // What no match is ever in, though each field by itself is in its range.
 bool consistent(const MatchDesc& desc, const MatchState& s) {
@@ -86,31 +79,40 @@ tl::unexpected<vp::Error> refuse(const char* why) {
 void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world,
                 std::vector<std::byte>& bytes) {
   ByteWriter writer(bytes);
-  visit_head(writer, kMagic, desc, state);
+  const std::uint64_t characters = digest(desc.characters);
+  visit_head(writer, kMagic, characters, desc, state);
   world.snapshot(bytes);
 }
 
 vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> bytes,
                               MatchState& state, std::unique_ptr<TableWorld>& world) {
   ByteReader reader(bytes);
-  std::uint64_t magic = 0;
+  std::uint64_t magic = 0, characters = 0;
   MatchDesc saved_desc;
   MatchState saved;
-  visit_head(reader, magic, saved_desc, saved);
+  visit_head(reader, magic, characters, saved_desc, saved);
   if (!reader.ok() || magic != kMagic) {
     return refuse("These bytes are not a saved match of this version.");
   }
   if (saved_desc.layout != desc.layout || saved_desc.mode != desc.mode ||
-      !(saved_desc.rules == desc.rules)) {
+      !(saved_desc.rules == desc.rules) || characters != digest(desc.characters)) {
     return refuse(
-        "The saved match has another table, mode or other rules; create the match with those.");
+        "The saved match has another table, mode, other rules or characters; create the match with "
+        "those.");
+  }
+  for (const auto& chosen : {saved.character, saved.built}) {
+    for (const int character : chosen) {
+      if (character >= static_cast<int>(desc.characters.size())) {
+        return refuse("The saved match has a character that is none.");
+      }
+    }
   }
   if (!consistent(desc, saved)) return refuse("No match can be in the state that was saved.");
   if (saved.built == state.built && saved.first == state.first && saved.tuning == world->tuning()) {
     if (auto result = world->restore(reader.rest()); !result) return result;
   } else {
-    auto rebuilt =
-        std::make_unique<TableWorld>(desc.layout, saved.built, saved.first, saved.tuning);
+    auto rebuilt = std::make_unique<TableWorld>(desc.layout, bodies_of(desc, saved), saved.first,
+                                                saved.tuning);
     if (auto result = rebuilt->restore(reader.rest()); !result) return result;
     world = std::move(rebuilt);
   }
@@ -122,7 +124,8 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
 std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world) {
   ByteHash hash;
   ByteWriter writer(hash);
-  visit_head(writer, kMagic, desc, state);
+  const std::uint64_t characters = digest(desc.characters);
+  visit_head(writer, kMagic, characters, desc, state);
   writer.any(world.state_hash());
   return hash.value;
 }

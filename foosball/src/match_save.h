@@ -16,9 +16,9 @@ namespace foosball {
 void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world,
                 std::vector<std::byte>& bytes);
 
-// Refuses bytes that are not a saved match, or one of another table or other rules than desc; state
-// and world are then as they were. A world of the same men is restored where it is; for others
-// another takes its place.
+// Refuses bytes that are not a saved match, or one of another table, other rules or characters than
+// desc; state and world are then as they were. A world of the same men is restored where it is; for
+// others another takes its place.
 vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> bytes,
                               MatchState& state, std::unique_ptr<TableWorld>& world);
 

@@ -109,7 +109,7 @@ void Match::Impl::read_gestures() {
     const Gesture gesture = state.gestures[rod].update(team, world->rod(rod));
     if (state.attract) continue;  // the computers' rods; a hand is told by the server
     if (gesture.turn != 0) {
-      choose(team, (state.character[team] + gesture.turn + kCharacters) % kCharacters);
+      choose(team, (state.character[team] + gesture.turn + characters()) % characters());
     }
     if (gesture.push) push(team);
   }
@@ -185,7 +185,7 @@ int Match::Impl::dice(int n) {
 void Match::Impl::start_match() {
   if (mode() == Mode::challenge) state.random = Random(state.seed).state();
   if (mode() == Mode::challenge || state.attract) {
-    for (int& character : state.character) character = dice(kCharacters);
+    for (int& character : state.character) character = dice(characters());
   }
   const int server = dice(kTeams);
   state.tally = {};
@@ -247,7 +247,8 @@ void Match::Impl::go_on_after_end() {
 
 // As state.built, first and tuning say. Rods and ball stay as they are.
 void Match::Impl::rebuild_world() {
-  auto rebuilt = std::make_unique<TableWorld>(desc.layout, state.built, state.first, state.tuning);
+  auto rebuilt =
+      std::make_unique<TableWorld>(desc.layout, bodies_of(desc, state), state.first, state.tuning);
   state.touching.clear();  // the new world tells of no contact that ends, those that last begin
   rebuilt->set_ball(world->ball());
   for (int rod = 0; rod < kRods; ++rod) {

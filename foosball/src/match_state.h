@@ -79,8 +79,8 @@ struct MatchState {
   Screen screen = Screen::logo;
   bool paused = false;
   Tally tally;
-  std::array<int, kTeams> character{1, 1};
-  std::array<int, kTeams> built{1, 1};  // the characters that the world was made with
+  std::array<int, kTeams> character{1, 1};  // where there are two to choose from
+  std::array<int, kTeams> built{1, 1};      // the characters that the world was made with
   int first = 0;  // the team whose side the world was made from: who served first (table_world.h)
   std::array<bool, kTeams> confirmed{};
   std::array<bool, kTeams> computer{};  // plays the team
@@ -143,6 +143,12 @@ struct MatchState {
   static void visit_stops(Archive& archive, Self& self);
 };
 
+// Of the men that the world is made with.
+inline TeamBodies bodies_of(const MatchDesc& desc, const MatchState& state) {
+  return {desc.characters[static_cast<std::size_t>(state.built[0])].body,
+          desc.characters[static_cast<std::size_t>(state.built[1])].body};
+}
+
 template <class Archive, class S>
 void visit_shot(Archive& archive, S& shot) {
   archive.choice(shot.team, kTeams);
@@ -160,8 +166,8 @@ void MatchState::visit(Archive& archive, Self& self) {
   archive.flag(self.paused);
   Tally::visit(archive, self.tally);
   for (int team = 0; team < kTeams; ++team) {
-    archive.choice(self.character[team], kCharacters);
-    archive.choice(self.built[team], kCharacters);
+    archive.choice(self.character[team], kMaxCharacters);
+    archive.choice(self.built[team], kMaxCharacters);
     archive.flag(self.confirmed[team]);
     archive.flag(self.computer[team]);
   }

@@ -12,9 +12,8 @@ double squared(double x) {
 
 }  // namespace
 
-bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball) {
+bool can_reach(const TableSpec& table, int rod, const CharacterBody& c, const vp::Vec3& ball) {
   const RodSpec& spec = table.rods[rod];
-  const CharacterSpec& c = character_spec(character);
   const double dx = ball.x - spec.x, dz = ball.z - table.rod_height;
   const double r = table.ball_radius;
   const double foot = std::sqrt(squared(c.foot_reach) + squared(0.5 * c.foot_depth));
@@ -27,11 +26,10 @@ bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& b
   return in_plane <= squared(foot + std::sqrt(r * r - gap * gap));
 }
 
-std::uint8_t rods_in_reach(const TableSpec& table, const std::array<int, kTeams>& characters,
-                           const vp::Vec3& ball) {
+std::uint8_t rods_in_reach(const TableSpec& table, const TeamBodies& bodies, const vp::Vec3& ball) {
   std::uint8_t rods = 0;
   for (int rod = 0; rod < kRods; ++rod) {
-    const bool reaches = can_reach(table, rod, characters[table.rods[rod].team], ball);
+    const bool reaches = can_reach(table, rod, bodies[table.rods[rod].team], ball);
     rods |= static_cast<std::uint8_t>((reaches ? 1u : 0u) << rod);
   }
   return rods;

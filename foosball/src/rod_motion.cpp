@@ -39,10 +39,10 @@ double step_rate(const AxisDrive& drive, double mass, double position, double ra
 
 }  // namespace
 
-HandLimits hand_limits(int character, const Tuning& tuning) {
-  const CharacterSpec& c = character_spec(character);
-  return {tuning.hand_force, tuning.hand_torque, tuning.hand_frequency,
-          c.slide_speed * tuning.slide_rate, c.turn_speed * tuning.turn_rate};
+HandLimits hand_limits(const CharacterBody& c, const Tuning& tuning) {
+  return {std::min(c.slide_force, tuning.hand_force), std::min(c.turn_torque, tuning.hand_torque),
+          tuning.hand_frequency, std::min(c.slide_speed, tuning.slide_rate),
+          std::min(c.turn_speed, tuning.turn_rate)};
 }
 
 AxisDrive slide_drive(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
@@ -73,9 +73,8 @@ AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,
   return angle_drive(inertia, angle, his);
 }
 
-RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
+RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterBody& c,
                        const Tuning& tuning) {
-  const CharacterSpec& c = character_spec(character);
   const double men = rod.men * c.mass;
   // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
   const double gyration = 0.6 * c.foot_reach;
@@ -83,7 +82,7 @@ RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character
   const double mass = table.rod_mass + men;
   const double axial =
       0.5 * table.rod_mass * table.rod_radius * table.rod_radius + rod.men * man_axial;
-  return {.limits = hand_limits(character, tuning),
+  return {.limits = hand_limits(c, tuning),
           .rod_and_men = mass,
           .slide = mass + tuning.hand_mass,
           .axial = axial,

@@ -31,12 +31,12 @@ constexpr double kNearGround = 0.010;      // a bounce between two ticks [m]
 constexpr std::uint64_t kNoRebound = 60;   // ticks on the ground after a bounce
 
 // From a man's boxes to the ball's surface, or more than kTouchGap.
-bool touches(const TableSpec& table, int rod, int man, int character, const RodState& state,
-             const vp::Vec3& ball) {
+bool touches(const TableSpec& table, int rod, int man, const CharacterBody& body,
+             const RodState& state, const vp::Vec3& ball) {
   const vp::SE3 T_table_man = man_pose(table, rod, man, state);
   const vp::Vec3 p = vp::inverse_times(T_table_man, ball);
   const double limit = table.ball_radius + kTouchGap;
-  for (const ManBox& box : man_boxes(character)) {
+  for (const ManBox& box : boxes_of(body)) {
     const double x = std::max(0.0, std::fabs(p.x - box.centre.x) - box.half_extents.x);
     const double y = std::max(0.0, std::fabs(p.y - box.centre.y) - box.half_extents.y);
     const double z = std::max(0.0, std::fabs(p.z - box.centre.z) - box.half_extents.z);
@@ -290,14 +290,14 @@ void StatisticsObserver::find_touches(const MatchView& view, std::span<const Eve
   }
   for (int rod = 0; rod < kRods && !touched_now_; ++rod) {
     const RodSpec& spec = table.rods[rod];
-    const int character = view.character[spec.team];
-    const double reach = character_spec(character).foot_reach + table.ball_radius + kTouchGap;
+    const CharacterBody& body = view.bodies[spec.team];
+    const double reach = body.foot_reach + table.ball_radius + kTouchGap;
     if (std::fabs(view.ball_position.x - spec.x) > reach) continue;
     const int man = man_nearest(spec, view.ball_position.y - view.rods[rod].slide);
     const double beside = view.ball_position.y - man_offset(spec, man) - view.rods[rod].slide;
     if (std::fabs(beside) > reach) continue;
     const RodState state = with_man(view.rods[rod], view.men[rod][man]);
-    if (touches(table, rod, man, character, state, view.ball_position)) {
+    if (touches(table, rod, man, body, state, view.ball_position)) {
       touch(view, rod, man);
     }
   }
@@ -423,7 +423,7 @@ void StatisticsObserver::watch_height(const MatchView& view, std::span<const Eve
 void StatisticsObserver::watch_reach(const MatchView& view) {
   const TableSpec& table = table_spec(view.layout);
   for (int rod = 0; rod < kRods; ++rod) {
-    if (!can_reach(table, rod, view.character[table.rods[rod].team], view.ball_position)) continue;
+    if (!can_reach(table, rod, view.bodies[table.rods[rod].team], view.ball_position)) continue;
     unreachable_ticks_ = 0;
     return;
   }

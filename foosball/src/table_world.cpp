@@ -105,11 +105,11 @@ Tag decode_tag(std::uint64_t user_data) {
           static_cast<std::uint8_t>(user_data >> 16), static_cast<std::uint8_t>(user_data >> 24)};
 }
 
-TableWorld::TableWorld(Layout layout, const Characters& characters, int first, const Tuning& tuning)
+TableWorld::TableWorld(Layout layout, const TeamBodies& bodies, int first, const Tuning& tuning)
     : table_(table_spec(layout)),
       first_(first),
       tuning_(tuning),
-      characters_(characters),
+      bodies_(bodies),
       world_(
           {.gravity = {0.0, 0.0, -tuning.gravity}, .restitution_threshold = tuning.still_speed}) {
   vp::BodyDesc fixed;
@@ -119,7 +119,7 @@ TableWorld::TableWorld(Layout layout, const Characters& characters, int first, c
   add_corners();
   add_ball();
   for (const int team : {first, 1 - first}) {
-    for (const int rod : rods_of_team(table_, team)) add_rod(rod, characters[team]);
+    for (const int rod : rods_of_team(table_, team)) add_rod(rod);
   }
   found_.reserve(64);
   park_ball();
@@ -222,10 +222,10 @@ void TableWorld::add_ball() {
   must(world_.add_collider(ball_, shape));
 }
 
-void TableWorld::add_rod(int rod, int character) {
+void TableWorld::add_rod(int rod) {
   const RodSpec& spec = table_.rods[rod];
-  const CharacterSpec& c = character_spec(character);
-  inertias_[rod] = rod_inertia(table_, spec, character, tuning_);
+  const CharacterBody& c = body_of(rod);
+  inertias_[rod] = rod_inertia(table_, spec, c, tuning_);
   rods_[rod] = must(world_.create_articulation({rod_model(table_, spec, inertias_[rod], tuning_)}));
   const bool hinged = hinged_men(table_.layout);
   const SE3 T_link_table(transpose(kRodAxes), Vec3{});
@@ -233,14 +233,14 @@ void TableWorld::add_rod(int rod, int character) {
     const int man = man_from_left(spec, i);
     const vp::BodyId body = world_.link_body(rods_[rod], hinged ? kFirstMan + i : kTurn);
     const Vec3 place{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // on the link
-    const auto boxes = man_boxes(character);
+    const auto boxes = boxes_of(c);
     for (std::size_t part = 0; part < boxes.size(); ++part) {
       const Vec3 centre = boxes[part].centre + place;
       vp::ColliderDesc desc;
       desc.shape = Box{boxes[part].half_extents};
       desc.T_body_shape = T_link_table * SE3(centre);
-      desc.material = {tuning_.man_friction * c.foot_friction,
-                       std::min(1.0, tuning_.man_restitution * c.foot_restitution), 0.0};
+      desc.material = {tuning_.man_friction * c.friction,
+                       std::min(1.0, tuning_.man_restitution * c.restitution), 0.0};
       desc.filter = {kManCategory, kBallCategory};
       desc.user_data = encode({Tag::What::man, static_cast<std::uint8_t>(rod),
                                static_cast<std::uint8_t>(man), static_cast<std::uint8_t>(part)});
@@ -410,7 +410,7 @@ void TableWorld::exaggerate_bounce(const Vec3& velocity_before) {
     if (other.what != Tag::What::man) continue;
     const double sign = decode_tag(event.user_data_a).what == Tag::What::ball ? 1.0 : -1.0;
     const double came = sign * dot(velocity_before, event.normal) - t.bounce_from;
-    const double bounce = character_spec(characters_[table_.rods[other.rod].team]).bounce;
+    const double bounce = body_of(other.rod).bounce;
     lift = std::max(lift, std::min(t.bounce_most, bounce * t.bounce_gain * came));
     const double given = up - std::max(0.0, velocity_before.z);
     if (given > 0.0) lift = std::max(lift, up + (bounce * t.hop_gain - 1.0) * given);

@@ -18,7 +18,7 @@ namespace foosball {
 // What a collider of the table is; travels through the world as its user data.
 struct Tag {
   enum class What : std::uint8_t { ball, field, wall, man } what;
-  std::uint8_t rod = 0, man = 0, part = 0;  // of a man; part indexes man_boxes()
+  std::uint8_t rod = 0, man = 0, part = 0;  // of a man; part indexes boxes_of()
 };
 std::uint64_t encode(const Tag& tag);
 Tag decode_tag(std::uint64_t user_data);
@@ -39,19 +39,17 @@ BallContact ball_contact(const vp::ContactEvent& event);
 
 class TableWorld {
  public:
-  using Characters = std::array<int, kTeams>;
-
   TableWorld(const TableWorld&) = delete;
   TableWorld& operator=(const TableWorld&) = delete;
 
-  // All rods at slide 0, angle 0; the ball parked. Each character is in [0, kCharacters).
+  // All rods at slide 0, angle 0; the ball parked. Each body is in its ranges.
   //
   // Symmetry: the engine solves contacts in the order in which their colliders were made, and that
   // shows in the last bits when the ball touches two things at once. So the world is made in the
   // order of the team that is first: its side before the other's, its rods from its goal outwards,
   // each rod's men from the player's left. A world of the other team first, with characters,
   // targets and ball turned by half a revolution about z, then moves exactly turned.
-  TableWorld(Layout layout, const Characters& characters, int first = 0, const Tuning& tuning = {});
+  TableWorld(Layout layout, const TeamBodies& bodies, int first = 0, const Tuning& tuning = {});
 
   const TableSpec& table() const { return table_; }
   int first() const { return first_; }
@@ -97,7 +95,8 @@ class TableWorld {
   std::array<double, 2> ends() const { return {-attack_sign(first_), attack_sign(first_)}; }
   void add_corners();
   void add_ball();
-  void add_rod(int rod, int character);
+  void add_rod(int rod);
+  const CharacterBody& body_of(int rod) const { return bodies_[table_.rods[rod].team]; }
   void let_field_sag();
   void read_rods();
   void exaggerate_bounce(const vp::Vec3& velocity_before);
@@ -106,7 +105,7 @@ class TableWorld {
   const TableSpec& table_;
   int first_;
   Tuning tuning_;
-  std::array<int, kTeams> characters_;
+  TeamBodies bodies_;
   vp::World world_;
   vp::BodyId fixed_;
   vp::BodyId ball_;

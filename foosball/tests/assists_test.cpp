@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "../src/random.h"
+#include "bodies.h"
 
 namespace foosball {
 namespace {
@@ -270,7 +271,7 @@ TEST(Assists, DoForTeam1WhatTheyDoForTeam0) {
     if (tick % 20 == 0) {
       view = ball_at(random.between(-0.6, 0.6), random.between(-0.33, 0.33),
                      random.between(-5.0, 5.0), random.between(-5.0, 5.0));
-      view.character = {static_cast<int>(tick / 20) % kCharacters, 2};
+      view.bodies = built_in(static_cast<int>(tick / 20) % built_in_count(), 2);
       hand.strikes = random.unit() < 0.5;
       for (int rod = 0; rod < kRods; ++rod) {
         view.rods[rod] = {random.between(-0.1, 0.1), random.between(-3.0, 3.0), 0.0, 0.0};
@@ -278,7 +279,7 @@ TEST(Assists, DoForTeam1WhatTheyDoForTeam0) {
       }
     }
     turned = view;
-    turned.character = {view.character[1], view.character[0]};
+    turned.bodies = {view.bodies[1], view.bodies[0]};
     turned.ball = {-view.ball.x, -view.ball.y, view.ball.z};
     turned.velocity = {-view.velocity.x, -view.velocity.y, view.velocity.z};
     other.strikes = hand.strikes;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../src/table_world.h"
+#include "bodies.h"
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
 #include "shots.h"
@@ -36,7 +37,7 @@ double deepest(const TableWorld& world, int character) {
     for (int man = 0; man < table().rods[rod].men; ++man) {
       const RodState state = with_man(world.rod(rod), world.men()[rod][man]);
       const vp::Vec3 p = vp::inverse_times(man_pose(table(), rod, man, state), ball);
-      for (const ManBox& box : man_boxes(character)) {
+      for (const ManBox& box : boxes_of(built_in(character))) {
         depth = std::max(depth, r - ShotGallery::distance(p - box.centre, box.half_extents));
       }
     }
@@ -71,8 +72,8 @@ void step(TableWorld& world, int character, int rod, Seen& seen) {
 class HingedMen : public testing::TestWithParam<int> {
  protected:
   int character = GetParam();
-  TableWorld world{Layout::paper, {character, character}};
-  HandLimits limits = hand_limits(character);
+  TableWorld world{Layout::paper, built_in(character, character)};
+  HandLimits limits = hand_limits(built_in(character));
 
   // Between the end wall and the foot of the man beside the goal, on the field.
   void put_ball_behind_the_goalie() {
@@ -82,7 +83,7 @@ class HingedMen : public testing::TestWithParam<int> {
                    {});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Characters, HingedMen, testing::Range(0, kCharacters));
+INSTANTIATE_TEST_SUITE_P(Characters, HingedMen, testing::Range(0, built_in_count()));
 
 // Feet towards the wall behind them, a ball in the way of one.
 TEST_P(HingedMen, OneWhoIsHeldByTheBallAtTheWallHoldsUpNobodyElse) {
@@ -96,7 +97,8 @@ TEST_P(HingedMen, OneWhoIsHeldByTheBallAtTheWallHoldsUpNobodyElse) {
     if (tick == 45) held = world.men()[kGoalie][kHeldMan].angle;
   }
   std::printf("%s: held at %.2f of 1.00 rad, the others within %.1g; ball in anything %.3f mm\n",
-              character_spec(character).name, held, seen.others, 1e3 * seen.deepest);
+              built_in_characters()[static_cast<std::size_t>(character)].name.c_str(), held,
+              seen.others, 1e3 * seen.deepest);
   EXPECT_LT(held, 0.9);
   EXPECT_GT(held, 0.2);
   EXPECT_LT(seen.others, 1e-9);
@@ -139,7 +141,7 @@ TEST_P(HingedMen, OneWhoIsHeldWhileTheHandSpinsThreeTurnsSlipsAndComesBack) {
 // A man far behind his hand, as one who has just been let go: the drive asks for five times the
 // torque that there is.
 TEST_P(HingedMen, TheTorqueOfAManIsBounded) {
-  const RodInertia inertia = rod_inertia(table(), table().rods[kGoalie], character);
+  const RodInertia inertia = rod_inertia(table(), table().rods[kGoalie], built_in(character));
   world.set_man(kGoalie, kHeldMan, {-2.5, 0.0});
   const double most = inertia.limits.torque / inertia.turn * kTick;  // a tick's [rad/s]
   double greatest = 0.0;
@@ -194,7 +196,8 @@ TEST_P(HingedMen, TwoOpponentsJammedThroughTheBallStayApartAndSane) {
     squeezed += held ? 1 : 0;
   }
   std::printf("%s: squeezed in %ld of 2000 ticks, ball in anything %.3f mm, at most %.1f m/s\n",
-              character_spec(character).name, squeezed, 1e3 * seen.deepest, seen.fastest_ball);
+              built_in_characters()[static_cast<std::size_t>(character)].name.c_str(), squeezed,
+              1e3 * seen.deepest, seen.fastest_ball);
   EXPECT_GT(squeezed, 20);
   EXPECT_LT(seen.deepest, kDeep);
   EXPECT_LT(seen.others, 1e-9);
@@ -222,7 +225,8 @@ TEST_P(HingedMen, ASpinningRowKeepsItsMenTogetherAndTheBallOutOfThem) {
     step(world, character, rod, seen);
   }
   std::printf("%s: apart at most %.2f rad, men at most %.0f rad/s\n",
-              character_spec(character).name, seen.apart, seen.fastest_man);
+              built_in_characters()[static_cast<std::size_t>(character)].name.c_str(), seen.apart,
+              seen.fastest_man);
   EXPECT_LT(seen.deepest, kDeep);
   EXPECT_GT(seen.apart, 0.01) << "nobody was ever hit";
   EXPECT_LT(seen.fastest_man, 1.1 * limits.angle_rate);
@@ -230,18 +234,17 @@ TEST_P(HingedMen, ASpinningRowKeepsItsMenTogetherAndTheBallOutOfThem) {
 
 // One ball can hold only one man of a row.
 TEST(HingedMenOfARow, AreTooFarApartForOneBall) {
-  for (int character = 0; character < kCharacters; ++character) {
-    const CharacterSpec& c = character_spec(character);
+  for (const CharacterBody& c : bodies_of_all_kinds()) {
     const double widest = std::max(c.foot_width, c.torso_width);
     for (const RodSpec& rod : table().rods) {
-      EXPECT_GT(rod.spacing - widest, 2.0 * table().ball_radius) << c.name;
+      EXPECT_GT(rod.spacing - widest, 2.0 * table().ball_radius) << widest;
     }
   }
 }
 
 // With a man held and the ball pressed: the saved world goes on with the same bits.
 TEST(HingedMenSaved, GoOnFromWhereTheyWereHeld) {
-  TableWorld world(Layout::paper, {1, 1}), other(Layout::paper, {1, 1});
+  TableWorld world(Layout::paper, built_in(1, 1)), other(Layout::paper, built_in(1, 1));
   const RodSpec& spec = table().rods[kGoalie];
   world.set_ball({-0.5 * table().length + table().ball_radius + 0.0005, man_offset(spec, 0),
                   table().ball_radius},

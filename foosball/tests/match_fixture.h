@@ -97,7 +97,7 @@ class MatchTest : public testing::Test {
     std::vector<std::byte> bytes;
     match->snapshot(bytes);
     MatchState state;
-    auto world = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
+    auto world = std::make_unique<TableWorld>(desc.layout, bodies_of(desc, state), state.first);
     ASSERT_TRUE(load_match(desc, bytes, state, world));
     change(state, *world);
     bytes.clear();

@@ -2,6 +2,7 @@
 // serve, goals, dead ball, ball out, win.
 #include <limits>
 
+#include "bodies.h"
 #include "match_fixture.h"
 
 namespace foosball {
@@ -28,7 +29,7 @@ TEST_F(MatchTest, SpinningAnyRodOfATeamChoosesItsCharacterAndOnlyItsOwn) {
     const auto before = view().character;
     const double forward = -attack_sign(team);
     move(rod, 0.0, forward * third, 0.3);
-    EXPECT_EQ(view().character[team], (before[team] + 1) % kCharacters) << rod;
+    EXPECT_EQ(view().character[team], (before[team] + 1) % built_in_count()) << rod;
     EXPECT_EQ(view().character[1 - team], before[1 - team]) << rod;
     move(rod, 0.0, 0.0, 0.3);
     EXPECT_EQ(view().character[team], before[team]) << "and back";
@@ -133,7 +134,7 @@ TEST_F(MatchTest, WishesOutOfRangeAreIgnored) {
   command(Command::Kind::push, 2);
   EXPECT_EQ(view().screen, Screen::logo);
   command(Command::Kind::push, 0);
-  command(Command::Kind::choose_character, 0, kCharacters);
+  command(Command::Kind::choose_character, 0, built_in_count());
   command(Command::Kind::choose_character, 255, 0);
   commands.push_back({static_cast<Command::Kind>(200), 0, 0});
   step();

@@ -6,19 +6,20 @@
 #include <cmath>
 
 #include "../src/table_world.h"
+#include "bodies.h"
 
 namespace foosball {
 namespace {
 
-const std::array<int, kTeams> kAverage{1, 1};
+const TeamBodies kAverage = built_in(1, 1);
 
 TEST(Reach, NoBallIsWithinReachOfTwoRods) {
   for (int layout = 0; layout < kLayouts; ++layout) {
     const TableSpec& table = table_spec(static_cast<Layout>(layout));
     for (double x = -0.6; x <= 0.6; x += 0.003) {
       for (double y = -0.32; y <= 0.32; y += 0.02) {
-        for (int character = 0; character < kCharacters; ++character) {
-          const auto rods = rods_in_reach(table, {character, character}, {x, y, 0.0173});
+        for (const CharacterBody& body : bodies_of_all_kinds()) {
+          const auto rods = rods_in_reach(table, {body, body}, {x, y, 0.0173});
           ASSERT_LE(std::popcount(rods), 1) << x << " " << y;
         }
       }
@@ -43,14 +44,13 @@ TEST(Reach, TheLoneGoalieDoesNotReachTheCorners) {
 TEST(Reach, IsWhereASwungFootMeetsTheBall) {
   const TableSpec& table = table_spec(Layout::tournament);
   constexpr int kRod = 2;
-  for (int character = 0; character < kCharacters; ++character) {
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
     double reach = 0.0;
-    while (
-        can_reach(table, kRod, character, {table.rods[kRod].x - reach, 0.0, table.ball_radius})) {
+    while (can_reach(table, kRod, body, {table.rods[kRod].x - reach, 0.0, table.ball_radius})) {
       reach += 1e-4;
     }
     for (const double d : {reach - 0.002, reach + 0.002}) {
-      TableWorld world(Layout::tournament, {character, character});
+      TableWorld world(Layout::tournament, {body, body});
       bool met = false;
       for (int tick = 0; tick < 1000; ++tick) {
         world.set_ball({table.rods[kRod].x - d, 0.0, table.ball_radius}, {});
@@ -60,7 +60,7 @@ TEST(Reach, IsWhereASwungFootMeetsTheBall) {
           met = met || ball_contact(event).other.what == Tag::What::man;
         }
       }
-      EXPECT_EQ(met, d < reach) << character << " at " << d;
+      EXPECT_EQ(met, d < reach) << body.foot_reach << " at " << d;
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "../src/referee.h"
 
+#include "bodies.h"
 #include "foosball/reach.h"
 
 #include <gtest/gtest.h>
@@ -119,7 +120,7 @@ Called call(const Rules& rules, Path path, int limit, bool touched = false) {
   for (int tick = 1; tick <= limit; ++tick) {
     BallWatch::Sight sight{.ball = path(tick),
                            .velocity = (1.0 / kTick) * (path(tick) - path(tick - 1))};
-    sight.rods_in_reach = rods_in_reach(table, {1, 1}, sight.ball);
+    sight.rods_in_reach = rods_in_reach(table, built_in(1, 1), sight.ball);
     sight.touched = touched;
     const auto verdict = watch.update(table, rules, sight);
     if (verdict != BallWatch::Verdict::alive) return {verdict, tick};

@@ -20,7 +20,7 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0xfa3fa5157262b7d6u;
+constexpr std::uint64_t kGolden = 0xa5d7fcef78cb9371u;
 
 struct Players {
   explicit Players(std::uint64_t seed, double skill = 0.9)
@@ -211,7 +211,7 @@ TEST(Restore, OfAnyWaitEndsInTime) {
   match.snapshot(bytes);
   for (std::size_t i = 0; i < changes.size(); ++i) {
     MatchState state;
-    auto world = std::make_unique<TableWorld>(desc.layout, state.built, state.first);
+    auto world = std::make_unique<TableWorld>(desc.layout, bodies_of(desc, state), state.first);
     ASSERT_TRUE(load_match(desc, bytes, state, world));
     changes[i](state);
     std::vector<std::byte> forged;

@@ -10,6 +10,7 @@
 
 #include "../src/random.h"
 #include "../src/table_world.h"
+#include "bodies.h"
 
 namespace foosball {
 namespace {
@@ -20,8 +21,8 @@ struct Difference {
 
 // Drives every rod of a table and its prediction with the same hand; the largest difference.
 template <class Hand>
-Difference compare(Layout layout, int character, int ticks, Hand&& hand) {
-  TableWorld world(layout, {character, character});
+Difference compare(Layout layout, const CharacterBody& body, int ticks, Hand&& hand) {
+  TableWorld world(layout, {body, body});
   const TableSpec& table = world.table();
   std::array<RodState, kRods> predicted{};
   Difference worst;
@@ -30,7 +31,7 @@ Difference compare(Layout layout, int character, int ticks, Hand&& hand) {
       const RodSpec& spec = table.rods[rod];
       const RodTarget target = hand(rod, tick, spec);
       world.drive(rod, target);
-      predicted[rod] = step_rod(spec, rod_inertia(table, spec, character), predicted[rod], target);
+      predicted[rod] = step_rod(spec, rod_inertia(table, spec, body), predicted[rod], target);
     }
     world.park_ball();  // touches nothing
     world.step();
@@ -44,8 +45,8 @@ Difference compare(Layout layout, int character, int ticks, Hand&& hand) {
       }
     }
   }
-  std::printf("layout %d, character %d: within %.2g m, %.2g rad, men %.2g rad\n",
-              static_cast<int>(layout), character, worst.slide, worst.angle, worst.man);
+  std::printf("layout %d, men of %.3f kg: within %.2g m, %.2g rad, men %.2g rad\n",
+              static_cast<int>(layout), body.mass, worst.slide, worst.angle, worst.man);
   return worst;
 }
 
@@ -54,11 +55,11 @@ INSTANTIATE_TEST_SUITE_P(Layouts, RodMotionTest,
                          testing::Values(Layout::paper, Layout::tournament));
 
 TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
-  for (int character = 0; character < kCharacters; ++character) {
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
     Random random(7);
     std::array<RodTarget, kRods> targets{};
     const Difference worst =
-        compare(GetParam(), character, 3000, [&](int rod, int tick, const RodSpec& spec) {
+        compare(GetParam(), body, 3000, [&](int rod, int tick, const RodSpec& spec) {
           RodTarget& t = targets[rod];
           if (tick % 400 == 50 * rod) {  // a jump: the force and the rates reach their bounds
             t = {spec.slide_limit * random.between(-1.2, 1.2), random.between(0.0, 9.0), 0.0, 0.0,
@@ -83,16 +84,16 @@ TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
 // from one side: no overshoot, whatever the men weigh.
 TEST_P(RodMotionTest, TheDrivesAreCriticallyDampedForEveryCharacter) {
   const TableSpec& table = table_spec(GetParam());
-  for (int character = 0; character < kCharacters; ++character) {
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
     for (const RodSpec& spec : table.rods) {
-      const RodInertia inertia = rod_inertia(table, spec, character);
+      const RodInertia inertia = rod_inertia(table, spec, body);
       const RodState rest{};
       const RodTarget target{0.001, 0.01, 0.0, 0.0, true};
       for (const auto& [drive, mass] :
            {std::pair{slide_drive(spec, inertia, rest, target), inertia.slide},
             std::pair{angle_drive(inertia, rest.angle, target), inertia.turn}}) {
         const double ratio = drive.damping / (2.0 * std::sqrt(drive.stiffness * mass));
-        EXPECT_NEAR(ratio, 1.0, 1e-12) << character;
+        EXPECT_NEAR(ratio, 1.0, 1e-12) << body.mass;
       }
       RodState rod{};
       for (int tick = 0; tick < 100; ++tick) {
@@ -110,7 +111,7 @@ TEST_P(RodMotionTest, ARodStopsAtItsStop) {
   const RodSpec& spec = table.rods[3];
   RodState rod{};
   for (int tick = 0; tick < 500; ++tick)
-    rod = step_rod(spec, rod_inertia(table, spec, 1), rod, {9.0, 0.0, 5.0, 0.0, true});
+    rod = step_rod(spec, rod_inertia(table, spec, built_in(1)), rod, {9.0, 0.0, 5.0, 0.0, true});
   EXPECT_NEAR(rod.slide, spec.slide_limit, 1e-9);
   EXPECT_NEAR(rod.slide_rate, 0.0, 1e-6);
 }

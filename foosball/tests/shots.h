@@ -9,6 +9,7 @@
 
 #include "../src/random.h"
 #include "../src/table_world.h"
+#include "bodies.h"
 
 namespace foosball {
 
@@ -28,16 +29,17 @@ struct ShotsReport {
 class ShotGallery {
  public:
   ShotGallery(Layout layout, std::uint64_t seed)
-      : world_(layout, {static_cast<int>(seed % kCharacters),
-                        static_cast<int>((seed / kCharacters) % kCharacters)}),
-        characters_{static_cast<int>(seed % kCharacters),
-                    static_cast<int>((seed / kCharacters) % kCharacters)},
-        random_(seed) {}
+      : bodies_(bodies_of_seed(seed)), world_(layout, bodies_), random_(seed) {}
 
   void shoot(int shots) {
     for (int i = 0; i < shots; ++i) shot();
   }
   const ShotsReport& report() const { return report_; }
+
+  static TeamBodies bodies_of_seed(std::uint64_t seed) {
+    const auto n = static_cast<std::uint64_t>(built_in_count());
+    return built_in(static_cast<int>(seed % n), static_cast<int>(seed / n % n));
+  }
 
   // Whether the segment meets the box about the origin (slabs).
   static bool crosses(const vp::Vec3& a, const vp::Vec3& b, const vp::Vec3& half) {
@@ -109,7 +111,7 @@ class ShotGallery {
     const int nearest = static_cast<int>((from.x + 0.6) / 0.150);
     const int rod = std::clamp(nearest + random_.below(3) - 1, 0, kRods - 1);
     const int man = random_.below(table().rods[rod].men);
-    const auto boxes = man_boxes(characters_[table().rods[rod].team]);
+    const auto boxes = boxes_of(bodies_[table().rods[rod].team]);
     const ManBox& box = boxes[random_.below(static_cast<int>(boxes.size()))];
     const vp::SE3 T_world_man =
         man_pose(table(), rod, man, with_man(world_.rod(rod), world_.men()[rod][man]));
@@ -154,7 +156,7 @@ class ShotGallery {
         const vp::SE3 T_after =
             man_pose(table(), rod, man, with_man(world_.rod(rod), world_.men()[rod][man]));
         if (std::fabs(to.y - T_after.position().y) > 0.1) continue;
-        for (const ManBox& box : man_boxes(characters_[spec.team])) {
+        for (const ManBox& box : boxes_of(bodies_[spec.team])) {
           const vp::Vec3 a = inverse_times(T_before, from) - box.centre;
           const vp::Vec3 b = inverse_times(T_after, to) - box.centre;
           if (crosses(a, b, kCore * box.half_extents)) ++report_.through_a_man;
@@ -198,8 +200,8 @@ class ShotGallery {
     return std::max({past_end - table().goal_depth, post + r, lintel + r});
   }
 
+  TeamBodies bodies_;
   TableWorld world_;
-  std::array<int, kTeams> characters_;
   Random random_;
   std::array<RodTarget, kRods> motion_{};
   std::array<RodState, kRods> before_{};

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "bodies.h"
 #include "foosball/computer_player.h"
 
 namespace foosball {
@@ -279,7 +280,7 @@ TEST(Statistics, ABallThatNobodyTouchesIsStuckForAsLongAsItStays) {
 
 // --- reach ---------------------------------------------------------------------------------------
 
-bool some_pose_touches(const TableSpec& table, int rod, int character, const Vec3& ball,
+bool some_pose_touches(const TableSpec& table, int rod, const CharacterBody& body, const Vec3& ball,
                        double radius) {
   const RodSpec& spec = table.rods[rod];
   constexpr int kSteps = 160;
@@ -289,7 +290,7 @@ bool some_pose_touches(const TableSpec& table, int rod, int character, const Vec
     for (int i = 0; i < kSteps; ++i) {
       const vp::SE3 T = man_pose(table, rod, man, {slide, 2.0 * vp::kPi * i / kSteps, 0.0, 0.0});
       const Vec3 p = vp::inverse_times(T, ball);
-      for (const ManBox& box : man_boxes(character)) {
+      for (const ManBox& box : boxes_of(body)) {
         if (box.part != ManBox::Part::foot) continue;
         const Vec3 d{std::max(0.0, std::fabs(p.x - box.centre.x) - box.half_extents.x),
                      std::max(0.0, std::fabs(p.y - box.centre.y) - box.half_extents.y),
@@ -311,14 +312,13 @@ TEST(Reach, IsThatOfTheBestOfAllSlidesAndAngles) {
       const double v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
       const Vec3 ball{(u - 0.5) * 1.16, (v - 0.5) * 0.64, r + 0.002 * (i % 10)};
       for (int rod = 0; rod < kRods; ++rod) {
-        const int character = i % kCharacters;
-        const bool can = can_reach(table, rod, character, ball);
-        if (some_pose_touches(table, rod, character, ball, r)) {
+        const CharacterBody& body = built_in(i % built_in_count());
+        const bool can = can_reach(table, rod, body, ball);
+        if (some_pose_touches(table, rod, body, ball, r)) {
           EXPECT_TRUE(can) << i << ' ' << rod;
         }
         if (can) {
-          EXPECT_TRUE(some_pose_touches(table, rod, character, ball, r + 0.0005))
-              << i << ' ' << rod;
+          EXPECT_TRUE(some_pose_touches(table, rod, body, ball, r + 0.0005)) << i << ' ' << rod;
         }
         reached += can ? 1 : 0;
         ++compared;
@@ -333,9 +333,11 @@ TEST(Reach, OfARestingBallEndsWhereTheFootsEdgePassesOverIt) {
   const RodSpec& rod = table.rods[3];
   for (const double side : {-1.0, 1.0}) {
     EXPECT_TRUE(can_reach(
-        table, 3, 1, {rod.x + side * (field_reach(table, 1) - 0.001), 0.0, table.ball_radius}));
+        table, 3, built_in(1),
+        {rod.x + side * (field_reach(table, built_in(1)) - 0.001), 0.0, table.ball_radius}));
     EXPECT_FALSE(can_reach(
-        table, 3, 1, {rod.x + side * (field_reach(table, 1) + 0.001), 0.0, table.ball_radius}));
+        table, 3, built_in(1),
+        {rod.x + side * (field_reach(table, built_in(1)) + 0.001), 0.0, table.ball_radius}));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "bodies.h"
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
 #include "foosball/reach.h"
@@ -49,7 +50,7 @@ Longest play(const MatchDesc& desc, Side home, Side away, int ticks) {
       unreachable = held = 0;
       continue;
     }
-    const auto rods = rods_in_reach(table, view.character, view.ball_position);
+    const auto rods = rods_in_reach(table, view.bodies, view.ball_position);
     unreachable = rods == 0 ? unreachable + 1 : 0;
     held = rods != 0 && rods == held_by ? held + 1 : 0;
     held_by = rods;

@@ -8,6 +8,7 @@
 
 #include "../src/random.h"
 #include "../src/table_world.h"
+#include "bodies.h"
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
 
@@ -61,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, Symmetry, testing::Values(Layout::paper, Layou
 // Two minutes on each layout; a ball put anywhere every three seconds, kicked by rods that move at
 // random, often pinched between two rows.
 TEST_P(Symmetry, AWorldOfTheOtherTeamFirstMovesTurnedToTheBit) {
-  TableWorld world(GetParam(), {0, 2}, 0), other(GetParam(), {2, 0}, 1);
+  TableWorld world(GetParam(), built_in(0, 2), 0), other(GetParam(), built_in(2, 0), 1);
   Hands hands(7);
   Random places(8);
   long hits = 0, two_at_once = 0, left_behind = 0;
@@ -111,7 +112,8 @@ TEST(SymmetryOfPinches, ABallSqueezedBetweenTheMidfieldsMovesTurnedToTheBit) {
   long hits = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     Random random(seed);
-    TableWorld world(Layout::tournament, {0, 2}, 0), other(Layout::tournament, {2, 0}, 1);
+    TableWorld world(Layout::tournament, built_in(0, 2), 0),
+        other(Layout::tournament, built_in(2, 0), 1);
     const vp::Vec3 place{random.between(-0.01, 0.01), random.between(-0.01, 0.01),
                          random.between(0.018, 0.1)};
     const vp::Vec3 velocity{random.between(-3.0, 3.0), random.between(-1.0, 1.0), 0.0};

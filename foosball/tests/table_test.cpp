@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "bodies.h"
 #include "foosball/match.h"
 
 namespace foosball {
@@ -65,8 +66,8 @@ TEST_P(TableTest, EachTeamHasEachLineInOrderFromItsOwnGoal) {
 
 TEST_P(TableTest, NoManTouchesAWallAtTheEndsOfItsSlideWhateverItsCharacter) {
   for (const RodSpec& rod : table.rods) {
-    for (int character = 0; character < kCharacters; ++character) {
-      for (const ManBox& box : man_boxes(character)) {
+    for (const CharacterBody& body : bodies_of_all_kinds()) {
+      for (const ManBox& box : boxes_of(body)) {
         const double outermost = man_offset(rod, rod.men - 1) + rod.slide_limit;
         EXPECT_LT(outermost + box.centre.y + box.half_extents.y, 0.5 * table.width - 0.001);
       }
@@ -76,9 +77,9 @@ TEST_P(TableTest, NoManTouchesAWallAtTheEndsOfItsSlideWhateverItsCharacter) {
 }
 
 TEST_P(TableTest, NoTurningManTouchesFieldEndWallOrTheNextRodsMen) {
-  for (int character = 0; character < kCharacters; ++character) {
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
     double reach = 0.0;
-    for (const ManBox& box : man_boxes(character)) {
+    for (const ManBox& box : boxes_of(body)) {
       const double z = std::fabs(box.centre.z) + box.half_extents.z;
       reach = std::max(reach, std::hypot(z, box.half_extents.x));
     }
@@ -89,9 +90,8 @@ TEST_P(TableTest, NoTurningManTouchesFieldEndWallOrTheNextRodsMen) {
 }
 
 TEST_P(TableTest, FeetReachFourFifthsOfTheWayBetweenTwoRods) {
-  for (int character = 0; character < kCharacters; ++character) {
-    EXPECT_GT(field_reach(table, character), 0.8 * 0.075)  // 61.4 mm and more
-        << character_spec(character).name;
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
+    EXPECT_GT(field_reach(table, body), 0.8 * 0.075);  // built in: 61.4 mm and more
   }
 }
 
@@ -110,10 +110,10 @@ TEST_P(TableTest, MenReachEveryLineAlongTheFieldBetweenTheRaisedCorners) {
 TEST_P(TableTest, TheBallFitsTheGoalAndPassesUnderNoMansFoot) {
   EXPECT_GT(table.goal_height, 2.0 * table.ball_radius);
   EXPECT_GT(table.goal_depth, 4.0 * table.ball_radius) << "wholly in, and room to come out again";
-  for (int character = 0; character < kCharacters; ++character) {
-    const double gap = table.rod_height - character_spec(character).foot_reach;
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
+    const double gap = table.rod_height - body.foot_reach;
     EXPECT_LT(gap, table.ball_radius) << "the foot meets the ball below its centre";
-    EXPECT_GT(table.rod_height - character_spec(character).head_height, 2.0 * table.ball_radius)
+    EXPECT_GT(table.rod_height - body.head_height, 2.0 * table.ball_radius)
         << "a man head down pins no ball";
   }
 }
@@ -127,26 +127,26 @@ TEST(Table, LayoutsHaveTheMenOfThePaperAndOfATournament) {
 }
 
 TEST(Character, TheTallReachesFurtherAndStrikesHarderTheFatBlocksMore) {
-  const CharacterSpec& tall = character_spec(0);
-  const CharacterSpec& fat = character_spec(2);
+  const CharacterBody& tall = built_in(0);
+  const CharacterBody& fat = built_in(2);
   EXPECT_GT(tall.foot_reach, fat.foot_reach);
-  EXPECT_GT(tall.foot_restitution, fat.foot_restitution);
+  EXPECT_GT(tall.restitution, fat.restitution);
   EXPECT_LT(tall.foot_width, fat.foot_width);
   EXPECT_LT(tall.torso_width, fat.torso_width);
 }
 
 TEST(ManBoxes, StackWithoutGapFromSoleToCrown) {
-  for (int character = 0; character < kCharacters; ++character) {
-    const auto boxes = man_boxes(character);
+  for (const CharacterBody& body : bodies_of_all_kinds()) {
+    const auto boxes = boxes_of(body);
     ASSERT_EQ(boxes.size(), 4u);
-    double z = -character_spec(character).foot_reach;
+    double z = -body.foot_reach;
     for (const ManBox& box : boxes) {
       EXPECT_NEAR(box.centre.z - box.half_extents.z, z, 1e-12);
       EXPECT_GT(box.half_extents.x, 0.0);
       EXPECT_GT(box.half_extents.y, 0.0);
       z = box.centre.z + box.half_extents.z;
     }
-    EXPECT_NEAR(z, character_spec(character).head_height, 1e-12);
+    EXPECT_NEAR(z, body.head_height, 1e-12);
   }
 }
 

@@ -10,11 +10,12 @@
 
 #include "../src/random.h"
 #include "../src/referee.h"
+#include "bodies.h"
 
 namespace foosball {
 namespace {
 
-constexpr TableWorld::Characters kAverage{1, 1};
+const TeamBodies kAverage = built_in(1, 1);
 
 TEST(Tag, SurvivesTheWorldAsUserData) {
   const Tag tag = decode_tag(encode({Tag::What::man, 7, 4, 3}));
@@ -161,12 +162,12 @@ TEST_P(TableWorldTest, AFootAtNineAndAHalfMetresASecondGivesTheBallThirteenToSev
 }
 
 TEST(Characters, TheTallStrikesHarderThanTheFat) {
-  double speed[kCharacters];
-  for (int character = 0; character < kCharacters; ++character) {
-    TableWorld world(Layout::tournament, {character, character});
+  std::vector<double> speed;
+  for (const Character& character : built_in_characters()) {
+    TableWorld world(Layout::tournament, {character.body, character.body});
     double foot = 0.0;
-    speed[character] = struck_speed(world, 5, 9.5, foot);
-    std::printf("%s: %.1f m/s\n", character_spec(character).name, speed[character]);
+    speed.push_back(struck_speed(world, 5, 9.5, foot));
+    std::printf("%s: %.1f m/s\n", character.name.c_str(), speed.back());
   }
   EXPECT_GT(speed[0], speed[1]);
   EXPECT_GT(speed[1], speed[2]);

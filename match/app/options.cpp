@@ -5,6 +5,7 @@
 #include <set>
 #include <thread>
 
+#include "characters/character_file.h"
 #include "match/player.h"
 #include "profile/tuning_profile.h"
 
@@ -30,7 +31,7 @@ std::string check_player(const std::string& name) {
 }
 
 struct Raw {
-  std::string home = "classic", away = "classic", layout = "tournament", tuning;
+  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning;
   bool report = false, balance = false, study = false, passive = false;
   std::vector<std::string> sprt, round_robin;
 };
@@ -43,6 +44,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* tuning = cli.add_option(
       "--tuning", raw.tuning,
       "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
+  cli.add_option("--characters", raw.characters,
+                 "folder of character files, in place of the built-in ones: docs/characters.md");
   cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
   auto* passive = cli.add_flag("--passive", raw.passive,
                                "the same as --away idle: what an idle side makes of play");
@@ -55,7 +58,7 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(1, 1024));
   auto* report = cli.add_flag("--report", raw.report,
                               "figures of play, each beside its goal, also against an idle side, a "
-                              "spinner, with one rod, and of tall and small against average");
+                              "spinner, with one rod, and of each character against the others");
   auto* sprt = cli.add_option("--sprt", raw.sprt,
                               "OLD NEW: play until it is clear whether NEW is the better one")
                    ->type_name("OLD NEW")
@@ -121,6 +124,11 @@ std::string translate(Options& o, const Raw& raw) {
   if (!(o.elo0 < o.elo1)) return "--elo0 must be below --elo1";
   if (std::fabs(o.elo0) > 1000.0 || std::fabs(o.elo1) > 1000.0) {
     return "--elo0 and --elo1 are from -1000 to 1000";
+  }
+  if (!raw.characters.empty()) {
+    auto list = characters::load_characters(raw.characters);
+    if (!list) return list.error();
+    o.character_list = std::move(*list);
   }
   o.matches += o.matches % 2;
   o.max_matches += o.max_matches % 2;

@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "foosball/character.h"
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 
@@ -19,6 +20,7 @@ struct Options {
                                    "classic"};  // by the mode: home and away, old and new
   foosball::Layout layout = foosball::Layout::tournament;
   foosball::Tuning tuning{};
+  foosball::Characters character_list = foosball::built_in_characters();
   std::uint64_t seed = 1;
   std::uint64_t matches = 100;
   std::uint64_t max_matches = 2000;  // of a sequential test

@@ -25,12 +25,14 @@ SeriesDesc base_of(const Options& o) {
   desc.max_ticks = static_cast<std::uint64_t>(o.max_minutes * 60.0 / foosball::kTick);
   desc.max_games = o.matches;
   desc.tuning = o.tuning;
+  desc.character_list = o.character_list;
   return desc;
 }
 
 match::ReportPlan report_plan(const Options& o) {
   const SeriesDesc base = base_of(o);
-  return {o.players[0], o.players[1], o.layout, o.seed, base.max_ticks, o.matches, o.tuning};
+  return {o.players[0],   o.players[1], o.layout, o.seed,
+          base.max_ticks, o.matches,    o.tuning, o.character_list};
 }
 
 match::StudyPlan study_plan(const Options& o) {
@@ -58,8 +60,9 @@ constexpr double kBalanced = 0.55, kBeyond = 0.60;
 
 std::vector<SeriesDesc> balance(const Options& o) {
   std::vector<SeriesDesc> all;
-  for (int a = 0; a < foosball::kCharacters; ++a) {
-    for (int b = a + 1; b < foosball::kCharacters; ++b) {
+  const int count = static_cast<int>(o.character_list.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = a + 1; b < count; ++b) {
       SeriesDesc desc = base_of(o);
       desc.players = {o.players[0], o.players[0]};
       desc.max_games = o.max_matches;
@@ -183,26 +186,65 @@ Results of_study(const Options& o, const std::vector<Series>& series) {
   return results;
 }
 
+const char* word(match::Verdict verdict) {
+  return verdict == match::Verdict::h0   ? "within 60:40"
+         : verdict == match::Verdict::h1 ? "beyond 60:40"
+                                         : "not decided";
+}
+
+// A column a character: the points of the row's character against it [%].
+std::string cross_table(const foosball::Characters& characters, const std::vector<Series>& series) {
+  const std::size_t n = characters.size();
+  std::string text = line("\n  %-24s", "");
+  for (std::size_t c = 0; c < n; ++c) text += line(" %6zu", c + 1);
+  text += "    all\n";
+  const auto score = [&](std::size_t a, std::size_t b) {
+    for (const Series& s : series) {
+      const auto& c = s.desc().characters;
+      const auto row = static_cast<std::size_t>(c[0]), column = static_cast<std::size_t>(c[1]);
+      if (row == a && column == b) return 100.0 * mean_score(s.pairs());
+      if (row == b && column == a) return 100.0 - 100.0 * mean_score(s.pairs());
+    }
+    return 50.0;
+  };
+  for (std::size_t a = 0; a < n; ++a) {
+    text += line("  %zu %-22s", a + 1, characters[a].name.c_str());
+    double sum = 0.0;
+    for (std::size_t b = 0; b < n; ++b) {
+      text += a == b ? line(" %6s", "-") : line(" %6.1f", score(a, b));
+      sum += a == b ? 0.0 : score(a, b);
+    }
+    text += n > 1 ? line(" %6.1f\n", sum / static_cast<double>(n - 1)) : "\n";
+  }
+  return text;
+}
+
 Results of_balance(const Options& o, const std::vector<Series>& series) {
   Results results;
-  results.text = "characters, both sides played by " + o.players[0] + "\n";
+  const foosball::Characters& characters = o.character_list;
+  results.text =
+      "characters, both sides played by " + o.players[0] +
+      (o.layout == foosball::Layout::paper ? ", paper layout\n" : ", tournament layout\n");
+  int decided = 0, within = 0;
   for (const Series& s : series) {
     const auto& c = s.desc().characters;
-    const std::string name = std::string(foosball::character_spec(c[0]).name) + " against " +
-                             foosball::character_spec(c[1]).name;
+    const std::string name = characters[static_cast<std::size_t>(c[0])].name + " against " +
+                             characters[static_cast<std::size_t>(c[1])].name;
     const match::Verdict verdict = s.verdict();
-    results.text += line("  %-34s %5.1f %% +-%.1f  %5llu matches  ", name.c_str(),
+    results.text += line("  %-34s %5.1f %% +-%.1f  %5llu matches  %s\n", name.c_str(),
                          100.0 * mean_score(s.pairs()), 196.0 * score_error(s.pairs()),
-                         static_cast<unsigned long long>(s.taken()));
-    results.text += verdict == match::Verdict::h0   ? "within 60:40\n"
-                    : verdict == match::Verdict::h1 ? "beyond 60:40\n"
-                                                    : "not decided\n";
+                         static_cast<unsigned long long>(s.taken()), word(verdict));
+    decided += verdict != match::Verdict::open;
+    within += verdict == match::Verdict::h0;
     const auto judgment = verdict == match::Verdict::h0   ? match::Figure::Judgment::pass
                           : verdict == match::Verdict::h1 ? match::Figure::Judgment::falls_short
                                                           : match::Figure::Judgment::unknown;
     results.figures.push_back(
         {"balance", name, 100.0 * mean_score(s.pairs()), "% points", "40 to 60", judgment});
   }
+  results.text += cross_table(characters, series);
+  results.text += line("\n%d of %zu pairs within 60:40, %d beyond, %d not decided\n", within,
+                       series.size(), decided - within, static_cast<int>(series.size()) - decided);
   return results;
 }
 

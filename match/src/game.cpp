@@ -27,12 +27,18 @@ class MemorySink {
   wire::JournalEncoder encoder_;
 };
 
+foosball::MatchDesc match_of(const GameDesc& desc) {
+  foosball::MatchDesc match{
+      .layout = desc.layout, .seed = desc.seed, .rules = {}, .tuning = desc.tuning};
+  match.characters = desc.character_list;
+  return match;
+}
+
 class Game {
  public:
   Game(const GameDesc& desc, Recording recording)
       : desc_(desc),
-        header_(server::to_header(
-            {.layout = desc.layout, .seed = desc.seed, .rules = {}, .tuning = desc.tuning})),
+        header_(server::to_header(match_of(desc))),
         match_(*foosball::Match::create(server::from_header(header_))),
         sink_(played_.journal) {
     for (int team = 0; team < kTeams; ++team) {
@@ -131,9 +137,9 @@ std::uint64_t mix_seed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-std::array<int, foosball::kTeams> drawn_characters(std::uint64_t seed) {
+std::array<int, foosball::kTeams> drawn_characters(std::uint64_t seed, std::size_t characters) {
   const std::uint64_t bits = mix_seed(seed ^ 0x6368617261637465u);
-  constexpr std::uint64_t n = foosball::kCharacters;
+  const std::uint64_t n = characters;
   return {static_cast<int>(bits % n), static_cast<int>((bits >> 32) % n)};
 }
 

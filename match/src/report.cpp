@@ -254,7 +254,8 @@ std::string as_json(const std::vector<Figure>& figures) {
 
 namespace {
 
-enum Part { kMain, kPaper, kPassive, kSpinner, kOneRod, kTall, kSmall, kParts };
+// Behind them one of each character.
+enum Part { kMain, kPaper, kPassive, kSpinner, kOneRod, kParts };
 
 }  // namespace
 
@@ -266,6 +267,7 @@ std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
   base.max_ticks = plan.max_ticks;
   base.max_games = plan.matches;
   base.tuning = plan.tuning;
+  base.character_list = plan.character_list;
   std::vector<SeriesDesc> series(kParts, base);
   series[kPaper].layout = plan.layout == foosball::Layout::paper ? foosball::Layout::tournament
                                                                  : foosball::Layout::paper;
@@ -273,9 +275,13 @@ std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
   series[kPassive].max_games = std::min<std::uint64_t>(plan.matches, 8);  // they are long
   series[kSpinner].players = {"spinner", plan.home};
   series[kOneRod].players = {"one-rod:" + plan.home, plan.away};
-  for (const Part part : {kTall, kSmall}) {
-    series[part].draw_characters = false;
-    series[part].characters = {part == kTall ? 0 : 2, 1};
+  // Each character against the others, half as many matches each: equal players.
+  base.players[1] = plan.home;
+  base.max_games = std::max<std::uint64_t>(2, plan.matches / 4 * 2);
+  base.draw_characters = false;
+  for (std::size_t c = 0; c < plan.character_list.size(); ++c) {
+    base.characters = {static_cast<int>(c), kAnyOther};
+    series.push_back(base);
   }
   return series;
 }
@@ -287,7 +293,6 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
            std::to_string(series[part].taken()) + " matches" +
            (desc.layout == foosball::Layout::paper ? ", paper layout" : ", tournament layout");
   };
-  (void)plan;
   std::vector<Figure> all = figures_of(players(kMain), series[kMain].statistics());
   const auto append = [&](List& list) {
     all.insert(all.end(), list.figures.begin(), list.figures.end());
@@ -312,13 +317,13 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
               at_most(30.0, "below 30"));
   append(passive);
 
-  const auto score = [&](Part part) {
+  const auto score = [&](std::size_t part) {
     return series[part].taken() < 2 ? kNone : 100.0 * mean_score(series[part].pairs());
   };
-  const auto error = [&](Part part) {
+  const auto error = [&](std::size_t part) {
     return series[part].taken() < 4 ? kNone : 100.0 * score_error(series[part].pairs());
   };
-  const auto add_points = [&](List& list, const char* name, Part part, const Goal& goal) {
+  const auto add_points = [&](List& list, const char* name, std::size_t part, const Goal& goal) {
     list.add(name, score(part), "% points", goal);
     list.figures.back().error = error(part);
   };
@@ -328,14 +333,11 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
   List one(players(kOneRod));
   add_points(one, "points of the player with one rod", kOneRod, at_least(45.0, "half"));
   append(one);
-  List characters("characters, " + series[kTall].desc().players[0] + " against " +
-                  series[kTall].desc().players[1] + ", " + std::to_string(series[kTall].taken()) +
-                  " matches each");
-  for (const Part part : {kTall, kSmall}) {
-    const auto& c = series[part].desc().characters;
-    const std::string name = std::string(foosball::character_spec(c[0]).name) + " against " +
-                             foosball::character_spec(c[1]).name;
-    add_points(characters, name.c_str(), part, {40.0, 60.0, "40 to 60"});
+  List characters("characters, each against all others, played by " + plan.home + ", " +
+                  std::to_string(series[kParts].taken()) + " matches each");
+  for (std::size_t c = 0; c < plan.character_list.size(); ++c) {
+    add_points(characters, plan.character_list[c].name.c_str(), kParts + c,
+               {40.0, 60.0, "40 to 60"});
   }
   append(characters);
   return all;

@@ -4,6 +4,16 @@
 #include <cstdio>
 
 namespace match {
+namespace {
+
+int other_than(const SeriesDesc& desc, std::uint64_t seed) {
+  const std::size_t others = desc.character_list.size() - 1;
+  if (others == 0) return desc.characters[0];
+  const int drawn = drawn_characters(seed, others)[0];
+  return drawn < desc.characters[0] ? drawn : drawn + 1;
+}
+
+}  // namespace
 
 std::string SeriesDesc::text() const {
   std::string text = players[0] + " - " + players[1];
@@ -12,6 +22,7 @@ std::string SeriesDesc::text() const {
           std::to_string(max_games) + " games, characters ";
   text += draw_characters ? std::string("drawn")
                           : std::to_string(characters[0]) + "/" + std::to_string(characters[1]);
+  text += " of " + std::to_string(digest(character_list));
   const auto add = [&](const char* name, const std::optional<SequentialTest>& t) {
     if (!t) return;
     text += std::string(", ") + name;
@@ -42,11 +53,13 @@ GameDesc Series::game(std::uint64_t index) const {
   game.variant = static_cast<int>(first);
   game.max_ticks = desc_.max_ticks;
   game.tuning = desc_.tuning;
+  game.character_list = desc_.character_list;
   if (desc_.draw_characters) {
-    game.characters = drawn_characters(game.seed);
+    game.characters = drawn_characters(game.seed, desc_.character_list.size());
   } else {
     game.characters[first] = desc_.characters[0];
-    game.characters[1 - first] = desc_.characters[1];
+    game.characters[1 - first] =
+        desc_.characters[1] == kAnyOther ? other_than(desc_, game.seed) : desc_.characters[1];
   }
   return game;
 }

@@ -5,9 +5,11 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
+#include "characters/character_file.h"
 #include "os/socket_address.h"
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
@@ -95,6 +97,7 @@ struct Raw {
   bool change_sides = false;
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed, tuning;
   std::string password_file, host_password_file;
+  std::string characters, check_character;
   double seconds = 0.0, keep_seats = 30.0;
   bool fast = false, no_real_time = false, list_tuning = false;
 };
@@ -106,6 +109,11 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--seed", raw.seed, "of the match and the computer players")->check(check_seed);
   cli.add_option("--tuning", raw.tuning, "profile of tuning values, TOML; see --list-tuning");
   cli.add_flag("--list-tuning", raw.list_tuning, "print all tuning values as a profile");
+  cli.add_option("--characters", raw.characters,
+                 "folder of character files to choose from, in place of the built-in ones and of "
+                 "your own in ~/.local/share/space-foosball/characters: docs/characters.md");
+  cli.add_option("--check-character", raw.check_character,
+                 "check a character file, print all of it, and leave");
   cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
@@ -237,6 +245,31 @@ void translate(Options& o, const Raw& raw) {
   for (std::string& device : o.devices) device = with_scheme(device);
 }
 
+// $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
+std::string own_characters() {
+  const auto folder = [](const char* variable) -> std::string {
+    const char* value = std::getenv(variable);
+    return value != nullptr && value[0] == '/' ? value : "";
+  };
+  const std::string data = folder("XDG_DATA_HOME"), home = folder("HOME");
+  if (!data.empty()) return data + "/space-foosball/characters";
+  return home.empty() ? "" : home + "/.local/share/space-foosball/characters";
+}
+
+tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {
+  if (!raw.characters.empty()) return characters::load_characters(raw.characters);
+  const std::string own = own_characters();
+  if (own.empty()) return foosball::built_in_characters();
+  return characters::load_more_characters(foosball::built_in_characters(), own);
+}
+
+// What --check-character prints: the file with nothing left out.
+tl::expected<std::string, std::string> checked(const std::string& path) {
+  const auto character = characters::load_character(path);
+  if (!character) return tl::unexpected(character.error());
+  return characters::format_character(*character);
+}
+
 }  // namespace
 
 tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
@@ -264,6 +297,16 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     auto tuning = profile::load_tuning(raw.tuning);
     if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});
     options.match.tuning = *tuning;
+  }
+  if (!raw.check_character.empty()) {
+    const auto text = checked(raw.check_character);
+    if (!text) return tl::unexpected(Leave{server::kExitUsage, text.error()});
+    return tl::unexpected(Leave{server::kExitOk, *text});
+  }
+  if (options.replay.empty()) {
+    auto list = characters_of(raw);
+    if (!list) return tl::unexpected(Leave{server::kExitUsage, list.error()});
+    options.match.characters = std::move(*list);
   }
   if (raw.list_tuning) {
     return tl::unexpected(Leave{server::kExitOk, profile::format_tuning(options.match.tuning)});

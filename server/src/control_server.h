@@ -68,6 +68,7 @@ struct ControlOptions {
   int udp = -1;  // the port's UDP socket, which must outlive the server
   std::uint16_t udp_port = 0;
   foosball::Layout layout{};
+  wire::Characters characters;  // said to each who joins
   std::optional<Endpoint> multicast;
   wire::SealKey group_key{};              // with multicast: everybody's
   bool teams_open = true;                 // false: a recording plays, nobody can take a team

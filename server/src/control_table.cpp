@@ -276,6 +276,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   connection.state = State::joined;
   connection.client = seat.client;
   send(connection, welcome);
+  send(connection, options_.characters);
   for (const auto& [topic, notice] : notices_) send(connection, notice);
   if (tuning_) send(connection, *tuning_);
   roster_changed_ = true;

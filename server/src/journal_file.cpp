@@ -25,7 +25,8 @@ using Clock = std::chrono::steady_clock;  // when to sync; decides nothing of th
 
 bool begins_as_a_recording(const std::string& path) {
   const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  std::array<std::byte, 1024> start;  // a header is some 300 bytes
+  constexpr std::size_t kRecordHead = 8;
+  std::array<std::byte, kRecordHead + wire::kMaxJournalHeader> start;
   const ssize_t size = file ? ::read(file.get(), start.data(), start.size()) : -1;
   if (size <= 0) return false;
   const std::span<const std::byte> bytes(start.data(), static_cast<std::size_t>(size));

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "characters/record.h"
 #include "rod_desk.h"
 #include "wire/enums.h"
 #include "wire/limits.h"
@@ -14,7 +15,6 @@ namespace server {
 static_assert(wire::kTeamCount == foosball::kTeams);
 static_assert(wire::kLayoutCount == foosball::kLayouts);
 static_assert(wire::kScreenCount == foosball::kScreens);
-static_assert(wire::kCharacterCount == foosball::kCharacters);
 static_assert(wire::kEventKindCount == foosball::kEventKinds);
 static_assert(wire::kCommandKindCount == foosball::kCommandKinds);
 static_assert(wire::kTuningCount == foosball::kTuningValues);
@@ -132,6 +132,7 @@ wire::JournalHeader to_header(const foosball::MatchDesc& match) {
     const foosball::TuningField& field = foosball::kTuningFields[i];
     header.tuning[i] = std::bit_cast<std::uint64_t>(match.tuning.*field.value);
   }
+  header.characters = characters::to_record(match.characters).characters;
   return header;
 }
 
@@ -164,6 +165,8 @@ foosball::MatchDesc from_header(const wire::JournalHeader& header) {
   for (std::size_t i = 0; i < header.tuning.size(); ++i) {
     match.tuning.*foosball::kTuningFields[i].value = std::bit_cast<double>(header.tuning[i]);
   }
+  // What cannot be played is left out, and then refused by Match::create.
+  match.characters = characters::from_record({header.characters}).value_or(foosball::Characters{});
   return match;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "broadcaster.h"
+#include "characters/record.h"
 #include "control_server.h"
 #include "device_watch.h"
 #include "event_repeater.h"
@@ -141,6 +142,7 @@ ControlOptions Server::Impl::control_options() const {
   out.udp_port = port;
   out.group_key = group_key;
   out.layout = options.match.layout;
+  out.characters = characters::to_record(options.match.characters);
   out.multicast = options.network.multicast;
   out.teams_open = options.replay == nullptr;
   out.random = options.random;

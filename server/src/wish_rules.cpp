@@ -16,7 +16,7 @@ bool well_formed(const wire::Wish& wish) {
   if (wish.team >= foosball::kTeams) return false;
   switch (static_cast<Kind>(wish.kind)) {
     case Kind::choose_character:
-      return wish.value < foosball::kCharacters;
+      return wish.value < foosball::kMaxCharacters;
     case Kind::pause:
       return wish.value <= 1;
     case Kind::feed:

@@ -116,11 +116,15 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
   while (true) {
     const auto status = reader_.next(message);
     if (status == wire::ControlReader::Status::message) {
-      const auto* roster = std::get_if<wire::Roster>(&message);
-      const auto* tuning = std::get_if<wire::Tuning>(&message);
-      if (roster == nullptr && tuning == nullptr) return message;
-      if (roster != nullptr) roster_ = *roster;
-      if (tuning != nullptr) tuning_ = *tuning;
+      if (const auto* roster = std::get_if<wire::Roster>(&message)) {
+        roster_ = *roster;
+      } else if (const auto* tuning = std::get_if<wire::Tuning>(&message)) {
+        tuning_ = *tuning;
+      } else if (const auto* characters = std::get_if<wire::Characters>(&message)) {
+        characters_ = *characters;
+      } else {
+        return message;
+      }
       continue;
     }
     if (status == wire::ControlReader::Status::broken) return std::nullopt;

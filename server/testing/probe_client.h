@@ -38,11 +38,12 @@ class ProbeClient {
   wire::Hello hello(std::uint8_t team = wire::kWatchOnly) const;
   bool say(const wire::ControlMessage& message);
   bool send_raw(std::span<const std::byte> bytes);  // false when the server has closed
-  // The next message that is no Roster and no Tuning; nothing at the deadline or when the server
-  // has closed.
+  // The next message that is no Roster, no Tuning and no list of Characters; nothing at the
+  // deadline or when the server has closed.
   std::optional<wire::ControlMessage> hear(int patience_ms = kPatienceMs);
   const wire::Roster& roster() const { return roster_; }  // the last one heard
   const std::optional<wire::Tuning>& tuning() const { return tuning_; }
+  const wire::Characters& characters() const { return characters_; }
   // The next message of this kind, throwing away others.
   template <class Message>
   std::optional<Message> hear_a(int patience_ms = kPatienceMs) {
@@ -78,6 +79,7 @@ class ProbeClient {
   wire::Welcome welcome_;
   wire::Roster roster_;
   std::optional<wire::Tuning> tuning_;
+  wire::Characters characters_;
   wire::DatagramOpener snapshots_;
   std::uint64_t sent_ = 0;
 };

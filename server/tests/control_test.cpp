@@ -5,6 +5,7 @@
 #include <bit>
 #include <random>
 
+#include "characters/record.h"
 #include "door.h"
 #include "lockstep.h"
 #include "seats.h"
@@ -488,8 +489,9 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   const auto back = notice(wire::Notice::Level::cleared, name + " is back");
   Lockstep table([&](ServerOptions& o) {
     keep_seats(o);
-    o.limits.unsent_bytes =
-        size_of(wire::Welcome{}) + size_of(wire::Tuning{}) + size_of(lost) + size_of(back) - 1;
+    o.limits.unsent_bytes = size_of(wire::Welcome{}) + size_of(wire::Tuning{}) +
+                            size_of(characters::to_record(foosball::built_in_characters())) +
+                            size_of(lost) + size_of(back) - 1;
   });
   auto player = std::make_unique<ProbeClient>(table.port());
   wire::Hello hello = player->hello(0);

@@ -4,7 +4,8 @@
 
 namespace video {
 
-tl::expected<std::unique_ptr<Film>, draw::WindowError> Film::open(const FilmOptions& options) {
+tl::expected<std::unique_ptr<Film>, draw::WindowError> Film::open(
+    const FilmOptions& options, const foosball::Characters& characters) {
   const auto failed = [](std::string sentence) {
     return tl::unexpected(draw::WindowError{std::move(sentence)});
   };
@@ -22,13 +23,18 @@ tl::expected<std::unique_ptr<Film>, draw::WindowError> Film::open(const FilmOpti
   auto ui = client::UiBatch::create(std::move(*font));
   if (!ui) return failed(ui.error());
   return std::unique_ptr<Film>(
-      new Film(options, std::move(*window), std::move(*scene), std::move(*ui)));
+      new Film(options, std::move(*window), std::move(*scene), std::move(*ui), characters));
 }
 
 Film::Film(const FilmOptions& options, draw::Window window, std::unique_ptr<client::Scene> scene,
-           client::UiBatch ui)
-    : options_(options), window_(std::move(window)), scene_(std::move(scene)), ui_(std::move(ui)) {
-  ui_.set_pictures(scene_->portraits(), client::Scene::portrait_cells());
+           client::UiBatch ui, const foosball::Characters& characters)
+    : options_(options),
+      characters_(characters),
+      window_(std::move(window)),
+      scene_(std::move(scene)),
+      ui_(std::move(ui)) {
+  scene_->set_characters(characters_);
+  ui_.set_pictures(scene_->portraits(), scene_->portrait_cells());
 }
 
 void Staging::advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events,
@@ -50,6 +56,7 @@ draw::Image Film::frame(const wire::Snapshot& state, Staging& staging, float tim
   scene_->draw(state, view, staging.particles(), options_.size);
   client::HudState hud;
   hud.state = &state;
+  hud.characters = &characters_;
   hud.camera = view.camera;
   hud.goal = staging.story().last_goal();
   hud.statistics = staging.story().statistics();

@@ -20,7 +20,9 @@ namespace video {
 // What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
 class Staging {
  public:
-  explicit Staging(int team) : team_(team) {}
+  Staging(int team, const foosball::Characters& characters) : team_(team) {
+    effects_.set_characters(characters);
+  }
 
   // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
   void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
@@ -46,16 +48,18 @@ struct FilmOptions {
 class Film {
  public:
   // Opens a window that nobody sees. The error is a sentence.
-  static tl::expected<std::unique_ptr<Film>, draw::WindowError> open(const FilmOptions& options);
+  static tl::expected<std::unique_ptr<Film>, draw::WindowError> open(
+      const FilmOptions& options, const foosball::Characters& characters);
 
   // time [s] since the film began.
   draw::Image frame(const wire::Snapshot& state, Staging& staging, float time);
 
  private:
   Film(const FilmOptions& options, draw::Window window, std::unique_ptr<client::Scene> scene,
-       client::UiBatch ui);
+       client::UiBatch ui, const foosball::Characters& characters);
 
   FilmOptions options_;
+  foosball::Characters characters_;
   draw::Window window_;  // first: what is drawn with must go before it
   std::unique_ptr<client::Scene> scene_;
   client::UiBatch ui_;

@@ -73,14 +73,14 @@ int run(const video::Options& options) {
                                         std::to_string(scene->total_ticks() / 1000) +
                                         " s: --from begins after that.");
   }
-  auto film = video::Film::open({options.encoder.size, options.quality});
+  auto film = video::Film::open({options.encoder.size, options.quality}, scene->characters());
   if (!film) return fail(kNoDisplay, film.error().sentence);
   const video::Span span{from, end, static_cast<std::uint64_t>(options.encoder.frames_per_second)};
   const os::FileDescriptor sound = sound_of(options, span);
   auto encoder = video::Encoder::start(options.encoder, sound.get());
   if (!encoder) return fail(server::kExitFailed, encoder.error());
 
-  video::Staging staging(options.team);
+  video::Staging staging(options.team, scene->characters());
   Progress progress(span.frames());
   const float dt = 1.0f / static_cast<float>(span.frames_per_second);
   scene->advance_to(from);

@@ -36,7 +36,7 @@ tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& 
   if (!sounds) return tl::unexpected(sounds.error());
   os::FileDescriptor file(::memfd_create("soundtrack", MFD_CLOEXEC));
   if (!file) return tl::unexpected(std::string("No room for the sound: ") + std::strerror(errno));
-  Staging staging(team);
+  Staging staging(team, scene.characters());
   scene.advance_to(span.from);
   scene.take_events();  // of what is not shown
   const auto fps = static_cast<float>(span.frames_per_second);

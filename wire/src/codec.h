@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "bits.h"
 #include "crc32.h"
 #include "quantise.h"
+#include "text.h"
 #include "wire/description.h"
 
 namespace wire {
@@ -85,6 +87,12 @@ class Encoder : public Structure {
     put_varint(count);
     align();
     bits_.put_bytes(std::span(value).first(count));
+  }
+  void text(const Text& f, const std::string& value) {
+    const std::string clean = clean_text(value, f.max);
+    put_varint(clean.size());
+    align();
+    bits_.put_bytes(std::as_bytes(std::span(clean)));
   }
   void align() { bits_.align(); }
   void checksum(const Checksum&) {
@@ -182,6 +190,13 @@ class Decoder : public Structure {
     const auto bytes = bits_.get_bytes(count);
     require(true, f.name);
     value.assign(bytes.begin(), bytes.end());
+  }
+  void text(const Text& f, std::string& value) {
+    const std::uint64_t count = within(get_varint(f.name), f.max, f.name);
+    align();
+    const auto bytes = bits_.get_bytes(count);
+    value.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    require(is_clean_text(value, f.max), f.name);
   }
   void align() { require(bits_.align(), "padding"); }
   void checksum(const Checksum& f) {

@@ -53,6 +53,11 @@ auto build(Builder& b, const Roster& m) {
   }
   return fb::CreateRoster(b, b.CreateVector(seats));
 }
+auto build(Builder& b, const Characters& m) {
+  const std::vector<std::byte> list = encode_characters(m);
+  return fb::CreateCharacters(
+      b, b.CreateVector(reinterpret_cast<const std::uint8_t*>(list.data()), list.size()));
+}
 auto build(Builder& b, const Welcome& m) {
   const auto snapshot_key = octets(b, m.snapshot_key);
   const auto input_key = octets(b, m.input_key);
@@ -141,6 +146,9 @@ bool take(const fb::Roster& t, Roster& m) {
   }
   return true;
 }
+bool take(const fb::Characters& t, Characters& m) {
+  return decode_characters(std::as_bytes(std::span(t.list()->data(), t.list()->size())), m);
+}
 bool take(const fb::Hello& t, Hello& m) {
   m.version = t.version();
   m.snapshot_layout = t.snapshot_layout();
@@ -226,6 +234,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Roster>(control.message_as_Roster(), message);
     case fb::Message::Tuning:
       return take_as<Tuning>(control.message_as_Tuning(), message);
+    case fb::Message::Characters:
+      return take_as<Characters>(control.message_as_Characters(), message);
     case fb::Message::NONE:
       break;
   }

@@ -10,7 +10,7 @@ namespace wire {
 namespace {
 
 // Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 77 bits, and of any payload
-// but a keyframe.
+// but a header and a keyframe.
 constexpr std::size_t kSmallPayload = 1024;
 
 void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
@@ -106,11 +106,13 @@ bool JournalEncoder::add(const JournalEntry& entry, std::vector<std::byte>& out)
   if (const auto* header = std::get_if<JournalHeader>(&entry)) {
     if (header->version != kJournalVersion || header->layout >= kLayoutCount ||
         header->mode >= kModeCount || header->rule_set >= kRuleSetCount ||
-        header->spin >= kSpinRuleCount) {
+        header->spin >= kSpinRuleCount || header->characters.empty() ||
+        header->characters.size() > kMaxCharacterCount) {
       return false;
     }
     const auto describe = [](auto& codec, auto& h) { describe_journal_header(codec, h); };
-    append_record(out, encode(scratch, describe, *header));
+    large_.resize(kMaxJournalHeader);
+    append_record(out, encode(large_, describe, *header));
     started_ = true;
   } else if (const auto* hash = std::get_if<JournalHash>(&entry)) {
     if (hash->tick != next_tick_) return false;

@@ -190,6 +190,9 @@ std::optional<JournalEntry> JournalReader::read_entry() {
       if (of_another_release()) return fail("recorded by another release");
       auto entry =
           read_whole(JournalHeader{}, [](auto& d, auto& h) { describe_journal_header(d, h); });
+      if (entry && std::get<JournalHeader>(*entry).characters.empty()) {
+        return fail("field characters is not valid");
+      }
       started_ = entry.has_value();
       return entry;
     }

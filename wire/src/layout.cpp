@@ -106,6 +106,11 @@ void Lister::bytes(const Bytes& f, const std::vector<std::byte>&) {
       f.meaning);
 }
 
+void Lister::text(const Text& f, const std::string&) {
+  add(f.name, "text", varint_bits(f.max) + 8 * f.max + 7, "0.." + std::to_string(f.max) + " bytes",
+      "", f.meaning);
+}
+
 void Lister::align() {
   add("(padding)", "padding", 7, "0", "", "to the next byte");
 }

@@ -49,6 +49,7 @@ class Lister {
   }
   void delta(const Delta& f, std::int64_t);
   void bytes(const Bytes& f, const std::vector<std::byte>&);
+  void text(const Text& f, const std::string&);
   void align();
   void checksum(const Checksum& f);
 

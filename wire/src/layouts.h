@@ -13,6 +13,7 @@ struct NamedLayout {
 
 Layout snapshot_layout();
 Layout input_layout();
+Layout characters_layout();
 // One for each kind of payload, and one for the ticks inside a record of ticks.
 std::vector<NamedLayout> journal_layouts();
 

@@ -52,6 +52,7 @@ Bits are filled from the lowest of each byte, bytes in order. `x[]` is an elemen
 | list | a count of so many bits, then the elements |
 | condition | no bits; what follows in its structure is there only if the flag before is 1 |
 | bytes | a varint length, zero bits to the next byte, then so many bytes |
+| text | as bytes: UTF-8 without control characters |
 | padding | zero bits to the next byte |
 | checksum | CRC-32 as in zlib (reflected 0x04C11DB7) over all bytes before it; nothing may follow |
 
@@ -230,6 +231,7 @@ std::string control() {
   const auto& seat = named(*schema.objects(), "Seat");
   text += "\n### Seat, in a Roster\n\n" + comment(seat.documentation()) + "\n" +
           control_table(schema, seat);
+  text += "\n### The list of Characters\n\n" + table(characters_layout());
   return text;
 }
 

@@ -58,6 +58,9 @@ auto tied(const Tuning& m) {
 auto tied(const Seat& m) {
   return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);
 }
+auto tied(const Characters& m) {
+  return std::tie(m.characters);
+}
 auto tied(const Refusal& m) {
   return std::tie(m.code, m.reason);
 }
@@ -81,7 +84,7 @@ auto tied(const JournalHeader& e) {
                   e.lead, e.sets_to_win, e.match_ms, e.golden_goal, e.change_sides, e.jarring,
                   e.spin, e.time_outs, e.time_out_ms, e.dead_ball_ms, e.still_ms,
                   e.possession_midfield_ms, e.possession_ms, e.ceremony_ms, e.end_ms, e.idle_ms,
-                  e.attract_ms, e.tuning);
+                  e.attract_ms, e.tuning, e.characters);
 }
 auto tied(const JournalTick& e) {
   return std::tie(e.tick, e.rods, e.commands);

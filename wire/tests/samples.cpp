@@ -58,8 +58,8 @@ Snapshot random_head(std::mt19937_64& random) {
   s.paused = random() % 2;
   s.ball_in_play = random() % 2;
   s.score = {below<std::uint8_t>(random, 256), below<std::uint8_t>(random, 256)};
-  s.character = {below<std::uint8_t>(random, kCharacterCount),
-                 below<std::uint8_t>(random, kCharacterCount)};
+  s.character = {below<std::uint8_t>(random, kMaxCharacterCount),
+                 below<std::uint8_t>(random, kMaxCharacterCount)};
   s.confirmed = {random() % 2 == 0, random() % 2 == 0};
   s.last_scorer = below<std::uint8_t>(random, kTeamCount);
   s.mode = below<std::uint8_t>(random, kModeCount);
@@ -192,6 +192,13 @@ Tuning tuning() {
   return all;
 }
 
+std::vector<CharacterRecord> characters() {
+  CharacterRecord tall{"tall", "hard shots", {}, {}, {1, 2, 3}, {253, 254, 255}, 5, 3};
+  for (std::size_t i = 0; i < tall.body.size(); ++i) tall.body[i] = 0x3FF8000000000000 + i;
+  tall.voice = {0x4074000000000000, 0x3FE0000000000000};
+  return {tall, {"J\xC3\xBCrgen", "", {}, {}, {}, {}, 0, 0}};
+}
+
 std::vector<std::pair<std::string, ControlMessage>> control() {
   return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
           {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
@@ -208,7 +215,9 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"claim", Claim{0x2A}},
           {"change_of_team", Claim{0xF0, 1}},
           {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
-          {"tuning", tuning()}};
+          {"tuning", tuning()},
+
+          {"characters", Characters{characters()}}};
 }
 
 std::vector<JournalEntry> journal() {
@@ -219,7 +228,8 @@ std::vector<JournalEntry> journal() {
                                                   .sets_to_win = 3,
                                                   .match_ms = 120'000,
                                                   .change_sides = true,
-                                                  .spin = 2}};
+                                                  .spin = 2,
+                                                  .characters = characters()}};
   JournalTick tick;
   tick.rods[3] = {400'000, -1'570'796, 2'000'000, -31'416, true};
   tick.commands = {{0, 1, 0, 0}, {1, 0, 2, 0}, {8, 0, 3, 0x3FF8000000000000}};
@@ -289,9 +299,25 @@ InputDatagram random_input(std::mt19937_64& random) {
   return i;
 }
 
+std::vector<CharacterRecord> random_characters(std::mt19937_64& random) {
+  std::vector<CharacterRecord> all(1 + random() % kMaxCharacterCount);
+  for (CharacterRecord& c : all) {
+    c.name = std::string(random() % (kMaxCharacterName + 1), 'n');
+    c.specialty = std::string(random() % (kMaxCharacterSpecialty + 1), 's');
+    for (auto& bits : c.body) bits = random();
+    for (auto& bits : c.voice) bits = random();
+    for (auto& part : c.skin) part = below<std::uint8_t>(random, 256);
+    for (auto& part : c.accent) part = below<std::uint8_t>(random, 256);
+    c.headgear = below<std::uint8_t>(random, kHeadgearCount);
+    c.face = below<std::uint8_t>(random, kFaceCount);
+  }
+  return all;
+}
+
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
   std::vector<JournalEntry> entries{
       JournalHeader{.seed = random(), .dead_ball_ms = 1, .ceremony_ms = 2, .end_ms = 3}};
+  std::get<JournalHeader>(entries[0]).characters = random_characters(random);
   JournalTick tick;
   for (; tick.tick < static_cast<std::uint64_t>(ticks); ++tick.tick) {
     for (JournalRod& rod : tick.rods) rod = random_rod(random, rod);

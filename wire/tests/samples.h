@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "wire/characters.h"
 #include "wire/control.h"
 #include "wire/device_frame.h"
 #include "wire/input_datagram.h"
@@ -22,6 +23,7 @@ Snapshot snapshot();
 InputDatagram input();
 std::vector<std::pair<std::string, ControlMessage>> control();  // one of each kind, named
 std::vector<JournalEntry> journal();
+std::vector<CharacterRecord> characters();
 DeviceFrame device_frame();
 
 // Random within the ranges. full: every man and every event.
@@ -34,6 +36,8 @@ bool same(const ControlMessage& a, const ControlMessage& b);
 bool same(const JournalEntry& a, const JournalEntry& b);
 
 InputDatagram random_input(std::mt19937_64& random);
+// 1 to kMaxCharacterCount of them, their numbers any bits.
+std::vector<CharacterRecord> random_characters(std::mt19937_64& random);
 // A whole recording of so many ticks.
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks);
 

@@ -23,7 +23,7 @@ void expect_valid(const Snapshot& s) {
   EXPECT_LT(s.last_scorer, kTeamCount);
   EXPECT_GE(s.send_time_us, 0);
   EXPECT_LE(s.tick, kMaxTick);
-  for (const auto character : s.character) EXPECT_LT(character, kCharacterCount);
+  for (const auto character : s.character) EXPECT_LT(character, kMaxCharacterCount);
   const auto expect_pose = [](const PoseVelocity& p, double spin) {
     double norm = 0;
     for (const float q : p.orientation) norm += static_cast<double>(q) * static_cast<double>(q);

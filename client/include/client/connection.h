@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "client/snapshot_buffer.h"
+#include "foosball/character.h"
 #include "wire/control.h"
 #include "wire/input_datagram.h"
 
@@ -47,6 +48,9 @@ struct ConnectionStatus {
   Link link = Link::connecting;
   std::string detail;     // one sentence, or empty
   wire::Welcome welcome;  // of the last time it was joined
+  // That the match has, as its server said; never null: the built-in ones until then. Another
+  // pointer whenever they changed.
+  std::shared_ptr<const foosball::Characters> characters;
   std::uint64_t joins = 0;
   bool server_ended = false;          // it said good-bye when it was last lost
   bool small_receive_buffer = false;  // the system granted less than was asked for

@@ -35,6 +35,8 @@ class Crew {
   DeviceSet devices_of(int device) const;
 
   void set_assists(const foosball::AssistChoice& choice);
+  // That the match has to choose from; the built-in ones until this is called.
+  void set_characters(const foosball::Characters& characters);
   // One frame. take: what was done with these devices.
   using Take = std::function<InputEvents(DeviceSet)>;
   void update(const Take& take, const wire::Snapshot* scene, std::int64_t now_us);
@@ -67,6 +69,7 @@ class Crew {
   std::uint8_t granted_;
   std::array<int, foosball::kRods> owner_;
   foosball::AssistChoice assists_;
+  foosball::Characters characters_ = foosball::built_in_characters();
   bool begun_ = false;
   std::list<Person> people_;
 };

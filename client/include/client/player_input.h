@@ -41,6 +41,8 @@ class PlayerInput {
   int active_rod() const { return hand_.active_rod(); }  // one of its rods
   bool automatic() const { return assists_on_.automatic_rod; }
   void set_assists(const foosball::AssistChoice& choice);
+  // That the match has to choose from, at least one; the built-in ones until this is called.
+  void set_characters(const foosball::Characters& characters) { characters_ = characters; }
 
  private:
   void move(const InputEvents& events, const wire::Snapshot& scene);
@@ -62,6 +64,7 @@ class PlayerInput {
   std::int64_t assisted_us_ = 0;  // up to when
   std::array<foosball::RodTarget, foosball::kRods> targets_{};
   bool begun_ = false;
+  foosball::Characters characters_ = foosball::built_in_characters();
   bool key_was_held_ = false;
   std::vector<wire::Wish> wishes_;
 };

@@ -31,6 +31,8 @@ class RodPrediction {
   static constexpr int kLagMarginMs = 8;
 
   explicit RodPrediction(foosball::Layout layout);
+  // Those that the match has; the built-in ones until this is called.
+  void set_characters(const foosball::Characters& characters) { characters_ = characters; }
 
   // As the server says that the match is tuned.
   void set_tuning(const foosball::Tuning& tuning) { tuning_ = tuning; }
@@ -57,12 +59,14 @@ class RodPrediction {
     std::array<Pose, 512> history{};  // by tick of this prediction
   };
   void restart(Rod& rod, const wire::RodSnapshot& server);
-  void advance(Rod& rod, const wire::InputRod& hand, int character, std::int64_t ticks);
+  void advance(Rod& rod, const wire::InputRod& hand, const foosball::CharacterBody& body,
+               std::int64_t ticks);
   const Pose& past(const Rod& rod, int ms_ago) const;
   void score_lags(const wire::Snapshot& server);
   void correct(Rod& rod, const wire::RodSnapshot& server, double seconds);
 
   const foosball::TableSpec& table_;
+  foosball::Characters characters_ = foosball::built_in_characters();
   foosball::Tuning tuning_;
   std::array<Rod, foosball::kRods> rods_;
   std::int64_t tick_ = 0, clock_us_ = 0, updated_us_ = 0;

@@ -84,6 +84,7 @@ class App {
   void follow_roster();
   void learn_names();
   int viewer_team() const;
+  void use_characters();
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
@@ -136,7 +137,8 @@ class App {
   bool replay_ = false;
   ConnectionStatus status_;
   wire::Roster roster_;
-  foosball::Tuning tuning_;  // of the match, as far as it is known
+  foosball::Tuning tuning_;                                 // of the match, as far as it is known
+  std::shared_ptr<const foosball::Characters> characters_;  // in use; null: the built-in ones
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
   std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
@@ -184,7 +186,8 @@ std::string App::use_quality(draw::Quality quality) {
   auto scene = Scene::create(quality);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
-  ui_->set_pictures(scene_->portraits(), Scene::portrait_cells());
+  if (characters_) scene_->set_characters(*characters_);
+  ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
   log_info(std::string("quality ") + (quality == draw::Quality::high ? "high" : "low"));
   return {};
 }
@@ -213,7 +216,7 @@ std::string App::use_texts() {
   auto ui = UiBatch::create(std::move(*font));
   if (!ui) return ui.error();
   ui_ = std::move(*ui);
-  if (scene_) ui_->set_pictures(scene_->portraits(), Scene::portrait_cells());
+  if (scene_) ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
   return {};
 }
 
@@ -323,6 +326,7 @@ void App::follow_connection() {
                   connection_->address());
     if (status_.link == Link::refused) log_warning("the physics server refuses: " + status_.detail);
   }
+  if (status_.characters != characters_) use_characters();
   if (status_.joins == joins_seen_) return;
   joins_seen_ = status_.joins;
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
@@ -333,6 +337,18 @@ void App::follow_connection() {
       welcome.session, welcome.team < foosball::kTeams ? welcome.team : 0, layout, welcome.rods);
   crew_->set_assists(assists_of(settings_));
   prediction_ = std::make_unique<RodPrediction>(layout);
+  use_characters();
+}
+
+void App::use_characters() {
+  if (status_.characters != characters_) {
+    characters_ = status_.characters;
+    scene_->set_characters(*characters_);
+    ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
+    effects_.set_characters(*characters_);
+  }
+  if (crew_) crew_->set_characters(*characters_);
+  if (prediction_) prediction_->set_characters(*characters_);
 }
 
 // Rods may be given to others, and the team may change, while the match goes on.
@@ -470,6 +486,7 @@ HudState App::hud(const Camera& camera) {
   HudState hud;
   hud.state = sample_.any ? &drawn_ : nullptr;
   hud.camera = camera;
+  if (characters_) hud.characters = characters_.get();
   hud.viewer_team = viewer_team();
   hud.mouse_free = !window_->captured();
   hud.show_help = show_help_;

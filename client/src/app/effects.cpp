@@ -32,10 +32,9 @@ glm::vec3 crowd_of(int team) {
   return {team == 1 ? 0.9f : -0.9f, 0.0f, 0.4f};
 }
 
-// A heavy character shouts low, a light one high.
-float pitch_of(int character) {
-  const auto& spec = foosball::character_spec(std::clamp(character, 0, foosball::kCharacters - 1));
-  return std::clamp(static_cast<float>(0.070 / spec.mass), 0.6f, 1.7f);
+// Kicks sound higher with a higher voice, but not as much: plastic stays plastic.
+float kick_pitch(const foosball::CharacterVoice& voice) {
+  return std::clamp(std::sqrt(static_cast<float>(voice.pitch) / 240.0f), 0.6f, 1.8f);
 }
 
 }  // namespace
@@ -44,6 +43,19 @@ float strength_of_impulse(float impulse) {
   if (!(impulse > kSoftestImpulse)) return 0.0f;
   return std::min(std::log(impulse / kSoftestImpulse) / std::log(kHardestImpulse / kSoftestImpulse),
                   1.0f);
+}
+
+const foosball::CharacterVoice& Effects::voice_of(const wire::Snapshot& scene, int team) const {
+  return foosball::nearest(characters_, scene.character[side(team)]).voice;
+}
+
+// A flute and a reed at once, each as loud as the timbre says.
+void Effects::shout(const foosball::CharacterVoice& voice, float volume, const glm::vec3& at,
+                    SoundPlayer& sounds) const {
+  const float pitch = static_cast<float>(voice.pitch) / kVoicePitch;
+  const auto reed = static_cast<float>(voice.timbre);
+  if (reed < 1.0f) sounds.play(Sound::flute, volume * std::sqrt(1.0f - reed), at, pitch);
+  if (reed > 0.0f) sounds.play(Sound::reed, volume * std::sqrt(reed), at, pitch);
 }
 
 void Effects::hit(const wire::EventSnapshot& event, const wire::Snapshot& scene,
@@ -63,11 +75,11 @@ void Effects::hit(const wire::EventSnapshot& event, const wire::Snapshot& scene,
   switch (static_cast<Kind>(event.kind)) {
     case Kind::man_hit: {
       particles.spark(Material::man, at, towards, kTeamColour[side(event.team)], sparks);
-      const float pitch = pitch_of(scene.character[side(event.team)]);
-      sound(strength > kBright ? Sound::shot : Sound::kick, std::sqrt(pitch));
+      const foosball::CharacterVoice& voice = voice_of(scene, event.team);
+      sound(strength > kBright ? Sound::shot : Sound::kick, kick_pitch(voice));
       if (strength > 0.85f) {
         shake_ = std::max(shake_, 0.35f * strength);
-        if (sounds != nullptr) sounds->play(Sound::voice, 0.35f * strength, at, pitch);
+        if (sounds != nullptr) shout(voice, 0.35f * strength, at, *sounds);
       }
       break;
     }
@@ -96,19 +108,19 @@ void Effects::react(const MatchStory& story, const wire::Snapshot& scene, Partic
     }
     if (sounds == nullptr) continue;
     const glm::vec3 crowd = crowd_of(moment.team);
-    const float pitch = pitch_of(scene.character[side(moment.team)]);
+    const foosball::CharacterVoice& voice = voice_of(scene, moment.team);
     switch (moment.moment) {
       case Moment::shot:
         sounds->play(Sound::gasp, 0.10f + 0.25f * moment.strength, crowd);
         break;
       case Moment::save:
         sounds->play(Sound::cheer, 0.15f + 0.25f * moment.strength, crowd, 1.15f);
-        sounds->play(Sound::voice, 0.4f, vec(scene.ball.position), pitch);
+        shout(voice, 0.4f, vec(scene.ball.position), *sounds);
         break;
       case Moment::goal:
         sounds->play(Sound::goal, 0.8f, vec(scene.ball.position));
         sounds->play(Sound::cheer, 0.9f, crowd, moment.team == 0 ? 1.0f : 1.08f);
-        sounds->play(Sound::voice, 0.7f, crowd, pitch);
+        shout(voice, 0.7f, crowd, *sounds);
         break;
       case Moment::own_goal:
         sounds->play(Sound::groan, 0.9f, crowd_of(1 - moment.team));

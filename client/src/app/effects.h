@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/match_story.h"
+#include "foosball/character.h"
 #include "render/particles.h"
 #include "sound/player.h"
 #include "wire/snapshot.h"
@@ -20,6 +21,8 @@ class Effects {
   // sounds: null when there are none. dt [s]; 0 while the match stands.
   void show(std::span<const wire::EventSnapshot> events, const wire::Snapshot& scene,
             const MatchStory& story, Particles& particles, SoundPlayer* sounds, float dt);
+  // Of the characters that the match has; the built-in ones until this is called.
+  void set_characters(const foosball::Characters& characters) { characters_ = characters; }
   // How far a goal or a hard hit still shakes the picture, 0..1.
   float shake() const { return shake_; }
 
@@ -32,6 +35,11 @@ class Effects {
                    SoundPlayer* sounds, float dt);
   void follow_rods(const wire::Snapshot& scene, SoundPlayer* sounds) const;
 
+  const foosball::CharacterVoice& voice_of(const wire::Snapshot& scene, int team) const;
+  void shout(const foosball::CharacterVoice& voice, float volume, const glm::vec3& at,
+             SoundPlayer& sounds) const;
+
+  foosball::Characters characters_ = foosball::built_in_characters();
   float excitement_ = 0.0f;  // of the crowd, 0..1
   float shake_ = 0.0f;
 };

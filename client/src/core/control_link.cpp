@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "characters/record.h"
 #include "os/clock.h"
 #include "wire/enums.h"
 
@@ -24,7 +25,10 @@ constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leav
 
 ControlLink::ControlLink(const ConnectionOptions& options, const os::SocketAddress& server,
                          SnapshotListener& listener)
-    : options_(options), server_(server), listener_(listener) {}
+    : options_(options), server_(server), listener_(listener) {
+  status_.characters =
+      std::make_shared<const foosball::Characters>(foosball::built_in_characters());
+}
 
 ControlLink::~ControlLink() {
   stop_ = true;
@@ -248,6 +252,9 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     tuning_ = *tuning;
   }
+  if (const auto* record = std::get_if<wire::Characters>(&message)) {
+    return on_characters(*record, now_us);
+  }
   if (const auto* refusal = std::get_if<wire::Refusal>(&message)) {
     drop(refusal->reason, now_us, true);
     return false;
@@ -274,6 +281,19 @@ void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) 
   status_.detail.clear();
   status_.welcome = welcome;
   ++status_.joins;
+}
+
+bool ControlLink::on_characters(const wire::Characters& record, std::int64_t now_us) {
+  auto characters = characters::from_record(record);
+  if (!characters) {
+    drop("its characters cannot be played: use the same release of both", now_us);
+    return false;
+  }
+  const std::lock_guard lock(mutex_);
+  if (*characters != *status_.characters) {
+    status_.characters = std::make_shared<const foosball::Characters>(std::move(*characters));
+  }
+  return true;
 }
 
 void ControlLink::on_notice(const wire::Notice& notice) {

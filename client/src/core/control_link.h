@@ -54,6 +54,7 @@ class ControlLink {
   void watch_silence(std::int64_t now_us);
   bool handle(const wire::ControlMessage& message, std::int64_t now_us);
   void on_welcome(const wire::Welcome& welcome, std::int64_t now_us);
+  bool on_characters(const wire::Characters& record, std::int64_t now_us);
   void on_notice(const wire::Notice& notice);
   void drop(const std::string& why, std::int64_t now_us, bool refused = false);
   void queue(const wire::ControlMessage& message);

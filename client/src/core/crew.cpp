@@ -67,11 +67,17 @@ void Crew::seat(int device, int team, std::uint8_t rods) {
   if (rods == 0) return;
   people_.push_back({device, rods, PlayerInput(session_, team, layout_, rods)});
   people_.back().input.set_assists(assists_);
+  people_.back().input.set_characters(characters_);
 }
 
 void Crew::set_assists(const foosball::AssistChoice& choice) {
   assists_ = choice;
   for (Person& person : people_) person.input.set_assists(choice);
+}
+
+void Crew::set_characters(const foosball::Characters& characters) {
+  characters_ = characters;
+  for (Person& person : people_) person.input.set_characters(characters);
 }
 
 void Crew::update(const Take& take, const wire::Snapshot* scene, std::int64_t now_us) {

@@ -39,7 +39,7 @@ cabinet::PadState turned(const cabinet::PadState& pad) {
 }
 
 // What the person sees, as the assists want it.
-foosball::AssistView seen_in(const wire::Snapshot& scene) {
+foosball::AssistView seen_in(const wire::Snapshot& scene, const foosball::Characters& characters) {
   foosball::AssistView view;
   view.ball_in_play = scene.ball_in_play;
   const auto vec = [](const std::array<float, 3>& v) { return vp::Vec3{v[0], v[1], v[2]}; };
@@ -49,8 +49,8 @@ foosball::AssistView seen_in(const wire::Snapshot& scene) {
     const wire::RodSnapshot& rod = scene.rods[i];
     view.rods[i] = {rod.slide, rod.angle, rod.slide_rate, rod.angle_rate};
   }
-  for (std::size_t team = 0; team < view.character.size(); ++team)
-    view.character[team] = std::min<int>(scene.character[team], foosball::kCharacters - 1);
+  for (std::size_t team = 0; team < view.bodies.size(); ++team)
+    view.bodies[team] = foosball::nearest(characters, scene.character[team]).body;
   return view;
 }
 
@@ -81,7 +81,7 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
   }
   const bool known = scene != nullptr && scene->session == session_;
   begun_ = begun_ || known;
-  const foosball::AssistView view = known ? seen_in(*scene) : foosball::AssistView{};
+  const foosball::AssistView view = known ? seen_in(*scene, characters_) : foosball::AssistView{};
   choose_rod(view);
   hand_.choose(events.choose_line);
   if (events.wheel != 0) hand_.cycle(events.wheel);
@@ -170,14 +170,12 @@ void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot
 void PlayerInput::choose_character(const InputEvents& events, const wire::Snapshot& scene) {
   const int now = scene.character[static_cast<std::size_t>(team_)];
   int wanted = now;
-  if (events.choose_line >= 0 && events.choose_line < foosball::kCharacters)
-    wanted = events.choose_line;
+  const int count = static_cast<int>(characters_.size());
+  if (events.choose_line >= 0 && events.choose_line < count) wanted = events.choose_line;
   int steps =
       -events.wheel + events.spin_taps - events.slide_taps - events.pad_up + events.pad_right;
   if (!key_was_held_) steps += static_cast<int>(std::lround(events.key_spin - events.key_slide));
-  if (steps != 0)
-    wanted =
-        ((now + steps) % foosball::kCharacters + foosball::kCharacters) % foosball::kCharacters;
+  if (steps != 0) wanted = ((now + steps) % count + count) % count;
   if (wanted == now) return;
   wishes_.push_back({number(wire::WishKind::choose_character), static_cast<std::uint8_t>(team_),
                      static_cast<std::uint8_t>(wanted)});

@@ -53,10 +53,10 @@ void RodPrediction::restart(Rod& rod, const wire::RodSnapshot& server) {
   rod.history.fill({server.slide, server.angle});
 }
 
-void RodPrediction::advance(Rod& rod, const wire::InputRod& hand, int character,
-                            std::int64_t ticks) {
+void RodPrediction::advance(Rod& rod, const wire::InputRod& hand,
+                            const foosball::CharacterBody& body, std::int64_t ticks) {
   const foosball::RodSpec& spec = table_.rods[static_cast<std::size_t>(rod.index)];
-  const foosball::RodInertia inertia = foosball::rod_inertia(table_, spec, character, tuning_);
+  const foosball::RodInertia inertia = foosball::rod_inertia(table_, spec, body, tuning_);
   const foosball::RodTarget target{hand.slide, hand.angle, hand.slide_rate, hand.angle_rate, true};
   for (std::int64_t i = 1; i <= ticks; ++i) {
     rod.state = foosball::step_rod(spec, inertia, rod.state, target);
@@ -114,8 +114,8 @@ void RodPrediction::update(const std::array<wire::InputRod, 8>& hand, const wire
     if (gap || !predicted || !rod.predicted) restart(rod, seen);
     rod.predicted = predicted;
     const auto team = static_cast<std::size_t>(table_.rods[i].team);
-    const int character = std::min<int>(server.character[team], foosball::kCharacters - 1);
-    if (predicted) advance(rod, hand[i], character, ticks);
+    const foosball::Character& character = foosball::nearest(characters_, server.character[team]);
+    if (predicted) advance(rod, hand[i], character.body, ticks);
   }
   tick_ += ticks;
   score_lags(server);

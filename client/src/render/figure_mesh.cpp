@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "render/mesh_builder.h"
 
@@ -98,9 +99,9 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
   b.paint({look.accent, 0.15f, 0.35f, 0.1f, 0.0f});
   const float wide = r.y;
   switch (look.headgear) {
-    case Headgear::helmet:
+    case foosball::Headgear::helmet:
       break;
-    case Headgear::antenna:  // two rods with a bulb
+    case foosball::Headgear::antenna:  // two rods with a bulb
       for (const float side : {-1.0f, 1.0f}) {
         b.rounded_box({at.x - 0.3f * r.x, at.y + side * 0.75f * wide, at.z + 0.95f * r.z},
                       {0.0011f, 0.0011f, 0.0060f}, 0.0004f, 1);
@@ -108,11 +109,11 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
                     glm::vec3(0.0022f), 8, 6);
       }
       break;
-    case Headgear::cap:  // a peak over the eyes
+    case foosball::Headgear::cap:  // a peak over the eyes
       b.rounded_box({at.x + 0.95f * r.x, at.y, at.z + 0.42f * r.z},
                     {0.50f * r.x, 0.78f * wide, 0.0014f}, 0.0006f, 1);
       break;
-    case Headgear::horns:
+    case foosball::Headgear::horns:
       for (const float side : {-1.0f, 1.0f}) {
         const auto ring = [&](float up, float out, float half) {
           return LoftRing{{at.x, at.y + side * out * wide, at.z + up * r.z}, glm::vec2(half), 2.0f};
@@ -122,18 +123,18 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
                8);
       }
       break;
-    case Headgear::hood:  // falls down the back
+    case foosball::Headgear::hood:  // falls down the back
       b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.05f * r.z},
                   {0.95f * r.x, 1.08f * wide, 1.02f * r.z}, 14, 10);
       break;
-    case Headgear::bubble:  // a ring around the glass
+    case foosball::Headgear::bubble:  // a ring around the glass
       b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.05f * r.x, 0.0016f, 14, 6);
       break;
   }
 }
 
 void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const FigureLook& look) {
-  if (look.face == FaceKind::visor) {
+  if (look.face == foosball::Face::visor) {
     b.paint(kVisor);
     b.ellipsoid({at.x + 0.42f * r.x, at.y, at.z + 0.02f * r.z},
                 {0.70f * r.x, 0.80f * r.y, 0.60f * r.z}, 16, 10);
@@ -145,7 +146,7 @@ void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const Fig
   const float front = at.x + 1.02f * r.x;
   for (const float side : {-1.0f, 1.0f}) {
     const glm::vec3 eye{front, at.y + side * 0.32f * r.y, at.z + 0.10f * r.z};
-    if (look.face == FaceKind::goggles) {
+    if (look.face == foosball::Face::goggles) {
       b.paint({{0.05f, 0.30f, 0.42f}, 0.0f, 0.12f, 0.6f, 0.0f});
       b.ellipsoid(eye, {0.22f * r.x, 0.30f * r.y, 0.26f * r.z}, 8, 6);
       continue;
@@ -155,7 +156,7 @@ void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const Fig
     b.paint({glm::vec3(0.015f), 0.0f, 0.3f, 0.0f, 0.0f});
     b.ellipsoid(eye + glm::vec3(0.12f * r.x, 0, 0), {0.10f * r.x, 0.11f * r.y, 0.12f * r.z}, 8, 6);
   }
-  if (look.face == FaceKind::beard) {
+  if (look.face == foosball::Face::beard) {
     b.paint({glm::vec3(0.16f, 0.07f, 0.025f), 0.0f, 0.8f, 0.0f, 0.0f});
     b.ellipsoid({at.x + 0.62f * r.x, at.y, at.z - 0.62f * r.z},
                 {0.50f * r.x, 0.62f * r.y, 0.42f * r.z}, 10, 8);
@@ -169,7 +170,8 @@ void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const Fig
 void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
               const FigureLook& look) {
   const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
-  b.paint(look.headgear == Headgear::cap ? Paint{look.accent, 0.5f, 0.5f, 0.0f, 0.0f} : kHelmet);
+  b.paint(look.headgear == foosball::Headgear::cap ? Paint{look.accent, 0.5f, 0.5f, 0.0f, 0.0f}
+                                                   : kHelmet);
   b.ellipsoid(head.centre, r, 20, 14);
   add_headgear(b, head.centre, r, look);
   add_crest(b, head.centre, r, look.crest);
@@ -231,21 +233,20 @@ void add_foot(MeshBuilder& b, const PartExtent& foot) {
                 {foot.half.x * 0.985f, foot.half.y * 0.985f, 0.5f * sole + 0.0005f}, 0.0010f, 1);
 }
 
+// From sRGB (IEC 61966-2-1).
+glm::vec3 linear_of(const foosball::Colour& colour) {
+  const auto part = [](std::uint8_t code) {
+    const float s = static_cast<float>(code) / 255.0f;
+    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+  };
+  return {part(colour[0]), part(colour[1]), part(colour[2])};
+}
+
 }  // namespace
 
-FigureLook figure_look(int character, int team, bool stripes) {
-  static const std::array<FigureLook, 6> kLooks{{
-      {Headgear::antenna, FaceKind::eyes, {0.62f, 0.40f, 0.26f}, {0.85f, 0.70f, 0.10f}},
-      {Headgear::helmet, FaceKind::visor, {0.45f, 0.26f, 0.16f}, {0.80f, 0.82f, 0.85f}},
-      {Headgear::horns, FaceKind::beard, {0.70f, 0.46f, 0.34f}, {0.55f, 0.36f, 0.16f}},
-      {Headgear::cap, FaceKind::goggles, {0.28f, 0.15f, 0.09f}, {0.12f, 0.55f, 0.30f}},
-      {Headgear::hood, FaceKind::eyes, {0.30f, 0.55f, 0.30f}, {0.35f, 0.12f, 0.50f}},
-      {Headgear::bubble, FaceKind::goggles, {0.75f, 0.52f, 0.42f}, {0.85f, 0.25f, 0.45f}},
-  }};
-  FigureLook look = kLooks[static_cast<std::size_t>(character) % kLooks.size()];
-  look.crest = team;
-  look.stripes = stripes && team == 1;
-  return look;
+FigureLook figure_look(const foosball::CharacterLook& look, int team, bool stripes) {
+  return {look.headgear,          look.face, linear_of(look.skin),
+          linear_of(look.accent), team,      stripes && team == 1};
 }
 
 MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,

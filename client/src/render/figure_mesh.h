@@ -12,20 +12,17 @@ namespace client {
 // How far a helmet with its gear or a pack may stand out of its box [m]; legs and feet never do.
 inline constexpr float kFigureOverhang = 0.011f;
 
-enum class Headgear : std::uint8_t { helmet, antenna, cap, horns, hood, bubble };
-enum class FaceKind : std::uint8_t { visor, eyes, goggles, beard };
-
 // How a character looks; the team gives its crest's shape, so that teams are told apart by more
 // than their colours.
 struct FigureLook {
-  Headgear headgear = Headgear::helmet;
-  FaceKind face = FaceKind::visor;
+  foosball::Headgear headgear = foosball::Headgear::helmet;
+  foosball::Face face = foosball::Face::visor;
   glm::vec3 skin{0.62f, 0.40f, 0.26f};    // linear
   glm::vec3 accent{0.80f, 0.82f, 0.85f};  // of gloves, boots, headgear
   int crest = 0;                          // 0: a fin from front to back; 1: a bar from side to side
   bool stripes = false;                   // hoops around body and legs
 };
-FigureLook figure_look(int character, int team, bool stripes);
+FigureLook figure_look(const foosball::CharacterLook& look, int team, bool stripes);
 
 MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,
                      const FigureLook& look, float detail);

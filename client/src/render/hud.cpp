@@ -13,7 +13,8 @@ namespace client {
 namespace {
 
 // The board's upper edge is at y.
-void draw_score(const HudPen& whole, const wire::Snapshot& state, bool at_the_bottom) {
+void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
+  const wire::Snapshot& state = *hud.state;
   const HudPen pen = whole.fitting(204.0f, 90.0f);
   const float half = 196.0f, height = 62.0f;
   const float y = at_the_bottom ? pen.bottom - height - 6.0f : 14.0f;
@@ -28,9 +29,8 @@ void draw_score(const HudPen& whole, const wire::Snapshot& state, bool at_the_bo
     pen.text(std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]),
              {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + 31.0f}, kTeamInk[t],
              0.55f, 108.0f);
-    const auto& spec =
-        foosball::character_spec(std::min<int>(state.character[t], foosball::kCharacters - 1));
-    pen.text(tr(spec.name), {Face::regular, 11.5f, 0.01f, Align::centre},
+    const std::string& name = foosball::nearest(*hud.characters, state.character[t]).name;
+    pen.text(tr(name.c_str()), {Face::regular, 11.5f, 0.01f, Align::centre},
              {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
   if (state.sets[0] + state.sets[1] > 0) {
@@ -175,7 +175,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_logo(pen, state, hud.viewer_team < 0, hud.still);
       return;
     case ScreenKind::selection:
-      draw_selection(pen, state, hud.viewer_team);
+      draw_selection(pen, state, *hud.characters, hud.viewer_team);
       return;
     case ScreenKind::play:
       break;
@@ -186,7 +186,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_end(pen, state, hud.statistics);
       break;
   }
-  draw_score(pen, state, above);
+  draw_score(pen, hud, above);
   if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) draw_rules_line(pen, hud, above);
   if (!above) draw_held_rods(pen, hud, screen);
   if (state.paused) draw_paused(pen);

@@ -9,6 +9,7 @@
 #include "client/menu_page.h"
 #include "client/settings.h"
 #include "core/match_story.h"
+#include "foosball/character.h"
 #include "render/camera.h"
 #include "render/ui_batch.h"
 #include "wire/enums.h"
@@ -23,6 +24,7 @@ using ScreenKind = wire::Screen;
 struct HudState {
   const wire::Snapshot* state = nullptr;  // none yet: nothing was received
   Camera camera;
+  const foosball::Characters* characters = &foosball::built_in_characters();
   int viewer_team = -1;            // -1: watches
   std::string connection_message;  // over all else, while the server is away; empty: it is there
   std::string connection_detail;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "foosball/table.h"
+#include "foosball/tuning.h"
 #include "render/hud.h"
 #include "render/translate.h"
 
@@ -77,24 +78,28 @@ std::string capitalised(std::string text) {
 
 // How a character's figures compare with the others': 0 least .. 1 most.
 struct Traits {
-  float reach, guard, agility;
+  float attack, guard, agility;
 };
 
-Traits traits_of(int character) {
+Traits traits_of(const foosball::Characters& characters, const foosball::Character& one) {
   const auto among = [&](auto value) {
     double least = 1e9, most = -1e9;
-    for (int c = 0; c < foosball::kCharacters; ++c) {
-      const double v = value(foosball::character_spec(c));
-      least = std::min(least, v);
-      most = std::max(most, v);
+    for (const foosball::Character& c : characters) {
+      least = std::min(least, value(c.body));
+      most = std::max(most, value(c.body));
     }
-    const double here = value(foosball::character_spec(character));
-    return most > least ? static_cast<float>((here - least) / (most - least)) : 0.5f;
+    const double span = most - least;
+    return span > 1e-9 * most ? static_cast<float>((value(one.body) - least) / span) : 0.5f;
   };
-  using Spec = foosball::CharacterSpec;
-  return {among([](const Spec& s) { return s.foot_restitution * s.foot_reach; }),
-          among([](const Spec& s) { return s.foot_width + s.torso_width; }),
-          among([](const Spec& s) { return -s.mass; })};
+  using Body = foosball::CharacterBody;
+  static constexpr foosball::Tuning kHand;  // beyond it no limit of a character counts
+  constexpr double kRod = 1.5;              // with the hand [kg]
+  return {
+      among([](const Body& b) {
+        return (1.0 + b.restitution) * std::min(b.turn_speed, kHand.turn_rate);
+      }),
+      among([](const Body& b) { return b.foot_width + b.torso_width; }),
+      among([](const Body& b) { return std::min(b.slide_speed, 4.0) / (kRod + 4.0 * b.mass); })};
 }
 
 void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float width,
@@ -106,8 +111,9 @@ void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec
 }
 
 // The portrait, the name, and what the character is good at.
-void draw_character(const HudPen& pen, int character, int team, const glm::vec2& low,
-                    const glm::vec2& size, bool chosen) {
+void draw_character(const HudPen& pen, const foosball::Characters& characters, int character,
+                    int team, const glm::vec2& low, const glm::vec2& size, bool chosen) {
+  const foosball::Character& shown = foosball::nearest(characters, character);
   const auto& colour = kTeamInk[static_cast<std::size_t>(team)];
   const glm::vec2 high = low + size;
   pen.panel(low, high, 12.0f,
@@ -117,13 +123,12 @@ void draw_character(const HudPen& pen, int character, int team, const glm::vec2&
   if (chosen) pen.panel(low, high, 12.0f, colour, 2.0f);
   const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
   const float room = size.x - wide - 20.0f;
-  pen.text(capitalised(tr(foosball::character_spec(character).name)),
-           {Face::bold, 18.0f, 0.0f, Align::left}, text + glm::vec2(0.0f, 0.28f * size.y),
-           chosen ? kInk : kFaint, 0.55f, room);
-  const Traits traits = traits_of(character);
+  pen.text(capitalised(tr(shown.name.c_str())), {Face::bold, 18.0f, 0.0f, Align::left},
+           text + glm::vec2(0.0f, 0.28f * size.y), chosen ? kInk : kFaint, 0.55f, room);
+  const Traits traits = traits_of(characters, shown);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
   const float bars = std::max(room - 60.0f, 10.0f);
-  draw_trait(pen, tr("attack"), traits.reach, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar);
+  draw_trait(pen, tr("attack"), traits.attack, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar);
   draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar);
   draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar);
 }
@@ -194,8 +199,11 @@ void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, b
 }
 
 // Each team's characters on its side, as many as fit below one another.
-void draw_selection(const HudPen& whole, const wire::Snapshot& state, int viewer_team) {
-  constexpr auto kCount = static_cast<float>(foosball::kCharacters);
+void draw_selection(const HudPen& whole, const wire::Snapshot& state,
+                    const foosball::Characters& characters, int viewer_team) {
+  constexpr int kAtOnce = 6;
+  const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
+  const auto rows = static_cast<float>(shown);
   const HudPen pen = whole.fitting(450.0f, 660.0f);
   pen.panel({-200.0f, 16.0f}, {200.0f, 88.0f}, 14.0f, kPanel);
   pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f}, kInk,
@@ -204,24 +212,35 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state, int viewer
            {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, 76.0f}, kFaint, 0.8f, 370.0f);
   const float width = std::min(262.0f, pen.half_width - 160.0f), top = 108.0f, low = 606.0f;
   const float between = 6.0f;
-  const float height = std::min(118.0f, (low - top - 78.0f) / kCount - between);
+  const float height =
+      std::min(118.0f, (low - top - 98.0f) / static_cast<float>(kAtOnce) - between);
   for (int team = 0; team < 2; ++team) {
     const auto t = static_cast<std::size_t>(team);
     const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 24.0f
                                                       : pen.half_width - 24.0f - width;
-    const float end = top + 46.0f + kCount * (height + between);
-    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 36.0f}, 16.0f, kVeil);
+    const float end = top + 46.0f + rows * (height + between);
+    const int chosen = std::min<int>(state.character[t], count - 1);
+    const int first = std::clamp(chosen - kAtOnce / 2, 0, count - shown);
+    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 56.0f}, 16.0f, kVeil);
     pen.text(named_team(t), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
              kTeamInk[t], 0.55f, width - 70.0f);
     if (team == viewer_team)
       pen.text(tr("you"), {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, top + 34.0f},
                kInk);
-    for (int c = 0; c < foosball::kCharacters; ++c) {
-      draw_character(pen, c, team, {x, top + 46.0f + (height + between) * static_cast<float>(c)},
-                     {width, height}, state.character[t] == c);
+    for (int row = 0; row < shown; ++row) {
+      draw_character(pen, characters, first + row, team,
+                     {x, top + 46.0f + (height + between) * static_cast<float>(row)},
+                     {width, height}, chosen == first + row);
+    }
+    const foosball::Character& one = foosball::nearest(characters, chosen);
+    pen.text(capitalised(tr(one.specialty.c_str())), {Face::regular, 13.5f, 0.0f, Align::centre},
+             {x + 0.5f * width, end + 16.0f}, kInk, 0.55f, width);
+    if (count > shown) {
+      const std::string place = std::to_string(chosen + 1) + " / " + std::to_string(count);
+      pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 40.0f}, kFaint);
     }
     const char* status = state.confirmed[t] ? tr("READY") : tr("choosing ...");
-    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 20.0f},
+    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 41.0f},
              state.confirmed[t] ? kTeamInk[t] : kFaint, 0.55f, width);
   }
 }

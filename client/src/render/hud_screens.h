@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/match_story.h"
+#include "foosball/character.h"
 #include "render/ui_batch.h"
 #include "wire/snapshot.h"
 
@@ -60,7 +61,9 @@ class HudPen {
 };
 
 void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, bool still);
-void draw_selection(const HudPen& pen, const wire::Snapshot& state, int viewer_team);
+// Six at a time of each team's characters, about the one that is chosen.
+void draw_selection(const HudPen& pen, const wire::Snapshot& state,
+                    const foosball::Characters& characters, int viewer_team);
 // A band at the upper edge, or the lower: the field stays free. Own goals and the scorer are named.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
                    bool replay, bool still, bool at_the_bottom);

@@ -154,12 +154,20 @@ void Scene::build_figures(bool stripes) {
   const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
   const auto rod_radius =
       static_cast<float>(foosball::table_spec(foosball::Layout::tournament).rod_radius);
-  for (std::size_t kind = 0; kind < kKinds; ++kind) {
-    const int team = static_cast<int>(kind / foosball::kCharacters);
-    const int character = static_cast<int>(kind % foosball::kCharacters);
-    figure_meshes_[kind] = GpuMesh(figure_mesh(foosball::man_boxes(character), rod_radius,
-                                               figure_look(character, team, stripes), detail));
+  figure_meshes_.clear();
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    for (const foosball::Character& c : characters_) {
+      figure_meshes_.emplace_back(figure_mesh(foosball::boxes_of(c.body), rod_radius,
+                                              figure_look(c.look, team, stripes), detail));
+    }
   }
+  men_.resize(kinds());
+}
+
+void Scene::set_characters(const foosball::Characters& characters) {
+  characters_ = characters;
+  portraits_.reset();
+  build_figures(stripes_);
 }
 
 void Scene::use_layout(foosball::Layout layout) {
@@ -218,13 +226,12 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   for (const wire::ManState& man : state.men) {
     const std::size_t rod = std::min<std::size_t>(man.rod, foosball::kRods - 1);
     const auto team = static_cast<std::size_t>(table_->rods[rod].team);
-    const std::size_t kind =
-        team * foosball::kCharacters +
-        std::min<std::size_t>(state.character[team], foosball::kCharacters - 1);
+    const std::size_t kind = team * characters_.size() +
+                             std::min<std::size_t>(state.character[team], characters_.size() - 1);
     const glm::mat4 m = team == 1 ? pose(man.body) * kFacingBack : pose(man.body);
     men_[kind].push_back(make_instance(m, tint(rod), glow(rod)));
   }
-  for (std::size_t kind = 0; kind < kKinds; ++kind) figure_meshes_[kind].set_instances(men_[kind]);
+  for (std::size_t kind = 0; kind < kinds(); ++kind) figure_meshes_[kind].set_instances(men_[kind]);
 }
 
 // All that stands on the field or around it.
@@ -342,12 +349,13 @@ GLuint Scene::portraits() {
   camera.view_projection = camera.projection * camera.view;
   light(*program, camera, 0.0f);
   program->set("u_see_through", glm::vec4(0.0f));
-  for (std::size_t kind = 0; kind < kKinds; ++kind) {
-    const auto team = static_cast<int>(kind / foosball::kCharacters);
-    const auto character = static_cast<int>(kind % foosball::kCharacters);
-    glViewport(character * kCell.x, team * kCell.y, kCell.x, kCell.y);
-    GpuMesh figure(figure_mesh(foosball::man_boxes(character), 0.008f,
-                               figure_look(character, team, stripes_), 1.0f));
+  for (std::size_t kind = 0; kind < kinds(); ++kind) {
+    const auto team = static_cast<int>(kind / characters_.size());
+    const auto column = static_cast<int>(kind % characters_.size());
+    const foosball::Character& c = characters_[kind % characters_.size()];
+    glViewport(column * kCell.x, team * kCell.y, kCell.x, kCell.y);
+    GpuMesh figure(
+        figure_mesh(foosball::boxes_of(c.body), 0.008f, figure_look(c.look, team, stripes_), 1.0f));
     figure.set_instances(std::array{
         make_instance(glm::mat4(1.0f), kTeamColour[static_cast<std::size_t>(team)], 0.15f)});
     figure.draw();

@@ -51,10 +51,16 @@ class Scene {
   void draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
             const glm::ivec2& screen);
 
+  // Those that the match has, at least one; the built-in ones until this is called. The portraits
+  // are then others.
+  void set_characters(const foosball::Characters& characters);
   // Each character in either team's colours: columns by character, rows by team, with transparency
-  // around. Drawn once; the texture lives as long as the scene.
+  // around. Drawn once; the texture lives as long as the scene, or until
+  // set_characters().
   GLuint portraits();
-  static glm::ivec2 portrait_cells() { return {foosball::kCharacters, foosball::kTeams}; }
+  glm::ivec2 portrait_cells() const {
+    return {static_cast<int>(characters_.size()), foosball::kTeams};
+  }
 
   // How much of the ball is seen between men and rods, 0..1; draws over the target. 1 if there is
   // no ball.
@@ -85,7 +91,7 @@ class Scene {
 
   static constexpr std::size_t kFigures = foosball::kTeams;
   // Team 1 wears another crest, and stripes if asked for: a mesh for each team's each character.
-  static constexpr std::size_t kKinds = foosball::kTeams * foosball::kCharacters;
+  std::size_t kinds() const { return foosball::kTeams * characters_.size(); }
 
   draw::Quality quality_;
   const foosball::TableSpec* table_ = nullptr;
@@ -97,9 +103,10 @@ class Scene {
   std::optional<draw::Target> portraits_;
   GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
-  std::array<GpuMesh, kKinds> figure_meshes_;  // by team, then character
+  foosball::Characters characters_ = foosball::built_in_characters();
+  std::vector<GpuMesh> figure_meshes_;  // by team, then character
   bool stripes_ = false, rods_drawn_ = true;
-  std::array<std::vector<Instance>, kKinds> men_;
+  std::vector<std::vector<Instance>> men_;  // by the same
   draw::GlVertexArray particle_array_;
   draw::GlBuffer particle_buffer_;
   GLsizei particle_count_ = 0;

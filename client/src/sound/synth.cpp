@@ -41,8 +41,11 @@ constexpr Mode kCheer[] = {{392, 0.9, 0.22, 0.02}, {440, 0.8, 0.22, 0.05}, {523,
 constexpr Mode kGroan[] = {
     {196, 0.7, 0.3}, {185, 0.8, 0.3, 0.06}, {165, 0.9, 0.3, 0.14}, {147, 0.9, 0.25, 0.22}};
 constexpr Mode kGasp[] = {{330, 0.12, 0.2}, {349, 0.12, 0.2, 0.02}, {415, 0.10, 0.15, 0.03}};
-constexpr Mode kVoice[] = {{220, 0.16, 1.0},  {440, 0.13, 0.7},  {660, 0.11, 0.8},
-                           {880, 0.08, 0.35}, {1100, 0.09, 0.4}, {2400, 0.05, 0.15}};
+// One vowel: nearly a pure tone, and one with all its overtones.
+constexpr Mode kFlute[] = {{220, 0.18, 1.0}, {440, 0.10, 0.22}, {660, 0.07, 0.06}};
+constexpr Mode kReed[] = {{220, 0.15, 0.8},  {440, 0.14, 0.8},  {660, 0.12, 1.0},
+                          {880, 0.10, 0.7},  {1100, 0.10, 0.7}, {1540, 0.08, 0.5},
+                          {1980, 0.07, 0.4}, {2420, 0.05, 0.3}};
 constexpr Mode kServe[] = {{880, 0.07, 0.8}, {1320, 0.05, 0.4, 0.03}};
 constexpr Mode kWhistle[] = {
     {2350, 0.20, 0.6}, {2420, 0.20, 0.6}, {2350, 0.35, 0.6, 0.28}, {2420, 0.35, 0.6, 0.28}};
@@ -65,8 +68,10 @@ Recipe recipe_of(Sound sound) {
       return {1.8, kGroan, 0.8, 0.6, 0.93, 0.12, 0.4};
     case Sound::gasp:
       return {0.7, kGasp, 0.9, 0.18, 0.85, 0.06, 0.3};
-    case Sound::voice:
-      return {0.42, kVoice, 0.10, 0.08, 0.5};
+    case Sound::flute:
+      return {0.42, kFlute, 0.12, 0.10, 0.6};
+    case Sound::reed:
+      return {0.42, kReed, 0.06, 0.06, 0.4};
     case Sound::roll:
       return {2.0, {}, 1.0, 0.0, 0.95, 0.0, 0.25};
     case Sound::slide:

@@ -17,16 +17,20 @@ enum class Sound : std::uint8_t {
   cheer,  // many voices, rising
   groan,  // many voices, falling: an own goal
   gasp,   // a shot, a save
-  voice,  // a character's shout; its pitch is the character's
+  // A character's shout is a mixture of both, at its own pitch.
+  flute,
+  reed,
   // Loops: without a beginning and an end, of constant loudness.
   roll,
   slide,
   crowd,
 };
-inline constexpr int kSounds = 14;
+inline constexpr int kSounds = 15;
 constexpr bool is_loop(Sound sound) {
   return sound >= Sound::roll;
 }
+// Of flute and reed as they are made [Hz].
+inline constexpr float kVoicePitch = 220.0f;
 inline constexpr int kSampleRate = 44100;  // [Hz]
 
 // Mono, full scale; those that are no loops end in silence. The same for every call.

@@ -44,7 +44,7 @@ struct AssistView {
   bool ball_in_play = false;
   vp::Vec3 ball, velocity;             // [m], [m/s]
   std::array<RodState, kRods> rods{};  // all eight: the opponent's men stand in the way of a shot
-  std::array<int, kTeams> character{};
+  TeamBodies bodies;
 };
 
 // What the person does.
@@ -84,7 +84,7 @@ class Assists {
   };
   Ball ball_of(const AssistView& view) const;
   double rod_x(int rod) const;
-  double time_to_act(int rod, const Ball& ball, int character) const;
+  double time_to_act(int rod, const Ball& ball, double reach) const;
   double guard_y(int rod, const Ball& ball) const;
   double slide_for(int rod, double y, double from) const;
   void follow(int rod, const AssistView& view, const RodTarget& from, int ticks);
@@ -96,7 +96,9 @@ class Assists {
   const TableSpec* table_;
   std::uint8_t mine_;
   AssistChoice choice_;
-  std::array<double, kCharacters> reach_;  // field_reach()
+  double reach_of(const CharacterBody& body) const;
+  mutable CharacterBody seen_;  // of which reach_ is field_reach(): that takes a while
+  mutable double reach_;
   std::array<Rod, kRods> rods_{};
   std::uint8_t following_ = 0;
 };

@@ -31,7 +31,7 @@ using ManStates = std::array<std::array<ManState, kMaxMenOnRod>, kRods>;
 struct Command {
   enum class Kind : std::uint8_t {
     push,              // as a rod pushed: starts, confirms, goes on
-    choose_character,  // team, value = character
+    choose_character,  // team, value = character: index into MatchDesc::characters
     pause,             // value 1 on, 0 off
     restart,           // back to the logo
     time_out,          // team asks for one
@@ -97,7 +97,8 @@ struct MatchDesc {
   std::uint64_t seed = 1;
   Rules rules{};
   Mode mode = Mode::match;
-  Tuning tuning{};  // at the start; commands change it
+  Tuning tuning{};                                // at the start; commands change it
+  Characters characters = built_in_characters();  // that teams choose from
 };
 
 // The challenge of a day: date as a number such as 20261122. The same match for everybody.
@@ -122,7 +123,9 @@ struct MatchView {
   Screen screen{};
   bool paused = false;
   std::array<int, kTeams> score{};
-  std::array<int, kTeams> character{};
+  int characters = 0;                    // that there are to choose from
+  std::array<int, kTeams> character{};   // chosen, of those
+  TeamBodies bodies;                     // of the men on the table
   std::array<bool, kTeams> confirmed{};  // on the selection screen
   double screen_seconds = 0.0;           // since the screen came up [s]
   double play_seconds = 0.0;             // match clock [s]
@@ -164,7 +167,8 @@ class Match {
  public:
   // Refuses with Errc::invalid_argument what cannot be played: a layout, mode or rule that is none,
   // goals not 1 <= goals_to_win <= max_goals <= 99, sets not 1 .. 9, a duration that is negative,
-  // above 3600 s or NaN, or 0 where 0 has no meaning, a tuning out of its ranges.
+  // above 3600 s or NaN, or 0 where 0 has no meaning, a tuning out of its ranges, characters out of
+  // theirs, none or more than kMaxCharacters.
   // Any seed will do.
   static vp::Expected<Match> create(const MatchDesc& desc);
   ~Match();
@@ -178,9 +182,9 @@ class Match {
   // Appends the whole state: rules, screens, world. Refuses nothing.
   void snapshot(std::vector<std::byte>& bytes) const;
   // Refuses with Errc::bad_data, and is then unchanged: bytes that are truncated, corrupt or of
-  // another version, a match of another layout or other rules than this one's, and a state that no
-  // match is ever in. The seed may differ: it is the saved one's from then on. events() is empty
-  // afterwards; view() is that of the saved match.
+  // another version, a match of another layout, other rules or other characters than this
+  // one's, and a state that no match is ever in. The seed may differ: it is the saved one's from
+  // then on. events() is empty afterwards; view() is that of the saved match.
   vp::Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;
 

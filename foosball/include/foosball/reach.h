@@ -10,11 +10,10 @@ namespace foosball {
 
 // Whether any man of the rod could touch the ball, were his rod at its best slide and angle: the
 // solid that his foot sweeps, a cylinder about the rod's axis, meets the ball. Source: TableSpec
-// and CharacterSpec alone. 0 <= rod < kRods.
-bool can_reach(const TableSpec& table, int rod, int character, const vp::Vec3& ball);
+// and CharacterBody alone. 0 <= rod < kRods.
+bool can_reach(const TableSpec& table, int rod, const CharacterBody& body, const vp::Vec3& ball);
 
-// Bit i: can_reach() of rod i. characters: of team 0 and 1.
-std::uint8_t rods_in_reach(const TableSpec& table, const std::array<int, kTeams>& characters,
-                           const vp::Vec3& ball);
+// Bit i: can_reach() of rod i. bodies: of team 0 and 1.
+std::uint8_t rods_in_reach(const TableSpec& table, const TeamBodies& bodies, const vp::Vec3& ball);
 
 }  // namespace foosball

@@ -42,15 +42,15 @@ struct AxisDrive {
   double max_force;  // [N] | [N m]
 };
 
-// What a hand can do at most with the men of a character.
+// What a hand can do at most with the men of a character: the lower of what the tuning allows every
+// hand and of the character's own.
 struct HandLimits {
   double force;                   // [N]
   double torque;                  // [N m]
   double frequency;               // of the critically damped drives [rad/s]
   double slide_rate, angle_rate;  // [m/s], [rad/s]
 };
-// Precondition: 0 <= character < kCharacters.
-HandLimits hand_limits(int character, const Tuning& tuning = {});
+HandLimits hand_limits(const CharacterBody& body, const Tuning& tuning = {});
 
 // What the drive moves, and with what.
 struct RodInertia {
@@ -61,8 +61,7 @@ struct RodInertia {
   double turn;            // with the hand [kg m^2]
   double man, man_axial;  // of one man: mass [kg]; about the axis [kg m^2]
 };
-// Precondition: 0 <= character < kCharacters.
-RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, int character,
+RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterBody& body,
                        const Tuning& tuning = {});
 
 // The drives of the axes for one kTick, from where the rod is now: each critically damped with the

@@ -9,11 +9,9 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <vector>
 
+#include "foosball/character.h"
 #include "vphysics/lie.h"
-#include "vphysics/shapes.h"
 
 namespace foosball {
 
@@ -33,6 +31,9 @@ constexpr bool hinged_men(Layout layout) {
   return layout == Layout::paper;
 }
 
+// Of the men of team 0 and 1.
+using TeamBodies = std::array<CharacterBody, kTeams>;
+
 // The way a team attacks along x, and the way its players push a rod along y: the players of team 0
 // stand on the -y side with their own goal to the left, those of team 1 opposite.
 constexpr double attack_sign(int team) {
@@ -44,58 +45,6 @@ constexpr double push_sign(int team) {
 
 // What a rod is for, from a team's own goal outwards.
 enum class Line : std::uint8_t { goalie, defence, midfield, attack };
-
-// A box of a man in the man's frame: origin on the rod's axis, axes as the table's at angle 0.
-struct ManBox {
-  vp::Vec3 centre;        // [m]
-  vp::Vec3 half_extents;  // [m]
-  enum class Part : std::uint8_t { foot, leg, torso, head } part;
-};
-inline constexpr int kManParts = 4;
-
-// For the eye: what a renderer makes of a character. No physics follows from it.
-enum class Headgear : std::uint8_t { none, antenna, helmet, cap, crown, visor };
-inline constexpr int kHeadgears = 6;
-enum class Face : std::uint8_t { calm, happy, fierce, sleepy, sly, robot };
-inline constexpr int kFaces = 6;
-using Colour = std::array<std::uint8_t, 3>;  // sRGB
-
-struct CharacterLook {
-  Colour skin{226, 190, 160};
-  Colour accent{240, 240, 240};  // beside the team's colour
-  Headgear headgear = Headgear::none;
-  Face face = Face::calm;
-};
-struct CharacterVoice {
-  double pitch_hz = 220.0;  // of its cries
-  double timbre = 0.5;      // 0 a flute .. 1 a reed
-};
-
-// A character a team can choose (paper, section 5: tall and thin attacks well, small and fat
-// defends well). The man's body is a set of boxes, stacked from sole to crown.
-struct CharacterSpec {
-  const char* name;
-  const char* specialty;  // one line: its strength and its weakness
-  double foot_width;      // along the rod [m]
-  double foot_depth;      // fore and aft [m]
-  double torso_width;     // along the rod [m]
-  double torso_depth;     // fore and aft [m]
-  double head_height;     // above the rod's axis [m]
-  double foot_reach;      // rod axis to sole [m]
-  double mass;            // [kg]
-  double foot_friction;
-  double foot_restitution;
-  double bounce = 1.0;       // factor on Tuning::bounce_gain
-  double turn_speed = 1.0;   // factor on Tuning::turn_rate: how fast it can kick
-  double slide_speed = 1.0;  // factor on Tuning::slide_rate
-  CharacterLook look{};
-  CharacterVoice voice{};
-};
-inline constexpr int kCharacters = 6;
-const CharacterSpec& character_spec(int character);  // precondition: 0 <= character < kCharacters
-
-std::span<const ManBox> man_boxes(int character);  // kManParts of them
-std::array<ManBox, kManParts> boxes_of(const CharacterSpec& character);
 
 struct RodSpec {
   int team;
@@ -128,7 +77,7 @@ const TableSpec& table_spec(Layout layout);
 // How far fore and aft of its rod's axis a man can touch a ball that lies on the field: the most
 // over all angles, from the axis to the ball's centre [m]. What lies further from every rod is out
 // of everybody's reach.
-double field_reach(const TableSpec& table, int character);
+double field_reach(const TableSpec& table, const CharacterBody& body);
 
 // y of a man on its rod at slide 0 [m]; 0 <= man < rod.men.
 double man_offset(const RodSpec& rod, int man);

@@ -15,7 +15,8 @@ namespace match {
 
 struct GameDesc {
   std::array<std::string, foosball::kTeams> players;  // by team (match/player.h)
-  std::array<int, foosball::kTeams> characters{1, 1};
+  foosball::Characters character_list = foosball::built_in_characters();
+  std::array<int, foosball::kTeams> characters{1, 1};  // by team, of that list
   foosball::Layout layout = foosball::Layout::tournament;
   std::uint64_t seed = 1;             // of the match and of both players
   int variant = 0;                    // other seeds of the players: 0, or 1 with changed sides
@@ -42,11 +43,12 @@ struct PlayedGame {
   std::vector<std::byte> journal;  // a file that foosball-replay verifies; empty if off
 };
 
-// Preconditions: players that make_player accepts, 0 <= characters < kCharacters.
+// Preconditions: players that make_player accepts, a list that foosball::in_range() accepts,
+// characters that it has.
 PlayedGame play_game(const GameDesc& desc, Recording recording = Recording::off);
 
-// Characters drawn from the seed, the same for every player.
-std::array<int, foosball::kTeams> drawn_characters(std::uint64_t seed);
+// Two of so many characters drawn from the seed, the same for every player.
+std::array<int, foosball::kTeams> drawn_characters(std::uint64_t seed, std::size_t characters);
 
 // Seeds that differ in every bit from those of neighboring numbers (SplitMix64, Steele 2014).
 std::uint64_t mix_seed(std::uint64_t value);

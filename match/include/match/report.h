@@ -31,6 +31,7 @@ struct ReportPlan {
   std::uint64_t seed = 1, max_ticks = 600'000;
   std::uint64_t matches = 100;
   foosball::Tuning tuning{};
+  foosball::Characters character_list = foosball::built_in_characters();
 };
 std::vector<SeriesDesc> report_series(const ReportPlan& plan);
 // Precondition: the series of that plan, in their order.

@@ -15,6 +15,9 @@
 
 namespace match {
 
+// Any character but the first player's.
+inline constexpr int kAnyOther = -1;
+
 // Two players, in mirrored pairs: games 2k and 2k + 1 have one match seed, hence the same first
 // serve and the same characters on each side, and the sides changed over. The players' own seeds
 // differ, so that a player against himself does not play one game twice.
@@ -23,10 +26,12 @@ struct SeriesDesc {
   foosball::Layout layout = foosball::Layout::tournament;
   std::uint64_t seed = 1;  // of the first pair
   std::uint64_t max_ticks = 600'000;
-  std::uint64_t max_games = 100;        // even
-  foosball::Tuning tuning{};            // of every game
+  std::uint64_t max_games = 100;  // even
+  foosball::Tuning tuning{};      // of every game
+  foosball::Characters character_list = foosball::built_in_characters();
   bool draw_characters = true;          // for each side of each pair from its seed; else
-  std::array<int, 2> characters{1, 1};  // those of the players
+  std::array<int, 2> characters{1, 1};  // those of the players, of that list; the second may be
+                                        // kAnyOther: for each pair drawn from its seed
   std::optional<SequentialTest> test;   // of the first player's score; none: by max_games
   // As test, of either player's score: decided when one of the two is H1 or both are H0, each with
   // half of alpha.

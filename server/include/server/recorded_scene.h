@@ -30,6 +30,7 @@ class RecordedScene {
 
   std::uint64_t ticks() const { return playback_->ticks(); }
   std::uint64_t total_ticks() const { return total_ticks_; }  // of the recording
+  const foosball::Characters& characters() const { return playback_->match().characters; }
   const Playback& playback() const { return *playback_; }
 
  private:

@@ -14,11 +14,12 @@
 #include <variant>
 #include <vector>
 
+#include "wire/characters.h"
 #include "wire/limits.h"
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 2;
+inline constexpr std::uint16_t kControlVersion = 3;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
@@ -138,7 +139,7 @@ struct Bye {
 };
 
 using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
-                                    Challenge, Claim, Roster, Tuning>;
+                                    Challenge, Claim, Roster, Tuning, Characters>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

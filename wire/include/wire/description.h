@@ -124,6 +124,13 @@ struct Bytes {
   const char* meaning;
 };
 
+// As Bytes: UTF-8 without control characters.
+struct Text {
+  const char* name;
+  std::uint64_t max;
+  const char* meaning;
+};
+
 // Zero bits up to the next byte, then the CRC-32 (as in zlib) of all bytes before it; nothing may
 // follow.
 struct Checksum {

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "wire/characters.h"
 #include "wire/limits.h"
 
 namespace wire {
@@ -23,6 +24,7 @@ inline constexpr std::int64_t kJournalAngleLimit = 1'000'000'000'000'000;  // [u
 inline constexpr int kJournalBatch = 64;                                   // ticks a record
 inline constexpr std::size_t kMaxJournalCommands = 64;                     // a tick
 inline constexpr std::size_t kMaxKeyframe = 1 << 20;                       // bytes
+inline constexpr std::size_t kMaxJournalHeader = 8 * 1024;  // bytes, with all characters
 
 // A rod target on the grid of the journal. The simulation is only ever fed values that went through
 // this grid, so that live play and replay see the same numbers.
@@ -67,6 +69,8 @@ struct JournalHeader {
   std::uint32_t possession_midfield_ms = 10000, possession_ms = 15000;
   std::uint32_t ceremony_ms = 2500, end_ms = 6000, idle_ms = 60000, attract_ms = 30000;
   std::array<std::uint64_t, kTuningCount> tuning{};  // in order: the bits of doubles (IEEE 754)
+  // To choose from, 1 to kMaxCharacterCount.
+  std::vector<CharacterRecord> characters = std::vector<CharacterRecord>(1);
 };
 
 struct JournalTick {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "wire/characters_description.h"
 #include "wire/description.h"
 #include "wire/journal.h"
 #include "wire/limits.h"
@@ -66,6 +67,7 @@ void describe_journal_header(Codec& codec, H& h) {
                                       "of a double, IEEE 754"},
                               bits);
               });
+  describe_characters(codec, h.characters);
   codec.flag(Flag{"golden_goal", ""}, h.golden_goal);
   codec.flag(Flag{"change_sides", ""}, h.change_sides);
   codec.flag(Flag{"jarring", "is judged"}, h.jarring);

@@ -18,7 +18,11 @@ static_assert(kMaxTick <= (std::uint64_t{1} << 62) / kMaxTickUs);
 inline constexpr unsigned kTeamCount = 2;
 inline constexpr unsigned kLayoutCount = 2;  // foosball::Layout
 inline constexpr unsigned kScreenCount = number(Screen::end) + 1;
-inline constexpr unsigned kCharacterCount = 6;  // foosball::CharacterSpec
+inline constexpr unsigned kMaxCharacterCount = 12;  // foosball::kMaxCharacters
+inline constexpr unsigned kBodyNumberCount = 14;    // foosball::kBodyFields
+inline constexpr unsigned kVoiceNumberCount = 2;    // foosball::kVoiceFields
+inline constexpr unsigned kHeadgearCount = 6;       // foosball::Headgear
+inline constexpr unsigned kFaceCount = 4;           // foosball::Face
 inline constexpr unsigned kEventKindCount = number(EventKind::match_drawn) + 1;
 inline constexpr unsigned kWishKindCount =
     number(WishKind::feed) + 1;  // that a client may send, and tune

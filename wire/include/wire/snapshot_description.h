@@ -138,7 +138,7 @@ void describe_match_state(Codec& codec, S& s) {
     codec.integer(Integer{"goals", 8, 255, "", ""}, goals);
   });
   codec.array(Group{"character", "of team 0 and 1"}, s.character, [&](auto& character) {
-    codec.integer(Integer{"index", 3, kCharacterCount - 1, "", ""}, character);
+    codec.integer(Integer{"index", 4, kMaxCharacterCount - 1, "", "into Characters"}, character);
   });
   codec.array(Group{"confirmed", "of team 0 and 1"}, s.confirmed, [&](auto& is) {
     codec.flag(Flag{"is", ""}, is);
