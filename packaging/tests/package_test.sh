@@ -19,7 +19,8 @@ dpkg-deb -e "${deb[0]}" "$work/control"
 
 for file in usr/bin/space-foosball usr/bin/space-foosball-server usr/bin/foosball-replay usr/bin/space-foosball-results \
   lib/systemd/system/space-foosball-server.service lib/udev/rules.d/70-space-foosball.rules \
-  etc/default/space-foosball-server usr/share/doc/space-foosball/README.md; do
+  etc/default/space-foosball-server usr/share/doc/space-foosball/README.md \
+  usr/share/space-foosball/characters/2-average.toml; do
   [[ -f $work/root/$file || -f $work/root/usr/$file ]] || fail "the package lacks /$file"
 done
 [[ ! -e $work/root/usr/include ]] || fail "the engine's headers are not the game's"
