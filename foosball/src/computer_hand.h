@@ -22,6 +22,8 @@ class HandAxis {
   void move(double goal, const AxisLimits& limits);
   // One kTick towards the goal and through it: no braking before it is reached.
   void swing(double goal, const AxisLimits& limits);
+  // One kTick of slowing down to rest.
+  void brake(const AxisLimits& limits) { accelerate(0.0, limits); }
 
  private:
   void accelerate(double wanted_rate, const AxisLimits& limits);

@@ -17,6 +17,8 @@ void ComputerSight::look(const MatchView& view) {
   const std::size_t oldest = (next_ + seen_.size() - count_) % seen_.size();
   now_ = seen_[oldest];
   const double delay = static_cast<double>(count_ - 1) * kTick;
+  now_.age = delay;
+  seen_now_ = now_;
   const TableSpec& table = table_spec(view.layout);
   const double end = 0.5 * table.length;
   now_.ball.x = std::clamp(now_.ball.x + delay * now_.velocity.x, -end, end);
@@ -32,6 +34,7 @@ Sighting ComputerSight::in_team_frame(const MatchView& view) const {
   for (int rod = 0; rod < kRods; ++rod) {
     seen.slide[rod] = team_slide(team_, view.rods[rod].slide);
     seen.swing[rod] = team_swing(team_, view.rods[rod].angle);
+    seen.slide_rate[rod] = team_slide(team_, view.rods[rod].slide_rate);
   }
   return seen;
 }

@@ -17,6 +17,8 @@ struct Sighting {
   bool ball_in_play = false;
   vp::Vec3 ball, velocity;
   std::array<double, kRods> slide{}, swing{};
+  std::array<double, kRods> slide_rate{};  // [m/s]
+  double age = 0.0;                        // of what was seen of the rods [s]
 };
 
 // Coordinates of a rod between the table's frame and a team's.
@@ -34,6 +36,8 @@ class ComputerSight {
   void look(const MatchView& view);
   // The rods as seen, and the ball carried on to now from where and how fast it was seen.
   const Sighting& now() const { return now_; }
+  // As it was seen, now().age ago.
+  const Sighting& seen() const { return seen_now_; }
 
  private:
   Sighting in_team_frame(const MatchView& view) const;
@@ -42,7 +46,7 @@ class ComputerSight {
   std::vector<Sighting> seen_;  // a ring of the last delay ticks
   std::size_t next_ = 0;
   std::size_t count_ = 0;
-  Sighting now_;
+  Sighting now_, seen_now_;
 };
 
 // y of a ball after a time, bounced off the side walls.

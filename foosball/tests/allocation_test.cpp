@@ -29,8 +29,8 @@ namespace {
 
 TEST(Allocation, NoneInATickOfPlayOnceWarm) {
   Match match = *Match::create(MatchDesc{});
-  ComputerPlayer home({.team = 0, .seed = 1, .skill = 0.9});
-  ComputerPlayer away({.team = 1, .seed = 2, .skill = 0.9});
+  ComputerPlayer home({.team = 0, .seed = 1, .player = *parse_player("5")});
+  ComputerPlayer away({.team = 1, .seed = 2, .player = *parse_player("5")});
   TickInput input;
   constexpr double kWarm = 2.0;  // [s] of play: the engine's arrays have met their size
   long in_play = 0, ticks = 0;

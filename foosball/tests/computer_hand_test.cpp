@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "../src/classic_tactics.h"
 #include "../src/computer_sight.h"
-#include "../src/rod_tactics.h"
 
 namespace foosball {
 namespace {
@@ -65,7 +65,7 @@ TEST(YAfter, ReflectsAtTheSideWalls) {
   EXPECT_NEAR(y_after(table, 0.1, -50.0, 4.0 * wall / 50.0), 0.1, 1e-9);
 }
 
-TEST(Temper, SharpIsBetterInEverythingButNoBetterThanAPerson) {
+TEST(ClassicTemper, SharpIsBetterInEverythingButNoBetterThanAPerson) {
   const Temper sharp = temper_of(1.0), sleepy = temper_of(0.0), absurd = temper_of(1e9);
   EXPECT_LT(sharp.delay, sleepy.delay);
   EXPECT_LT(sharp.aim_error, sleepy.aim_error);

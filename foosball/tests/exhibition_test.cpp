@@ -26,14 +26,14 @@ struct Tally {
 };
 
 // Plays until the time is over or, if asked, until a match is won.
-void play(Layout layout, std::uint64_t seed, double skill, int ticks, bool until_won,
+void play(Layout layout, std::uint64_t seed, const char* player, int ticks, bool until_won,
           Tally& tally) {
   MatchDesc desc;
   desc.layout = layout;
   desc.seed = seed;
   Match match = *Match::create(desc);
-  ComputerPlayer home({.team = 0, .seed = 2 * seed, .skill = skill});
-  ComputerPlayer away({.team = 1, .seed = 2 * seed + 1, .skill = skill});
+  ComputerPlayer home({.team = 0, .seed = 2 * seed, .player = *parse_player(player)});
+  ComputerPlayer away({.team = 1, .seed = 2 * seed + 1, .player = *parse_player(player)});
   TickInput input;
   bool fast = false;
   for (int tick = 0; tick < ticks; ++tick) {
@@ -66,7 +66,7 @@ TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
   tally.tick_us.reserve(24 * 45000);
   // 15 minutes of play: in half of that the goals a minute stray by 0.7 from their mean of 4.
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
-    play(GetParam(), seed, 0.9, 45000, false, tally);
+    play(GetParam(), seed, "4", 45000, false, tally);
   }
   std::sort(tally.tick_us.begin(), tally.tick_us.end());
   const std::size_t n = tally.tick_us.size();
@@ -88,7 +88,7 @@ TEST_P(Exhibition, OfTwentySecondsShowsShots) {
   int with_goal = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Tally tally;
-    play(GetParam(), seed, 0.9, 20000, false, tally);
+    play(GetParam(), seed, "4", 20000, false, tally);
     EXPECT_GE(tally.shots, 3) << "seed " << seed;
     with_goal += tally.per_minute(EventKind::goal) > 0.0 ? 1 : 0;
   }
@@ -97,10 +97,10 @@ TEST_P(Exhibition, OfTwentySecondsShowsShots) {
 }
 
 TEST_P(Exhibition, AMatchToFiveIsWonWithinSomeMinutes) {
-  for (const double skill : {0.6, 0.9}) {
+  for (const char* player : {"2", "5"}) {
     Tally tally;
-    play(GetParam(), 11, skill, 900000, true, tally);
-    std::printf("skill %.1f: won after %.1f minutes of play\n", skill, tally.minutes);
+    play(GetParam(), 11, player, 900000, true, tally);
+    std::printf("%s: won after %.1f minutes of play\n", player, tally.minutes);
     EXPECT_EQ(tally.events[static_cast<std::size_t>(EventKind::match_won)], 1);
     EXPECT_GT(tally.minutes, 0.3);
   }

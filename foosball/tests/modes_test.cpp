@@ -21,7 +21,7 @@ class ModesTest : public MatchTest {
 double until_won(Layout layout, Rules rules, int absent, double limit) {
   rules.idle_seconds = 0.0;
   Match match = *Match::create({.layout = layout, .seed = 3, .rules = rules});
-  ComputerPlayer player({.team = 1 - absent, .seed = 5, .skill = 0.9});
+  ComputerPlayer player({.team = 1 - absent, .seed = 5, .player = *parse_player("classic:0.9")});
   TickInput input;
   const Command confirm{Command::Kind::push, static_cast<std::uint8_t>(absent)};
   while (match.view().play_seconds < limit) {
@@ -337,8 +337,8 @@ TEST(SaveAndRestore, AtRandomTicksOfEveryModeGoesOnToTheSameState) {
       desc.rules.goals_to_win = 1;
       desc.rules.time_out_seconds = 0.5;
       const auto play = [&](Match& match, std::uint64_t save_every) {
-        ComputerPlayer home({.team = 0, .seed = 1, .skill = 0.9});
-        ComputerPlayer away({.team = 1, .seed = 2, .skill = 0.9});
+        ComputerPlayer home({.team = 0, .seed = 1, .player = *parse_player("classic:0.9")});
+        ComputerPlayer away({.team = 1, .seed = 2, .player = *parse_player("classic:0.9")});
         std::array<bool, kScreens> seen{};
         for (std::uint64_t tick = 0; tick < 30'000; ++tick) {
           TickInput input;

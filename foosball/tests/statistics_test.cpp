@@ -367,8 +367,8 @@ TEST(Histogram, QuantilesAreLinearWithinABin) {
 
 Statistics watch(std::uint64_t seed, int ticks) {
   Match match = *Match::create({.layout = Layout::tournament, .seed = seed, .rules = {}});
-  ComputerPlayer home({.team = 0, .seed = 2 * seed});
-  ComputerPlayer away({.team = 1, .seed = 2 * seed + 1});
+  ComputerPlayer home({.team = 0, .seed = 2 * seed, .player = *parse_player("classic:0.6")});
+  ComputerPlayer away({.team = 1, .seed = 2 * seed + 1, .player = *parse_player("classic:0.6")});
   TickInput input;
   StatisticsObserver observer;
   for (int i = 0; i < ticks; ++i) {

@@ -31,8 +31,9 @@ void move(Side side, int team, const MatchView& view, ComputerPlayer& computer, 
 
 Longest play(const MatchDesc& desc, Side home, Side away, int ticks) {
   Match match = *Match::create(desc);
-  ComputerPlayer first({.team = 0, .seed = 2 * desc.seed, .skill = 0.9});
-  ComputerPlayer second({.team = 1, .seed = 2 * desc.seed + 1, .skill = 0.9});
+  ComputerPlayer first({.team = 0, .seed = 2 * desc.seed, .player = *parse_player("classic:0.9")});
+  ComputerPlayer second(
+      {.team = 1, .seed = 2 * desc.seed + 1, .player = *parse_player("classic:0.9")});
   const Command confirm[] = {{Command::Kind::push, 0, 0}, {Command::Kind::push, 1, 0}};
   const TableSpec& table = table_spec(desc.layout);
   TickInput input;

@@ -145,10 +145,10 @@ constexpr Rules kLong{.goals_to_win = 90, .max_goals = 99};
 
 // Two computer players at a table; the seeds of the players go with the team that is at home.
 struct Game {
-  Game(Layout layout, std::uint64_t lot, int home_team, std::uint64_t players)
+  Game(Layout layout, std::uint64_t lot, int home_team, std::uint64_t players, const char* player)
       : match(*Match::create({.layout = layout, .seed = lot, .rules = kLong})),
-        home({.team = home_team, .seed = players, .skill = 0.9}),
-        away({.team = 1 - home_team, .seed = players + 1, .skill = 0.9}) {}
+        home({.team = home_team, .seed = players, .player = *parse_player(player)}),
+        away({.team = 1 - home_team, .seed = players + 1, .player = *parse_player(player)}) {}
   void step() {
     home.play(match.view(), input.rods);
     away.play(match.view(), input.rods);
@@ -183,7 +183,9 @@ TEST_P(Symmetry, TheMirroredMatchIsTheSameMatch) {
   }
   int goals = 0;
   for (std::uint64_t players = 1; players <= 3; ++players) {
-    Game one(GetParam(), lots[0], 0, 2 * players), other(GetParam(), lots[1], 1, 2 * players);
+    const char* player = players == 1 ? "3" : "classic:0.9";
+    Game one(GetParam(), lots[0], 0, 2 * players, player);
+    Game other(GetParam(), lots[1], 1, 2 * players, player);
     for (int tick = 0; tick < 60'000; ++tick) {
       one.step();
       other.step();

@@ -1,7 +1,6 @@
 // The registry of players: one row for each kind.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 
@@ -16,10 +15,10 @@ using foosball::MatchView;
 using foosball::RodTargets;
 using Made = tl::expected<std::unique_ptr<Player>, std::string>;
 
-class Classic final : public Player {
+class Computer final : public Player {
  public:
-  Classic(const PlayerDesc& desc, double skill)
-      : player_({.team = desc.team, .seed = desc.seed, .opens_match = false, .skill = skill}) {}
+  Computer(const PlayerDesc& desc, const foosball::PlayerSpec& spec)
+      : player_({.team = desc.team, .seed = desc.seed, .opens_match = false, .player = spec}) {}
   void play(const MatchView& view, RodTargets& targets) override { player_.play(view, targets); }
 
  private:
@@ -103,15 +102,11 @@ class OneRod final : public Player {
   std::unique_ptr<Player> inner_;
 };
 
-Made make_classic(const PlayerDesc& desc, const std::string& argument) {
-  double skill = 0.6;
-  const char* end = argument.data() + argument.size();
-  const auto parsed = std::from_chars(argument.data(), end, skill);
-  const bool number = argument.empty() || (parsed.ec == std::errc{} && parsed.ptr == end);
-  if (!number || !(skill >= 0.0 && skill <= 1.0)) {
-    return tl::unexpected("\"" + desc.name + "\": a skill is a number from 0 to 1");
-  }
-  return std::make_unique<Classic>(desc, skill);
+// The whole name counts.
+Made make_computer(const PlayerDesc& desc) {
+  const auto spec = foosball::parse_player(desc.name);
+  if (!spec) return tl::unexpected(spec.error().message);
+  return std::make_unique<Computer>(desc, *spec);
 }
 
 Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
@@ -135,7 +130,8 @@ struct Kind {
 };
 
 constexpr Kind kKinds[] = {
-    {"classic", "classic[:SKILL]", "the computer player, SKILL 0 to 1, default 0.6", make_classic},
+    {"classic", "classic[:SKILL]", "the first computer player, SKILL 0 to 1, default 0.6",
+     [](const PlayerDesc& desc, const std::string&) { return make_computer(desc); }},
     {"idle", "idle", "no hand on any rod",
      [](const PlayerDesc& desc, const std::string& argument) {
        return without_argument(desc, argument, std::make_unique<Idle>());
@@ -150,7 +146,7 @@ constexpr Kind kKinds[] = {
 
 std::string all_syntax() {
   std::string list;
-  for (const Kind& kind : kKinds) list += (list.empty() ? "" : ", ") + std::string(kind.syntax);
+  for (const PlayerKind& kind : player_kinds()) list += (list.empty() ? "" : ", ") + kind.syntax;
   return list;
 }
 
@@ -163,11 +159,13 @@ tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc&
   for (const Kind& kind : kKinds) {
     if (name == kind.name) return kind.make(desc, argument);
   }
+  if (name.size() == 1 && name[0] >= '0' && name[0] <= '9') return make_computer(desc);
   return tl::unexpected("\"" + desc.name + "\" is no player: give one of " + all_syntax());
 }
 
 std::vector<PlayerKind> player_kinds() {
-  std::vector<PlayerKind> kinds;
+  std::vector<PlayerKind> kinds{
+      {"1..5[:STYLE]", "the computer player of a level; STYLE wall, shooter, passer or gambler"}};
   for (const Kind& kind : kKinds) kinds.push_back({kind.syntax, kind.meaning});
   return kinds;
 }

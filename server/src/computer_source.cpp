@@ -4,10 +4,14 @@ namespace server {
 
 ComputerSource::ComputerSource(const foosball::ComputerPlayerDesc& desc,
                                const foosball::MatchView& view)
-    : player_(desc), view_(view), name_("computer of team " + std::to_string(desc.team)) {}
+    : player_(desc),
+      team_(desc.team),
+      view_(view),
+      name_("computer of team " + std::to_string(desc.team)) {}
 
 void ComputerSource::replace(const foosball::ComputerPlayerDesc& desc) {
   player_ = foosball::ComputerPlayer(desc);
+  team_ = desc.team;
 }
 
 void ComputerSource::set_playing(bool playing) {
@@ -20,9 +24,9 @@ void ComputerSource::poll(std::int64_t now_us) {
   targets_ = {};
   player_.play(view_, targets_);
   ++counters_.frames;
-  for (int rod = 0; rod < cabinet::kRods; ++rod) {
+  // A rod that its hands have let go is still the computer's: it stays where it was left.
+  for (const int rod : rods_of_team(foosball::table_spec(view_.layout), team_)) {
     const foosball::RodTarget& target = targets_[rod];
-    if (!target.live) continue;
     rods_[rod] = {target.slide,      target.angle, target.slide_rate,
                   target.angle_rate, now_us,       cabinet::RodStatus::live};
   }

@@ -23,6 +23,7 @@ class ComputerSource final : public cabinet::InputSource {
 
  private:
   foosball::ComputerPlayer player_;
+  int team_;
   const foosball::MatchView& view_;
   foosball::RodTargets targets_{};
   cabinet::RodInputs rods_{};

@@ -41,12 +41,15 @@ RodDesk::RodDesk(const foosball::MatchDesc& match,
 }
 
 foosball::ComputerPlayerDesc RodDesk::computer_desc(int team) const {
-  constexpr std::array<double, foosball::kLadderRungs> kSkill{0.2, 0.4, 0.6, 0.8, 0.95};
+  static_assert(foosball::kLadderRungs == foosball::kLevels);
   foosball::ComputerPlayerDesc desc;
   desc.team = team;
   desc.seed = computer_seed(seed_, team);
   desc.opens_match = computer_allowed_[0] && computer_allowed_[1];
-  if (rung_ >= 0) desc.skill = kSkill[static_cast<std::size_t>(rung_)];
+  if (rung_ >= 0) {
+    desc.player.level = rung_ + 1;
+    desc.player.style = foosball::style_of_level(rung_ + 1);
+  }
   return desc;
 }
 

@@ -37,10 +37,10 @@ std::vector<Moment> record(const std::string& path, int seconds) {
 
 TEST(RecordedScene, ShowsTheScenesAndEachEventOnceOfTheMatchThatWasPlayed) {
   const std::string path = temp_path("scene.sfr");
-  const auto played = record(path, 8);
+  const auto played = record(path, 20);
   auto recorded = RecordedScene::open(path);
   ASSERT_TRUE(recorded) << recorded.error();
-  EXPECT_EQ(recorded->total_ticks(), 8000u);
+  EXPECT_EQ(recorded->total_ticks(), 20000u);
   std::uint64_t tick = 0;
   std::size_t events = 0;
   std::uint32_t last_id = 0;

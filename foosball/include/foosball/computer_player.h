@@ -1,20 +1,55 @@
-// A computer player: sees what a person sees, moves the rods of one team with a hand's speed
-// limits. Deterministic: its state and seed are its own; one call a tick.
+// A computer player: sees what a person sees, moves the rods of one team with a person's limits
+// (reaction delay, motor noise, hand speed, two hands). Deterministic: its state follows from its
+// seed and the views that it was handed, one a tick.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "foosball/match.h"
+#include "vphysics/error.h"
 
 namespace foosball {
+
+// What a computer player prefers where it has a choice.
+enum class PlayStyle : std::uint8_t {
+  wall,     // hands stay at the goal, clears only what is safe
+  shooter,  // strikes at the first fair chance, from any rod
+  passer,   // keeps the ball, passes forward, shoots from the attack rod
+  gambler,  // waits for the one chance, feints, takes risks with its own goal
+};
+inline constexpr int kPlayStyles = 4;
+const char* name_of(PlayStyle style);
+
+inline constexpr int kLevels = 5;
+
+struct PlayerSpec {
+  enum class Kind : std::uint8_t {
+    level,    // a level and a style: what players are offered
+    classic,  // the first player, with a skill 0..1: a reference for tests and studies
+  };
+  Kind kind = Kind::level;
+  int level = 3;  // 1..kLevels
+  PlayStyle style = PlayStyle::passer;
+  double skill = 0.6;  // of classic
+
+  bool operator==(const PlayerSpec&) const = default;
+};
+
+// "3", "3:shooter", "classic", "classic:0.9". A level alone has the style that suits it. Rejects
+// anything else with Errc::invalid_argument and a sentence that names the choices.
+vp::Expected<PlayerSpec> parse_player(std::string_view text);
+std::string to_text(const PlayerSpec& spec);
+PlayStyle style_of_level(int level);  // precondition: 1 <= level <= kLevels
 
 struct ComputerPlayerDesc {
   int team = 1;
   std::uint64_t seed = 1;
   bool opens_match = true;  // pushes at the logo; false: leaves that to a person
-  double skill = 0.6;       // 0 sleepy .. 1 sharp: reaction time, aim, hand speed
+  PlayerSpec player{};      // out of range: clamped
 };
 
 class ComputerPlayer {
@@ -28,8 +63,9 @@ class ComputerPlayer {
   // pushes at the logo, chooses and confirms a character.
   void play(const MatchView& view, RodTargets& targets);
 
+  struct Impl;  // one for each kind
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,7 +1,8 @@
 // Who plays a side, by name. The one registry of players is src/players.cpp: a new kind of player
 // is one row there.
 //
-//   classic:SKILL     the computer player of foosball/computer_player.h, SKILL 0 to 1 (default 0.6)
+//   1 to 5, 3:STYLE   the computer player of a level (foosball/computer_player.h)
+//   classic:SKILL     the first computer player, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
 //   spinner           every rod spins all the time, a man level with the ball
 //   one-rod:PLAYER    PLAYER with a hand on the rod nearest to the ball only, as a person with a

@@ -1,4 +1,4 @@
-#include "rod_tactics.h"
+#include "classic_tactics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,66 @@
+#include "computer_lanes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foosball {
+namespace {
+
+constexpr double kFeetUp = 0.9;  // |swing| from which a rolling ball passes below the sole [rad]
+
+// Probability that men who were seen with their feet up still have them up when the ball comes.
+constexpr double kStaysUp = 0.2;
+
+// Probability that something of this spread [m] stays below the margin [m]; a straight line in
+// place of the normal distribution's.
+double within(double margin, double spread) {
+  return std::clamp(0.5 + margin / (3.0 * spread), 0.0, 1.0);
+}
+
+}  // namespace
+
+double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope) {
+  const double goal_line = 0.5 * table.length;
+  double worth = 0.0, passes = 1.0;
+  // The rods in the order in which the ball meets them.
+  for (int k = 0; k < kRods; ++k) {
+    const int rod = view.team == 0 ? k : kRods - 1 - k;
+    const RodSpec& spec = table.rods[rod];
+    const double way = attack_sign(view.team) * spec.x - now.ball.x;
+    if (rod == view.from_rod || way < 0.04) continue;
+    const bool up = std::fabs(std::remainder(now.swing[rod], 2.0 * vp::kPi)) > kFeetUp;
+    if (up && spec.team == view.team) continue;
+    const double y = y_after(table, now.ball.y, slope, way);
+    double gap = 1.0;
+    for (int man = 0; man < spec.men; ++man) {
+      gap = std::min(gap, std::fabs(man_offset(spec, man) + now.slide[rod] - y));
+    }
+    gap -= view.half_foot[spec.team] + table.ball_radius;
+    double free = within(gap, 0.004 + view.slope_error * way);
+    if (up) free += kStaysUp * (1.0 - free);
+    const double blocked = passes * (1.0 - free);
+    // It comes back the faster and the less expected, the nearer that man stands.
+    const double near = std::clamp(1.0 - way / 0.5, 0.0, 1.0);
+    const double to_own_goal = now.ball.x + goal_line;
+    const double danger = std::clamp(1.2 - to_own_goal, 0.1, 1.0);
+    worth -= view.risk_cost * blocked * (0.05 + 0.25 * near * danger);
+    passes *= free;
+  }
+  const double run = goal_line - now.ball.x;
+  const double y = y_after(table, now.ball.y, slope, run);
+  const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
+  const double scores = within(inside, 0.004 + view.slope_error * run);
+  constexpr double kFar = 0.10;  // a ball beside the opponent's goal
+  return worth + passes * (scores + (1.0 - scores) * kFar);
+}
+
+double foot_offset(double slope, double half_foot, double ahead) {
+  constexpr double kFlat = 0.035;
+  constexpr double kUnder = 0.012, kSteeper = 14.0;  // a ball below the axis goes off steeper
+  const double s = std::min(std::fabs(slope), kSteepest) /
+                   (1.0 + kSteeper * std::clamp(kUnder - ahead, 0.0, 0.035));
+  if (s < kFlat) return 0.0;
+  return -std::copysign(half_foot + s * (0.021 - 0.0055 * s), slope);
+}
+
+}  // namespace foosball

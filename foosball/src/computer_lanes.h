@@ -1,0 +1,28 @@
+// Where a ball would go that is played at a slope: past which men, and what comes of it. Plain
+// geometry of what the player sees, in its team's frame (computer_sight.h); no simulation.
+#pragma once
+
+#include "computer_sight.h"
+
+namespace foosball {
+
+// What a player thinks of a lane.
+struct LaneView {
+  int team = 0;
+  int from_rod = 0;                        // index into TableSpec::rods; not in its own way
+  std::array<double, kTeams> half_foot{};  // [m]
+  double slope_error = 0.05;               // standard deviation of the ball's slope
+  double risk_cost = 1.0;                  // Temperament
+};
+
+// Expected worth of a ball that is sent from where it is along dy/dx = slope: 1 a goal; less where
+// men are in the way, and below 0 where it would come back towards the own goal.
+double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
+
+// Where the foot's centre must be beside the ball's to send it along a slope [m]: flat feet send it
+// straight on, edges at an angle. Measured on the simulated table with feet of 20 to 30 mm; steeper
+// than kSteepest is not reached.
+double foot_offset(double slope, double half_foot, double ahead);
+inline constexpr double kSteepest = 0.75;
+
+}  // namespace foosball

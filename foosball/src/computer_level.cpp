@@ -1,0 +1,66 @@
+#include "computer_level.h"
+
+#include <algorithm>
+#include <array>
+
+namespace foosball {
+namespace {
+
+// By level. Delay: simple reactions to what is seen take 0.18 to 0.25 s; practised players act on
+// what they expect, which the sight's guess of the ball stands for.
+struct LevelRow {
+  double delay, hand_travel, aim_error;
+  AxisLimits slide, swing, strike;
+  double pause_low, pause_high;
+};
+constexpr std::array<LevelRow, kLevels> kRows{{
+    {0.30, 0.45, 0.0060, {0.6, 9}, {9, 180}, {45, 1500}, 0.40, 0.90},
+    {0.23, 0.34, 0.0040, {0.9, 15}, {13, 350}, {60, 3000}, 0.25, 0.60},
+    {0.17, 0.25, 0.0025, {1.4, 25}, {19, 560}, {78, 5500}, 0.12, 0.35},
+    {0.12, 0.18, 0.0014, {2.0, 42}, {26, 850}, {95, 8000}, 0.05, 0.18},
+    {0.08, 0.12, 0.0006, {2.8, 65}, {34, 1250}, {112, 10000}, 0.02, 0.08},
+}};
+
+}  // namespace
+
+Temperament temperament_of(int level, PlayStyle style) {
+  const LevelRow& row = kRows.at(static_cast<std::size_t>(std::clamp(level, 1, kLevels) - 1));
+  Temperament t{.delay = row.delay,
+                .hand_travel = row.hand_travel,
+                .aim_error = row.aim_error,
+                .slide = row.slide,
+                .swing = row.swing,
+                .strike = row.strike,
+                .pause_low = row.pause_low,
+                .pause_high = row.pause_high,
+                .shot_bar = 0.30,
+                .patience = 0.8,
+                .clear_power = 1.0,
+                .risk_cost = 1.5,
+                .feint = 0.04 * level,
+                .stays_home = false};
+  switch (style) {
+    case PlayStyle::wall:
+      t.stays_home = true;
+      t.risk_cost = 3.0;
+      break;
+    case PlayStyle::shooter:
+      t.shot_bar = 0.15;
+      t.patience = 0.5;
+      t.feint = 0.0;
+      break;
+    case PlayStyle::passer:
+      t.clear_power = 0.5;
+      t.shot_bar = 0.35;
+      break;
+    case PlayStyle::gambler:
+      t.shot_bar = 0.50;
+      t.patience = 1.3;
+      t.risk_cost = 0.3;
+      t.feint = 0.5;
+      break;
+  }
+  return t;
+}
+
+}  // namespace foosball

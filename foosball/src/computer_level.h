@@ -1,0 +1,31 @@
+// What level and style make of a computer player: a person's limits, and what it prefers.
+#pragma once
+
+#include "computer_hand.h"
+#include "foosball/computer_player.h"
+
+namespace foosball {
+
+struct Temperament {
+  // A person's limits.
+  double delay;        // from sight to hand [s]
+  double hand_travel;  // to let go of a rod and grip another [s]
+  double aim_error;    // standard deviation of a foot's place at the hit [m]
+  AxisLimits slide, swing;
+  AxisLimits strike;  // of the foot at full power
+
+  // Thought.
+  double pause_low, pause_high;  // thought spent with the foot drawn back [s]
+
+  // Style.
+  double shot_bar;     // worth of a shot (computer_lanes.h) that is played at once ...
+  double patience;     // ... until the bar has sunk to nothing [s]
+  double clear_power;  // of a ball that is only to be cleared, share of the full strike
+  double risk_cost;    // of a ball that comes back
+  double feint;        // probability of a feint before a shot
+  bool stays_home;     // both hands at the goal whenever the ball is the opponent's
+};
+
+Temperament temperament_of(int level, PlayStyle style);
+
+}  // namespace foosball

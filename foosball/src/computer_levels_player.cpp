@@ -1,0 +1,94 @@
+// The computer player of levels and styles: sight, screens and mind, put together.
+#include <cmath>
+
+#include "computer_impl.h"
+#include "computer_mind.h"
+#include "computer_screens.h"
+
+namespace foosball {
+namespace {
+
+class LevelPlayer final : public ComputerPlayer::Impl {
+ public:
+  LevelPlayer(const ComputerPlayerDesc& d, const Temperament& t)
+      : team_(d.team == 0 ? 0 : 1),
+        random_(d.seed),
+        screens_(team_, d.opens_match),
+        sight_(team_, static_cast<int>(std::lround(t.delay / kTick))),
+        mind_(team_, t, d.seed) {}
+
+  void play(const MatchView& view, RodTargets& targets) override;
+
+ private:
+  void come_to(const MatchView& view);
+  void hold_or_adopt(const MatchView& view);
+
+  int team_;
+  Random random_;
+  ComputerScreens screens_;
+  ComputerSight sight_;
+  ComputerMind mind_;
+  bool awake_ = false;
+  Layout layout_ = Layout::tournament;
+  std::array<int, kTeams> characters_{};
+  Screen screen_ = Screen::logo;
+};
+
+void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
+  come_to(view);
+  sight_.look(view);
+  auto& rods = mind_.rods();
+  bool at_screen = false;
+  if (!view.paused) {
+    ComputerRod& own = rods[ComputerScreens::kRod];
+    at_screen = screens_.work(view, own.slide(), own.swing());
+    if (at_screen) {
+      mind_.rest();
+    } else {
+      mind_.play(sight_.seen(), view.tuning);
+    }
+  }
+  for (int line = 0; line < 4; ++line) {
+    ComputerRod& rod = rods[line];
+    RodTarget& target = targets[rod.index()];
+    target = {team_slide(team_, rod.slide().position()), team_swing(team_, rod.swing().position()),
+              team_slide(team_, rod.slide().rate()), team_swing(team_, rod.swing().rate()),
+              at_screen ? line == ComputerScreens::kRod : mind_.holds(line)};
+    if (view.paused) target.slide_rate = target.angle_rate = 0.0;
+  }
+}
+
+// A new table, new characters or a new screen.
+void LevelPlayer::come_to(const MatchView& view) {
+  const bool play_begins = screen_ != view.screen && view.screen == Screen::play;
+  const bool changed = characters_ != view.character || layout_ != view.layout;
+  if (!awake_ || (play_begins && changed)) {
+    layout_ = view.layout;
+    characters_ = view.character;
+    mind_.set_table(layout_, characters_);
+  }
+  screen_ = view.screen;
+  screens_.see(view, mind_.rods()[ComputerScreens::kRod].swing().position(), random_);
+  hold_or_adopt(view);
+  awake_ = true;
+}
+
+// Takes each rod over where it is: at first, and when something else has moved it far off.
+void LevelPlayer::hold_or_adopt(const MatchView& view) {
+  for (ComputerRod& rod : mind_.rods()) {
+    const RodState& state = view.rods[rod.index()];
+    const double slide = team_slide(team_, state.slide);
+    const double swing = team_swing(team_, state.angle);
+    const bool far = std::fabs(slide - rod.slide().position()) > 0.15 ||
+                     std::fabs(swing - rod.swing().position()) > vp::kPi;
+    if (!awake_ || far) rod.adopt(slide, swing);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<ComputerPlayer::Impl> make_level_player(const ComputerPlayerDesc& desc) {
+  return std::make_unique<LevelPlayer>(desc, temperament_of(desc.player.level, desc.player.style));
+}
+
+}  // namespace foosball

@@ -1,0 +1,166 @@
+#include "computer_mind.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foosball {
+namespace {
+
+constexpr int kGoalie = 0, kDefence = 1, kMidfield = 2, kAttack = 3;
+
+}  // namespace
+
+ComputerMind::ComputerMind(int team, const Temperament& t, std::uint64_t seed)
+    : team_(team),
+      t_(t),
+      random_(seed),
+      hands_(2, static_cast<int>(std::lround(t.hand_travel / kTick))) {}
+
+void ComputerMind::set_table(Layout layout, const std::array<int, kTeams>& characters) {
+  table_ = &table_spec(layout);
+  LaneView lanes;
+  for (std::size_t team = 0; team < kTeams; ++team) {
+    lanes.half_foot[team] = 0.5 * character_spec(characters[team]).foot_width;
+  }
+  model_ = {table_, team_, lanes.half_foot};
+  lanes.risk_cost = t_.risk_cost;
+  half_foot_ = lanes.half_foot[static_cast<std::size_t>(team_)];
+  std::vector<ComputerRod> before;
+  std::swap(before, rods_);
+  for (const int rod : rods_of_team(*table_, team_)) {
+    ComputerRod fresh(*table_, team_, rod, lanes);
+    if (!before.empty()) {
+      ComputerRod& old = before[rods_.size()];
+      fresh.adopt(old.slide().position(), old.swing().position());
+    }
+    rods_.push_back(fresh);
+  }
+}
+
+void ComputerMind::rest() {
+  hands_.let_go();
+  for (ComputerRod& rod : rods_) rod.give_up();
+}
+
+void ComputerMind::play(const Sighting& seen, const Tuning& tuning) {
+  Sighting now = seen;
+  for (ComputerRod& rod : rods_) {  // of its own hands it knows more than it sees
+    now.slide[static_cast<std::size_t>(rod.index())] = rod.slide().position();
+    now.swing[static_cast<std::size_t>(rod.index())] = rod.swing().position();
+    now.slide_rate[static_cast<std::size_t>(rod.index())] = 0.0;
+  }
+  constexpr double kFurther = 0.02;  // [s] beyond now
+  constexpr double kKeepsOn = 0.6;   // of its way; a hand that moved may have stopped
+  for (std::size_t rod = 0; rod < kRods; ++rod) {
+    const double limit = table_->rods[rod].slide_limit;
+    const double there = now.slide[rod] + kKeepsOn * (now.age + kFurther) * now.slide_rate[rod];
+    now.slide[rod] = std::clamp(there, -limit, limit);
+  }
+  guess_ball(now, tuning);
+  if (now.ball_in_play && !was_in_play_) side_ = random_.unit() < 0.5 ? -1.0 : 1.0;
+  was_in_play_ = now.ball_in_play;
+  hands_.pass_time();
+  std::array<bool, 4> busy{};
+  for (int line = 0; line < 4; ++line) busy[static_cast<std::size_t>(line)] = rods_[line].busy();
+  const Lines lines = wanted_lines(now);
+  hands_.want(lines[0], lines[1], busy);
+  for (int line = 0; line < 4; ++line) {
+    ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
+    if (hands_.holds(line)) {
+      rod.play(now, guard_y(line, now), t_, random_);
+    } else {
+      rod.rest();
+    }
+  }
+}
+
+// The ball as it is expected to be now. What a stroke does to it is known before it is seen.
+void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
+  BallGuess ball{now.ball, now.velocity};
+  double age = now.age;
+  if (sent_ticks_ >= 0) {
+    ++sent_ticks_;
+    const double since = sent_ticks_ * kTick;
+    if (since < now.age && now.ball_in_play) {
+      ball = sent_;
+      age = since;
+    } else {
+      sent_ticks_ = -1;
+    }
+  }
+  ball = advance(model_, tuning, now, ball, age);
+  now.ball = ball.position;
+  now.velocity = ball.velocity;
+  for (const ComputerRod& rod : rods_) {
+    if (!rod.struck()) continue;
+    sent_ = {now.ball, rod.sent_velocity()};
+    sent_ticks_ = 0;
+  }
+}
+
+// The two rods that matter most.
+ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
+  if (!now.ball_in_play) return {kMidfield, kDefence};
+  for (int line = 0; line < 4; ++line) {
+    if (!rods_[static_cast<std::size_t>(line)].has_ball() || !hands_.holds(line)) continue;
+    switch (line) {
+      case kGoalie:
+        return {kGoalie, kDefence};
+      case kDefence:
+        return {kDefence, kMidfield};
+      case kMidfield:
+        return {kMidfield, kAttack};
+      default:
+        return {kAttack, kDefence};
+    }
+  }
+  const double soon = now.ball.x + 0.10 * std::clamp(now.velocity.x, -3.0, 3.0);
+  if (now.velocity.x < -1.2 && now.ball.x < 0.30) return {kDefence, kGoalie};
+  if (soon < -0.45) return {kGoalie, kDefence};
+  if (soon < -0.15) return {kDefence, kGoalie};
+  if (soon < 0.0) return {kMidfield, kGoalie};
+  if (soon < 0.15) {
+    return {kDefence, kGoalie};
+  }
+  if (soon < 0.30) return {kAttack, kDefence};
+  return t_.stays_home ? Lines{kDefence, kGoalie} : Lines{kAttack, kDefence};
+}
+
+// Where a man should stand: in the path of a ball that comes, else where he covers the goal
+// (goalie, defence) or level with the ball.
+double ComputerMind::guard_y(int line, const Sighting& now) const {
+  const double way = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
+  const double vx = now.velocity.x;
+  const bool from_front = vx < -0.4 && way > 0.0;
+  if (from_front) return y_after(*table_, now.ball.y, now.velocity.y, way / -vx);
+  if (line == kMidfield || line == kAttack || way < 0.0) return now.ball.y;
+  return cover_y(line, now);
+}
+
+// Defence and goalie each cover a part of the mouth as the ball sees it: side by side from one post
+// if that is enough, else about its middle.
+double ComputerMind::cover_y(int line, const Sighting& now) const {
+  const double goal_line = 0.5 * table_->length;
+  const double mouth = 0.5 * table_->goal_width - table_->ball_radius;
+  const double run = now.ball.x + goal_line;
+  const auto share = [&](int l) {  // of the way from the ball to the goal line
+    return (now.ball.x - rods_[static_cast<std::size_t>(l)].x()) / run;
+  };
+  // Half of what a man hides of the mouth.
+  const auto hides = [&](int l) {
+    return share(l) > 0.02 ? (half_foot_ + 0.9 * table_->ball_radius) / share(l) : 0.0;
+  };
+  const double defence = std::min(mouth, hides(kDefence));
+  const double goalie = std::min(mouth, hides(kGoalie));
+  const bool all = defence + goalie >= mouth;
+  double target = 0.0;
+  if (line == kDefence) {
+    target = all ? -mouth + defence : -goalie;
+  } else {
+    target = all ? mouth - goalie : defence;
+  }
+  target *= side_;
+  return now.ball.y + (target - now.ball.y) * share(line);
+}
+
+}  // namespace foosball

@@ -1,0 +1,51 @@
+// A computer player of a level: which rods its two hands hold, and where each guards. All in the
+// team's frame (computer_sight.h).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "computer_guess.h"
+#include "computer_hands.h"
+#include "computer_level.h"
+#include "computer_rod.h"
+#include "computer_sight.h"
+#include "random.h"
+
+namespace foosball {
+
+class ComputerMind {
+ public:
+  ComputerMind(int team, const Temperament& t, std::uint64_t seed);
+
+  void set_table(Layout layout, const std::array<int, kTeams>& characters);
+  // One tick of play: moves the axes of the rods that the hands hold.
+  void play(const Sighting& seen, const Tuning& tuning);
+  // The hands leave the rods as they are: another screen, or somebody else works them.
+  void rest();
+  bool holds(int line) const { return hands_.holds(line); }
+  std::vector<ComputerRod>& rods() { return rods_; }  // by Line
+
+ private:
+  using Lines = std::array<int, 2>;  // the more urgent first
+
+  void guess_ball(Sighting& now, const Tuning& tuning);
+  Lines wanted_lines(const Sighting& now) const;
+  double guard_y(int line, const Sighting& now) const;
+  double cover_y(int line, const Sighting& now) const;
+
+  int team_;
+  Temperament t_;
+  Random random_;
+  ComputerHands hands_;
+  const TableSpec* table_ = nullptr;
+  GuessModel model_;
+  BallGuess sent_;      // the ball as a stroke has just sent it off, not yet seen
+  int sent_ticks_ = 0;  // since then; -1: what is seen is newer
+  double half_foot_ = 0.012;
+  std::vector<ComputerRod> rods_;
+  double side_ = 1.0;  // of the mouth that the defence covers
+  bool was_in_play_ = false;
+};
+
+}  // namespace foosball

@@ -1,0 +1,89 @@
+// How a computer player works one rod that it holds: guards, takes a ball under control, chooses a
+// lane and strikes. All in the team's frame (computer_sight.h).
+//
+// Whatever swings forward can only send the ball forward. So the feet go out of the way of a ball
+// from behind by swinging back, not forward, and no foot swings back while a ball may lie in its
+// sweep: it steps aside first.
+#pragma once
+
+#include "computer_hand.h"
+#include "computer_lanes.h"
+#include "computer_level.h"
+#include "computer_sight.h"
+#include "random.h"
+
+namespace foosball {
+
+class ComputerRod {
+ public:
+  ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes);
+
+  int index() const { return index_; }
+  double x() const { return x_; }  // of the axis [m]
+  const RodSpec& spec() const { return table_->rods[static_cast<std::size_t>(index_)]; }
+  HandAxis& slide() { return slide_; }
+  HandAxis& swing() { return swing_; }
+  double angle() const;  // swing from the nearest hanging foot [rad]
+
+  // One tick with a hand on it. guard_y: where a man is wanted while there is no ball to play.
+  void play(const Sighting& now, double guard_y, const Temperament& t, Random& random);
+  // One tick without a hand: at rest where it was left.
+  void rest();
+  // Whatever it was about to do, it will look anew.
+  void give_up() { enter(Act::watch); }
+  // The hand takes the rod where it is, whoever moved it there.
+  void adopt(double slide, double swing);
+
+  bool has_ball() const { return act_ == Act::draw || act_ == Act::strike || act_ == Act::scoop; }
+  bool busy() const { return act_ == Act::strike || act_ == Act::brake; }
+  // Its foot has just met the ball, and sent it off so.
+  bool struck() const { return act_ == Act::brake && since_ == 0.0; }
+  vp::Vec3 sent_velocity() const { return sent_; }
+  // A ball that this rod can take under control.
+  bool can_control(const Sighting& now) const;
+  // The slide that brings the best man to y: nearest to it, then least moved.
+  double slide_for(double y, int* man = nullptr) const;
+
+ private:
+  enum class Act { watch, draw, strike, brake, scoop };
+
+  void enter(Act act);
+  void watch(const Sighting& now, double guard_y, const Temperament& t, Random& random);
+  void begin_control(const Sighting& now, const Temperament& t, Random& random);
+  void draw(const Sighting& now, const Temperament& t, Random& random);
+  double worth_of(const Sighting& now, double slope, const Temperament& t) const;
+  void choose_lane(const Sighting& now, double square, const Temperament& t);
+  double natural_slope(const Sighting& now, const Temperament& t) const;
+  bool lost(const Sighting& now) const;
+  void strike(const Temperament& t);
+  void brake(const Temperament& t);
+  void swing_back(double goal, const Sighting& now, const AxisLimits& limits);
+  bool ball_in_sweep(double goal, const Sighting& now) const;
+  double clear(const Sighting& now) const;
+  void step_aside(const Sighting& now);
+  void follow(double goal);
+  double level() const;  // the full turn nearest to the swing, where the feet hang down
+  double ahead(const Sighting& now) const { return now.ball.x - x_; }
+  double man_y(int man) const { return man_offset(spec(), man) + slide_.position(); }
+
+  const TableSpec* table_;
+  int team_, index_;
+  double x_;
+  LaneView lanes_;
+  HandAxis slide_, swing_;
+  double goal_ = 0.0;    // where the hand brings the slide [m]
+  double turned_ = 0.0;  // since the slide last turned round [s]
+  Act act_ = Act::watch;
+  double since_ = 0.0;                // in this act [s]
+  int man_ = 0;                       // with the ball
+  bool over_ = false;                 // his foot is behind the ball
+  bool feints_ = false;               // before this strike
+  double pause_ = 0.0;                // before this strike [s]
+  double noise_ = 0.0;                // of this strike's aim [m]
+  double slope_ = 0.0, worth_ = 0.0;  // of the lane chosen
+  double power_ = 1.0;
+  vp::Vec3 sent_;
+  double scoop_side_ = 0.0;
+};
+
+}  // namespace foosball

@@ -1,0 +1,179 @@
+// Computer players by name, and that they keep to what a person with two hands can do.
+#include "foosball/computer_player.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "../src/computer_hands.h"
+#include "../src/computer_level.h"
+#include "foosball/statistics.h"
+
+namespace foosball {
+namespace {
+
+TEST(ParsePlayer, TakesLevelsStylesAndReferencesAndWritesThemAgain) {
+  for (const char* text : {"1", "2", "3", "4", "5", "3:shooter", "5:wall", "1:gambler", "2:passer",
+                           "classic:0.9", "classic:0"}) {
+    const auto spec = parse_player(text);
+    ASSERT_TRUE(spec) << text;
+    EXPECT_EQ(to_text(*spec), text);
+  }
+  EXPECT_EQ(parse_player("4")->style, style_of_level(4));
+  EXPECT_EQ(*parse_player("classic"), *parse_player("classic:0.6"));
+}
+
+TEST(ParsePlayer, RefusesAnythingElseWithASentenceThatNamesTheChoices) {
+  for (const char* text :
+       {"", "0", "6", "3:", "3:keeper", "33", "-1", "classic:", "classic:2", "classic:0.9.1",
+        "classic:1e0", "mouse:2", " 3", "3 ", "Classic", "classic:-0.5", "classic:."}) {
+    const auto spec = parse_player(text);
+    ASSERT_FALSE(spec) << text;
+    EXPECT_EQ(spec.error().code, vp::Errc::invalid_argument);
+    EXPECT_NE(spec.error().message.find("gambler"), std::string::npos);
+  }
+}
+
+TEST(ComputerHands, AHandThatLeavesARodHoldsTheNextOnlyAfterItsWay) {
+  ComputerHands hands(2, 100);
+  hands.want(1, 0, {});
+  for (int tick = 0; tick < 99; ++tick) hands.pass_time();
+  EXPECT_FALSE(hands.holds(1));
+  hands.pass_time();
+  EXPECT_TRUE(hands.holds(1) && hands.holds(0));
+  hands.want(2, 1, {});
+  EXPECT_TRUE(hands.holds(1)) << "wanted again: stays";
+  EXPECT_FALSE(hands.holds(0)) << "gone to the midfield";
+  EXPECT_FALSE(hands.holds(2));
+  for (int tick = 0; tick < 100; ++tick) hands.pass_time();
+  EXPECT_TRUE(hands.holds(2));
+  hands.want(3, 0, {false, false, true, false});
+  EXPECT_TRUE(hands.holds(2)) << "busy with a stroke";
+  EXPECT_FALSE(hands.holds(1));
+}
+
+TEST(Temperament, HigherLevelsAreBetterInEverythingButNoBetterThanAPerson) {
+  for (int level = 2; level <= kLevels; ++level) {
+    const Temperament lower = temperament_of(level - 1, PlayStyle::passer);
+    const Temperament t = temperament_of(level, PlayStyle::passer);
+    EXPECT_LT(t.delay, lower.delay);
+    EXPECT_LT(t.hand_travel, lower.hand_travel);
+    EXPECT_LT(t.aim_error, lower.aim_error);
+    EXPECT_GT(t.slide.rate, lower.slide.rate);
+    EXPECT_GT(t.strike_rate, lower.strike_rate);
+  }
+  const Temperament best = temperament_of(kLevels, PlayStyle::gambler);
+  EXPECT_GE(best.delay, 0.10);
+  EXPECT_GE(best.hand_travel, 0.15);
+  EXPECT_LE(best.strike_rate, 140.0);
+  EXPECT_EQ(best.hands, 2);
+}
+
+struct Case {
+  Layout layout;
+  const char* home;
+  const char* away;
+};
+std::string case_name(const testing::TestParamInfo<Case>& info) {
+  std::string name = info.param.layout == Layout::paper ? "paper_" : "tournament_";
+  name.append(info.param.home).append("_").append(info.param.away);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ':' || c == '.'; }, '_');
+  return name;
+}
+
+class ComputerPlayers : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(All, ComputerPlayers,
+                         testing::Values(Case{Layout::tournament, "5:shooter", "4"},
+                                         Case{Layout::paper, "5", "3"},
+                                         Case{Layout::tournament, "1", "2"},
+                                         Case{Layout::paper, "2:gambler", "3:wall"}),
+                         case_name);
+
+// By its targets, which is what its hands do: a rod that moves, or has moved within the time that a
+// hand of the best level needs to another rod, has a hand on it.
+TEST_P(ComputerPlayers, HaveTwoHandsEachAndTurnThemRoundTwiceASecondAtMost) {
+  constexpr int kSeconds = 25;
+  constexpr int kWay = 140;  // ticks; the quickest hand needs 160
+  Match match = *Match::create({.layout = GetParam().layout, .seed = 3, .rules = {}});
+  ComputerPlayer home({.team = 0, .seed = 6, .player = *parse_player(GetParam().home)});
+  ComputerPlayer away({.team = 1, .seed = 7, .player = *parse_player(GetParam().away)});
+  StatisticsObserver observer;
+  TickInput input;
+  RodTargets before = input.rods;
+  const TableSpec& table = table_spec(GetParam().layout);
+  std::array<int, kRods> moved{};
+  moved.fill(-1000);
+  double swing = 0.0;
+  int in_play = 0;
+  for (int tick = 0; tick < kSeconds * 1000; ++tick) {
+    home.play(match.view(), input.rods);
+    away.play(match.view(), input.rods);
+    match.step(input);
+    observer.observe(match.view(), match.events(), input.rods);
+    std::array<int, kTeams> hands{};
+    const bool playing = match.view().screen == Screen::play;
+    in_play += match.view().ball_in_play ? 1 : 0;
+    for (int rod = 0; rod < kRods; ++rod) {
+      const RodTarget &now = input.rods[rod], &was = before[rod];
+      if (playing && (now.slide != was.slide || now.angle != was.angle)) {
+        ASSERT_TRUE(now.live) << "a rod without a hand moves";
+        moved[rod] = tick;
+      }
+      if (!playing) moved[rod] = -1000;
+      if (tick - moved[rod] < kWay) ++hands[table.rods[rod].team];
+      if (match.view().ball_in_play)
+        swing = std::max(swing, std::fabs(std::remainder(now.angle, 2.0 * vp::kPi)));
+    }
+    ASSERT_LE(std::max(hands[0], hands[1]), 2) << "tick " << tick;
+    before = input.rods;
+  }
+  ASSERT_GT(in_play, 5000);
+  EXPECT_LT(swing, 2.3) << "no rod ever spins";
+  const Statistics& s = observer.totals();
+  for (int team = 0; team < kTeams; ++team) {
+    double reversals = 0.0;
+    for (int rod = 0; rod < kRods; ++rod) {
+      if (table.rods[rod].team == team) {
+        reversals += static_cast<double>(s.slide_reversals[rod] + s.swing_reversals[rod]);
+      }
+    }
+    const double each = reversals / (4.0 * kTick * static_cast<double>(s.play_ticks));
+    std::printf("team %d: %.2f reversals a rod and second\n", team, each);
+    EXPECT_LT(each, 2.0);
+    EXPECT_EQ(s.moving_ticks[team][3] + s.moving_ticks[team][4], 0U);
+  }
+}
+
+// A ball at rest in front of the goal, before or behind the men of a rod: whatever the player does
+// with it, its own foot never drives it into its own goal.
+TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
+  int own = 0, moved = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Layout layout = seed % 2 == 0 ? Layout::paper : Layout::tournament;
+    const std::string level = std::to_string(1 + seed % 5);
+    Match match = *Match::create({.layout = layout, .seed = seed, .rules = {}});
+    ComputerPlayer home({.team = 0, .seed = seed, .player = *parse_player(level)});
+    StatisticsObserver observer;
+    TickInput input;
+    const Command confirms{Command::Kind::push, 1};
+    for (int tick = 0; tick < 12000; ++tick) {
+      home.play(match.view(), input.rods);
+      const bool asked = match.view().screen == Screen::selection && !match.view().confirmed[1];
+      match.step({input.rods, std::span(&confirms, asked ? 1 : 0)});
+      observer.observe(match.view(), match.events(), input.rods);
+      moved += vp::norm(match.view().ball_velocity) > 1.0 ? 1 : 0;
+    }
+    own += static_cast<int>(observer.totals().own_goals_swing[0]);
+  }
+  EXPECT_EQ(own, 0);
+  EXPECT_GT(moved, 1000);
+}
+
+}  // namespace
+}  // namespace foosball
