@@ -291,7 +291,7 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   }
   if (since_ < pause_) return;
   if (way > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
-  const bool aligned = std::fabs(goal_ - slide_.position()) < 0.001;
+  const bool aligned = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
   const double bar = t.shot_bar * (1.0 - (since_ - pause_) / t.patience);
   constexpr double kLate = 0.5;  // [s] beyond the patience, then strike at what there is
   if ((aligned && worth_ >= bar) || since_ > pause_ + t.patience + kLate) {

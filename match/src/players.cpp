@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 
+#include "foosball/assists.h"
 #include "foosball/computer_player.h"
 #include "match/player.h"
 
@@ -71,34 +73,59 @@ class Spinner final : public Player {
   std::array<double, kRods> slide_{};
 };
 
-// Lets only one hand of another player through: the one on the rod nearest to the ball. A hand that
-// has just changed stays for a while, as a person's does.
+// A person with one hand, as with a mouse: of another player only the rod that this person would
+// take is let through. Which one, and what the others do, is up to the assists
+// (foosball/assists.h).
 class OneRod final : public Player {
  public:
   OneRod(int team, std::unique_ptr<Player> inner) : team_(team), inner_(std::move(inner)) {}
+
   void play(const MatchView& view, RodTargets& targets) override {
     inner_->play(view, targets);
-    const auto& table = foosball::table_spec(view.layout);
-    const auto rods = rods_of_team(table, team_);
-    const auto distance = [&](int rod) {
-      return std::fabs(table.rods[rod].x - view.ball_position.x);
-    };
-    int nearest = rods[0];
-    for (const int rod : rods) nearest = distance(rod) < distance(nearest) ? rod : nearest;
-    constexpr double kClearlyNearer = 0.03;  // [m]
-    constexpr int kSettle = 100;             // ticks
-    const bool better = rod_ < 0 || distance(nearest) < distance(rod_) - kClearlyNearer;
-    if (better && ++since_ >= kSettle) {
-      rod_ = nearest;
+    if (!assists_ || layout_ != view.layout) begin(view.layout);
+    const foosball::AssistView seen{.ball_in_play = view.ball_in_play,
+                                    .ball = view.ball_position,
+                                    .velocity = view.ball_velocity,
+                                    .rods = view.rods,
+                                    .character = view.character};
+    foosball::AssistHand hand{.targets = targets};
+    const int rod = assists_->rod_to_take(seen, hand, rod_);
+    constexpr int kSettle = 100;  // ticks: a hand that has just changed stays for a while
+    if (++since_ >= kSettle && rod != rod_) {
+      rod_ = rod;
       since_ = 0;
-    } else if (rod_ < 0) {
-      rod_ = nearest;
     }
-    for (const int rod : rods) targets[rod].live = targets[rod].live && rod == rod_;
+    if (rod_ < 0) rod_ = rod;
+    if (rod_ >= 0) {
+      hand.held = static_cast<std::uint8_t>(1U << static_cast<unsigned>(rod_));
+      constexpr double kStrikes = 8.0;  // [rad/s]
+      hand.strikes = std::fabs(targets[static_cast<std::size_t>(rod_)].angle_rate) > kStrikes;
+    }
+    for (const int own : rods_of_team(foosball::table_spec(layout_), team_)) {
+      const auto i = static_cast<std::size_t>(own);
+      if (own != rod_) hand.targets[i].live = false;
+    }
+    const auto helped = assists_->steer(seen, hand, 1);
+    for (const int own : rods_of_team(foosball::table_spec(layout_), team_)) {
+      targets[static_cast<std::size_t>(own)] = helped[static_cast<std::size_t>(own)];
+    }
   }
 
  private:
+  void begin(foosball::Layout layout) {
+    layout_ = layout;
+    std::uint8_t rods = 0;
+    for (const int own : rods_of_team(foosball::table_spec(layout), team_)) {
+      rods = static_cast<std::uint8_t>(rods | 1U << static_cast<unsigned>(own));
+    }
+    assists_.emplace(
+        team_, layout, rods,
+        foosball::AssistChoice{.automatic_rod = true, .goalie_follows = true, .aim = true});
+  }
+
   int team_, rod_ = -1, since_ = 0;
+  foosball::Layout layout_{};
+  std::optional<foosball::Assists> assists_;
   std::unique_ptr<Player> inner_;
 };
 
@@ -140,8 +167,8 @@ constexpr Kind kKinds[] = {
      [](const PlayerDesc& desc, const std::string& argument) {
        return without_argument(desc, argument, std::make_unique<Spinner>(desc.team));
      }},
-    {"one-rod", "one-rod[:PLAYER]", "PLAYER with one hand, on the rod nearest to the ball",
-     make_one_rod},
+    {"one-rod", "one-rod[:PLAYER]",
+     "PLAYER with one hand and all assists, as a person with a mouse", make_one_rod},
 };
 
 std::string all_syntax() {

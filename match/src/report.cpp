@@ -102,12 +102,14 @@ void add_hands(List& list, const Statistics& s) {
         team == 0 ? "team 0 moves 3 rods or more at once" : "team 1 moves 3 rods or more at once",
         percent(moving[3] + moving[4], sum(moving)), "% of play", at_most(0.5, "none (two hands)"));
   }
-  const double hand_seconds = static_cast<double>(sum(s.hand_ticks)) * foosball::kTick;
-  const double slide = static_cast<double>(sum(s.slide_reversals)) / hand_seconds;
-  const double swing = static_cast<double>(sum(s.swing_reversals)) / hand_seconds;
+  const double rod_seconds = foosball::kRods * static_cast<double>(s.play_ticks) * foosball::kTick;
+  const double slide = static_cast<double>(sum(s.slide_reversals)) / rod_seconds;
+  const double swing = static_cast<double>(sum(s.swing_reversals)) / rod_seconds;
   list.add("reversals a rod and second", slide + swing, "1/s", at_most(2.0, "at most 2"));
   list.add("  of the slide", slide, "1/s");
   list.add("  of the swing", swing, "1/s");
+  const double held = static_cast<double>(sum(s.hand_ticks)) * foosball::kTick / rod_seconds;
+  list.add("  of a rod while a hand holds it", held > 0.0 ? (slide + swing) / held : 0.0, "1/s");
   list.add("spins beyond a turn", per_minute(sum(s.spins), s.play_ticks), "a minute",
            at_most(0.0, "none"));
 }

@@ -168,6 +168,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.match = options.match;
   wanted.computer = options.computer;
   wanted.computer_fills = options.computer_fills;
+  wanted.computer_player = options.computer_player;
   wanted.network = options.network;
   wanted.access = options.access;
   wanted.limits = options.limits;

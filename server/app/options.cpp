@@ -99,6 +99,8 @@ struct Raw {
   std::string password_file, host_password_file;
   std::string characters, check_character;
   double seconds = 0.0, keep_seats = 30.0;
+  int level = foosball::PlayerSpec{}.level;
+  std::string style;
   bool fast = false, no_real_time = false, list_tuning = false;
 };
 
@@ -132,6 +134,12 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::IsMember({"match", "training", "challenge", "ladder"}));
   cli.add_option("--date", raw.date, "of the challenge, such as 20261122 (today)")
       ->check(CLI::Range(10000101, 99991231));
+  cli.add_option("--level", raw.level, "of the computer players, 1 to 5")
+      ->check(CLI::Range(1, foosball::kLevels));
+  cli.add_option("--style", raw.style,
+                 "of the computer players: wall, shooter, passer or gambler; without it, the one "
+                 "that suits the level")
+      ->check(CLI::IsMember({"wall", "shooter", "passer", "gambler"}));
   cli.add_flag("--computer-fills", o.computer_fills,
                "the computer also plays rods that nobody has of a team that persons share");
   cli.add_option("--device", o.devices,
@@ -232,6 +240,9 @@ void translate(Options& o, const Raw& raw) {
   if (!raw.seed.empty() && o.match.mode != foosball::Mode::challenge)
     o.match.seed = *parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
+  const std::string player = std::to_string(raw.level);
+  o.computer_player =
+      *foosball::parse_player(raw.style.empty() ? player : player + ":" + raw.style);
   if (!raw.multicast.empty()) o.network.multicast = parse_group(raw.multicast);
   if (!raw.password_file.empty()) o.access.password = read_password(raw.password_file);
   if (!raw.host_password_file.empty()) {

@@ -16,6 +16,7 @@ struct Options {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};
   bool computer_fills = false;
+  foosball::PlayerSpec computer_player{};
   server::NetworkOptions network;
   server::AccessOptions access;
   server::ControlLimits limits;

@@ -22,9 +22,10 @@ std::uint64_t computer_seed(std::uint64_t match_seed, int team) {
 
 RodDesk::RodDesk(const foosball::MatchDesc& match,
                  const std::array<bool, foosball::kTeams>& computer, bool computer_fills,
-                 const foosball::MatchView& view)
+                 const foosball::PlayerSpec& computer_player, const foosball::MatchView& view)
     : table_(foosball::table_spec(match.layout)),
       computer_fills_(computer_fills),
+      player_(computer_player),
       computer_allowed_(computer),
       seed_(match.seed),
       mux_(slide_limits(table_)) {
@@ -46,11 +47,13 @@ foosball::ComputerPlayerDesc RodDesk::computer_desc(int team) const {
   desc.team = team;
   desc.seed = computer_seed(seed_, team);
   desc.opens_match = computer_allowed_[0] && computer_allowed_[1];
-  if (rung_ >= 0) {
-    desc.player.level = rung_ + 1;
-    desc.player.style = foosball::style_of_level(rung_ + 1);
-  }
+  desc.player = computer_player();
   return desc;
+}
+
+foosball::PlayerSpec RodDesk::computer_player() const {
+  if (rung_ < 0) return player_;
+  return {.level = rung_ + 1, .style = foosball::style_of_level(rung_ + 1)};
 }
 
 void RodDesk::set_rung(int rung) {

@@ -24,7 +24,8 @@ class RodDesk {
   // computer: teams that a computer plays while no client has rods of them. computer_fills: and
   // their rods that nobody has. view must outlive the desk.
   RodDesk(const foosball::MatchDesc& match, const std::array<bool, foosball::kTeams>& computer,
-          bool computer_fills, const foosball::MatchView& view);
+          bool computer_fills, const foosball::PlayerSpec& computer_player,
+          const foosball::MatchView& view);
 
   void add_device(std::unique_ptr<cabinet::DeviceSource> device);
   const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices() const { return devices_; }
@@ -40,6 +41,8 @@ class RodDesk {
   bool hand_moved() const;
   // The opponent at a rung of the ladder: stronger from one to the next.
   void set_rung(int rung);
+  // Who plays where a computer does.
+  foosball::PlayerSpec computer_player() const;
 
   void poll(std::int64_t now_us) { mux_.poll(now_us); }
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
@@ -62,6 +65,7 @@ class RodDesk {
   std::array<Place, foosball::kRods> places_;  // one for each client that has a rod
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
   bool computer_fills_;
+  foosball::PlayerSpec player_;
   std::array<bool, foosball::kTeams>
       computer_allowed_{};  // else it plays only a match that is shown
   std::uint64_t seed_ = 0;

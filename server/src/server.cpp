@@ -113,7 +113,8 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
       input(udp.get(), options.session, foosball::kRods),
       broadcaster(udp.get(), static_cast<std::size_t>(options.limits.connections) + 1,
                   options.send_priority),
-      desk(options.match, options.computer, options.computer_fills, match.view()),
+      desk(options.match, options.computer, options.computer_fills, options.computer_player,
+           match.view()),
       recorder(std::move(journal)),
       scribe(options.match),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
@@ -365,7 +366,7 @@ MatchScribe::Players Server::Impl::players() const {
     if (client != clients.end()) {
       players[team] = {client->name.data(), "person"};
     } else if (options.computer[team]) {
-      players[team] = {"computer", "computer"};
+      players[team] = {"computer " + to_text(desk.computer_player()), "computer"};
     } else {
       players[team] = {desk.devices().empty() ? "nobody" : "cabinet", "person"};
     }

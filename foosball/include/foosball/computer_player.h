@@ -32,8 +32,8 @@ struct PlayerSpec {
     classic,  // the first player, with a skill 0..1: a reference for tests and studies
   };
   Kind kind = Kind::level;
-  int level = 3;  // 1..kLevels
-  PlayStyle style = PlayStyle::passer;
+  int level = 2;  // 1..kLevels
+  PlayStyle style = PlayStyle::wall;
   double skill = 0.6;  // of classic
 
   bool operator==(const PlayerSpec&) const = default;

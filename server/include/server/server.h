@@ -17,6 +17,7 @@
 
 #include "cabinet/device_source.h"
 #include "foosball/match.h"
+#include "foosball/computer_player.h"
 #include "server/counters.h"
 #include "server/log.h"
 #include "server/network.h"
@@ -28,6 +29,7 @@ struct ServerOptions {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
   bool computer_fills = false;  // ... and its rods that nobody has while people have the others
+  foosball::PlayerSpec computer_player{};  // level and style; the ladder has its own
   NetworkOptions network;
   AccessOptions access;
   ControlLimits limits;
