@@ -310,9 +310,10 @@ double ComputerRod::natural_slope(const Sighting& now, const Temperament& t) con
 double ComputerRod::worth_of(const Sighting& now, double slope, const Temperament& t) const {
   constexpr double kFlatError = 0.012, kEdge = 50.0;  // slope for a metre beside where it should be
   constexpr double kFlat = 0.01;
+  constexpr double kBelieved = 0.0015;  // who aims worse does not know it [m]
   LaneView lanes = lanes_;
   const bool flat = std::fabs(slope - natural_slope(now, t)) < kFlat;
-  lanes.slope_error = flat ? kFlatError : kFlatError + kEdge * t.aim_error;
+  lanes.slope_error = flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, kBelieved);
   return lane_worth(*table_, now, lanes, slope);
 }
 
