@@ -29,8 +29,6 @@ class LevelPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   ComputerMind mind_;
   bool awake_ = false;
-  Layout layout_ = Layout::tournament;
-  std::array<int, kTeams> characters_{};
   Screen screen_ = Screen::logo;
 };
 
@@ -58,15 +56,10 @@ void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
   }
 }
 
-// A new table, new characters or a new screen.
+// A new screen; with play, new characters.
 void LevelPlayer::come_to(const MatchView& view) {
   const bool play_begins = screen_ != view.screen && view.screen == Screen::play;
-  const bool changed = characters_ != view.character || layout_ != view.layout;
-  if (!awake_ || (play_begins && changed)) {
-    layout_ = view.layout;
-    characters_ = view.character;
-    mind_.set_table(layout_, characters_);
-  }
+  if (!awake_ || play_begins) mind_.set_table(view.layout, view.bodies);
   screen_ = view.screen;
   screens_.see(view, mind_.rods()[ComputerScreens::kRod].swing().position(), random_);
   hold_or_adopt(view);

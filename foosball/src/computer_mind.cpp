@@ -16,24 +16,24 @@ ComputerMind::ComputerMind(int team, const Temperament& t, std::uint64_t seed)
       random_(seed),
       hands_(2, static_cast<int>(std::lround(t.hand_travel / kTick))) {}
 
-void ComputerMind::set_table(Layout layout, const std::array<int, kTeams>& characters) {
+void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
   table_ = &table_spec(layout);
   LaneView lanes;
   for (std::size_t team = 0; team < kTeams; ++team) {
-    lanes.half_foot[team] = 0.5 * character_spec(characters[team]).foot_width;
+    lanes.half_foot[team] = 0.5 * bodies[team].foot_width;
   }
   model_ = {table_, team_, lanes.half_foot};
   lanes.risk_cost = t_.risk_cost;
   half_foot_ = lanes.half_foot[static_cast<std::size_t>(team_)];
-  std::vector<ComputerRod> before;
-  std::swap(before, rods_);
-  for (const int rod : rods_of_team(*table_, team_)) {
-    ComputerRod fresh(*table_, team_, rod, lanes);
-    if (!before.empty()) {
-      ComputerRod& old = before[rods_.size()];
-      fresh.adopt(old.slide().position(), old.swing().position());
+  const auto indices = rods_of_team(*table_, team_);
+  for (std::size_t line = 0; line < indices.size(); ++line) {
+    ComputerRod rod(*table_, team_, indices[line], lanes);
+    if (line < rods_.size()) {
+      rod.adopt(rods_[line].slide().position(), rods_[line].swing().position());
+      rods_[line] = rod;
+    } else {
+      rods_.push_back(rod);
     }
-    rods_.push_back(fresh);
   }
 }
 
@@ -100,7 +100,9 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
 
 // The two rods that matter most.
 ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
-  if (!now.ball_in_play) return {kMidfield, kDefence};
+  if (!now.ball_in_play) {
+    return now.own_serve ? Lines{kMidfield, kDefence} : Lines{kDefence, kGoalie};
+  }
   for (int line = 0; line < 4; ++line) {
     if (!rods_[static_cast<std::size_t>(line)].has_ball() || !hands_.holds(line)) continue;
     switch (line) {

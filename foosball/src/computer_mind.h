@@ -18,7 +18,7 @@ class ComputerMind {
  public:
   ComputerMind(int team, const Temperament& t, std::uint64_t seed);
 
-  void set_table(Layout layout, const std::array<int, kTeams>& characters);
+  void set_table(Layout layout, const TeamBodies& bodies);
   // One tick of play: moves the axes of the rods that the hands hold.
   void play(const Sighting& seen, const Tuning& tuning);
   // The hands leave the rods as they are: another screen, or somebody else works them.

@@ -87,7 +87,7 @@ class OneRod final : public Player {
                                     .ball = view.ball_position,
                                     .velocity = view.ball_velocity,
                                     .rods = view.rods,
-                                    .character = view.character};
+                                    .bodies = view.bodies};
     foosball::AssistHand hand{.targets = targets};
     const int rod = assists_->rod_to_take(seen, hand, rod_);
     constexpr int kSettle = 100;  // ticks: a hand that has just changed stays for a while

@@ -333,7 +333,7 @@ TEST(Results, OfAMatchThatWasWonAreInTheFile) {
   EXPECT_DOUBLE_EQ(matches[0].play_seconds, seconds);
   for (std::size_t t = 0; t < 2; ++t) {
     EXPECT_EQ(matches[0].teams[t].goals, static_cast<std::uint32_t>(score[t]));
-    EXPECT_EQ(matches[0].teams[t].players[0], (results::Player{"computer", "computer"}));
+    EXPECT_EQ(matches[0].teams[t].players[0], (results::Player{"computer 2", "computer"}));
     ASSERT_TRUE(matches[0].teams[t].statistics);
   }
   const auto& statistics = *matches[0].teams[0].statistics;
