@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "cabinet/device_source.h"
-#include "foosball/match.h"
 #include "foosball/computer_player.h"
+#include "foosball/match.h"
 #include "server/counters.h"
 #include "server/log.h"
 #include "server/network.h"
