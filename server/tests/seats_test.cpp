@@ -203,7 +203,7 @@ TEST(RateLimits, ManyNamesHaveNoMoreThanOneWhenTheirPlacesAreTaken) {
 
 struct DeskTest : testing::Test {
   explicit DeskTest(bool fills = false)
-      : match(*foosball::Match::create({})), desk({}, {true, false}, fills, match.view()) {}
+      : match(*foosball::Match::create({})), desk({}, {true, false}, fills, {}, match.view()) {}
   std::string drivers() {
     desk.poll(now += 1000);
     std::string text;
