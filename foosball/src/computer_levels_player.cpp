@@ -43,7 +43,7 @@ void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
     if (at_screen) {
       mind_.rest();
     } else {
-      mind_.play(sight_.seen(), view.tuning);
+      mind_.play(sight_.seen(), view.tuning, view.next_server == team_);
     }
   }
   for (int line = 0; line < 4; ++line) {

@@ -42,7 +42,8 @@ void ComputerMind::rest() {
   for (ComputerRod& rod : rods_) rod.give_up();
 }
 
-void ComputerMind::play(const Sighting& seen, const Tuning& tuning) {
+void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_serve) {
+  own_serve_ = own_serve;
   Sighting now = seen;
   for (ComputerRod& rod : rods_) {  // of its own hands it knows more than it sees
     now.slide[static_cast<std::size_t>(rod.index())] = rod.slide().position();
@@ -101,7 +102,7 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
 // The two rods that matter most.
 ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
   if (!now.ball_in_play) {
-    return now.own_serve ? Lines{kMidfield, kDefence} : Lines{kDefence, kGoalie};
+    return own_serve_ ? Lines{kMidfield, kDefence} : Lines{kDefence, kGoalie};
   }
   for (int line = 0; line < 4; ++line) {
     if (!rods_[static_cast<std::size_t>(line)].has_ball() || !hands_.holds(line)) continue;

@@ -20,7 +20,8 @@ class ComputerMind {
 
   void set_table(Layout layout, const TeamBodies& bodies);
   // One tick of play: moves the axes of the rods that the hands hold.
-  void play(const Sighting& seen, const Tuning& tuning);
+  // own_serve: the next serve, or the last, is the own team's.
+  void play(const Sighting& seen, const Tuning& tuning, bool own_serve);
   // The hands leave the rods as they are: another screen, or somebody else works them.
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
@@ -46,6 +47,7 @@ class ComputerMind {
   std::vector<ComputerRod> rods_;
   double side_ = 1.0;  // of the mouth that the defence covers
   bool was_in_play_ = false;
+  bool own_serve_ = false;
 };
 
 }  // namespace foosball

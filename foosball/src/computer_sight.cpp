@@ -29,7 +29,6 @@ Sighting ComputerSight::in_team_frame(const MatchView& view) const {
   const double s = attack_sign(team_);
   Sighting seen;
   seen.ball_in_play = view.ball_in_play;
-  seen.own_serve = view.next_server == team_;
   seen.ball = {s * view.ball_position.x, s * view.ball_position.y, view.ball_position.z};
   seen.velocity = {s * view.ball_velocity.x, s * view.ball_velocity.y, view.ball_velocity.z};
   for (int rod = 0; rod < kRods; ++rod) {

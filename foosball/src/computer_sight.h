@@ -15,7 +15,6 @@ namespace foosball {
 
 struct Sighting {
   bool ball_in_play = false;
-  bool own_serve = false;  // the next one, or the last
   vp::Vec3 ball, velocity;
   std::array<double, kRods> slide{}, swing{};
   std::array<double, kRods> slide_rate{};  // [m/s]
