@@ -50,13 +50,16 @@ TEST(Game, OfAnIdleSideMovesNoneOfItsRods) {
   EXPECT_EQ(s.moving_ticks[1][0], s.play_ticks);
 }
 
-TEST(Player, OneRodHasOneHandAtATime) {
+// Goalie and defence follow by the assist.
+TEST(Player, OneRodHasMidfieldOrAttackInHandNeverBoth) {
   GameDesc game = short_game();
   game.players = {"one-rod:classic:0.9", "classic"};
   const auto s = play_game(game).result.statistics;
   const auto& hands = s.hand_ticks;
-  EXPECT_EQ(hands[0] + hands[1] + hands[3] + hands[5], s.play_ticks);
-  EXPECT_EQ(s.moving_ticks[0][2], 0u);
+  EXPECT_GT(hands[3], 0u);
+  EXPECT_GT(hands[5], 0u);
+  EXPECT_LE(hands[3] + hands[5], s.play_ticks);
+  EXPECT_EQ(s.moving_ticks[0][4], 0u);
 }
 
 TEST(Player, ThatIsNoneIsNamedWithWhatMayBeGiven) {

@@ -5,7 +5,7 @@
 //   classic:SKILL     the first computer player, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
 //   spinner           every rod spins all the time, a man level with the ball
-//   one-rod:PLAYER    PLAYER with a hand on the rod nearest to the ball only, as a person with a
+//   one-rod:PLAYER    PLAYER with one hand and all assists (foosball/assists.h), as a person with a
 //   mouse
 #pragma once
 
