@@ -34,7 +34,7 @@ TEST(Allocation, NoneInATickOfPlayOnceWarm) {
   TickInput input;
   constexpr double kWarm = 2.0;  // [s] of play: the engine's arrays have met their size
   long in_play = 0, ticks = 0;
-  for (int tick = 0; tick < 20000; ++tick) {
+  for (int tick = 0; tick < 60000; ++tick) {
     const bool warm = match.view().screen == Screen::play && match.view().play_seconds > kWarm;
     const Screen screen = match.view().screen;
     const long before = allocations;

@@ -209,9 +209,9 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   const auto rod_glow = [&](std::size_t rod) { return glow(rod) > 0.0f ? 1.0f + glow(rod) : 0.0f; };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
-    return state.rods[rod].status == number(wire::RodStatus::held)
-               ? glm::mix(team, kHeldColour, 0.35f)
-               : team;
+    const bool held = state.rods[rod].status == number(wire::RodStatus::held) &&
+                      state.rods[rod].source != number(wire::RodSource::replay);
+    return held ? glm::mix(team, kHeldColour, 0.35f) : team;
   };
   for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
     const foosball::RodSpec& spec = table_->rods[rod];
