@@ -185,9 +185,11 @@ bool ComputerRod::ball_in_sweep(double goal, const Sighting& now) const {
   constexpr double kHigh = 0.10;  // [m]
   if (!now.ball_in_play || now.ball.z > kHigh) return false;
   const double hang = level();
-  const auto foot = [&](double swing) {
-    return kFoot * std::sin(std::clamp(swing - hang, -kSoleAbove, kSoleAbove));
-  };
+  const auto foot =
+      [&](double swing) {  // ahead of the axis; the sine's series, the same everywhere
+        const double s = std::clamp(swing - hang, -kSoleAbove, kSoleAbove);
+        return kFoot * s * (1.0 - s * s / 6.0 * (1.0 - s * s / 20.0));
+      };
   const double front = foot(swing_.position()) + 0.012;
   const double back = foot(goal) - table_->ball_radius - 0.012;
   for (const double lead : {0.0, 0.03, 0.06}) {  // [s]
@@ -240,6 +242,7 @@ void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Rando
   pause_ = random.between(t.pause_low, t.pause_high);
   noise_ = t.aim_error * random.bell();
   feints_ = random.unit() < t.feint;
+  scoop_side_ = 0.0;
   enter(Act::draw);
   draw(now, t, random);
 }
@@ -255,50 +258,62 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   if (lost(now)) return enter(Act::watch);
   const double y = y_after(*table_, now.ball.y, now.velocity.y, strike_time(t.strike));
   const double square = y - man_offset(spec(), man_);
-  const double way = ahead(now);
-  const bool hooked = way < 0.5 * table_->ball_radius;
+  const bool hooked = ahead(now) < 0.5 * table_->ball_radius;
   const double drawn = level() + (hooked ? kDrawnOver : kDrawn);
-  if (!over_) {
-    // A foot that hangs beside the ball would push it away: it goes up before it comes near.
-    const bool beside = way < kBesideFoot && std::fabs(square - slide_.position()) > clear(now);
-    goal_ = beside ? slide_.position() : square;
-    if (swing_.position() > drawn + 0.03) {
-      swing_back(drawn, now, t.swing);
-    } else {
-      over_ = true;
-    }
-    return;
-  }
+  if (!over_) return go_behind(now, square, drawn, t);
   swing_.move(drawn, t.swing);
-  const int ticks = static_cast<int>(since_ / kTick);
-  if (worth_ < -1e8 || ticks % 20 == 0)
-    choose_lane(now, square, t);
-  else if (ticks % 4 == 0)
-    worth_ = worth_of(now, slope_, t);
-  if (way < kScoopTo) {
-    if (since_ < 0.01 || scoop_side_ == 0.0) scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
-    goal_ = square + scoop_side_ * (lanes_.half_foot[team_] + kScoopBeside);
-    if (std::fabs(goal_) > spec().slide_limit) scoop_side_ = -scoop_side_;
-    if (std::fabs(goal_ - slide_.position()) < 0.002) enter(Act::scoop);
-    return;
-  }
-  goal_ =
-      square + foot_offset(slope_ - natural_slope(now, t), lanes_.half_foot[team_], way) + noise_;
+  if (ahead(now) < kScoopTo) return prepare_scoop(square, random);
+  consider_lanes(now, square, t);
+  goal_ = square + noise_ +
+          foot_offset(slope_ - natural_slope(now, t), lanes_.half_foot[team_], ahead(now));
   constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: as if to play it elsewhere
   if (feints_ && since_ < pause_ + kFeintFor) {
     goal_ -= std::copysign(kFeintStep, slope_);
-    return;
+  } else if (since_ >= pause_) {
+    strike_if_ready(now, t);
   }
-  if (since_ < pause_) return;
+}
+
+// A foot that hangs beside the ball would push it away: it goes up before it comes near.
+void ComputerRod::go_behind(const Sighting& now, double square, double drawn,
+                            const Temperament& t) {
+  const bool beside =
+      ahead(now) < kBesideFoot && std::fabs(square - slide_.position()) > clear(now);
+  goal_ = beside ? slide_.position() : square;
+  if (swing_.position() > drawn + 0.03) {
+    swing_back(drawn, now, t.swing);
+  } else {
+    over_ = true;
+  }
+}
+
+void ComputerRod::prepare_scoop(double square, Random& random) {
+  if (scoop_side_ == 0.0) scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
+  goal_ = square + scoop_side_ * (lanes_.half_foot[team_] + kScoopBeside);
+  if (std::fabs(goal_) > spec().slide_limit) scoop_side_ = -scoop_side_;
+  if (std::fabs(goal_ - slide_.position()) < 0.002) enter(Act::scoop);
+}
+
+// All lanes now and then; whether the chosen one closes, more often.
+void ComputerRod::consider_lanes(const Sighting& now, double square, const Temperament& t) {
+  const int ticks = static_cast<int>(since_ / kTick);
+  if (worth_ < -1e8 || ticks % 20 == 0) {
+    choose_lane(now, square, t);
+  } else if (ticks % 4 == 0) {
+    worth_ = worth_of(now, slope_, t);
+  }
+}
+
+void ComputerRod::strike_if_ready(const Sighting& now, const Temperament& t) {
+  const double way = ahead(now);
   if (way > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
   const bool aligned = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
   const double bar = t.shot_bar * (1.0 - (since_ - pause_) / t.patience);
   constexpr double kLate = 0.5;  // [s] beyond the patience, then strike at what there is
-  if ((aligned && worth_ >= bar) || since_ > pause_ + t.patience + kLate) {
-    constexpr double kShot = 0.25;  // worth from which it is a shot at goal
-    power_ = power_at(*table_, way) * (worth_ < kShot ? t.clear_power : 1.0);
-    enter(Act::strike);
-  }
+  if (!(aligned && worth_ >= bar) && since_ <= pause_ + t.patience + kLate) return;
+  constexpr double kShot = 0.25;  // worth from which it is a shot at goal
+  power_ = power_at(*table_, way) * (worth_ < kShot ? t.clear_power : 1.0);
+  enter(Act::strike);
 }
 
 // The slope at which a flat foot sends off a ball that rolls along the rod: it keeps most of that.

@@ -52,6 +52,10 @@ class ComputerRod {
   void begin_control(const Sighting& now, const Temperament& t, Random& random);
   void draw(const Sighting& now, const Temperament& t, Random& random);
   double worth_of(const Sighting& now, double slope, const Temperament& t) const;
+  void go_behind(const Sighting& now, double square, double drawn, const Temperament& t);
+  void prepare_scoop(double square, Random& random);
+  void consider_lanes(const Sighting& now, double square, const Temperament& t);
+  void strike_if_ready(const Sighting& now, const Temperament& t);
   void choose_lane(const Sighting& now, double square, const Temperament& t);
   double natural_slope(const Sighting& now, const Temperament& t) const;
   bool lost(const Sighting& now) const;
