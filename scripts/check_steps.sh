@@ -266,7 +266,7 @@ play_signals() { # play_signals FOLDER
   local pid pids status=0
   ./play --headless --seconds 600 --out "$1" --record "$1/stopped.sfr" >"$LOGS/$STEP.said_by" 2>&1 &
   pid=$!
-  await larger_than 1000 "$1/stopped.sfr" # the match goes on, hence the renderer has joined it
+  await larger_than 4000 "$1/stopped.sfr" # beyond the header: the match goes on, the renderer has joined it
   kill -TERM "$pid"
   wait "$pid" || status=$?
   cat "$LOGS/$STEP.said_by"
