@@ -420,7 +420,7 @@ bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish)
     if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.peer.machine());
   }
   std::ranges::sort(voters);
-  voters.erase(std::ranges::unique(voters).begin(), voters.end());
+  voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
   const auto votes = votes_.cast(seat.peer.machine(), wish, voters, os::monotonic_us());
   if (votes.passed()) {
     tell({wire::Notice::Level::cleared, vote_topic(wish), "agreed"});
