@@ -24,7 +24,9 @@ inline constexpr double kMaxAngle = 1e7;
 // room for more matches after it.
 inline constexpr std::uint64_t kMaxTicks = std::uint64_t{1} << 47;
 constexpr std::uint64_t ticks_of(double seconds) {
-  return static_cast<std::uint64_t>(seconds / kTick + 0.5);
+  const double ticks = seconds / kTick;
+  const auto whole = static_cast<std::uint64_t>(ticks);
+  return ticks - static_cast<double>(whole) < 0.5 ? whole : whole + 1;  // the nearest
 }
 inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // So long men may fill every place for the ball before the other side has it.

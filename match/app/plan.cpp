@@ -172,7 +172,7 @@ Results of_study(const Options& o, const std::vector<Series>& series) {
   std::uint64_t digest = 0;
   for (const Series& s : series) digest = match::mix_seed(digest ^ s.digest());
   for (const match::Figure& f : results.figures) {
-    if (f.name == "playability") rows.push_back({f.value, f.section});
+    if (f.name == "playability") rows.emplace_back(f.value, f.section);
   }
   std::ranges::stable_sort(rows, std::greater<>(), [](const auto& row) { return row.first; });
   constexpr std::size_t kShown = 12;

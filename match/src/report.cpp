@@ -28,7 +28,7 @@ std::string format(double value) {
 struct Goal {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  std::string text = "";
+  std::string text{};
 };
 Goal at_most(double high, const std::string& text) {
   return {.high = high, .text = text};

@@ -21,7 +21,9 @@ std::vector<std::string> wrapped(const HudPen& pen, const std::string& text, flo
   std::string line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!line.empty()) longer += ' ';
+    longer += word;
     if (!line.empty() && pen.width(longer, kNoteStyle) > room) {
       lines.push_back(line);
       line = word;
