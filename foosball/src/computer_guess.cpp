@@ -93,7 +93,7 @@ BallGuess advance(const GuessModel& model, const Tuning& tuning, const Sighting&
                   const BallGuess& from, double time) {
   BallGuess ball = from;
   Flight flight(model, tuning, rods, ball);
-  const int steps = static_cast<int>(time / kStep + 0.5);
+  const int steps = static_cast<int>(std::lround(time / kStep));
   for (int i = 0; i < steps; ++i) flight.step();
   return ball;
 }
