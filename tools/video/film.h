@@ -28,6 +28,11 @@ class Staging {
   void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
                client::SoundPlayer* sounds);
   client::Camera camera(const glm::ivec2& size) const;
+  client::Camera camera(client::View view, const glm::ivec2& size) const {
+    return motion_.camera(view, size);
+  }
+  // Goes on from another moment of the match.
+  void jump(const client::MatchStory& story);
   client::Particles& particles() { return particles_; }
   const client::MatchStory& story() const { return story_; }
 
