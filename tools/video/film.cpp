@@ -49,6 +49,7 @@ void Staging::jump(const client::MatchStory& story) {
   story_ = story;
   particles_ = {};
   effects_ = {};
+  effects_.set_characters(characters_);
 }
 
 client::Camera Staging::camera(const glm::ivec2& size) const {

@@ -20,8 +20,8 @@ namespace video {
 // What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
 class Staging {
  public:
-  Staging(int team, const foosball::Characters& characters) : team_(team) {
-    effects_.set_characters(characters);
+  Staging(int team, const foosball::Characters& characters) : team_(team), characters_(characters) {
+    effects_.set_characters(characters_);
   }
 
   // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
@@ -38,6 +38,7 @@ class Staging {
 
  private:
   int team_;
+  foosball::Characters characters_;
   client::MatchStory story_;
   client::Effects effects_;
   client::Particles particles_;

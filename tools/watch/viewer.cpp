@@ -135,7 +135,6 @@ int Viewer::start() {
   }
   scene_ = std::move(*scene);
   ui_.emplace(std::move(*ui));
-  ui_->set_pictures(scene_->portraits(), client::Scene::portrait_cells());
   if (!options_.mute && options_.screenshot.empty()) {
     if (auto sounds = client::SoundPlayer::open()) {
       sounds_ = std::move(*sounds);
@@ -154,7 +153,9 @@ bool Viewer::open(const std::string& path) {
     return false;
   }
   timeline_ = std::move(*timeline);
-  staging_.emplace(team_);
+  staging_.emplace(team_, timeline_->scene().characters());
+  scene_->set_characters(timeline_->scene().characters());
+  ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
   tick_ = 0.0;
   paused_ = verdict_told_ = false;
   speed_ = kNormal;
@@ -285,7 +286,7 @@ void Viewer::press(const Key& key) {
     case GLFW_KEY_V: {
       team_ = 1 - team_;
       const client::MatchStory story = staging_->story();
-      staging_.emplace(team_);
+      staging_.emplace(team_, timeline_->scene().characters());
       staging_->jump(story);
       break;
     }
@@ -405,6 +406,7 @@ void Viewer::draw(float dt) {
   client::HudState hud;
   hud.state = &state;
   hud.camera = view.camera;
+  hud.characters = &timeline_->scene().characters();
   hud.view = view_;
   hud.goal = staging_->story().last_goal();
   hud.since_foul = staging_->story().since_foul();

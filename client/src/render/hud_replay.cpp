@@ -107,8 +107,8 @@ void draw_replay_bar(UiBatch& ui, const ReplayBar& bar, const glm::ivec2& screen
   pen.panel({along(bar.now) - 5.0f, y - 8.0f}, {along(bar.now) + 5.0f, y + 8.0f}, 5.0f, kInk);
 
   const float line = top + 58.0f;
-  pen.text((bar.paused ? "❚❚ " : "▶ ") + clock_text(bar.now) + " / " + clock_text(bar.total) +
-               "   " + speed_text(bar.speed),
+  pen.text((bar.paused ? std::string(tr("PAUSED")) + "  " : std::string()) + clock_text(bar.now) +
+               " / " + clock_text(bar.total) + "   " + speed_text(bar.speed),
            {Face::bold, 16.0f, 0.0f, Align::left}, {-half, line}, kInk, 0.55f, half - 60.0f);
   const std::string score = std::string(kTeamMark[0]) + " " + std::to_string(bar.score[0]) + " : " +
                             std::to_string(bar.score[1]) + " " + kTeamMark[1];
@@ -150,7 +150,7 @@ void draw_replay_list(UiBatch& ui, const ReplayList& list, const glm::ivec2& scr
              150.0f);
     pen.text(row.what, {here ? Face::bold : Face::regular, 15.0f, 0.0f, Align::left},
              {-half + 184.0f, y}, ink, 0.55f, width - 200.0f);
-    pen.text(row.playable ? "▶" : "-", {Face::bold, 14.0f, 0.0f, Align::right},
+    pen.text(row.playable ? "●" : "-", {Face::bold, 14.0f, 0.0f, Align::right},
              {-half + 8.0f + width, y}, ink);
   }
   if (all == 0)
