@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 // SDL's connection to D-Bus, by which it hears of devices, is never closed.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
   return "leak:libdbus-1";
 }
