@@ -10,7 +10,8 @@ namespace {
 
 template <class Fields, class T>
 bool all_in_range(const Fields& fields, const T& values) {
-  return std::ranges::all_of(fields, [&](const auto& f) { return in_range(f, values.*f.value); });
+  return std::all_of(fields.begin(), fields.end(),
+                     [&](const auto& f) { return in_range(f, values.*f.value); });
 }
 
 // A box centred on the axis' vertical plane, between two heights in the man's frame.
@@ -35,7 +36,8 @@ bool in_range(const Character& c) {
 
 bool in_range(const Characters& characters) {
   return !characters.empty() && characters.size() <= static_cast<std::size_t>(kMaxCharacters) &&
-         std::ranges::all_of(characters, [](const Character& c) { return in_range(c); });
+         std::all_of(characters.begin(), characters.end(),
+                     [](const Character& c) { return in_range(c); });
 }
 
 std::uint64_t digest(const Characters& characters) {
