@@ -15,7 +15,8 @@
 #include "wire/read_file.h"
 
 #define TOML_EXCEPTIONS 0
-// Its parser asserts on some broken keys, which it then refuses as it should.
+// Its parser asserts on some broken keys, which it then refuses as it should. Without NDEBUG (see
+// CMakeLists.txt), so that it does not take them for granted either.
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/toml.h>
 

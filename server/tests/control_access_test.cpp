@@ -1,0 +1,196 @@
+// The control port on real sockets: crowds of strangers, passwords and votes.
+#include "control_fixture.h"
+#include "door.h"
+#include "seats.h"
+
+namespace server {
+namespace {
+
+// --- crowds --------------------------------------------------------------------------------------
+
+// 500 connections that send a byte now and then: a newcomer is in at once, and who is in stays in.
+TEST(Door, ACrowdOfSlowConnectionsKeepsNobodyOut) {
+  Lockstep table;
+  ProbeClient inside(table.port());
+  ASSERT_TRUE(inside.join(0));
+  std::vector<std::unique_ptr<ProbeClient>> crowd;
+  for (int i = 0; i < 500; ++i) {
+    crowd.push_back(std::make_unique<ProbeClient>(table.port()));
+    const auto bytes = bytes_of(crowd.back()->hello());
+    crowd.back()->send_raw(std::span(bytes).first(1));
+    if (i % 100 == 99) {
+      ProbeClient newcomer(table.port());
+      EXPECT_TRUE(newcomer.join()) << i;
+    }
+  }
+  ProbeClient neighbour(table.port(), "127.0.0.2");
+  EXPECT_TRUE(neighbour.join(1));
+  inside.say(wire::Ping{5});
+  EXPECT_TRUE(inside.hear_a<wire::Pong>());
+  EXPECT_GE(table->counters().control.crowded_out, 400u);
+}
+
+TEST(Door, AHelloThatTricklesInIsCutOffAtItsDeadline) {
+  Lockstep table([](ServerOptions& o) { o.limits.hello_us = 200'000; });
+  ProbeClient slow(table.port());
+  const auto bytes = bytes_of(slow.hello());
+  const auto begun = std::chrono::steady_clock::now();
+  std::size_t sent = 0;
+  while (sent < bytes.size() && slow.send_raw(std::span(bytes).subspan(sent, 1))) {
+    ++sent;
+    if (slow.sees_close(20)) break;
+  }
+  EXPECT_LT(sent, bytes.size());
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
+  EXPECT_EQ(table->counters().control.timed_out, 1u);
+}
+
+TEST(Door, TheLogIsSparedACrowdsLines) {
+  Lockstep table;
+  for (int i = 0; i < 200; ++i) ProbeClient(table.port()).join();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 200; }));
+  const std::string log = table.log();
+  EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100);
+}
+
+// --- beyond this machine (where loopback is not trusted, it stands for one) ----------------------
+
+void want_password(ServerOptions& o) {
+  o.access.trust_this_machine = false;
+  o.access.password = "open sesame";
+  o.access.host_password = "the host's own";
+}
+
+TEST(Password, LetsInWhoKnowsItAndNobodyElse) {
+  Lockstep table(want_password);
+  ProbeClient without(table.port()), wrong(table.port()), right(table.port());
+  without.say(without.hello(0));
+  const auto refusal = without.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::password);
+
+  ASSERT_TRUE(wrong.prove("open sesame!"));  // the exchange itself tells nobody
+  EXPECT_FALSE(wrong.join(0));
+  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.wrong_passwords == 1; }));
+
+  ASSERT_TRUE(right.prove("open sesame"));
+  const auto welcome = right.join(0);
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->role, number(wire::Role::player));
+  table.tick();
+  EXPECT_TRUE(right.snapshot());
+}
+
+TEST(Password, OfAGuestMakesNoHost) {
+  Lockstep table(want_password);
+  ProbeClient guest(table.port()), host(table.port());
+  ASSERT_TRUE(guest.prove("open sesame", wire::Role::host));
+  EXPECT_FALSE(guest.join());
+  ASSERT_TRUE(host.prove("the host's own", wire::Role::host));
+  const auto welcome = host.join();
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(welcome->role, number(wire::Role::host));
+}
+
+TEST(Password, IsGuessedSlowly) {
+  Lockstep table(want_password);
+  for (int i = 0; i < PasswordTries::kAtOnce; ++i) {
+    ProbeClient guess(table.port());
+    ASSERT_TRUE(guess.prove("guess " + std::to_string(i)));
+    EXPECT_FALSE(guess.join());
+  }
+  ProbeClient one_more(table.port()), neighbour(table.port(), "127.0.0.2");
+  EXPECT_FALSE(one_more.prove("open sesame")) << "not even with the right one, for a while";
+  EXPECT_TRUE(neighbour.prove("open sesame") && neighbour.join(0)) << "from another machine";
+}
+
+// Many connections at once are no way round the limit.
+TEST(Password, IsChargedWhenItIsTriedAndNotWhenItIsFoundWrong) {
+  Lockstep table(want_password);
+  std::vector<std::unique_ptr<ProbeClient>> guesses;
+  int answered = 0;
+  for (int i = 0; i < 3 * PasswordTries::kAtOnce; ++i) {
+    guesses.push_back(std::make_unique<ProbeClient>(table.port()));
+    answered += guesses.back()->prove("guess " + std::to_string(i)) ? 1 : 0;
+  }
+  EXPECT_EQ(answered, PasswordTries::kAtOnce);
+}
+
+TEST(Password, ThatIsRightCostsNothing) {
+  Lockstep table(want_password);
+  for (int i = 0; i < 3 * PasswordTries::kAtOnce; ++i) {
+    ProbeClient guest(table.port());
+    ASSERT_TRUE(guest.prove("open sesame") && guest.join()) << i;
+    guest.say_goodbye();
+    ASSERT_TRUE(table.tick_until(
+        [&] { return table->counters().control.left == static_cast<std::uint64_t>(i) + 1; }));
+  }
+}
+
+TEST(Password, WithoutOneNobodyJoinsFromAfar) {
+  Lockstep table([](ServerOptions& o) { o.access.trust_this_machine = false; });
+  ProbeClient client(table.port());
+  EXPECT_FALSE(client.prove(""));
+}
+
+TEST(Password, WhatIsSealedAndThenTurnedEndsTheConnection) {
+  Lockstep table(want_password);
+  ProbeClient client(table.port());
+  ASSERT_TRUE(client.prove("open sesame"));
+  ASSERT_TRUE(client.join());
+  const std::vector<std::byte> garbage(40, std::byte{1});
+  client.send_raw(garbage);
+  EXPECT_TRUE(client.sees_close());
+}
+
+TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
+  Lockstep table(want_password);
+  ProbeClient first(table.port()), second(table.port(), "127.0.0.2"), watcher(table.port());
+  ASSERT_TRUE(first.prove("open sesame") && first.join(0));
+  ASSERT_TRUE(second.prove("open sesame") && second.join(1));
+  ASSERT_TRUE(watcher.prove("open sesame") && watcher.join());
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  first.say(wire::Wish{push, 0, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  watcher.say(restart);
+  first.say(restart);
+  EXPECT_NE(notice_of(second).find("1 of 2 votes"), std::string::npos);
+  table.tick(5);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
+  EXPECT_EQ(table->counters().control.wishes_dropped, 1u) << "the watcher's";
+  second.say(restart);
+  EXPECT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen != foosball::Screen::selection; }));
+}
+
+TEST(Votes, AGuestWithSeveralSeatsHasOneVote) {
+  Lockstep table(want_password);
+  std::vector<std::unique_ptr<ProbeClient>> greedy;
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if ((all0 >> rod & 1) == 0) continue;
+    greedy.push_back(std::make_unique<ProbeClient>(table.port()));
+    ASSERT_TRUE(greedy.back()->prove("open sesame") && greedy.back()->join(0, RodSet(1u << rod)));
+  }
+  ProbeClient other(table.port(), "127.0.0.2");
+  ASSERT_TRUE(other.prove("open sesame") && other.join(1));
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  other.say(wire::Wish{push, 1, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  for (auto& seat : greedy) {
+    seat->say(restart);
+    EXPECT_NE(notice_of(other).find("1 of 2 votes"), std::string::npos);
+  }
+  table.tick(5);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
+  other.say(restart);
+  EXPECT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::logo; }));
+}
+
+}  // namespace
+}  // namespace server

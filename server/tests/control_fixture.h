@@ -1,0 +1,25 @@
+// What the tests of the control port share: a server in lockstep, and what a client says and hears.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "lockstep.h"
+
+namespace server {
+
+using Code = wire::Refusal::Code;
+
+inline std::vector<std::byte> bytes_of(const wire::ControlMessage& message) {
+  std::vector<std::byte> bytes;
+  wire::encode_control(message, bytes);
+  return bytes;
+}
+
+inline std::string notice_of(ProbeClient& client) {
+  return client.hear_a<wire::Notice>().value_or(wire::Notice{}).text;
+}
+
+}  // namespace server
