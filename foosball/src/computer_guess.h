@@ -1,6 +1,7 @@
 // Where the ball is now, guessed from what was seen a reaction time ago: a person who plays does
 // not follow what he sees but what he expects. A coarse model of the table, in a team's frame
-// (computer_sight.h): free flight, floor, walls, and the feet of men that hang down.
+// (computer_sight.h): free flight, floor, walls, and the feet of the own men that hang down: where
+// the others' were seen, they are no more.
 #pragma once
 
 #include "computer_sight.h"

@@ -20,8 +20,9 @@ struct LaneView {
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
 
 // Where the foot's centre must be beside the ball's to send it along a slope [m]: flat feet send it
-// straight on, edges at an angle. Measured on the simulated table with feet of 20 to 30 mm; steeper
-// than kSteepest is not reached.
+// straight on, edges at an angle. half_foot: half of its width [m]; ahead: the ball, of the rod's
+// axis [m]. Measured on the simulated table with feet of 20 to 30 mm; steeper than kSteepest is not
+// reached.
 double foot_offset(double slope, double half_foot, double ahead);
 inline constexpr double kSteepest = 0.75;
 

@@ -24,7 +24,6 @@ void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
   }
   model_ = {table_, team_, lanes.half_foot};
   lanes.risk_cost = t_.risk_cost;
-  half_foot_ = lanes.half_foot[static_cast<std::size_t>(team_)];
   const auto indices = rods_of_team(*table_, team_);
   for (std::size_t line = 0; line < indices.size(); ++line) {
     ComputerRod rod(*table_, team_, indices[line], lanes);
@@ -122,9 +121,7 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
   if (soon < -0.45) return {kGoalie, kDefence};
   if (soon < -0.15) return {kDefence, kGoalie};
   if (soon < 0.0) return {kMidfield, kGoalie};
-  if (soon < 0.15) {
-    return {kDefence, kGoalie};
-  }
+  if (soon < 0.15) return {kDefence, kGoalie};
   if (soon < 0.30) return {kAttack, kDefence};
   return t_.stays_home ? Lines{kDefence, kGoalie} : Lines{kAttack, kDefence};
 }
@@ -150,8 +147,9 @@ double ComputerMind::cover_y(int line, const Sighting& now) const {
     return (now.ball.x - rods_[static_cast<std::size_t>(l)].x()) / run;
   };
   // Half of what a man hides of the mouth.
+  const double half_foot = model_.half_foot[static_cast<std::size_t>(team_)];
   const auto hides = [&](int l) {
-    return share(l) > 0.02 ? (half_foot_ + 0.9 * table_->ball_radius) / share(l) : 0.0;
+    return share(l) > 0.02 ? (half_foot + 0.9 * table_->ball_radius) / share(l) : 0.0;
   };
   const double defence = std::min(mouth, hides(kDefence));
   const double goalie = std::min(mouth, hides(kGoalie));

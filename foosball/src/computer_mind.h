@@ -18,11 +18,12 @@ class ComputerMind {
  public:
   ComputerMind(int team, const Temperament& t, std::uint64_t seed);
 
+  // Before the first play(), and when other characters are on the table.
   void set_table(Layout layout, const TeamBodies& bodies);
   // One tick of play: moves the axes of the rods that the hands hold.
   // own_serve: the next serve, or the last, is the own team's.
   void play(const Sighting& seen, const Tuning& tuning, bool own_serve);
-  // The hands leave the rods as they are: another screen, or somebody else works them.
+  // The hands leave the rods as they are: another screen.
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
   std::vector<ComputerRod>& rods() { return rods_; }  // by Line
@@ -41,9 +42,8 @@ class ComputerMind {
   ComputerHands hands_;
   const TableSpec* table_ = nullptr;
   GuessModel model_;
-  BallGuess sent_;      // the ball as a stroke has just sent it off, not yet seen
-  int sent_ticks_ = 0;  // since then; -1: what is seen is newer
-  double half_foot_ = 0.012;
+  BallGuess sent_;       // the ball as a stroke has just sent it off, not yet seen
+  int sent_ticks_ = -1;  // since then; -1: what is seen is newer
   std::vector<ComputerRod> rods_;
   double side_ = 1.0;  // of the mouth that the defence covers
   bool was_in_play_ = false;

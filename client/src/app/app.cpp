@@ -1,27 +1,10 @@
-#include "app/app.h"
+#include "app/app_impl.h"
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <optional>
-
-#include "app/effects.h"
-#include "app/frame_meter.h"
-#include "app/log.h"
-#include "app/view_motion.h"
-#include "app/window.h"
-#include "client/crew.h"
-#include "client/menu.h"
-#include "client/rod_prediction.h"
-#include "core/replay_reel.h"
-#include "draw/image.h"
-#include "os/clock.h"
-#include "render/hud.h"
-#include "render/scene.h"
-#include "render/translate.h"
 
 namespace client {
 namespace {
@@ -30,27 +13,6 @@ volatile std::sig_atomic_t asked_to_leave = 0;
 
 constexpr std::int64_t kProblemsShownUs = 12'000'000;  // of the settings file
 
-// Beside the program, as built and as installed.
-std::string catalogue_directory() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return (program.parent_path().parent_path() / "share" / "locale").string();
-}
-
-foosball::AssistChoice assists_of(const Settings& settings) {
-  return {settings.automatic_rod, settings.goalie_follows, settings.aim};
-}
-
-// What a server says is in no range until it is looked at.
-foosball::Tuning tuning_of(const wire::Tuning& told) {
-  foosball::Tuning tuning;
-  for (std::size_t i = 0; i < told.values.size(); ++i) {
-    const foosball::TuningField& field = foosball::kTuningFields[i];
-    if (foosball::in_range(field, told.values[i])) tuning.*field.value = told.values[i];
-  }
-  return tuning;
-}
-
 bool asks_for_menu(const InputEvents& events) {
   bool asks = events.pad_menu;
   for (const Action action : {Action::settings, Action::seats, Action::tuning})
@@ -58,93 +20,7 @@ bool asks_for_menu(const InputEvents& events) {
   return asks;
 }
 
-class App {
- public:
-  App(const Options& options, std::unique_ptr<Connection> connection)
-      : options_(options), connection_(std::move(connection)) {}
-  // Empty, or the sentence to say; exit_code is then set.
-  std::string start(int& exit_code);
-  int loop();
-
- private:
-  std::string use_quality(draw::Quality quality);
-  std::string use_texts();
-  std::optional<draw::Quality> wanted_quality() const;
-  void read_settings();
-  void apply_settings();
-  void change_settings();
-  void take_menu_input(const InputEvents& events, std::int64_t now);
-  void open_menu(const InputEvents& events);
-  SeatsView seats_view() const;
-  Menu::Context menu_context();
-  void turn_view();
-  void play_reel(std::int64_t now);
-  void hear(std::int64_t now);
-  void follow_connection();
-  void follow_roster();
-  void learn_names();
-  int viewer_team() const;
-  void use_characters();
-  void say_when_in_step(std::int64_t now);
-  void await_first_snapshot();
-  void take_input(std::int64_t now);
-  void drive_rods(bool menu, std::int64_t now);
-  void tune(std::int64_t now);
-  void hear_of_pads();
-  void predict(std::int64_t now);
-  void draw(float dt);
-  std::uint8_t active_rods() const;
-  std::array<float, 8> rod_shift() const;
-  HudState hud(const Camera& camera);
-  std::array<std::string, 8> rod_names() const;
-  void judge_quality();
-  std::string take_screenshot();
-  void say_figures(double seconds) const;
-  // The scene is of the match that is joined, not of one before: a picture, but nothing to act
-  // upon.
-  bool scene_is_current() const;
-  bool match_is_over() const;
-  bool leaving(double seconds) const;
-
-  const Options& options_;
-  std::optional<Window> window_;
-  std::unique_ptr<Scene> scene_;
-  std::optional<UiBatch> ui_;
-  std::unique_ptr<SoundPlayer> sounds_;
-  std::unique_ptr<Connection> connection_;
-  std::unique_ptr<Crew> crew_;  // of the match that is joined
-  std::unique_ptr<RodPrediction> prediction_;
-  Particles particles_;
-  Effects effects_;
-  MatchStory story_;
-  std::vector<wire::EventSnapshot> events_;  // reached, not shown yet
-  ViewMotion motion_;
-  FrameMeter meter_;
-  SceneSample sample_;
-  wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
-  bool show_help_ = false;
-  Settings settings_;
-  Menu menu_{tuning_directory()};
-  SeatsView seats_;  // what the page of seats is made of
-  MenuHand menu_hand_;
-  std::vector<std::string> problems_;  // of the settings file
-  std::string language_;               // in use
-  std::string names_;                  // of people, whose letters the font has
-  std::vector<std::string> pad_news_;
-  double pad_news_until_ = 0.0;  // [s]
-  ReplayReel reel_;
-  std::uint8_t screen_before_ = 0;
-  bool replay_ = false;
-  ConnectionStatus status_;
-  wire::Roster roster_;
-  foosball::Tuning tuning_;                                 // of the match, as far as it is known
-  std::shared_ptr<const foosball::Characters> characters_;  // in use; null: the built-in ones
-  std::uint64_t joins_seen_ = 0;
-  Link link_seen_ = Link::connecting;
-  std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
-  glm::ivec2 size_{1, 1};
-  double seconds_ = 0.0;
-};
+}  // namespace
 
 std::string App::start(int& exit_code) {
   exit_code = 4;
@@ -204,96 +80,6 @@ std::optional<draw::Quality> App::wanted_quality() const {
       break;
   }
   return std::nullopt;
-}
-
-// The language's catalogue, and the letters that it needs.
-std::string App::use_texts() {
-  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
-  language_ = kCodes[static_cast<std::size_t>(settings_.language)];
-  use_language(language_, catalogue_directory());
-  auto font = Font::load(options_.font_directory, catalogue_file(), names_);
-  if (!font) return font.error();
-  auto ui = UiBatch::create(std::move(*font));
-  if (!ui) return ui.error();
-  ui_ = std::move(*ui);
-  if (scene_) ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
-  return {};
-}
-
-void App::read_settings() {
-  ReadSettings read = load_settings(settings_path());
-  settings_ = read.settings;
-  if (options_.view) settings_.view = *options_.view;
-  problems_ = std::move(read.problems);
-  for (const std::string& problem : problems_) log_warning(problem);
-}
-
-void App::apply_settings() {
-  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
-  if (language_ != kCodes[static_cast<std::size_t>(settings_.language)]) {
-    if (const std::string error = use_texts(); !error.empty()) log_warning(error);
-  }
-  if (sounds_) sounds_->set_volume(settings_.volume);
-  if (const auto quality = wanted_quality(); quality && *quality != scene_->quality()) {
-    if (const std::string error = use_quality(*quality); !error.empty()) log_warning(error);
-  }
-  window_->set_keys(settings_.keys);
-  if (crew_) crew_->set_assists(assists_of(settings_));
-}
-
-void App::change_settings() {
-  apply_settings();
-  if (const auto saved = save_settings(settings_, settings_path()); !saved)
-    log_warning(saved.error());
-}
-
-SeatsView App::seats_view() const {
-  SeatsView view;
-  view.client = status_.welcome.client;
-  view.role = status_.welcome.role;
-  view.roster = roster_;
-  if (sample_.any) view.scene = sample_.state;
-  for (int pad = 0; pad < kPads; ++pad) {
-    if (window_->input().connected(pad)) view.pads |= bit_of(pad_device(pad));
-  }
-  view.notices = connection_->notices();
-  return view;
-}
-
-Menu::Context App::menu_context() {
-  const bool joined = status_.link == Link::joined;
-  return {settings_, seats_, joined ? crew_.get() : nullptr};
-}
-
-void App::open_menu(const InputEvents& events) {
-  const auto asked = [&](Action action) { return events.presses[index_of(action)] % 2 != 0; };
-  if (asked(Action::settings) || events.pad_menu) menu_.toggle(Menu::Page::settings);
-  if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
-  if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
-  menu_hand_.restart();
-}
-
-void App::take_menu_input(const InputEvents& events, std::int64_t now) {
-  const bool waits = menu_.waits_for_key();
-  // A key that is waited for is no step, and opens no page.
-  const auto pressed = [&](Action action) {
-    return !waits && events.presses[index_of(action)] % 2 != 0;
-  };
-  if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
-  if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
-  const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
-  const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
-  const Menu::Outcome outcome =
-      menu_.step(waits ? MenuSteps{.back = events.back} : steps, events.any_key, menu_context());
-  if (outcome.settings_changed) change_settings();
-  if (!crew_) return;
-  if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
-  for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
-}
-
-void App::turn_view() {
-  settings_.view = static_cast<View>((static_cast<int>(settings_.view) + 1) % kViews);
-  change_settings();
 }
 
 // Records the play, and shows a goal again while its ceremony lasts.
@@ -418,25 +204,6 @@ void App::take_input(std::int64_t now) {
   hear_of_pads();
 }
 
-void App::tune(std::int64_t now) {
-  if (!crew_ || status_.link != Link::joined) return;
-  const auto told = connection_->tuning();
-  menu_.tuning().hear(crew_->session(), told ? std::optional(tuning_of(*told)) : std::nullopt,
-                      status_.welcome.role == number(wire::Role::host));
-  for (const wire::Wish& wish : menu_.tuning().wishes(now))
-    connection_->wish(crew_->session(), wish);
-}
-
-void App::hear_of_pads() {
-  constexpr double kShown = 8.0;  // [s]
-  if (auto news = window_->take_news(); !news.empty()) {
-    for (const std::string& line : news) log_info(line);
-    pad_news_ = std::move(news);
-    pad_news_until_ = seconds_ + kShown;
-  }
-  if (seconds_ > pad_news_until_) pad_news_.clear();
-}
-
 void App::drive_rods(bool menu, std::int64_t now) {
   const auto take = [&](DeviceSet devices) {
     return menu ? InputEvents{} : window_->input().take(devices);
@@ -477,7 +244,7 @@ std::array<std::string, 8> App::rod_names() const {
   for (std::size_t rod = 0; rod < names.size(); ++rod) {
     const RodName& name = all[rod];
     names[rod] = name.translate && !name.text.empty() ? tr(name.text.c_str()) : name.text;
-    if (name.number > 0) names[rod] += " " + std::to_string(name.number);
+    if (name.number > 0) names[rod].append(1, ' ').append(std::to_string(name.number));
   }
   return names;
 }
@@ -679,8 +446,6 @@ void App::say_figures(double seconds) const {
     log_warning("Cannot write the figures to " + options_.stats_file +
                 ": choose a directory that can be written to.");
 }
-
-}  // namespace
 
 int run(const Options& options) {
   // Before the window and the handlers: a name may take long to look up, and Ctrl-C must end that.

@@ -16,9 +16,9 @@ namespace foosball {
 
 // What a computer player prefers where it has a choice.
 enum class PlayStyle : std::uint8_t {
-  wall,     // hands stay at the goal, clears only what is safe
+  wall,     // hands stay at the goal, fears what comes back
   shooter,  // strikes at the first fair chance, from any rod
-  passer,   // keeps the ball, passes forward, shoots from the attack rod
+  passer,   // plays softly forward where there is no shot
   gambler,  // waits for the one chance, feints, takes risks with its own goal
 };
 inline constexpr int kPlayStyles = 4;

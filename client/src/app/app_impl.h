@@ -1,0 +1,121 @@
+// The renderer's session: the window, the connection, the people at it, and what is drawn for them.
+// One thread. Split over app.cpp (the loop, the hands, the picture) and app_menu.cpp (settings and
+// the menu's pages).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/app.h"
+#include "app/effects.h"
+#include "app/frame_meter.h"
+#include "app/log.h"
+#include "app/view_motion.h"
+#include "app/window.h"
+#include "client/crew.h"
+#include "client/menu.h"
+#include "client/rod_prediction.h"
+#include "core/replay_reel.h"
+#include "draw/image.h"
+#include "os/clock.h"
+#include "render/hud.h"
+#include "render/scene.h"
+#include "render/translate.h"
+
+namespace client {
+
+foosball::AssistChoice assists_of(const Settings& settings);
+// What a server says is in no range until it is looked at: what is out of it stays as by default.
+foosball::Tuning tuning_of(const wire::Tuning& told);
+
+class App {
+ public:
+  App(const Options& options, std::unique_ptr<Connection> connection)
+      : options_(options), connection_(std::move(connection)) {}
+  // Empty, or the sentence to say; exit_code is then set.
+  std::string start(int& exit_code);
+  int loop();
+
+ private:
+  std::string use_quality(draw::Quality quality);
+  std::string use_texts();
+  std::optional<draw::Quality> wanted_quality() const;
+  void read_settings();
+  void apply_settings();
+  void change_settings();
+  void take_menu_input(const InputEvents& events, std::int64_t now);
+  void open_menu(const InputEvents& events);
+  SeatsView seats_view() const;
+  Menu::Context menu_context();
+  void turn_view();
+  void play_reel(std::int64_t now);
+  void hear(std::int64_t now);
+  void follow_connection();
+  void follow_roster();
+  void learn_names();
+  int viewer_team() const;
+  void use_characters();
+  void say_when_in_step(std::int64_t now);
+  void await_first_snapshot();
+  void take_input(std::int64_t now);
+  void drive_rods(bool menu, std::int64_t now);
+  void tune(std::int64_t now);
+  void hear_of_pads();
+  void predict(std::int64_t now);
+  void draw(float dt);
+  std::uint8_t active_rods() const;
+  std::array<float, 8> rod_shift() const;
+  HudState hud(const Camera& camera);
+  std::array<std::string, 8> rod_names() const;
+  void judge_quality();
+  std::string take_screenshot();
+  void say_figures(double seconds) const;
+  // The scene is of the match that is joined, not of one before: a picture, but nothing to act
+  // upon.
+  bool scene_is_current() const;
+  bool match_is_over() const;
+  bool leaving(double seconds) const;
+
+  const Options& options_;
+  std::optional<Window> window_;
+  std::unique_ptr<Scene> scene_;
+  std::optional<UiBatch> ui_;
+  std::unique_ptr<SoundPlayer> sounds_;
+  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<Crew> crew_;  // of the match that is joined
+  std::unique_ptr<RodPrediction> prediction_;
+  Particles particles_;
+  Effects effects_;
+  MatchStory story_;
+  std::vector<wire::EventSnapshot> events_;  // reached, not shown yet
+  ViewMotion motion_;
+  FrameMeter meter_;
+  SceneSample sample_;
+  wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
+  bool show_help_ = false;
+  Settings settings_;
+  Menu menu_{tuning_directory()};
+  SeatsView seats_;  // what the page of seats is made of
+  MenuHand menu_hand_;
+  std::vector<std::string> problems_;  // of the settings file
+  std::string language_;               // in use
+  std::string names_;                  // of people, whose letters the font has
+  std::vector<std::string> pad_news_;
+  double pad_news_until_ = 0.0;  // [s]
+  ReplayReel reel_;
+  std::uint8_t screen_before_ = 0;
+  bool replay_ = false;
+  ConnectionStatus status_;
+  wire::Roster roster_;
+  foosball::Tuning tuning_;                                 // of the match, as far as it is known
+  std::shared_ptr<const foosball::Characters> characters_;  // in use; null: the built-in ones
+  std::uint64_t joins_seen_ = 0;
+  Link link_seen_ = Link::connecting;
+  std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
+  glm::ivec2 size_{1, 1};
+  double seconds_ = 0.0;
+};
+
+}  // namespace client

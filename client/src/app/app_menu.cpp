@@ -1,0 +1,139 @@
+#include <filesystem>
+
+#include "app/app_impl.h"
+
+namespace client {
+namespace {
+
+// Beside the program, as built and as installed.
+std::string catalogue_directory() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (program.parent_path().parent_path() / "share" / "locale").string();
+}
+
+}  // namespace
+
+foosball::AssistChoice assists_of(const Settings& settings) {
+  return {settings.automatic_rod, settings.goalie_follows, settings.aim};
+}
+
+foosball::Tuning tuning_of(const wire::Tuning& told) {
+  foosball::Tuning tuning;
+  for (std::size_t i = 0; i < told.values.size(); ++i) {
+    const foosball::TuningField& field = foosball::kTuningFields[i];
+    if (foosball::in_range(field, told.values[i])) tuning.*field.value = told.values[i];
+  }
+  return tuning;
+}
+
+// The language's catalogue, and the letters that it needs.
+std::string App::use_texts() {
+  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
+  language_ = kCodes[static_cast<std::size_t>(settings_.language)];
+  use_language(language_, catalogue_directory());
+  auto font = Font::load(options_.font_directory, catalogue_file(), names_);
+  if (!font) return font.error();
+  auto ui = UiBatch::create(std::move(*font));
+  if (!ui) return ui.error();
+  ui_ = std::move(*ui);
+  if (scene_) ui_->set_pictures(scene_->portraits(), scene_->portrait_cells());
+  return {};
+}
+
+void App::read_settings() {
+  ReadSettings read = load_settings(settings_path());
+  settings_ = read.settings;
+  if (options_.view) settings_.view = *options_.view;
+  problems_ = std::move(read.problems);
+  for (const std::string& problem : problems_) log_warning(problem);
+}
+
+void App::apply_settings() {
+  constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
+  if (language_ != kCodes[static_cast<std::size_t>(settings_.language)]) {
+    if (const std::string error = use_texts(); !error.empty()) log_warning(error);
+  }
+  if (sounds_) sounds_->set_volume(settings_.volume);
+  if (const auto quality = wanted_quality(); quality && *quality != scene_->quality()) {
+    if (const std::string error = use_quality(*quality); !error.empty()) log_warning(error);
+  }
+  window_->set_keys(settings_.keys);
+  if (crew_) crew_->set_assists(assists_of(settings_));
+}
+
+void App::change_settings() {
+  apply_settings();
+  if (const auto saved = save_settings(settings_, settings_path()); !saved)
+    log_warning(saved.error());
+}
+
+SeatsView App::seats_view() const {
+  SeatsView view;
+  view.client = status_.welcome.client;
+  view.role = status_.welcome.role;
+  view.roster = roster_;
+  if (sample_.any) view.scene = sample_.state;
+  for (int pad = 0; pad < kPads; ++pad) {
+    if (window_->input().connected(pad)) view.pads |= bit_of(pad_device(pad));
+  }
+  view.notices = connection_->notices();
+  return view;
+}
+
+Menu::Context App::menu_context() {
+  const bool joined = status_.link == Link::joined;
+  return {settings_, seats_, joined ? crew_.get() : nullptr};
+}
+
+void App::open_menu(const InputEvents& events) {
+  const auto asked = [&](Action action) { return events.presses[index_of(action)] % 2 != 0; };
+  if (asked(Action::settings) || events.pad_menu) menu_.toggle(Menu::Page::settings);
+  if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
+  if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
+  menu_hand_.restart();
+}
+
+void App::take_menu_input(const InputEvents& events, std::int64_t now) {
+  const bool waits = menu_.waits_for_key();
+  // A key that is waited for is no step, and opens no page.
+  const auto pressed = [&](Action action) {
+    return !waits && events.presses[index_of(action)] % 2 != 0;
+  };
+  if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
+  if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
+  const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
+  const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
+  const Menu::Outcome outcome =
+      menu_.step(waits ? MenuSteps{.back = events.back} : steps, events.any_key, menu_context());
+  if (outcome.settings_changed) change_settings();
+  if (!crew_) return;
+  if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
+  for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
+}
+
+void App::turn_view() {
+  settings_.view = static_cast<View>((static_cast<int>(settings_.view) + 1) % kViews);
+  change_settings();
+}
+
+void App::tune(std::int64_t now) {
+  if (!crew_ || status_.link != Link::joined) return;
+  const auto told = connection_->tuning();
+  menu_.tuning().hear(crew_->session(), told ? std::optional(tuning_of(*told)) : std::nullopt,
+                      status_.welcome.role == number(wire::Role::host));
+  for (const wire::Wish& wish : menu_.tuning().wishes(now))
+    connection_->wish(crew_->session(), wish);
+}
+
+void App::hear_of_pads() {
+  constexpr double kShown = 8.0;  // [s]
+  if (auto news = window_->take_news(); !news.empty()) {
+    for (const std::string& line : news) log_info(line);
+    pad_news_ = std::move(news);
+    pad_news_until_ = seconds_ + kShown;
+  }
+  if (seconds_ > pad_news_until_) pad_news_.clear();
+}
+
+}  // namespace client
