@@ -135,12 +135,11 @@ int SnapshotListener::send_due(std::int64_t now_us) {
   return static_cast<int>((due - now_us + 999) / 1000);
 }
 
+// With the lock, for join() connects the same socket to another server meanwhile.
 void SnapshotListener::receive(int socket) {
-  take_datagrams(socket, kMostAtOnce, [&](std::span<const std::byte> bytes) {
-    const std::int64_t arrival = os::monotonic_us();
-    const std::lock_guard lock(mutex_);
-    take(bytes, arrival);
-  });
+  const std::lock_guard lock(mutex_);
+  take_datagrams(socket, kMostAtOnce,
+                 [&](std::span<const std::byte> bytes) { take(bytes, os::monotonic_us()); });
 }
 
 // Called with the lock held.
