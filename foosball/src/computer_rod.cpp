@@ -19,7 +19,7 @@ constexpr double kFrom = -0.030, kTo = 0.058;
 constexpr double kScoopFrom = -0.062;    // a ball at rest behind the foot is scooped forward:
 constexpr double kScoopTo = -0.030;      // struck from above it would only be pinned, or fly back
 constexpr double kScoopBeside = 0.0115;  // by the foot's edge, so far beyond the foot [m],
-constexpr double kScoopRate = 10.0;      // and so gently [rad/s]
+constexpr double kScoopLeast = 4.0, kScoopMost = 12.0;  // and so gently [rad/s]
 
 constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 
@@ -107,7 +107,7 @@ void ComputerRod::play(const Sighting& now, double guard_y, const Temperament& t
       brake(t);
       break;
     case Act::scoop:
-      swing_.move(level(), {kScoopRate, t.swing.acceleration});
+      swing_.move(level(), {scoop_rate_, t.swing.acceleration});
       if (angle() > -0.02 || since_ > 0.5) enter(Act::watch);
       break;
   }
@@ -288,8 +288,11 @@ void ComputerRod::go_behind(const Sighting& now, double square, double drawn,
 }
 
 void ComputerRod::prepare_scoop(double square, Random& random) {
-  if (scoop_side_ == 0.0) scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
-  goal_ = square + scoop_side_ * (lanes_.half_foot[team_] + kScoopBeside);
+  if (scoop_side_ == 0.0) {
+    scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
+    scoop_rate_ = random.between(kScoopLeast, kScoopMost);
+  }
+  goal_ = square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + kScoopBeside);
   if (std::fabs(goal_) > spec().slide_limit) scoop_side_ = -scoop_side_;
   if (std::fabs(goal_ - slide_.position()) < 0.002) enter(Act::scoop);
 }

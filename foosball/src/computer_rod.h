@@ -87,7 +87,8 @@ class ComputerRod {
   double slope_ = 0.0, worth_ = 0.0;  // of the lane chosen
   double power_ = 1.0;
   vp::Vec3 sent_;
-  double scoop_side_ = 0.0;
+  double scoop_side_ = 0.0;  // 0: not chosen yet
+  double scoop_rate_ = 0.0;  // [rad/s]
 };
 
 }  // namespace foosball
