@@ -2,9 +2,13 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <functional>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 
 #include "probe_client.h"
@@ -12,10 +16,29 @@
 
 namespace server {
 
+// A folder of this process alone: no file in it is another run's. It goes when the process ends.
+class TempFolder {
+ public:
+  TempFolder() {
+    if (::mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no folder " + path_);
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    if (::getpid() == maker_) std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_ = testing::TempDir() + "sf_server_XXXXXX";
+  ::pid_t maker_ = ::getpid();
+};
+
 inline std::string temp_path(const std::string& name) {
+  static const TempFolder folder;
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  return testing::TempDir() + "sf_" + test->test_suite_name() + "_" + test->name() + "_" +
-         std::to_string(::getpid()) + "_" + name;
+  return folder.path() + "/" + test->test_suite_name() + "_" + test->name() + "_" + name;
 }
 
 class Lockstep {
@@ -40,17 +63,21 @@ class Lockstep {
     }
   }
 
-  Server& operator*() { return *server_; }
-  Server* operator->() { return server_.get(); }
+  // Throws what it says where it did not start.
+  Server& operator*() {
+    if (!server_) throw std::runtime_error(error_.sentence);
+    return *server_;
+  }
+  Server* operator->() { return &**this; }
   bool started() const { return server_ != nullptr; }
   const StartError& error() const { return error_; }
-  std::uint16_t port() const { return server_->port(); }
+  std::uint16_t port() { return (*this)->port(); }
   std::int64_t now_us() const { return now_us_; }
 
   void tick(int count = 1) {
     for (int i = 0; i < count; ++i) {
-      server_->tick(now_us_ += 1000);
-      server_->wait_sent();
+      (*this)->tick(now_us_ += 1000);
+      (*this)->wait_sent();
     }
   }
   // Ticks until the condition holds: for what another thread has to hand on first.
