@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "world/joint.h"
+#include "world/validate.h"
 
 namespace vp {
 namespace {
@@ -83,9 +84,11 @@ Vec3 twist_rate(const Ends& e) {
   return (1.0 / std::max(1e-3, 1.0 + dot(e.R_a.cz, e.R_b.cz))) * (e.R_a.cz + e.R_b.cz);
 }
 
-// The angle that is the same but for whole turns, and nearest to the last.
+// The angle that is the same but for whole turns, and nearest to the last. The last one stays where
+// bodies have left the range within a step: the step's end puts them back.
 double counted_on(double last, double angle) {
-  return angle + 2.0 * kPi * std::floor((last - angle) / (2.0 * kPi) + 0.5);
+  const double counted = angle + 2.0 * kPi * std::floor((last - angle) / (2.0 * kPi) + 0.5);
+  return in_range(counted) ? counted : last;
 }
 
 double gear_angle(const SE3& start, const SE3& now, const SE3& T_body_joint) {

@@ -64,6 +64,11 @@ class Reader {
     const double x = bounded(), y = bounded(), z = bounded();
     return {x, y, z};
   }
+  // Of a velocity, which a call may have taken out of range: the next step brings it back.
+  Vec3 finite_vector() {
+    const double x = number(), y = number(), z = number();
+    return {x, y, z};
+  }
   struct Two {
     std::uint32_t high, low;
   };

@@ -142,6 +142,8 @@ bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   body.prescribed = {};
   body.T = start;
   body.moved();
+  start_way_anew(index);
+  forget_joints(index);
   return true;
 }
 

@@ -146,6 +146,8 @@ Expected<void> World::destroy_body(BodyId id) {
   }
   while (body->first_joint != kNone) impl_->remove_joint(body->first_joint / 2);
   body->alive = false;
+  body->w = body->v = {};
+  body->prescribed = {};
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;
   impl_->lists_are_stale = true;
