@@ -1,7 +1,9 @@
 // space-foosball-results: lists finished matches and the hall of fame, and exports them.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <fstream>
 
+#include "results/questionnaire.h"
 #include "results/rating.h"
 #include "results/store.h"
 #include "results/text.h"
@@ -10,7 +12,7 @@
 namespace {
 
 struct Options {
-  std::string file, player, format = "table";
+  std::string file, player, csv, format = "table";
   std::size_t newest = 0;
   std::uint64_t least_matches = 1;
 };
@@ -32,6 +34,28 @@ int list(const Options& options, const std::vector<results::MatchResult>& matche
   return print(results::matches_table(matches));
 }
 
+int write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  return file ? server::kExitOk
+              : fail(server::kExitFailed, "cannot write " + path + "; is there space, may it be?");
+}
+
+// The summary; in CSV, or in --csv's file, the answers themselves.
+int questionnaire(const Options& options, const results::Store& store,
+                  const std::vector<results::MatchResult>& matches) {
+  const auto answers = store.answers();
+  if (!answers) return fail(server::kExitUsage, answers.error());
+  const std::string rows = results::answers_csv(*answers, matches);
+  if (!options.csv.empty()) {
+    if (const int code = write(options.csv, rows); code != server::kExitOk) return code;
+  }
+  if (options.format == "csv") return print(rows);
+  if (options.format == "json") return print(results::answers_json(*answers));
+  return print(results::answers_table(*answers));
+}
+
 int hall_of_fame(const Options& options, const std::vector<results::MatchResult>& matches) {
   std::vector<results::Standing> all = results::standings(matches);
   std::erase_if(all, [&](const auto& s) { return s.matches < options.least_matches; });
@@ -45,8 +69,10 @@ int hall_of_fame(const Options& options, const std::vector<results::MatchResult>
 
 int main(int argc, char** argv) {
   CLI::App cli{
-      "Lists finished matches, and who plays best. The file is the one that a server writes with\n"
-      "--results FILE.\n\nExit codes: 0 printed; 1 it could not be written; 2 a bad option or "
+      "Lists finished matches, who plays best, and what players answered afterwards. The file is "
+      "the\n"
+      "one that a server writes with --results FILE.\n\nExit codes: 0 printed; 1 it could not be "
+      "written; 2 a bad option or "
       "file.",
       "space-foosball-results"};
   Options options;
@@ -65,6 +91,11 @@ int main(int argc, char** argv) {
   fame->add_option("--top", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
   fame->add_option("--least", options.least_matches, "only who has played so many matches (1)")
       ->check(CLI::Range(1, 1'000'000));
+  CLI::App* asked = common(cli.add_subcommand(
+      "questionnaire",
+      "what players answered after matches: n, median and mean of each question; --format csv has "
+      "the answers themselves (docs/questionnaire.md)"));
+  asked->add_option("--csv", options.csv, "write the answers to this file too");
   try {
     cli.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -77,5 +108,6 @@ int main(int argc, char** argv) {
   results::Store::Filter filter{options.player, matches->parsed() ? options.newest : 0};
   const auto found = store->matches(filter);
   if (!found) return fail(server::kExitUsage, found.error());
+  if (asked->parsed()) return questionnaire(options, *store, *found);
   return matches->parsed() ? list(options, *found) : hall_of_fame(options, *found);
 }

@@ -52,7 +52,19 @@ constexpr const char* kMigrations[kSchemaVersion] = {
        ALTER TABLE team ADD COLUMN passes INTEGER;
        ALTER TABLE team ADD COLUMN touches INTEGER;
        ALTER TABLE team ADD COLUMN own_goals INTEGER;
-       ALTER TABLE team ADD COLUMN possession_seconds REAL;)"};
+       ALTER TABLE team ADD COLUMN possession_seconds REAL;)",
+    // 3: the questionnaire; an answer that was not given has no row
+    R"(CREATE TABLE sheet (
+         id INTEGER PRIMARY KEY,
+         match INTEGER NOT NULL REFERENCES match(id) ON DELETE CASCADE,
+         team INTEGER NOT NULL CHECK (team IN (0, 1)),
+         rods INTEGER NOT NULL CHECK (rods BETWEEN 1 AND 255)) STRICT;
+       CREATE INDEX sheet_by_match ON sheet(match);
+       CREATE TABLE answer (
+         sheet INTEGER NOT NULL REFERENCES sheet(id) ON DELETE CASCADE,
+         question TEXT NOT NULL,
+         score INTEGER NOT NULL CHECK (score BETWEEN 1 AND 5),
+         PRIMARY KEY (sheet, question)) STRICT, WITHOUT ROWID;)"};
 
 std::string sentence(const std::string& path, const std::string& why) {
   return "results in " + path + ": " + why;
@@ -293,6 +305,57 @@ tl::expected<std::int64_t, std::string> Store::add(const MatchResult& result) {
   }
   if (!ok || !transaction.commit()) return tl::unexpected(error());
   return id;
+}
+
+tl::expected<std::int64_t, std::string> Store::add(const Answers& answers) {
+  if (const std::string problem = problem_with(answers); !problem.empty()) {
+    return tl::unexpected(sentence(path_, problem));
+  }
+  sqlite3* const db = database_.get();
+  Transaction transaction(db);
+  if (!transaction.begun()) return tl::unexpected(error());
+  const auto exists = [&](const char* sql) {
+    return Statement(db, sql).bind(answers.match, answers.rods).row();
+  };
+  if (!exists("SELECT 1 FROM match WHERE id = ?1 AND ?2 > 0")) {
+    return tl::unexpected(sentence(path_, "answers belong to no match that is there"));
+  }
+  if (exists("SELECT 1 FROM sheet WHERE match = ?1 AND (rods & ?2) != 0")) {
+    return tl::unexpected(sentence(path_, "this player has answered for the match already"));
+  }
+  bool ok = Statement(db, "INSERT INTO sheet (match, team, rods) VALUES (?, ?, ?)")
+                .bind(answers.match, answers.team, answers.rods)
+                .run();
+  const std::int64_t id = sqlite3_last_insert_rowid(db);
+  for (std::size_t q = 0; q < answers.scores.size() && ok; ++q) {
+    if (answers.scores[q] == 0) continue;
+    ok = Statement(db, "INSERT INTO answer (sheet, question, score) VALUES (?, ?, ?)")
+             .bind(id, std::string(kQuestionnaire[q].key), answers.scores[q])
+             .run();
+  }
+  if (!ok || !transaction.commit()) return tl::unexpected(error());
+  return id;
+}
+
+tl::expected<std::vector<Answers>, std::string> Store::answers() const {
+  std::vector<Answers> all;
+  if (version_ < 3) return all;
+  Statement rows(database_.get(),
+                 "SELECT sheet.id, match, team, rods, question, score FROM sheet "
+                 "JOIN answer ON answer.sheet = sheet.id ORDER BY sheet.id");
+  while (rows.row()) {
+    if (all.empty() || all.back().id != rows.integer(0)) {
+      all.push_back(
+          {rows.integer(0), rows.integer(1), rows.integer(2) == 0 ? 0 : 1, rows.small(3), {}});
+    }
+    const std::string key = rows.text(4);
+    for (std::size_t q = 0; q < kQuestionnaire.size(); ++q) {
+      if (key == kQuestionnaire[q].key)
+        all.back().scores[q] = std::clamp(static_cast<int>(rows.integer(5)), 0, kMaxScore);
+    }
+  }
+  if (!rows.done()) return tl::unexpected(error());
+  return all;
 }
 
 namespace {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "csv.h"
+
 namespace results {
 namespace {
 
@@ -14,19 +16,6 @@ std::string names(const Team& team, const char* between) {
   std::string text;
   for (const Player& player : team.players) text += (text.empty() ? "" : between) + player.name;
   return text;
-}
-
-// RFC 4180. A spreadsheet takes what begins like this for a formula: a quote before it keeps it
-// text.
-std::string cell(const std::string& text) {
-  std::string out = text;
-  if (!out.empty() && std::string_view("=+-@\t\r").find(out[0]) != std::string_view::npos) {
-    out.insert(0, 1, '\'');
-  }
-  if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
-  for (std::size_t at = 0; (at = out.find('"', at)) != std::string::npos; at += 2)
-    out.insert(at, 1, '"');
-  return '"' + out + '"';
 }
 
 // Names come from players: no control characters reach a terminal.
@@ -100,13 +89,13 @@ std::string matches_csv(std::span<const MatchResult> matches) {
   text += "\r\n";
   for (const MatchResult& m : matches) {
     const auto& speeds = m.shot_speeds;
-    text += fmt::format("{},{},{},{},{},{},{:.6g},{},{},{}", m.id, cell(m.finished_at),
-                        cell(m.layout), m.goals_to_win, m.max_goals, m.seed, m.play_seconds,
+    text += fmt::format("{},{},{},{},{},{},{:.6g},{},{},{}", m.id, csv_cell(m.finished_at),
+                        csv_cell(m.layout), m.goals_to_win, m.max_goals, m.seed, m.play_seconds,
                         optional_number(speeds ? std::optional(speeds->median) : std::nullopt),
                         optional_number(speeds ? std::optional(speeds->fastest) : std::nullopt),
-                        cell(m.recording));
+                        csv_cell(m.recording));
     for (const Team& team : m.teams) {
-      text += fmt::format(",{},{}", cell(names(team, "; ")), team.goals);
+      text += fmt::format(",{},{}", csv_cell(names(team, "; ")), team.goals);
       if (const auto& s = team.statistics) {
         text += fmt::format(",{},{},{},{},{},{},{:.6g}", s->shots, s->shots_on_target, s->saves,
                             s->passes, s->touches, s->own_goals, s->possession_seconds);
@@ -159,9 +148,9 @@ std::string standings_csv(std::span<const Standing> standings) {
   std::string text =
       "player,kind,rating,matches,wins,losses,goals_for,goals_against,fastest_shot\r\n";
   for (const Standing& s : standings) {
-    text +=
-        fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g}\r\n", cell(s.name), cell(s.kind), s.rating,
-                    s.matches, s.wins, s.losses, s.goals_for, s.goals_against, s.fastest_shot);
+    text += fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g}\r\n", csv_cell(s.name),
+                        csv_cell(s.kind), s.rating, s.matches, s.wins, s.losses, s.goals_for,
+                        s.goals_against, s.fastest_shot);
   }
   return text;
 }

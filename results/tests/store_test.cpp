@@ -86,6 +86,10 @@ TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   EXPECT_TRUE(store.matches({}).value().empty());
 }
 
+Answers answers_of(std::int64_t match, int team, std::uint32_t rods) {
+  return {.match = match, .team = team, .rods = rods, .scores = {5, 4, 0, 1, 3, 2}};
+}
+
 TEST_F(StoreTest, ReadsAndMigratesTheFirstVersion) {
   execute(R"(
     CREATE TABLE match (id INTEGER PRIMARY KEY, finished_at TEXT NOT NULL, layout TEXT NOT NULL,
@@ -118,6 +122,56 @@ TEST_F(StoreTest, ReadsAndMigratesTheFirstVersion) {
   check(store);
   ASSERT_TRUE(store.add(match_between("Ann", "Bob", 5, 3)));
   EXPECT_TRUE(store.matches({.player = "", .newest = 1}).value()[0].teams[0].statistics);
+  EXPECT_TRUE(store.add(answers_of(7, 0, 1))) << "of a match from before there were answers";
+}
+
+TEST_F(StoreTest, KeepsAnswersWithTheMatchThatTheyFollow) {
+  std::vector<Answers> added;
+  {
+    Store store = made();
+    const auto first = store.add(match_between("Ann", "Bob", 5, 3)).value();
+    const auto second = store.add(match_between("Ann", "Bob", 2, 5, 1)).value();
+    added = {answers_of(second, 1, 0xF0), answers_of(first, 0, 0x0B), answers_of(first, 0, 0x20)};
+    for (Answers& answers : added) answers.id = store.add(answers).value();
+  }
+  EXPECT_EQ(Store::open(path_, Access::read_only).value().answers().value(), added);
+  execute("PRAGMA foreign_keys = ON; DELETE FROM match WHERE id = 1");
+  const auto left = Store::open(path_, Access::read_only).value().answers().value();
+  ASSERT_EQ(left.size(), 1u) << "they go with their match";
+  EXPECT_EQ(left[0], added[0]);
+}
+
+TEST_F(StoreTest, RefusesAnswersOfNobodyOfNoMatchAndGivenTwice) {
+  Store store = made();
+  const auto match = store.add(match_between("Ann", "Bob", 5, 3)).value();
+  ASSERT_TRUE(store.add(answers_of(match, 0, 0x03)));
+  std::vector<Answers> bad(7, answers_of(match, 0, 0x04));
+  bad[0].match = match + 1;
+  bad[1].rods = 0x06;  // one of them has answered
+  bad[2].team = 2;
+  bad[3].rods = 0;
+  bad[4].rods = 0x100;
+  bad[5].scores = {};
+  bad[6].scores[2] = kMaxScore + 1;
+  for (std::size_t i = 0; i < bad.size(); ++i) EXPECT_FALSE(store.add(bad[i])) << i;
+  EXPECT_EQ(store.answers().value().size(), 1u);
+}
+
+// As the release before the questionnaire made it.
+TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
+  { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
+  execute("DROP TABLE answer; DROP TABLE sheet; PRAGMA user_version = 2");
+  {
+    const Store old = Store::open(path_, Access::read_only).value();
+    EXPECT_EQ(old.matches({}).value().size(), 1u);
+    EXPECT_TRUE(old.answers().value().empty());
+  }
+  Store store = made();
+  const auto matches = store.matches({}).value();
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_TRUE(matches[0].teams[0].statistics);
+  ASSERT_TRUE(store.add(answers_of(matches[0].id, 1, 0xF0)));
+  EXPECT_EQ(store.answers().value().size(), 1u);
 }
 
 TEST_F(StoreTest, SaysWhichVersionItNeeds) {

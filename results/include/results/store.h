@@ -13,12 +13,13 @@
 #include <vector>
 
 #include "results/match_result.h"
+#include "results/questionnaire.h"
 
 struct sqlite3;
 
 namespace results {
 
-inline constexpr int kSchemaVersion = 2;
+inline constexpr int kSchemaVersion = 3;
 inline constexpr int kBusy_ms = 2000;
 
 enum class Access { read_only, create };
@@ -31,6 +32,9 @@ class Store {
 
   // All of it or nothing. Refused: what problem_with() finds. The id that it got.
   tl::expected<std::int64_t, std::string> add(const MatchResult& result);
+  // The same of a player's answers. Refused too: of a match that is not there, of rods that have
+  // answered for it already.
+  tl::expected<std::int64_t, std::string> add(const Answers& answers);
 
   struct Filter {
     std::string player;      // of any team; empty: all
@@ -38,6 +42,8 @@ class Store {
   };
   // In the order in which they were played.
   tl::expected<std::vector<MatchResult>, std::string> matches(const Filter& filter) const;
+  // All, in the order in which they were given; of a file from before there were any: none.
+  tl::expected<std::vector<Answers>, std::string> answers() const;
 
  private:
   struct Close {
