@@ -178,6 +178,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.overwrite = options.overwrite;
   wanted.results = options.results;
   wanted.date = date;
+  wanted.questionnaire = !options.no_questionnaire;
   wanted.await_client = options.await_client;
   // Below the tick, which it must never hold up, and above all else.
   if (options.loop.paced && options.loop.real_time)

@@ -179,8 +179,12 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
   cli.add_flag("--overwrite", o.overwrite, "replace the recording that is there already")
       ->needs(record);
-  cli.add_option("--results", o.results,
-                 "add every match that is won to this file; space-foosball-results lists them");
+  auto* results = cli.add_option(
+      "--results", o.results,
+      "add every match that is over to this file; space-foosball-results lists them");
+  cli.add_flag("--no-questionnaire", o.no_questionnaire,
+               "do not ask those who played six questions for that file (docs/questionnaire.md)")
+      ->needs(results);
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)

@@ -24,6 +24,7 @@ struct Options {
   server::LoopOptions loop;
   std::vector<std::string> devices;
   std::string calibration, record, replay, results, ready_file, stats_file;
+  bool no_questionnaire = false;
   bool password_was_made = false;  // for this run: it is to be said
   bool overwrite = false, await_client = false, quiet = false;
 };

@@ -51,6 +51,10 @@ bool ControlServer::tell_tuning(const wire::Tuning& tuning) {
   return true;
 }
 
+void ControlServer::ask(std::uint32_t match, RodSet cabinet_rods) {
+  if (questionnaires_.push({match, cabinet_rods})) ::eventfd_write(wake_.get(), 1);
+}
+
 void ControlServer::stop(const std::string& reason) {
   if (!thread_.joinable()) return;
   bye_reason_ = reason;
@@ -76,7 +80,9 @@ ControlCounters ControlServer::counters() const {
           .lost = value(Count::lost),
           .resumed = value(Count::resumed),
           .wishes = value(Count::wishes),
-          .wishes_dropped = value(Count::wishes_dropped)};
+          .wishes_dropped = value(Count::wishes_dropped),
+          .answers = value(Count::answers),
+          .answers_refused = value(Count::answers_refused)};
 }
 
 // --- the thread
@@ -88,6 +94,7 @@ void ControlServer::run() {
     wait();
     publish_notices();
     publish_tuning();
+    publish_questionnaires();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       if (polled_[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) serve(*connections_[i]);
     }
@@ -222,6 +229,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     send(connection, wire::Pong{ping->id});
   } else if (const auto* wish = std::get_if<wire::Wish>(&message); wish && joined) {
     take_wish(connection, *wish);
+  } else if (const auto* answers = std::get_if<wire::Answers>(&message); answers && joined) {
+    take_answers(connection, *answers);
   } else if (std::holds_alternative<wire::Bye>(message)) {
     release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {

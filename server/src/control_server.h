@@ -46,6 +46,7 @@ struct ControlEvent {
     rods,  // has others now
     left,  // for good
     wish,
+    answers,  // to the questionnaire
   };
   Kind kind = Kind::joined;
   // Counts up, never used twice. Of a wish: whose it is; 0: it was voted for.
@@ -59,6 +60,7 @@ struct ControlEvent {
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
   os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
   foosball::Command wish{};    // wish
+  wire::Answers answers;       // answers: of one team's rods that were asked and had not answered
 };
 
 struct ControlOptions {
@@ -88,6 +90,9 @@ class ControlServer {
   void notify(wire::Notice notice);
   // Sent to all, and to each who joins until another is. False: try again in the next tick.
   bool tell_tuning(const wire::Tuning& tuning);
+  // A match was won that is kept: who has rods may answer. cabinet_rods: those that its own hands
+  // have, who are asked at the first host's at this machine. Left out if 8 are waiting.
+  void ask(std::uint32_t match, RodSet cabinet_rods);
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const std::string& reason);
 
@@ -110,6 +115,8 @@ class ControlServer {
     wrong_passwords,
     lost,
     resumed,
+    answers,
+    answers_refused,
     kCount
   };
 
@@ -134,6 +141,7 @@ class ControlServer {
   void expire(ControlConnection& connection);
   void publish_notices();
   void publish_tuning();
+  void publish_questionnaires();
   void tell(const wire::Notice& notice);
   void tell_tick();
   void say(LogLevel level, const std::string& text);
@@ -152,6 +160,7 @@ class ControlServer {
                                    const os::SocketAddress& listener);
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
+  void take_answers(ControlConnection& connection, const wire::Answers& answers);
   bool put_to_vote(const Seat& seat, const foosball::Command& wish);
   bool hand_on(std::uint32_t client, const foosball::Command& wish);
   void lose_seat(std::uint32_t client);
@@ -181,7 +190,8 @@ class ControlServer {
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<wire::Notice, 64> outbound_;
   SpscQueue<wire::Tuning, 8> tunings_;
-  std::optional<wire::Tuning> tuning_;  // of the match, as it was last told
+  SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's
+  std::optional<wire::Tuning> tuning_;                // of the match, as it was last told
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kCount)> counts_{};
   std::atomic<bool> stopping_{false};
   std::string bye_reason_;  // written before stopping_

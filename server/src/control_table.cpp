@@ -401,6 +401,61 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
   count(taken ? Count::wishes : Count::wishes_dropped);
 }
 
+// --- the questionnaire
+// ---------------------------------------------------------------------------
+
+// Who has rods, and is there; a cabinet's own hands have no client of their own.
+void ControlServer::publish_questionnaires() {
+  wire::Questionnaire won;
+  while (questionnaires_.pop(won)) {
+    RodSet cabinet = won.rods;
+    for (auto& connection : connections_) {
+      Seat* seat = seats_.find(connection->client);
+      if (seat == nullptr || connection->state != State::joined) continue;
+      RodSet rods = seat->rods & ~won.rods;
+      if (seat->role == wire::Role::host && seat->peer.is_loopback())
+        rods |= std::exchange(cabinet, RodSet{0});
+      seat->asked_match = won.match;
+      seat->asked_rods = rods;
+      if (rods != 0) send(*connection, wire::Questionnaire{won.match, rods});
+    }
+  }
+}
+
+// Each rod that was asked answers once: nobody answers for others, or twice.
+void ControlServer::take_answers(ControlConnection& connection, const wire::Answers& answers) {
+  Seat* seat = seats_.find(connection.client);
+  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) {
+    count(Count::answers_refused);
+    return;
+  }
+  const auto refuse_them = [&](const char* why) {
+    count(Count::answers_refused);
+    send(connection, wire::Notice{wire::Notice::Level::info, wire::kAnswersTopic, why});
+  };
+  if (answers.match == 0 || answers.match != seat->asked_match)
+    return refuse_them("your answers are not kept: the match is not the one you were asked about");
+  if ((answers.rods & ~seat->asked_rods) != 0)
+    return refuse_them("your answers are not kept: they were given already, or are of others");
+  std::uint8_t team = 0;
+  while (team < foosball::kTeams && (answers.rods & ~rods_of_team(options_.layout, team)) != 0)
+    ++team;
+  if (team == foosball::kTeams)
+    return refuse_them("your answers are not kept: one player has rods of one team");
+  if (std::ranges::all_of(answers.scores, [](std::uint8_t score) { return score == 0; }))
+    return refuse_them("your answers are not kept: there are none");
+  if (untold_.size() > kMostUntold) return refuse_them("the server is overloaded: try again");
+  seat->asked_rods &= static_cast<RodSet>(~answers.rods);
+  count(Count::answers);
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::answers;
+  event.client = seat->client;
+  event.team = team;
+  event.answers = answers;
+  untold_.push_back(std::move(event));
+  tell_tick();
+}
+
 bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish) {
   if (untold_.size() > kMostUntold) return false;
   ControlEvent event;

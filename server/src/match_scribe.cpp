@@ -26,7 +26,8 @@ bool MatchScribe::observe(const foosball::Match& match, const foosball::RodTarge
   }
   statistics_.observe(match.view(), events, targets);
   return std::any_of(events.begin(), events.end(), [](const foosball::Event& event) {
-    return event.kind == foosball::EventKind::match_won;
+    return event.kind == foosball::EventKind::match_won ||
+           event.kind == foosball::EventKind::match_drawn;
   });
 }
 

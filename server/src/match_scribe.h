@@ -1,4 +1,5 @@
-// Follows the matches of a server, one after another, and makes a result of each that was won.
+// Follows the matches of a server, one after another, and makes a result of each that was won or
+// drawn.
 #pragma once
 
 #include <array>
@@ -18,10 +19,10 @@ class MatchScribe {
 
   explicit MatchScribe(const foosball::MatchDesc& match) : match_(match) {}
 
-  // After each tick, with the targets that it was stepped with. True: the match has just been won,
-  // and result() tells it. Takes no memory.
+  // After each tick, with the targets that it was stepped with. True: the match is over, won or
+  // drawn, and result() tells it. Takes no memory.
   bool observe(const foosball::Match& match, const foosball::RodTargets& targets);
-  // Of the match that was just won; the date and the recording are the caller's to add.
+  // Of the match that is just over; the date and the recording are the caller's to add.
   results::MatchResult result(const foosball::MatchView& view, const Players& players) const;
 
  private:

@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <semaphore>
 #include <utility>
+#include <variant>
 
 #include "os/capabilities.h"
 #include "results/store.h"
@@ -17,9 +19,14 @@ class ResultsLog::Keeper {
  public:
   explicit Keeper(const ResultsLogOptions& options) : options_(options) {}
 
+  struct Entry {
+    std::uint32_t number = 0;
+    std::variant<results::MatchResult, results::Answers> what;
+  };
+
   // Tick thread. A semaphore's release() never waits.
-  bool add(results::MatchResult&& result) {
-    const bool taken = incoming_.push(std::move(result));
+  bool add(Entry&& entry) {
+    const bool taken = incoming_.push(std::move(entry));
     if (!taken) lost_.fetch_add(1, std::memory_order_relaxed);
     wake_.release();
     return taken;
@@ -48,6 +55,7 @@ class ResultsLog::Keeper {
     return problem_ + (problem_.empty() ? "" : "; ") + std::to_string(lost) + " results are lost";
   }
   std::uint64_t kept() const { return kept_.load(std::memory_order_relaxed); }
+  std::uint64_t answers() const { return answers_.load(std::memory_order_relaxed); }
 
   // The thread.
   void run() {
@@ -66,18 +74,53 @@ class ResultsLog::Keeper {
 
  private:
   void keep();
+  tl::expected<std::int64_t, std::string> keep(const Entry& entry);
 
   const ResultsLogOptions options_;
-  SpscQueue<results::MatchResult, kWaiting> incoming_;
+  SpscQueue<Entry, kWaiting> incoming_;
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> closing_{false};
-  std::atomic<std::uint64_t> kept_{0}, lost_{0};
+  std::atomic<std::uint64_t> kept_{0}, answers_{0}, lost_{0};
   mutable std::mutex mutex_;
   std::string problem_, told_;  // told_: to the tick
   // The thread's own.
   std::optional<results::Store> store_;
-  std::deque<results::MatchResult> waiting_;
+  std::deque<Entry> waiting_;
+  // Of the last matches, by number: where they are in the store, and whose answers it has.
+  struct Kept {
+    std::int64_t id;
+    std::uint32_t answered = 0;  // rods
+  };
+  std::map<std::uint32_t, Kept> matches_;
 };
+
+// An error is the file's. What the store would refuse for what it says is lost here: it would be
+// refused again and again, and hold up what waits behind it.
+tl::expected<std::int64_t, std::string> ResultsLog::Keeper::keep(const Entry& entry) {
+  const auto lose = [this] {
+    lost_.fetch_add(1, std::memory_order_relaxed);
+    return 0;
+  };
+  if (const auto* result = std::get_if<results::MatchResult>(&entry.what)) {
+    if (!problem_with(*result).empty()) return lose();
+    auto id = store_->add(*result);
+    if (!id) return id;
+    matches_[entry.number] = {*id};
+    if (matches_.size() > kWaiting) matches_.erase(matches_.begin());
+    kept_.fetch_add(1, std::memory_order_relaxed);
+    return id;
+  }
+  results::Answers answers = std::get<results::Answers>(entry.what);
+  const auto match = matches_.find(entry.number);
+  if (match == matches_.end() || !problem_with(answers).empty()) return lose();
+  if ((match->second.answered & answers.rods) != 0) return lose();
+  answers.match = match->second.id;
+  auto id = store_->add(answers);
+  if (!id) return id;
+  match->second.answered |= answers.rods;
+  answers_.fetch_add(1, std::memory_order_relaxed);
+  return id;
+}
 
 // A store that has failed is closed and opened anew the next time: the file may be another then.
 void ResultsLog::Keeper::keep() {
@@ -89,17 +132,16 @@ void ResultsLog::Keeper::keep() {
       tell(opened.error() + "; play goes on");
     }
   }
-  results::MatchResult result;
-  while (waiting_.size() < kWaiting && incoming_.pop(result)) waiting_.push_back(std::move(result));
+  Entry entry;
+  while (waiting_.size() < kWaiting && incoming_.pop(entry)) waiting_.push_back(std::move(entry));
   while (store_ && !waiting_.empty()) {
-    const auto id = store_->add(waiting_.front());
+    const auto id = keep(waiting_.front());
     if (!id) {
       tell(id.error() + "; play goes on");
       store_.reset();
       return;
     }
     waiting_.pop_front();
-    kept_.fetch_add(1, std::memory_order_relaxed);
   }
   if (store_) tell({});
 }
@@ -121,8 +163,11 @@ ResultsLog::~ResultsLog() {
   close();
 }
 
-bool ResultsLog::add(results::MatchResult result) {
-  return keeper_->add(std::move(result));
+bool ResultsLog::add(results::MatchResult result, std::uint32_t number) {
+  return keeper_->add({number, std::move(result)});
+}
+bool ResultsLog::answer(const results::Answers& answers, std::uint32_t number) {
+  return keeper_->add({number, answers});
 }
 
 void ResultsLog::close() {
@@ -144,6 +189,9 @@ std::string ResultsLog::problem() const {
 }
 std::uint64_t ResultsLog::kept() const {
   return keeper_->kept();
+}
+std::uint64_t ResultsLog::answers() const {
+  return keeper_->answers();
 }
 
 }  // namespace server

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "results/match_result.h"
+#include "results/questionnaire.h"
 
 namespace server {
 
@@ -27,8 +28,12 @@ class ResultsLog {
   explicit ResultsLog(const ResultsLogOptions& options);
   ~ResultsLog();  // closes, if close() was not called
 
-  // Tick thread. False: too many are waiting, this one is lost and counted.
-  bool add(results::MatchResult result);
+  // Tick thread, as is answer(). False: too many are waiting, this one is lost and counted. number:
+  // the caller's, for answer(); counts up.
+  bool add(results::MatchResult result, std::uint32_t number = 0);
+  // A player's answers after the match of that number, which they are kept with; lost and counted
+  // if it was lost. Not two for one rod: the store refuses the second.
+  bool answer(const results::Answers& answers, std::uint32_t number);
   // Tries once more to keep what waits, and ends the thread; within close_patience, else the thread
   // is left alone. Not for the loop while it runs.
   void close();
@@ -37,7 +42,8 @@ class ResultsLog {
   std::string problem() const;
   // Tick thread: it is another one than at the last call. False too while the thread is writing it.
   bool problem_changed(std::string& problem);
-  std::uint64_t kept() const;
+  std::uint64_t kept() const;     // matches
+  std::uint64_t answers() const;  // kept
 
  private:
   class Keeper;

@@ -59,6 +59,7 @@ struct Server::Impl {
   void put_drivers(wire::Snapshot& out) const;
   void watch_journal();
   void keep_result();
+  void keep_answers(const ControlEvent& event);
   void watch_results();
   MatchScribe::Players players() const;
   void watch_sending();
@@ -87,6 +88,7 @@ struct Server::Impl {
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;
   std::unique_ptr<ResultsLog> results;  // or none
+  std::uint32_t matches = 0;            // handed to it
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
   bool paused_by_watcher = false;  // by a host who only watches
@@ -178,6 +180,9 @@ void Server::Impl::take_control_events() {
         break;
       case ControlEvent::Kind::wish:
         take_wish(event);
+        break;
+      case ControlEvent::Kind::answers:
+        keep_answers(event);
         break;
     }
   }
@@ -347,15 +352,29 @@ void Server::Impl::watch_journal() {
          recorder->file().problem());
 }
 
-// Of the last tick.
+// Of the last tick. What is shown while nobody plays is nobody's match.
 void Server::Impl::keep_result() {
   foosball::RodTargets targets;
   for (int rod = 0; rod < foosball::kRods; ++rod) targets[rod] = from_grid(next.rods[rod]);
-  if (!scribe.observe(match, targets)) return;
+  if (!scribe.observe(match, targets) || match.view().attract) return;
   results::MatchResult result = scribe.result(match.view(), players());
   result.finished_at = options.date();
   result.recording = options.record;
-  results->add(std::move(result));
+  if (!results->add(std::move(result), ++matches) || !options.questionnaire) return;
+  RodSet cabinet = 0;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    if (desk.driver(rod) == RodDriver::cabinet) cabinet |= RodSet(1u << rod);
+  }
+  control.ask(matches, cabinet);
+}
+
+void Server::Impl::keep_answers(const ControlEvent& event) {
+  static_assert(wire::kQuestionCount == results::kQuestions);
+  static_assert(wire::kMaxScore == results::kMaxScore);
+  if (!results) return;
+  results::Answers answers{.team = event.team, .rods = event.answers.rods};
+  std::ranges::copy(event.answers.scores, answers.scores.begin());
+  results->answer(answers, event.answers.match);
 }
 
 MatchScribe::Players Server::Impl::players() const {
@@ -546,7 +565,10 @@ Counters Server::counters() const {
     out.journal_bytes = s.recorder->file().bytes_written();
     out.journal_dropped = s.recorder->file().entries_dropped();
   }
-  if (s.results) out.results_kept = s.results->kept();
+  if (s.results) {
+    out.results_kept = s.results->kept();
+    out.answers_kept = s.results->answers();
+  }
   out.input = s.input.counters();
   out.control = s.control.counters();
   return out;

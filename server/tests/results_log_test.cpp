@@ -96,6 +96,49 @@ TEST(ResultsLog, CountsWhatItHasNoRoomFor) {
   EXPECT_NE(log.problem().find("lost"), std::string::npos) << log.problem();
 }
 
+results::Answers answers_of(std::uint32_t rods) {
+  return {.team = 0, .rods = rods, .scores = {5, 4, 3, 2, 1, 0}};
+}
+
+// What waits for the file keeps its order, so that answers find their match.
+TEST(ResultsLog, KeepsAnswersWithTheirMatchThoughTheFileComesLate) {
+  const std::string path = temp_path();
+  std::ofstream(path) << std::string(5000, 'x');
+  ResultsLog log({.path = path, .retry_period = 1ms});
+  for (std::uint32_t match = 1; match <= 3; ++match) log.add(won(static_cast<int>(match)), match);
+  log.answer(answers_of(0x0F), 3);
+  log.answer(answers_of(0x01), 2);
+  remove(path);
+  log.close();
+  EXPECT_EQ(log.problem(), "");
+  EXPECT_EQ(log.answers(), 2u);
+  const auto kept = results::Store::open(path, results::Access::read_only)->answers().value();
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].match, 3);
+  EXPECT_EQ(kept[1].match, 2);
+  remove(path);
+}
+
+// Neither would the store take, nor is it tried for ever: what comes later is kept.
+TEST(ResultsLog, LosesWhatIsNoAnswerAndGoesOn) {
+  const std::string path = temp_path();
+  ResultsLog log({.path = path});
+  log.add(won(), 1);
+  log.answer(answers_of(0x01), 7);  // of no match
+  log.answer(answers_of(0x00), 1);  // nobody's
+  log.answer(answers_of(0x03), 1);
+  log.answer(answers_of(0x02), 1);  // again
+  results::MatchResult bad = won();
+  bad.finished_at = "yesterday";
+  log.add(bad, 2);
+  log.add(won(1), 3);
+  log.close();
+  EXPECT_EQ(log.kept(), 2u);
+  EXPECT_EQ(log.answers(), 1u);
+  EXPECT_NE(log.problem().find("4 results are lost"), std::string::npos) << log.problem();
+  remove(path);
+}
+
 // Of totals over several matches, what the last has more.
 TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
   foosball::Statistics before, now;

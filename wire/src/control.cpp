@@ -85,6 +85,12 @@ auto build(Builder& b, const Notice& m) {
 auto build(Builder& b, const Bye& m) {
   return fb::CreateBye(b, text(b, m.reason, kMaxText));
 }
+auto build(Builder& b, const Questionnaire& m) {
+  return fb::CreateQuestionnaire(b, m.match, m.rods);
+}
+auto build(Builder& b, const Answers& m) {
+  return fb::CreateAnswers(b, m.match, m.rods, b.CreateVector(m.scores.data(), m.scores.size()));
+}
 
 template <class Table>
 fb::Message kind_of(flatbuffers::Offset<Table>) {
@@ -199,6 +205,20 @@ bool take(const fb::Notice& t, Notice& m) {
 bool take(const fb::Bye& t, Bye& m) {
   return take(t.reason(), kMaxText, m.reason);
 }
+bool take(const fb::Questionnaire& t, Questionnaire& m) {
+  m = {t.match(), t.rods()};
+  return m.rods != 0;
+}
+bool take(const fb::Answers& t, Answers& m) {
+  if (t.scores()->size() != m.scores.size()) return false;
+  m.match = t.match();
+  m.rods = t.rods();
+  for (std::size_t i = 0; i < m.scores.size(); ++i) {
+    m.scores[i] = t.scores()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    if (m.scores[i] > kMaxScore) return false;
+  }
+  return m.rods != 0;
+}
 
 template <class Struct, class Table>
 bool take_as(const Table* table, ControlMessage& message) {
@@ -236,6 +256,10 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Tuning>(control.message_as_Tuning(), message);
     case fb::Message::Characters:
       return take_as<Characters>(control.message_as_Characters(), message);
+    case fb::Message::Questionnaire:
+      return take_as<Questionnaire>(control.message_as_Questionnaire(), message);
+    case fb::Message::Answers:
+      return take_as<Answers>(control.message_as_Answers(), message);
     case fb::Message::NONE:
       break;
   }

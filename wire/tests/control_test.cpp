@@ -189,6 +189,18 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount - 1, 1.0))) << "too few";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount + 1, 1.0))) << "too many";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount, std::nan("")))) << "no number";
+  const auto answers = [&](std::uint8_t rods, std::size_t count, std::uint8_t score) {
+    const std::vector<std::uint8_t> scores(count, score);
+    return fb::CreateAnswersDirect(b, 1, rods, &scores);
+  };
+  EXPECT_FALSE(refused(fb::Message::Answers, answers(1, kQuestionCount, kMaxScore)));
+  EXPECT_FALSE(refused(fb::Message::Answers, answers(1, kQuestionCount, 0)));
+  EXPECT_TRUE(refused(fb::Message::Answers, answers(1, kQuestionCount, kMaxScore + 1))) << "score";
+  EXPECT_TRUE(refused(fb::Message::Answers, answers(1, kQuestionCount + 1, 1))) << "too many";
+  EXPECT_TRUE(refused(fb::Message::Answers, answers(1, kQuestionCount - 1, 1))) << "too few";
+  EXPECT_TRUE(refused(fb::Message::Answers, answers(1, 60'000, 1))) << "a flood";
+  EXPECT_TRUE(refused(fb::Message::Answers, answers(0, kQuestionCount, 1))) << "nobody's";
+  EXPECT_TRUE(refused(fb::Message::Questionnaire, fb::CreateQuestionnaire(b, 1, 0))) << "nobody's";
   const auto roster = [&](std::size_t seats, std::uint8_t team) {
     const auto seat = fb::CreateSeatDirect(b, 1, "a", team, 1, 1, false);
     const std::vector all(seats, seat);

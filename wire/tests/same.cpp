@@ -55,6 +55,12 @@ auto tied(const Claim& m) {
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }
+auto tied(const Questionnaire& m) {
+  return std::tie(m.match, m.rods);
+}
+auto tied(const Answers& m) {
+  return std::tie(m.match, m.rods, m.scores);
+}
 auto tied(const Seat& m) {
   return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);
 }

@@ -216,8 +216,9 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"change_of_team", Claim{0xF0, 1}},
           {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
           {"tuning", tuning()},
-
-          {"characters", Characters{characters()}}};
+          {"characters", Characters{characters()}},
+          {"questionnaire", Questionnaire{3, 0x2B}},
+          {"answers", Answers{3, 0x0B, {5, 4, 0, 1, 3, 2}}}};
 }
 
 std::vector<JournalEntry> journal() {

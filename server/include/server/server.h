@@ -37,10 +37,11 @@ struct ServerOptions {
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
   bool overwrite = false;                 // the recording that is there already
-  // A file of results (results/store.h) to which every match that was won is added, or empty; and
-  // then what date it is, as 2026-11-22T23:59:59Z. Not of a replay.
+  // A file of results (results/store.h) to which every match that was won or drawn is added, or
+  // empty; and then what date it is, as 2026-11-22T23:59:59Z. Not of a replay.
   std::string results;
   std::function<std::string()> date;
+  bool questionnaire = true;  // with results: asks who has played, after each match
   bool await_client = false;  // the first tick is when the first client has joined
   int send_priority = 0;      // real-time, of the thread that sends snapshots; 0: an ordinary one
   std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say

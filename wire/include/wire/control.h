@@ -19,7 +19,7 @@
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 3;
+inline constexpr std::uint16_t kControlVersion = 4;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
@@ -138,8 +138,24 @@ struct Bye {
   std::string reason;
 };
 
-using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
-                                    Challenge, Claim, Roster, Tuning, Characters>;
+// Server to client, when a match that is kept was won: who played these rods in it may answer the
+// questionnaire at this client.
+struct Questionnaire {
+  std::uint32_t match = 0;  // counted from 1 since the server's start
+  std::uint8_t rods = 0;    // bit 0 at -x; never 0
+};
+
+// Client to server: what one player answered. A Notice of kAnswersTopic says why it is not kept.
+struct Answers {
+  std::uint32_t match = 0;  // of the Questionnaire
+  std::uint8_t rods = 0;    // that this player had, of one team; never 0
+  // By question (docs/questionnaire.md): 1 strongly disagree .. kMaxScore strongly agree; 0: none.
+  std::array<std::uint8_t, kQuestionCount> scores{};
+};
+
+using ControlMessage =
+    std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
+                 Roster, Tuning, Characters, Questionnaire, Answers>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

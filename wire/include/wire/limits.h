@@ -35,8 +35,13 @@ inline constexpr unsigned kSpinRuleCount = 3;  // foosball::SpinRule
 inline constexpr unsigned kRungCount = 5;      // foosball::kLadderRungs
 inline constexpr unsigned kRoleCount = number(Role::host) + 1;
 inline constexpr unsigned kMenOnRod = 5;
+inline constexpr unsigned kQuestionCount = 6;  // results::kQuestions
+inline constexpr std::uint8_t kMaxScore = 5;   // results::kMaxScore
 inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
 inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
+
+// Notice::topic of answers that are not kept.
+inline constexpr std::uint32_t kAnswersTopic = 301;
 
 // Notice::topic of a vote says what it is about, so that a client can offer to agree: a wish of
 // that kind and value.
