@@ -59,7 +59,14 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"goalie-in-hand", 0.9, 2, 0},
                            {"attack-in-hand", 1.62, 2, 0},
                            {"above-goalie-in-hand", 0.9, 2, 0, View::above},
-                           {"follow-goalie-in-hand", 0.9, 2, 1, View::follow}};
+                           {"follow-goalie-in-hand", 0.9, 2, 1, View::follow},
+                           {"drawn", 1.0, 4, 0},
+                           {"survey-consent", 1.0, 4, 0},
+                           {"survey-statement", 0.4, 0, 0},
+                           {"survey-four", 0.4, 0, 0},
+                           {"survey-thanks", 0.4, 0, 1},
+                           {"above-survey", 0.4, 0, 0, View::above},
+                           {"above-survey-end", 1.0, 4, 0, View::above}};
 
 // As a person sees it who shares the table with others.
 MenuPage menu_page(Menu::Page page, int row, bool host = true) {
@@ -86,6 +93,30 @@ MenuPage menu_page(Menu::Page page, int row, bool host = true) {
   menu.toggle(page);
   menu.step({.down = row - 1}, 0, context);
   return menu.page(context);
+}
+
+std::vector<SurveyPanel> survey_panels(const std::string& shot) {
+  using Kind = SurveyPanel::Kind;
+  const SurveyPanel consent{.text = "Six short questions about this match?"};
+  SurveyPanel statement{.kind = Kind::statement,
+                        .team = 1,
+                        .text = "I could always see where the ball was, and how high.",
+                        .question = 4,
+                        .chosen = 2};
+  if (shot == "survey-consent") return {consent};
+  if (shot == "survey-statement") return {statement};
+  if (shot == "survey-thanks") return {{.kind = Kind::thanks, .team = 1, .text = "Thank you!"}};
+  SurveyPanel other = consent;
+  if (shot.starts_with("above")) {
+    statement.cabinet = other.cabinet = true;
+    statement.standing = 0.6f;
+    return {other, statement};
+  }
+  if (shot != "survey-four") return {};
+  other.name = statement.name = "gamepad";
+  other.number = 1;
+  statement.number = 2;
+  return {other, statement, statement, other};
 }
 
 Camera camera_of(const Shot& shot, const wire::Snapshot& state, const glm::ivec2& size) {
@@ -171,6 +202,8 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     if (name.ends_with("settings")) {
       hud.menu = menu_page(Menu::Page::settings, 5);
     }
+    if (name.find("survey") != std::string::npos) hud.survey = survey_panels(name);
+    if (name == "drawn") state.score = {2, 2};
     if (name == "seats" || name == "above-seats") hud.menu = menu_page(Menu::Page::seats, 4);
     if (name == "tuning") hud.menu = menu_page(Menu::Page::tuning, 12);
     if (name == "tuning-read-only") hud.menu = menu_page(Menu::Page::tuning, 1, false);

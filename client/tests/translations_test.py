@@ -17,6 +17,12 @@ for source in list((client / 'src').rglob('*.cpp')):
 tuning = (client.parent / 'foosball/include/foosball/tuning.h').read_text(encoding='utf-8')
 for meaning in re.findall(r'&Tuning::\w+, [^"]*?((?:"(?:[^"\\]|\\.)*"\s*)+)\}', tuning):
     sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', meaning)))
+# The statements of the questionnaire are what the results' summary calls them.
+asked = (client.parent / 'results/include/results/questionnaire.h').read_text(encoding='utf-8')
+statements = re.findall(r'\{"\w+", "([^"]+)"\}', asked)
+shown = re.search(r'kStatements\{(.*?)\};', (client / 'src/core/survey.cpp').read_text(encoding='utf-8'), re.S)
+if not statements or statements != re.findall(r'N_\("([^"]+)"\)', shown.group(1)):
+    sys.exit('the questionnaire asks something else than the results summarise')
 if len(sentences) < 100:
     sys.exit(f'only {len(sentences)} sentences found: has the way they are marked changed?')
 catalogues = sorted((client / 'po').glob('*.po'))

@@ -76,6 +76,8 @@ class Connection {
   std::vector<wire::Notice> notices() const;   // standing ones, oldest first
   wire::Roster roster() const;                 // who is there, and which rods they have
   std::optional<wire::Tuning> tuning() const;  // of the match that is joined, once it is known
+  // What the server asked last, of the session that is joined: who played may answer.
+  std::optional<wire::Questionnaire> questionnaire() const;
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
@@ -85,6 +87,8 @@ class Connection {
   // Wants these rods, by bit, of this team, in place of the ones it has; none: to watch. roster()
   // shows when it has them.
   void claim(std::uint64_t session, const wire::Claim& claim);
+  // What a player answered, with the match of questionnaire().
+  void answer(std::uint64_t session, const wire::Answers& answers);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
   // 20 times a second until nothing was heard from the caller for a second, or until the server is
   // joined anew.

@@ -50,6 +50,12 @@ class Crew {
   std::array<wire::InputRod, 8> rods() const;
   std::vector<wire::Wish> wishes() const;
   std::uint8_t active_rods() const;  // those in somebody's hand, by bit
+  // Each person's device, or kFirstPerson, and rods.
+  struct Hands {
+    int device;
+    std::uint8_t rods;
+  };
+  std::vector<Hands> hands() const;
   int people() const { return static_cast<int>(people_.size()); }
 
  private:

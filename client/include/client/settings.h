@@ -46,6 +46,7 @@ struct Settings {
   bool automatic_rod = false;  // assists, each by itself
   bool goalie_follows = false;
   bool aim = false;
+  bool questionnaire = true;  // may be asked for after a match
   // Of each handle outside the screen against its rod in the picture, along the table [m]: for the
   // view from above on a cabinet. kHandleOffset at most either way.
   std::array<float, 8> handle_offset{};

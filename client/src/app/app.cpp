@@ -116,6 +116,7 @@ void App::follow_connection() {
   if (status_.joins == joins_seen_) return;
   joins_seen_ = status_.joins;
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
+  surveyed_ = 0;
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   const wire::Welcome& welcome = status_.welcome;
   const auto layout = static_cast<foosball::Layout>(welcome.layout);
@@ -190,6 +191,8 @@ void App::take_input(std::int64_t now) {
   if (menu) {
     take_menu_input(events, now);
     events = {};
+  } else if (take_survey_input(now)) {
+    events.back = false;
   } else if (asks_for_menu(events)) {
     open_menu(events);
   } else if (events.back) {
@@ -205,8 +208,10 @@ void App::take_input(std::int64_t now) {
 }
 
 void App::drive_rods(bool menu, std::int64_t now) {
+  const DeviceSet answer = survey_.devices(now);
   const auto take = [&](DeviceSet devices) {
-    return menu ? InputEvents{} : window_->input().take(devices);
+    devices = static_cast<DeviceSet>(devices & ~answer);
+    return menu || devices == 0 ? InputEvents{} : window_->input().take(devices);
   };
   crew_->update(take, sample_.any ? &sample_.state : nullptr, now);
   settings_.automatic_rod = crew_->automatic();
@@ -269,6 +274,7 @@ HudState App::hud(const Camera& camera) {
   hud.statistics = story_.statistics();
   hud.menu = menu_.page(menu_context());
   hud.rod_names = rod_names();
+  hud.survey = survey_.panels(os::monotonic_us());
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
@@ -391,6 +397,7 @@ int App::loop() {
     take_input(input_us);
     predict(input_us);
     play_reel(input_us);
+    follow_survey(input_us);
     draw(dt);
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {

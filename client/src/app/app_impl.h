@@ -1,6 +1,6 @@
 // The renderer's session: the window, the connection, the people at it, and what is drawn for them.
 // One thread. Split over app.cpp (the loop, the hands, the picture) and app_menu.cpp (settings and
-// the menu's pages).
+// the menu's pages) and app_survey.cpp (the questionnaire).
 #pragma once
 
 #include <memory>
@@ -17,6 +17,7 @@
 #include "client/crew.h"
 #include "client/menu.h"
 #include "client/rod_prediction.h"
+#include "client/survey.h"
 #include "core/replay_reel.h"
 #include "draw/image.h"
 #include "os/clock.h"
@@ -60,6 +61,9 @@ class App {
   void say_when_in_step(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
+  std::vector<SurveyPerson> survey_people(std::uint8_t rods) const;
+  void follow_survey(std::int64_t now);
+  bool take_survey_input(std::int64_t now);
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
   void hear_of_pads();
@@ -99,6 +103,8 @@ class App {
   Menu menu_{tuning_directory()};
   SeatsView seats_;  // what the page of seats is made of
   MenuHand menu_hand_;
+  Survey survey_;
+  std::uint32_t surveyed_ = 0;         // the match that was asked about last
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
   std::string names_;                  // of people, whose letters the font has

@@ -59,11 +59,17 @@ std::int64_t Connection::delay_us() const {
 std::optional<wire::Tuning> Connection::tuning() const {
   return impl_->link.tuning();
 }
+std::optional<wire::Questionnaire> Connection::questionnaire() const {
+  return impl_->link.questionnaire();
+}
 wire::Roster Connection::roster() const {
   return impl_->link.roster();
 }
 void Connection::claim(std::uint64_t session, const wire::Claim& claim) {
   impl_->link.claim(session, claim);
+}
+void Connection::answer(std::uint64_t session, const wire::Answers& answers) {
+  impl_->link.answer(session, answers);
 }
 void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
   impl_->link.wish(session, wish);

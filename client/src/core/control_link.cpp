@@ -68,6 +68,15 @@ void ControlLink::claim(std::uint64_t session, const wire::Claim& claim) {
   ask(claim, session);
 }
 
+void ControlLink::answer(std::uint64_t session, const wire::Answers& answers) {
+  ask(answers, session);
+}
+
+std::optional<wire::Questionnaire> ControlLink::questionnaire() const {
+  const std::lock_guard lock(mutex_);
+  return questionnaire_;
+}
+
 std::optional<wire::Tuning> ControlLink::tuning() const {
   const std::lock_guard lock(mutex_);
   return tuning_;
@@ -252,6 +261,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     tuning_ = *tuning;
   }
+  if (const auto* questionnaire = std::get_if<wire::Questionnaire>(&message)) {
+    const std::lock_guard lock(mutex_);
+    questionnaire_ = *questionnaire;
+  }
   if (const auto* record = std::get_if<wire::Characters>(&message)) {
     return on_characters(*record, now_us);
   }
@@ -315,6 +328,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   asked_.clear();
   roster_ = {};
   tuning_.reset();
+  questionnaire_.reset();
   notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;

@@ -28,8 +28,10 @@ class ControlLink {
   std::vector<wire::Notice> notices() const;
   wire::Roster roster() const;
   std::optional<wire::Tuning> tuning() const;
+  std::optional<wire::Questionnaire> questionnaire() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
+  void answer(std::uint64_t session, const wire::Answers& answers);
 
  private:
   enum class Stage : std::uint8_t {
@@ -82,6 +84,7 @@ class ControlLink {
   std::map<std::uint32_t, wire::Notice> notices_;
   wire::Roster roster_;
   std::optional<wire::Tuning> tuning_;
+  std::optional<wire::Questionnaire> questionnaire_;
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

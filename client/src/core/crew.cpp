@@ -110,6 +110,12 @@ std::vector<wire::Wish> Crew::wishes() const {
   return all;
 }
 
+std::vector<Crew::Hands> Crew::hands() const {
+  std::vector<Hands> all;
+  for (const Person& person : people_) all.push_back({person.device, person.rods});
+  return all;
+}
+
 std::uint8_t Crew::active_rods() const {
   std::uint8_t rods = 0;
   for (const Person& person : people_)

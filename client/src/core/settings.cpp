@@ -126,6 +126,7 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "automatic_rod") return flag(s.automatic_rod);
   if (name == "goalie_follows") return flag(s.goalie_follows);
   if (name == "aim") return flag(s.aim);
+  if (name == "questionnaire") return flag(s.questionnaire);
   if (name == "handle_offset_mm")
     return read_offsets(value, s.handle_offset) ? "" : "eight numbers from -60 to 60";
   if (name.starts_with("key.")) {
@@ -231,6 +232,7 @@ std::string format_settings(const Settings& s) {
   out << "automatic_rod = " << yes_no(s.automatic_rod) << "\n";
   out << "goalie_follows = " << yes_no(s.goalie_follows) << "\n";
   out << "aim = " << yes_no(s.aim) << "\n";
+  out << "questionnaire = " << yes_no(s.questionnaire) << "\n";
   out << "handle_offset_mm =";
   for (const float offset : s.handle_offset) out << " " << std::lround(1e3f * offset);
   out << "\n";

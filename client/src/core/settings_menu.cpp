@@ -24,6 +24,7 @@ enum Row : int {
   row_automatic,
   row_goalie,
   row_aim,
+  row_questionnaire,
   first_offset,
   first_key = first_offset + 8,
   row_count = first_key + kActions,
@@ -156,6 +157,7 @@ std::vector<MenuRow> SettingsMenu::rows(const Settings& s) const {
       {N_("Assist: automatic rod"), on_off(s.automatic_rod)},
       {N_("Assist: goalie follows"), on_off(s.goalie_follows)},
       {N_("Assist: aim"), on_off(s.aim)},
+      {N_("Questions after a match"), on_off(s.questionnaire)},
   };
   for (std::size_t i = 0; i < s.handle_offset.size(); ++i) {
     rows.push_back({N_("Handle offset of rod"),
@@ -211,6 +213,9 @@ bool SettingsMenu::change(int way, Settings& s) {
       break;
     case row_aim:
       flip(s.aim);
+      break;
+    case row_questionnaire:
+      flip(s.questionnaire);
       break;
     default:
       if (row_ >= first_key) return false;

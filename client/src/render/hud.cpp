@@ -199,7 +199,10 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
 void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   if (hud.state != nullptr) draw_match(pen, hud, screen);
   draw_corner_texts(pen, hud);
-  const float help_height = draw_help(pen, hud);
+  // From above each side reads its own.
+  const int reader = hud.view != View::above ? -1 : pen.left_is_team_0 ? 0 : 1;
+  const float survey_height = draw_survey(pen, hud.survey, reader);
+  const float help_height = survey_height > 0.0f ? survey_height : draw_help(pen, hud);
   draw_notices(pen, hud, hud.view == View::above ? std::max(help_height, 74.0f) : help_height);
   if (!hud.connection_message.empty()) draw_connection(pen, hud);
   if (!hud.menu.rows.empty()) draw_menu(pen, hud.menu);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "client/menu_page.h"
 #include "client/settings.h"
+#include "client/survey.h"
 #include "core/match_story.h"
 #include "foosball/character.h"
 #include "render/camera.h"
@@ -44,11 +46,14 @@ struct HudState {
   float since_foul = 1e3f;  // [s]
   std::array<TeamStatistics, 2> statistics;
   MenuPage menu;                         // no rows: closed
+  std::vector<SurveyPanel> survey;       // the questionnaire, by person; none: not asked
   std::array<std::string, 8> rod_names;  // who plays each, to be shown at its handle
 };
 
 class HudPen;
 void draw_menu(const HudPen& pen, const MenuPage& page);
+// Of this team's people, at the lower edge; -1: of both. How high it stands.
+float draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
 void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 

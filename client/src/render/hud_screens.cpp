@@ -314,9 +314,11 @@ void draw_end(const HudPen& whole, const wire::Snapshot& state,
   const HudPen pen = whole.fitting(half + 10.0f, height + 120.0f);
   const float top = 0.5f * (pen.bottom - height);
   pen.panel({-half, top}, {half, top + height}, 20.0f, {0.03f, 0.045f, 0.07f, 0.86f});
-  pen.panel({-half, top}, {half, top + height}, 20.0f, kTeamInk[team], 2.0f);
-  pen.text(named_team(team) + " " + tr("WINS"), {Face::bold, 50.0f, 0.04f, Align::centre},
-           {0.0f, top + 62.0f}, kTeamInk[team], 0.8f, 2.0f * half - 40.0f);
+  const bool drawn = state.score[0] == state.score[1];  // only where the time was over
+  pen.panel({-half, top}, {half, top + height}, 20.0f, drawn ? kFaint : kTeamInk[team], 2.0f);
+  pen.text(drawn ? tr("A DRAW") : named_team(team) + " " + tr("WINS"),
+           {Face::bold, 50.0f, 0.04f, Align::centre}, {0.0f, top + 62.0f},
+           drawn ? kInk : kTeamInk[team], 0.8f, 2.0f * half - 40.0f);
   const std::size_t left = pen.left_is_team_0 ? 0 : 1, right = 1 - left;
   const std::string score =
       std::to_string(state.score[left]) + " : " + std::to_string(state.score[right]);
