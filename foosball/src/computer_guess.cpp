@@ -1,6 +1,7 @@
 #include "computer_guess.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace foosball {
@@ -15,17 +16,40 @@ constexpr double kManBounce = 0.6;    // of the ball's speed towards a man
 class Flight {
  public:
   Flight(const GuessModel& model, const Tuning& tuning, const Sighting& rods, BallGuess& ball)
-      : m_(model), tuning_(tuning), rods_(rods), p_(ball.position), v_(ball.velocity) {}
+      : m_(model), tuning_(tuning), p_(ball.position), v_(ball.velocity) {
+    find_rows(rods);
+  }
 
-  void step() {
+  // False when it has left the ball as it was: then no further step changes it.
+  bool step() {
     before_ = p_;
+    const vp::Vec3 velocity = v_;
     p_ = p_ + kStep * v_;
     bounce_off_field();
     bounce_off_walls();
     bounce_off_men();
+    return !(p_ == before_ && v_ == velocity);
   }
 
  private:
+  // Own men that hang down, by the row.
+  struct Row {
+    const RodSpec* spec;
+    double x;  // of their feet, in the team's frame [m]
+    double slide;
+  };
+
+  // Where the others' men were, they are no more.
+  void find_rows(const Sighting& rods) {
+    for (std::size_t rod = 0; rod < kRods; ++rod) {
+      const RodSpec& spec = m_.table->rods[rod];
+      if (spec.team != m_.team) continue;
+      const double swing = std::remainder(rods.swing[rod], 2.0 * vp::kPi);  // towards +x
+      if (std::fabs(swing) > kFeetUp) continue;
+      own_[rows_++] = {&spec, attack_sign(m_.team) * spec.x + kFoot * swing, rods.slide[rod]};
+    }
+  }
+
   double radius() const { return m_.table->ball_radius; }
 
   void bounce_off_field() {
@@ -51,19 +75,12 @@ class Flight {
   void bounce_off_men() {
     constexpr double kHigh = 0.10;
     if (p_.z > kHigh) return;
-    for (std::size_t rod = 0; rod < kRods; ++rod) {
-      const RodSpec& spec = m_.table->rods[rod];
-      if (spec.team != m_.team) continue;  // where the others' men were, they are no more
-      const double swing = std::remainder(rods_.swing[rod], 2.0 * vp::kPi);
-      if (std::fabs(swing) > kFeetUp) continue;
-      const double lean = spec.team == m_.team ? swing : -swing;  // towards +x
-      const double x = attack_sign(m_.team) * spec.x + kFoot * lean;
-      const double reach = kHalfDepth + radius();
-      if (std::fabs(p_.x - x) > reach) continue;
-      for (int man = 0; man < spec.men; ++man) {
-        const double y = man_offset(spec, man) + rods_.slide[rod];
-        const double beside = m_.half_foot[static_cast<std::size_t>(spec.team)] + 0.9 * radius();
-        if (std::fabs(p_.y - y) < beside) return bounce_off_man(x, reach);
+    for (std::size_t i = 0; i < rows_; ++i) {
+      const Row& row = own_[i];
+      if (std::fabs(p_.x - row.x) > reach_) continue;
+      for (int man = 0; man < row.spec->men; ++man) {
+        const double y = man_offset(*row.spec, man) + row.slide;
+        if (std::fabs(p_.y - y) < beside_) return bounce_off_man(row.x, reach_);
       }
     }
   }
@@ -82,9 +99,12 @@ class Flight {
 
   const GuessModel& m_;
   const Tuning& tuning_;
-  const Sighting& rods_;
   vp::Vec3 &p_, &v_;
   vp::Vec3 before_;
+  std::array<Row, kRods> own_{};
+  std::size_t rows_ = 0;
+  const double reach_ = kHalfDepth + radius();
+  const double beside_ = m_.half_foot[static_cast<std::size_t>(m_.team)] + 0.9 * radius();
 };
 
 }  // namespace
@@ -94,7 +114,8 @@ BallGuess advance(const GuessModel& model, const Tuning& tuning, const Sighting&
   BallGuess ball = from;
   Flight flight(model, tuning, rods, ball);
   const int steps = static_cast<int>(std::lround(time / kStep));
-  for (int i = 0; i < steps; ++i) flight.step();
+  for (int i = 0; i < steps && flight.step(); ++i) {
+  }
   return ball;
 }
 
