@@ -25,19 +25,80 @@ class Flight {
     before_ = p_;
     const vp::Vec3 velocity = v_;
     p_ = p_ + kStep * v_;
-    bounce_off_field();
+    field_.bounce(p_.z, v_.z);
     bounce_off_walls();
     bounce_off_men();
     return !(p_ == before_ && v_ == velocity);
   }
 
+  // As many steps as meet nothing but the field, `most` at most; returns how many.
+  int steps_among_men(int most) {
+    const Cell cell = free_cell();
+    const double dx = kStep * v_.x, dy = kStep * v_.y;
+    vp::Vec3 p = p_;
+    double rise = v_.z;
+    const bool rolls = p.z == field_.radius && rise == 0.0 && field_.fall <= field_.hop_from;
+    int i = 0;
+    for (; i < most; ++i) {
+      const double x = p.x + dx, y = p.y + dy;
+      if (!(x > cell.x[0] && x < cell.x[1] && y > cell.y[0] && y < cell.y[1])) break;
+      p.x = x;
+      p.y = y;
+      if (rolls) continue;
+      p.z += kStep * rise;
+      field_.bounce(p.z, rise);
+    }
+    p_ = p;
+    v_.z = rise;
+    return i;
+  }
+
  private:
+  struct Field {
+    double radius, fall, hop_from, restitution;  // fall: what gravity adds in a step [m/s]
+
+    void bounce(double& z, double& rise) const {
+      rise -= fall;
+      if (z > radius) return;
+      z = radius;
+      rise = rise < -hop_from ? -restitution * rise : 0.0;
+    }
+  };
+
   // Own men that hang down, by the row.
   struct Row {
     const RodSpec* spec;
     double x;  // of their feet, in the team's frame [m]
     double slide;
   };
+
+  // Where the ball's centre meets no wall and no man.
+  struct Cell {
+    double x[2], y[2];
+  };
+
+  // About the ball; empty where it meets one now. Smaller than it need be by what rounding makes of
+  // its bounds.
+  Cell free_cell() const {
+    constexpr double kRounding = 1e-9;  // [m]
+    const double end = 0.5 * m_.table->length - radius(), side = 0.5 * m_.table->width - radius();
+    Cell cell{{-end, end}, {-side, side}};
+    const auto keep_out = [](double(&free)[2], double at, double from, double reach) {
+      if (at <= from) free[1] = std::min(free[1], from - reach - kRounding);
+      if (at >= from) free[0] = std::max(free[0], from + reach + kRounding);
+    };
+    for (std::size_t i = 0; i < rows_; ++i) {
+      const Row& row = own_[i];
+      if (std::fabs(p_.x - row.x) > reach_) {
+        keep_out(cell.x, p_.x, row.x, reach_);
+        continue;
+      }
+      for (int man = 0; man < row.spec->men; ++man) {
+        keep_out(cell.y, p_.y, man_offset(*row.spec, man) + row.slide, beside_);
+      }
+    }
+    return cell;
+  }
 
   // Where the others' men were, they are no more.
   void find_rows(const Sighting& rods) {
@@ -51,13 +112,6 @@ class Flight {
   }
 
   double radius() const { return m_.table->ball_radius; }
-
-  void bounce_off_field() {
-    v_.z -= kStep * tuning_.gravity;
-    if (p_.z > radius()) return;
-    p_.z = radius();
-    v_.z = v_.z < -tuning_.hop_from ? -tuning_.field_restitution * v_.z : 0.0;
-  }
 
   void bounce_off_walls() {
     const double side = 0.5 * m_.table->width - radius();
@@ -101,7 +155,8 @@ class Flight {
   const Tuning& tuning_;
   vp::Vec3 &p_, &v_;
   vp::Vec3 before_;
-  std::array<Row, kRods> own_{};
+  const Field field_{radius(), kStep* tuning_.gravity, tuning_.hop_from, tuning_.field_restitution};
+  std::array<Row, kRods> own_;
   std::size_t rows_ = 0;
   const double reach_ = kHalfDepth + radius();
   const double beside_ = m_.half_foot[static_cast<std::size_t>(m_.team)] + 0.9 * radius();
@@ -114,7 +169,9 @@ BallGuess advance(const GuessModel& model, const Tuning& tuning, const Sighting&
   BallGuess ball = from;
   Flight flight(model, tuning, rods, ball);
   const int steps = static_cast<int>(std::lround(time / kStep));
-  for (int i = 0; i < steps && flight.step(); ++i) {
+  for (int left = steps; left > 0 && flight.step();) {
+    --left;
+    left -= flight.steps_among_men(left);
   }
   return ball;
 }
