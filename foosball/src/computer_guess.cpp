@@ -25,7 +25,8 @@ class Flight {
     before_ = p_;
     const vp::Vec3 velocity = v_;
     p_ = p_ + kStep * v_;
-    field_.bounce(p_.z, v_.z);
+    v_.z -= field_.fall;
+    if (p_.z <= field_.radius) field_.bounce(p_.z, v_.z);
     bounce_off_walls();
     bounce_off_men();
     return !(p_ == before_ && v_ == velocity);
@@ -37,7 +38,8 @@ class Flight {
     const double dx = kStep * v_.x, dy = kStep * v_.y;
     vp::Vec3 p = p_;
     double rise = v_.z;
-    const bool rolls = p.z == field_.radius && rise == 0.0 && field_.fall <= field_.hop_from;
+    const Field field = field_;
+    bool rolls = field.rolls(p.z, rise);
     int i = 0;
     for (; i < most; ++i) {
       const double x = p.x + dx, y = p.y + dy;
@@ -46,7 +48,10 @@ class Flight {
       p.y = y;
       if (rolls) continue;
       p.z += kStep * rise;
-      field_.bounce(p.z, rise);
+      rise -= field.fall;
+      if (p.z > field.radius) continue;
+      field.bounce(p.z, rise);
+      rolls = field.rolls(p.z, rise);
     }
     p_ = p;
     v_.z = rise;
@@ -58,10 +63,12 @@ class Flight {
     double radius, fall, hop_from, restitution;  // fall: what gravity adds in a step [m/s]
 
     void bounce(double& z, double& rise) const {
-      rise -= fall;
-      if (z > radius) return;
       z = radius;
       rise = rise < -hop_from ? -restitution * rise : 0.0;
+    }
+    // So that a step leaves height and rise as they are.
+    bool rolls(double z, double rise) const {
+      return z == radius && rise == 0.0 && fall <= hop_from;
     }
   };
 
