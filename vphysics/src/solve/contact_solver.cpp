@@ -43,37 +43,54 @@ constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
 
 // Of what is no link; links as they were before the solve.
-Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactPoint& p) {
-  return b.v + cross(b.w, p.arm_b) - a.v - cross(a.w, p.arm_a);
+inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
+                              const ContactPoint& p) {
+  Vec3 u;
+  if (!c.stands_b) u = b.v + cross(b.w, p.arm_b);
+  if (!c.stands_a) u = u - a.v - cross(a.w, p.arm_a);
+  return u;
 }
 // What the solve has added to a row's speed through links.
-double through_links(const ContactConstraint& c, int row) {
+inline double through_links(const ContactConstraint& c, int row) {
+  if (!c.has_links()) return 0.0;
   return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
 }
 
-void apply(SolverBody& a, SolverBody& b, const ContactPoint& p, const Vec3& impulse) {
-  a.v -= a.linear * impulse;
-  a.w -= a.angular * cross(p.arm_a, impulse);
-  b.v += b.linear * impulse;
-  b.w += b.angular * cross(p.arm_b, impulse);
+inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, const ContactPoint& p,
+                  const Vec3& impulse) {
+  if (c.moves_a) {
+    a.v -= a.inverse_mass * impulse;
+    a.w -= a.angular * cross(p.arm_a, impulse);
+  }
+  if (c.moves_b) {
+    b.v += b.inverse_mass * impulse;
+    b.w += b.angular * cross(p.arm_b, impulse);
+  }
 }
-void apply_to_links(const ContactConstraint& c, int row, double impulse) {
+inline void apply_to_links(const ContactConstraint& c, int row, double impulse) {
   push(c.side_a, row, impulse, c.side_a.velocity);
   push(c.side_b, row, impulse, c.side_b.velocity);
 }
 
 void apply_moment(SolverBody& a, SolverBody& b, const ContactConstraint& c, const Vec3& impulse) {
-  a.w -= a.angular * impulse;
-  b.w += b.angular * impulse;
+  if (c.moves_a) a.w -= a.angular * impulse;
+  if (c.moves_b) b.w += b.angular * impulse;
+  if (!c.has_links()) return;
   for (int i = 0; i < 3; ++i) apply_to_links(c, row_of(c.count, i), impulse[i]);
 }
 
 // The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
 double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
                 const ContactPoint& p, const Vec3& d1, const Vec3& d2, int r1, int r2) {
-  return dot(d1, a.linear * d2) + dot(cross(p.arm_a, d1), a.angular * cross(p.arm_a, d2)) +
-         dot(d1, b.linear * d2) + dot(cross(p.arm_b, d1), b.angular * cross(p.arm_b, d2)) +
-         response(c.side_a, r1, r2) + response(c.side_b, r1, r2);
+  double sum = 0.0;
+  if (c.moves_a) {
+    sum += dot(d1, a.inverse_mass * d2) + dot(cross(p.arm_a, d1), a.angular * cross(p.arm_a, d2));
+  }
+  if (c.moves_b) {
+    sum += dot(d1, b.inverse_mass * d2);
+    sum += dot(cross(p.arm_b, d1), b.angular * cross(p.arm_b, d2));
+  }
+  return sum + response(c.side_a, r1, r2) + response(c.side_b, r1, r2);
 }
 
 void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
@@ -119,7 +136,7 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
                       const ContactConstraint& c, ContactPoint& p) {
   const Vec3 forced =
       b.forced_v + cross(b.forced_w, p.arm_b) - a.forced_v - cross(a.forced_w, p.arm_a);
-  const double closing = -dot(c.normal, relative_velocity(a, b, p));
+  const double closing = -dot(c.normal, relative_velocity(a, b, c, p));
   const double gain = -dot(c.normal, forced);  // g dt
   const double left = s.duration / s.step;
   // A swept body is at its contact; its gap is within the tolerance.
@@ -139,8 +156,16 @@ double target_of(const StepContext& s, const ContactPoint& p) {
          std::max(0.0, p.separation - s.slop) / s.duration;
 }
 
+bool moves(const SolverBody& body) {
+  return body.inverse_mass != 0.0 || !(body.angular == Sym3{});
+}
+
 void prepare(const StepContext& s, ContactConstraint& c) {
   const SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
+  c.moves_a = moves(a);
+  c.moves_b = moves(b);
+  c.stands_a = !c.moves_a && a.v == Vec3{} && a.w == Vec3{};
+  c.stands_b = !c.moves_b && b.v == Vec3{} && b.w == Vec3{};
   c.rolling_mass = c.rolling > 0.0 ? rolling_mass(a, b, c) : 0.0;
   for (int i = 0; i < c.count; ++i) {
     ContactPoint& p = c.points[i];
@@ -161,7 +186,7 @@ void warm_start(const StepContext& s) {
     SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
     for (int i = 0; i < c.count; ++i) {
       const ContactPoint& p = c.points[i];
-      apply(a, b, p,
+      apply(a, b, c, p,
             p.normal_impulse * c.normal + p.tangent_impulse[0] * c.tangent[0] +
                 p.tangent_impulse[1] * c.tangent[1]);
       apply_to_links(c, row_of(i, kNormal), p.normal_impulse);
@@ -178,7 +203,7 @@ void warm_start(const StepContext& s) {
 // to the velocity, since the block turns what it multiplies.
 void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
                     int row) {
-  const Vec3 u = relative_velocity(a, b, p);
+  const Vec3 u = relative_velocity(a, b, c, p);
   const double u0 = dot(c.tangent[0], u) + through_links(c, row) - c.surface_speed[0];
   const double u1 = dot(c.tangent[1], u) + through_links(c, row + 1) - c.surface_speed[1];
   double p0 = p.tangent_impulse[0] - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
@@ -194,7 +219,7 @@ void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, Co
     }
   }
   const double change0 = p0 - p.tangent_impulse[0], change1 = p1 - p.tangent_impulse[1];
-  apply(a, b, p, change0 * c.tangent[0] + change1 * c.tangent[1]);
+  apply(a, b, c, p, change0 * c.tangent[0] + change1 * c.tangent[1]);
   apply_to_links(c, row, change0);
   apply_to_links(c, row + 1, change1);
   p.tangent_impulse[0] = p0;
@@ -216,11 +241,11 @@ void solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
 // Returns the change of speed.
 double solve_normal(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
                     int row) {
-  const double speed = dot(c.normal, relative_velocity(a, b, p)) + through_links(c, row);
+  const double speed = dot(c.normal, relative_velocity(a, b, c, p)) + through_links(c, row);
   const double next = std::max(0.0, p.normal_impulse + p.normal_mass * (p.target - speed));
   const double change = next - p.normal_impulse;
   p.normal_impulse = next;
-  apply(a, b, p, change * c.normal);
+  apply(a, b, c, p, change * c.normal);
   apply_to_links(c, row, change);
   return p.normal_mass > 0.0 ? std::fabs(change) / p.normal_mass : 0.0;
 }
@@ -318,9 +343,9 @@ void correct_positions(const StepContext& s) {
         const double change = next - p.push;
         const Vec3 impulse = change * c.normal;
         p.push = next;
-        a.shift -= a.linear * impulse;
+        a.shift -= a.inverse_mass * impulse;
         a.turn -= a.angular * cross(p.arm_a, impulse);
-        b.shift += b.linear * impulse;
+        b.shift += b.inverse_mass * impulse;
         b.turn += b.angular * cross(p.arm_b, impulse);
         push(c.side_a, row, change, c.side_a.shift);
         push(c.side_b, row, change, c.side_b.shift);

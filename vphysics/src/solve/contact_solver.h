@@ -1,8 +1,8 @@
 // Contacts, friction and joint rows of one instant, by sequential impulses.
 //
-// Every body is given by the velocity (w, v) of one point of it. A free one has two symmetric
-// blocks: how w answers a moment about that point, its centre of mass, and v a force through it: R
-// I^-1 R^T and 1/m. A link has none; it answers through its articulation's joints (link_side.h), so
+// Every body is given by the velocity (w, v) of one point of it. A free one answers by w a moment
+// about that point, its centre of mass, with R I^-1 R^T, and by v a force through it with 1/m. A
+// link does neither: it answers through its articulation's joints (link_side.h), so
 // no joint can come apart, and its w and v stay those from before the solve.
 #pragma once
 
@@ -20,12 +20,13 @@ namespace vp::solve {
 struct SolverBody {
   Vec3 w, v;                // world frame; written by the solver
   Vec3 turn, shift;         // position correction; written by the solver, applied by the world
-  Sym3 angular, linear;     // inverse inertia, world frame; zero for links and what nothing moves
+  Sym3 angular;             // inverse inertia, world frame; zero for links and what nothing moves
+  double inverse_mass;      // likewise
   Vec3 x;                   // the point, world frame
   Vec3 forced_w, forced_v;  // what this step's forces added to w and v
   int articulation, link;   // of a link; articulation is negative for all else
 };
-static_assert(sizeof(SolverBody) == 34 * sizeof(double));
+static_assert(sizeof(SolverBody) == 29 * sizeof(double));
 
 struct ContactPoint {
   // Given.
@@ -62,8 +63,12 @@ struct ContactConstraint {
   Vec3 rolling_impulse;
   int count;
   bool swept;  // belongs to a continuous body
+  // Prepared. An impulse moves the body itself; the body has no velocity, and gets none.
+  bool moves_a, moves_b, stands_a, stands_b;
   ContactPoint points[collide::kMaxPoints];
   LinkSide side_a, side_b;  // prepared
+
+  bool has_links() const { return side_a.depth + side_b.depth > 0; }
 };
 
 struct StepContext {

@@ -162,7 +162,7 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
     s.articulation = static_cast<int>(body.articulation);
     s.link = body.link;
   } else {
-    s.linear = {body.inverse_mass, body.inverse_mass, body.inverse_mass, 0, 0, 0};
+    s.inverse_mass = body.inverse_mass;
     s.angular =
         body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
   }
