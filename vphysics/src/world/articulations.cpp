@@ -19,6 +19,7 @@ void World::Impl::follow(Articulation& art) {
     art.remote = false;
     art.refresh();
     for (const std::uint32_t b : art.bodies) remote_bodies[b] = 0;
+    impact_bodies_are_stale = true;
   }
   follow_poses(art);
   follow_velocities(art, false);

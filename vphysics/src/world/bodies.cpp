@@ -115,6 +115,7 @@ void World::Impl::list_bodies() {
   }
   sort_movers_by_region();
   list_remote_articulations();
+  list_discrete_filters();
 }
 
 namespace {

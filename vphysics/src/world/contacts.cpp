@@ -188,9 +188,9 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   begin_solve_articulations();
   solve::solve({solver_bodies, contacts, joint_rows, solver_articulations, link_rows, h, dt,
                 desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
-    if (!body.alive || body.is_link || body.motion != Motion::dynamic) continue;
+    if (body.is_link || body.motion != Motion::dynamic) continue;
     if (first) carry(i, solver_bodies[i].w - body.w, solver_bodies[i].v - body.v);
     body.w = solver_bodies[i].w;
     body.v = solver_bodies[i].v;

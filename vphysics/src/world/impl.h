@@ -256,6 +256,13 @@ struct World::Impl {
   collide::PartsScratch parts_scratch;
 
   std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
+  // What the stage of impacts goes through, ascending: all bodies that are not fixed, and links with
+  // colliders, but those of remote articulations. impact_bodies() makes it anew when some of these
+  // have changed.
+  std::vector<std::uint32_t> impact_body_list;
+  bool impact_bodies_are_stale = true;
+  // Union over what meets links, or sensors that continuous bodies carry (find_discrete_pairs()).
+  std::uint32_t discrete_categories = 0, discrete_masks = 0;
 
   // Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
   // both are within the kept ones; what never meets by its filters is left out. They outlast steps,
@@ -347,6 +354,7 @@ struct World::Impl {
   void hold(std::uint32_t body);
 
   // remote.cpp
+  const std::vector<std::uint32_t>& impact_bodies();
   bool can_be_remote(const Articulation& articulation) const;
   void list_remote_articulations();
   bool is_near_mover(const collide::Bounds& box) const;
@@ -521,6 +529,7 @@ struct World::Impl {
   // pairs.cpp
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);
+  void list_discrete_filters();
   bool keep_discrete_bounds();
   void find_discrete_pairs(double h);
   void keep_bounds(std::uint32_t body, double h);

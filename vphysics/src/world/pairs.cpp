@@ -57,13 +57,16 @@ double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
+  if (!candidates_are_stale) {
+    for (const std::uint32_t i : impact_bodies()) refresh_bounds_of(i, h);
+    return;
+  }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!remote_bodies[i]) refresh_bounds_of(i, h);
   }
 }
 void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
   const Body& body = bodies[i];
-  if (!candidates_are_stale && body.alive && !can_move(body)) return;
   movable[i] = body.alive && can_move(body);
   if (!body.alive || body.first_collider == kNone) {
     bounds[i] = {};
@@ -120,25 +123,38 @@ bool World::Impl::swept(const Collider& a, const Collider& b) const {
   return is_swept(a) || is_swept(b);
 }
 
+namespace {
+
+bool meets_discretely(const Body& body) {
+  return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
+}
+
+}  // namespace
+
+void World::Impl::list_discrete_filters() {
+  discrete_categories = discrete_masks = 0;
+  for (const Body& body : bodies) {
+    if (!meets_discretely(body)) continue;
+    discrete_categories |= body.categories;
+    discrete_masks |= body.masks;
+  }
+}
+
 // Bounds of what may meet a link, or a sensor that a continuous body carries, the others' empty;
 // false if there are no two.
 bool World::Impl::keep_discrete_bounds() {
-  std::uint32_t categories = 0, masks = 0;
+  const std::uint32_t categories = discrete_categories, masks = discrete_masks;
+  if ((categories & masks) == 0) return false;
   collide::Bounds around;
-  const auto takes_part = [](const Body& body) {
-    return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
-  };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!takes_part(body)) continue;
-    categories |= body.categories;
-    masks |= body.masks;
-    if (body.is_link || body.continuous) around = merged(around, bounds[i]);
+    if (meets_discretely(body) && (body.is_link || body.continuous))
+      around = merged(around, bounds[i]);
   }
   int meeting = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    const bool meets = takes_part(body) && (body.categories & masks) && (body.masks & categories) &&
+    const bool meets = meets_discretely(body) && (body.categories & masks) && (body.masks & categories) &&
                        overlap(bounds[i], around);
     discrete_bounds[i] = meets ? bounds[i] : collide::Bounds{};
     meeting += meets ? 1 : 0;
@@ -317,8 +333,8 @@ void World::Impl::find_candidates_of(std::uint32_t index) {
 void World::Impl::refresh_candidates(double h) {
   if (candidates_are_stale) return list_candidates(h);
   leavers.clear();
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (movable[i] && !holds(kept_bounds[i], bounds[i])) leavers.push_back(i);
+  for (const std::uint32_t i : impact_bodies()) {
+    if (!holds(kept_bounds[i], bounds[i])) leavers.push_back(i);
   }
   if (leavers.size() > kFewLeavers + bodies.size() / 64) return list_candidates(h);
   for (const std::uint32_t i : leavers) keep_bounds(i, h);

@@ -23,6 +23,18 @@ constexpr double kSlide = 0.03, kClear = 0.01;
 
 }  // namespace
 
+const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
+  if (!impact_bodies_are_stale) return impact_body_list;
+  impact_bodies_are_stale = false;
+  impact_body_list.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.alive || body.motion == Motion::fixed || remote_bodies[i]) continue;
+    if (!body.is_link || body.first_collider != kNone) impact_body_list.push_back(i);
+  }
+  return impact_body_list;
+}
+
 // As long as no body or collider comes or goes.
 bool World::Impl::can_be_remote(const Articulation& art) const {
   if (!art.keeps_twists() || !art.settles_alone()) return false;
@@ -39,6 +51,7 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
 void World::Impl::list_remote_articulations() {
   const bool few = !some_are_not && desc.sleep_after <= 0.0 && movers.size() <= kFewMovers;
   remote_bodies.assign(bodies.size(), 0);
+  impact_bodies_are_stale = true;
   for (Articulation& art : articulations) {
     look_at(art);
     art.can_be_remote = few && can_be_remote(art);
@@ -84,6 +97,7 @@ void World::Impl::make_remote() {
       remote_bodies[b] = 1;
       bounds[b] = {};
     }
+    impact_bodies_are_stale = true;
   }
 }
 

@@ -98,7 +98,7 @@ void World::Impl::begin_impact_stage() {
   held.assign(n, 0);
   in_contact.assign(n, 0);
   as_swept.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
 }
@@ -112,10 +112,9 @@ void World::Impl::prescribe_velocity(Body& body, double dt) {
 
 // Of what the stage of impacts moves.
 void World::Impl::integrate_forces(double dt) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
-    if (remote_bodies[i]) continue;
-    if (!body.alive || body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
+    if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
     forced[i] = {body.w, body.v};
     if (body.is_link) continue;
     body.v += dt * desc.gravity;
@@ -123,10 +122,9 @@ void World::Impl::integrate_forces(double dt) {
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
   }
   integrate_articulations(dt);
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (remote_bodies[i]) continue;
+  for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (!body.alive || joins_sub_steps(body)) continue;
+    if (joins_sub_steps(body)) continue;
     const bool stopped = !body.is_link && stop_if_out_of_range(i, start_poses[i]);
     if (body.motion != Motion::dynamic) continue;
     forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
@@ -169,15 +167,16 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
-// Of links only those that touch something: there may be many, and few of them do.
+// Of links and what is fixed only those that touch something: there may be many, and few of them do.
 void World::Impl::refresh_solver_bodies() {
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (body.alive && !body.is_link) solver_bodies[i] = solver_body(i, reference_point(body));
+    if (!body.is_link) solver_bodies[i] = solver_body(i, reference_point(body));
   }
   for (const solve::ContactConstraint& c : contacts) {
     for (const std::uint32_t i : {c.a, c.b}) {
-      if (bodies[i].is_link) solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
+      const bool listed = !bodies[i].is_link && bodies[i].motion != Motion::fixed;
+      if (!listed) solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
     }
   }
 }
@@ -197,6 +196,10 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
 // contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
+  if (!candidates_are_stale) {
+    for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
+    return;
+  }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (!remote_bodies[i]) refresh_motion_of(i, h);
   }
@@ -275,9 +278,9 @@ void World::Impl::advance(double h, bool to_end) {
       as_swept[colliders[p.pair.a].body] = as_swept[colliders[p.pair.b].body] = 1;
     }
   }
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (!body.alive || body.is_link || is_still(body) || held[i]) continue;
+    if (body.is_link || is_still(body) || held[i]) continue;
     advance_body(bodies[i], motions[i], h, !as_swept[i]);
     if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
   }
@@ -293,9 +296,9 @@ void World::Impl::advance(double h, bool to_end) {
 }
 
 void World::Impl::apply_corrections() {
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+  for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
-    if (!body.alive || body.is_link || body.motion != Motion::dynamic) continue;
+    if (body.is_link || body.motion != Motion::dynamic) continue;
     const solve::SolverBody& s = solver_bodies[i];
     if (s.shift == Vec3{} && s.turn == Vec3{}) continue;
     place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
