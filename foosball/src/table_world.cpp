@@ -312,21 +312,23 @@ void TableWorld::set_man(int rod, int man, const ManState& state) {
 
 // --- ball ----------------------------------------------------------------------------------------
 
-BallState TableWorld::ball() const {
+void TableWorld::read_ball() {
   const SE3 pose = world_.pose(ball_);
   const vp::se3 V = world_.velocity(ball_);
-  return {pose, pose.rotate(V.v), pose.rotate(V.w)};
+  ball_state_ = {pose, pose.rotate(V.v), pose.rotate(V.w)};
 }
 
 void TableWorld::set_ball(const Vec3& position, const Vec3& velocity) {
   must(world_.set_pose(ball_, SE3(position)));
   must(world_.set_velocity(ball_, {Vec3{}, velocity}));
+  read_ball();
 }
 
 void TableWorld::set_ball(const BallState& state) {
   must(world_.set_pose(ball_, state.pose));
   must(world_.set_velocity(ball_,
                            {state.pose.unrotate(state.spin), state.pose.unrotate(state.velocity)}));
+  read_ball();
 }
 
 void TableWorld::park_ball() {
@@ -359,7 +361,7 @@ bool TableWorld::free_for_ball(const Vec3& position) const {
 // nearer rod, as if it sagged by a millimetre: a ball that stops rolls on to where it can be
 // played. A shot crosses the strip and feels nothing.
 void TableWorld::let_field_sag() {
-  const Vec3 ball = world_.pose(ball_).position();
+  const Vec3 ball = ball_state_.pose.position();
   const bool on_field =
       ball.z < table_.ball_radius + 0.001 && std::fabs(ball.y) < 0.5 * table_.width;
   if (!on_field) return;
@@ -371,23 +373,27 @@ void TableWorld::let_field_sag() {
   if (!before_line || std::fabs(nearest) < tuning_.sag_from) return;
   const double impulse = tuning_.ball_mass * tuning_.sag_acceleration * kTick;
   must(world_.apply_impulse(ball_, {std::copysign(impulse, nearest), 0.0, 0.0}, ball));
+  read_ball();
 }
 
 vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
   auto restored = world_.restore(bytes);
-  if (restored) read_rods();
+  if (!restored) return restored;
+  read_rods();
+  read_ball();
   return restored;
 }
 
 // Gives the ball this upward speed, but none that takes it over the ceiling.
 void TableWorld::lift_ball(double speed) {
-  const vp::Vec3 position = world_.pose(ball_).position();
+  const vp::Vec3 position = ball().pose.position();
   const double up = ball().velocity.z;
   const double room = std::max(0.0, tuning_.hop_ceiling - (position.z - table_.ball_radius));
   const double most = std::sqrt(2.0 * tuning_.gravity * room);
   const double wanted = std::min(speed, most);
   if (wanted == up) return;
   must(world_.apply_impulse(ball_, {0.0, 0.0, tuning_.ball_mass * (wanted - up)}, position));
+  read_ball();
 }
 
 // The paper (section 5) exaggerates how the ball bounces off characters and ground, for the eye.
@@ -422,6 +428,7 @@ bool TableWorld::step() {
   let_field_sag();
   const Vec3 velocity_before = ball().velocity;
   status_ = must(world_.step(kTick));
+  read_ball();
   exaggerate_bounce(velocity_before);
   read_rods();
   return !status_.non_finite;

@@ -63,7 +63,7 @@ class TableWorld {
   void set_rod(int rod, const RodState& state);
   void set_man(int rod, int man, const ManState& state);  // one alone, if he is hinged
 
-  BallState ball() const;
+  const BallState& ball() const { return ball_state_; }
   void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
   void set_ball(const BallState& state);
   // Out of everything's way, at rest, for this step.
@@ -99,6 +99,7 @@ class TableWorld {
   const CharacterBody& body_of(int rod) const { return bodies_[table_.rods[rod].team]; }
   void let_field_sag();
   void read_rods();
+  void read_ball();
   void exaggerate_bounce(const vp::Vec3& velocity_before);
   void lift_ball(double speed);
 
@@ -113,6 +114,7 @@ class TableWorld {
   std::array<RodInertia, kRods> inertias_{};
   std::array<RodState, kRods> rod_states_{};  // read once a step: all ask for them
   ManStates man_states_{};
+  BallState ball_state_;  // read after each change
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };

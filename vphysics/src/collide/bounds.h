@@ -37,6 +37,9 @@ inline Bounds merged(const Bounds& a, const Bounds& b) {
 inline Bounds grown(const Bounds& a, double by) {
   return {a.lower - Vec3{by, by, by}, a.upper + Vec3{by, by, by}};
 }
+inline Bounds moved(const Bounds& a, const Vec3& by) {
+  return {by + a.lower, by + a.upper};
+}
 // |R| h: half extents, in the outer axes, of a box turned by R.
 inline Vec3 turned_extents(const Mat3& R, const Vec3& h) {
   return {std::fabs(R.cx.x) * h.x + std::fabs(R.cy.x) * h.y + std::fabs(R.cz.x) * h.z,

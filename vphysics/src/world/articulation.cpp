@@ -55,6 +55,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
     const auto first = static_cast<std::size_t>(model.first_velocity(l));
+    first_dof_.push_back(model.first_velocity(l));
     for (int k = 0; k < velocities_of(link.joint); ++k) {
       const std::size_t i = first + static_cast<std::size_t>(k);
       damping_[i] = link.damping;
@@ -73,6 +74,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       start = std::clamp(start, dof.lower, dof.upper);
     }
   }
+  first_dof_.push_back(model.velocities());
   start_q_ = moved_q_ = remote_q_ = q;
   const auto& nodes = model.tree().nodes;
   constant_ = !damped_ && std::all_of(nodes.begin(), nodes.end(), continues_axis);
@@ -86,12 +88,6 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
     find_responses();
   }
   refresh();
-}
-
-int Articulation::dof_index(int link, int dof) const {
-  if (link < 0 || link >= model_.links() || dof < 0) return -1;
-  if (dof >= velocities_of(model_.link(link).joint)) return -1;
-  return model_.first_velocity(link) + dof;
 }
 
 void Articulation::refresh() {
@@ -122,6 +118,10 @@ void Articulation::find_lines() {
                         .turn = 0.0,
                         .sine = 0.0,
                         .cosine = 1.0});
+    if (on_line_.back().slides != 0.0) {
+      sliders_.push_back({static_cast<std::size_t>(node.q), static_cast<std::size_t>(node.v),
+                          std::fabs(on_line_.back().slides)});
+    }
   }
   for (int l = 0; l < model_.links(); ++l) {
     const int node = model_.tree().places[static_cast<std::size_t>(l)].node;
@@ -185,12 +185,9 @@ void Articulation::set_remote(const collide::Bounds& box) {
 }
 
 double Articulation::slides_since_remote(double h) const {
-  const auto& nodes = model_.tree().nodes;
   double sum = 0.0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (on_line_[i].slides == 0.0) continue;
-    const auto k = static_cast<std::size_t>(nodes[i].q), d = static_cast<std::size_t>(nodes[i].v);
-    sum += std::fabs(on_line_[i].slides) * (std::fabs(q[k] - remote_q_[k]) + h * std::fabs(v[d]));
+  for (const Slider& s : sliders_) {
+    sum += s.slides * (std::fabs(q[s.q] - remote_q_[s.q]) + h * std::fabs(v[s.v]));
   }
   return sum;
 }

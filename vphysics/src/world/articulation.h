@@ -49,7 +49,12 @@ class Articulation {
 
   const Model& model() const { return model_; }
   // The index of a joint's degree of freedom among the velocities, or -1.
-  int dof_index(int link, int dof) const;
+  int dof_index(int link, int dof) const {
+    if (link < 0 || link >= static_cast<int>(bodies.size()) || dof < 0) return -1;
+    const std::size_t l = static_cast<std::size_t>(link);
+    const int i = first_dof_[l] + dof;
+    return i < first_dof_[l + 1] ? i : -1;
+  }
   std::size_t deepest() const { return factor_.deepest(); }
   bool is_fixed(int link) const { return factor_.depth(link) == 0; }
   // As it was made, every joint moves inertia.
@@ -127,6 +132,7 @@ class Articulation {
   Data data_;
   detail::ImpulseFactor factor_;
   std::vector<FloatingTree> floating_;
+  std::vector<int> first_dof_;   // of each link, and one more
   std::vector<double> damping_;  // of each degree of freedom
   bool damped_ = false;
   // All joints move along and about one line on which all masses are balanced, and none is damped,
@@ -134,7 +140,13 @@ class Articulation {
   // velocities make none. One factor serves for ever; data_ is not used, for so few joints its
   // passes' SIMD lanes would be almost empty.
   bool constant_ = false;
-  // Then: how far each node has slid along its line and turned about it.
+  // Then: coordinates along which links slide, and how far for one of it.
+  struct Slider {
+    std::size_t q, v;
+    double slides;
+  };
+  std::vector<Slider> sliders_;
+  // And how far each node has slid along its line and turned about it.
   struct OnLine {
     double slides, turns;  // for one of its own coordinate
     double slide, turn;

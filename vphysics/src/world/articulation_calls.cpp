@@ -147,7 +147,7 @@ Expected<void> World::set_drive(ArticulationId id, int link, int dof, const Join
   if (i < 0)
     return refuse("set_drive: no such degree of freedom; check articulation, link and dof");
   JointDof& joint = art->dofs[static_cast<std::size_t>(i)];
-  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
+  if (!is_drive(drive)) return refuse("set_drive: " + *problem_with(drive));
   if (joint.coordinate < 0 && drive.stiffness > 0.0) {
     return refuse(
         "set_drive: a ball or a free joint has no position to be driven to; set the "

@@ -61,6 +61,8 @@ struct alignas(64) Body {
   // asked (sleep.cpp) [s].
   double rest_time = 0.0;
 
+  std::uint64_t pose_number = 1;  // of T: how often it has moved
+
   std::uint64_t island = 0;  // the last that it was found in (sleep.cpp)
   double mass = 0.0;
   se3 prescribed;         // kinematic: body frame
@@ -83,7 +85,10 @@ struct alignas(64) Body {
   bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
   bool turns_freely() const { return !by_rows() || untouched; }
-  void moved() { posed = bounded = false; }
+  void moved() {
+    posed = bounded = false;
+    ++pose_number;
+  }
 };
 
 struct Collider {
@@ -106,9 +111,12 @@ struct Collider {
   // half-spaces, meshes and height fields.
   double size = 0.0;
   double density = 0.0;  // [kg/m^3]
-  // Follows from the body's pose; refreshed by the step (Body::posed).
+  // Follows from the body's pose, the one of that number; refreshed by the step (Body::posed).
+  std::uint64_t posed_for = 0;
   SE3 T;
   collide::Bounds bounds;
+  // Of a link that moves along and about a line alone, as Body::around_line.
+  collide::Bounds around_line;
 };
 
 struct PairPoint {
@@ -256,9 +264,9 @@ struct World::Impl {
   collide::PartsScratch parts_scratch;
 
   std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
-  // What the stage of impacts goes through, ascending: all bodies that are not fixed, and links with
-  // colliders, but those of remote articulations. impact_bodies() makes it anew when some of these
-  // have changed.
+  // What the stage of impacts goes through, ascending: all bodies that are not fixed, and links
+  // with colliders, but those of remote articulations. impact_bodies() makes it anew when some of
+  // these have changed.
   std::vector<std::uint32_t> impact_body_list;
   bool impact_bodies_are_stale = true;
   // Union over what meets links, or sensors that continuous bodies carry (find_discrete_pairs()).
@@ -374,6 +382,7 @@ struct World::Impl {
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
   void refresh_ways(double h);
+  void pose_collider(Collider& collider);
   void pose_colliders(std::uint32_t body);
   const collide::Bounds& bounds_at_pose(std::uint32_t body);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);

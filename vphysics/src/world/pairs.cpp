@@ -82,8 +82,7 @@ const collide::Bounds& World::Impl::bounds_at_pose(std::uint32_t index) {
   if (body.bounded) return body.bounds;
   body.bounded = true;
   if (!collide::empty(body.around_line)) {
-    const Vec3 at = body.T.position();
-    return body.bounds = {at + body.around_line.lower, at + body.around_line.upper};
+    return body.bounds = moved(body.around_line, body.T.position());
   }
   body.bounds =
       collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
@@ -103,10 +102,15 @@ void World::Impl::pose_colliders(std::uint32_t index) {
   if (body.posed) return;
   body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-    Collider& collider = colliders[c];
-    collider.T = body.T * collider.T_body_shape;
-    collider.bounds = bounds_of(collider.geometry, collider.T);
+    pose_collider(colliders[c]);
   }
+}
+void World::Impl::pose_collider(Collider& collider) {
+  const Body& body = bodies[collider.body];
+  if (collider.posed_for == body.pose_number) return;
+  collider.posed_for = body.pose_number;
+  collider.T = body.T * collider.T_body_shape;
+  collider.bounds = bounds_of(collider.geometry, collider.T);
 }
 
 double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
@@ -154,8 +158,8 @@ bool World::Impl::keep_discrete_bounds() {
   int meeting = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    const bool meets = meets_discretely(body) && (body.categories & masks) && (body.masks & categories) &&
-                       overlap(bounds[i], around);
+    const bool meets = meets_discretely(body) && (body.categories & masks) &&
+                       (body.masks & categories) && overlap(bounds[i], around);
     discrete_bounds[i] = meets ? bounds[i] : collide::Bounds{};
     meeting += meets ? 1 : 0;
   }
@@ -274,7 +278,6 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   const Body &a = bodies[index], &b = bodies[other];
   const collide::Motion &ma = motions[index], &mb = motions[other];
   pose_colliders(index);
-  pose_colliders(other);
   const double speed = norm(ma.v - mb.v);
   const double wa = norm(ma.w), wb = norm(mb.w);
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
@@ -285,7 +288,9 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
     const double margin = desc.contact_slop + (own + wb * far) * h;
     const collide::Bounds near = grown(ca.bounds, margin);
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
-      const Collider& cb = colliders[j];
+      Collider& cb = colliders[j];
+      if (!empty(cb.around_line) && !overlap(near, moved(cb.around_line, b.T.position()))) continue;
+      pose_collider(cb);
       if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(cb)) continue;
       const double separation = swept_separation(ca, cb, margin);

@@ -167,7 +167,8 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
-// Of links and what is fixed only those that touch something: there may be many, and few of them do.
+// Of links and what is fixed only those that touch something: there may be many, and few of them
+// do.
 void World::Impl::refresh_solver_bodies() {
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];

@@ -200,18 +200,15 @@ std::optional<std::string> problem_with(const Articulation& art, std::span<const
 }
 
 std::optional<std::string> problem_with(const JointDrive& drive) {
+  if (is_drive(drive)) return std::nullopt;
   if (!in_range(drive.position) || !in_range(drive.velocity)) {
     return std::string("drive: position and velocity") + kRange;
   }
-  constexpr double kStiffest = 1e15;  // [N/m, N s/m]: beyond it steps cannot tell any difference
   const auto gain = [](double x) { return x >= 0.0 && x <= kStiffest; };
   if (!gain(drive.stiffness) || !gain(drive.damping)) {
     return "drive: stiffness and damping must be from 0 to 1e15";
   }
-  if (!std::isfinite(drive.max_force) || drive.max_force < 0.0) {
-    return "drive: max_force must be finite and zero or more";
-  }
-  return std::nullopt;
+  return "drive: max_force must be finite and zero or more";
 }
 
 }  // namespace vp

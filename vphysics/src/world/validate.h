@@ -1,6 +1,7 @@
 // Checks of what callers hand in.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +47,14 @@ std::optional<std::string> problem_with(const ArticulationDesc& desc);
 // With other coordinates and velocities.
 std::optional<std::string> problem_with(const Articulation& articulation, std::span<const double> q,
                                         std::span<const double> v);
+// Drives are set at every step: whether there is a problem costs no string.
+inline constexpr double kStiffest = 1e15;  // [N/m, N s/m]: beyond it steps cannot tell a difference
+inline bool is_drive(const JointDrive& drive) {
+  const auto up_to = [](double x, double most) { return x >= 0.0 && x <= most; };
+  return in_range(drive.position) && in_range(drive.velocity) &&
+         up_to(drive.stiffness, kStiffest) && up_to(drive.damping, kStiffest) &&
+         up_to(drive.max_force, std::numeric_limits<double>::max());
+}
 std::optional<std::string> problem_with(const JointDrive& drive);
 
 }  // namespace vp

@@ -214,12 +214,15 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   if (half_space) {
     body->unbounded = true;
   } else {
-    body->local = merged(body->local, bounds_of(c.geometry, c.T_body_shape));
+    const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
+    body->local = merged(body->local, local);
     c.size = size_of(c.geometry);
     body->reach = reach_of(*body);
     if (body->is_link) {
       const Articulation& art = impl_->articulations[body->articulation];
-      body->around_line = bounds_around(art.line_of(body->link), body->local);
+      const Vec3 line = art.line_of(body->link);
+      c.around_line = bounds_around(line, local);
+      body->around_line = bounds_around(line, body->local);
     }
     body->least_size = std::min(body->least_size, c.size);
   }
