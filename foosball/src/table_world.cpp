@@ -264,18 +264,16 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   const RodSpec& spec = table_.rods[rod];
   const RodInertia& inertia = inertias_[rod];
   const RodState& now = this->rod(rod);
-  const AxisDrive hand = angle_drive(inertia, now.angle, target);
-  must(world_.set_drive(rods_[rod], kSlide, 0,
-                        joint_drive(slide_drive(spec, inertia, now, target))));
-  must(world_.set_drive(rods_[rod], kTurn, 0, joint_drive(hand)));
-  if (!hinged_men(table_.layout)) return;
+  const vp::JointDrive hand = joint_drive(angle_drive(inertia, now.angle, target));
   const std::span<const double> q = world_.coordinates(rods_[rod]);
-  for (int i = 0; i < spec.men; ++i) {
-    const int link = kFirstMan + i;
-    const AxisDrive man =
-        q[link] == now.angle ? hand : man_drive(inertia, q[link], now.angle, target);
-    must(world_.set_drive(rods_[rod], link, 0, joint_drive(man)));
+  std::array<vp::JointDrive, kFirstMan + kMaxMenOnRod> drives;  // q.size() of them
+  drives[kSlide] = joint_drive(slide_drive(spec, inertia, now, target));
+  drives[kTurn] = hand;
+  for (std::size_t man = kFirstMan; man < q.size(); ++man) {
+    drives[man] =
+        q[man] == now.angle ? hand : joint_drive(man_drive(inertia, q[man], now.angle, target));
   }
+  must(world_.set_drives(rods_[rod], std::span(drives).first(q.size())));
 }
 
 // All joints have one coordinate, so that a link's index is its coordinate's.

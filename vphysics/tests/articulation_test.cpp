@@ -39,6 +39,17 @@ TEST(Drive, ReachesItsTargetAndStays) {
   EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 0.0, 1e-5);
 }
 
+TEST(Drive, OfAllJointsAtOnceIsThatOfEach) {
+  OneJoint one = make_joint(rod_link(0, 0)), all = make_joint(rod_link(0, 0));
+  const JointDrive drives[] = {{0.05, 0.0, 3e4, 500.0, 400.0}, {1.2, 0.0, 60.0, 0.6, 20.0}};
+  for (int i = 0; i < 2; ++i) must(one.world.set_drive(one.id, 0, i, drives[i]));
+  must(all.world.set_drives(all.id, drives));
+  for (OneJoint* j : {&one, &all}) {
+    for (int i = 0; i < 100; ++i) must(j->world.step(kDt));
+  }
+  EXPECT_EQ(one.world.state_hash(), all.world.state_hash());
+}
+
 // Whatever the gains, no step changes the momentum by more than max_force * dt.
 TEST(Drive, NeverExceedsItsForce) {
   for (const double stiffness : {1e2, 1e6, 1e12}) {

@@ -86,6 +86,10 @@ TEST(EveryCall, RefusesJointStatesAndDrivesThatAreNone) {
        {JointDrive{0, 0, -1, 1, 1}, JointDrive{0, 0, 1, -1, 1}, JointDrive{0, 0, 1, 1, -1},
         JointDrive{0, 0, 1, 1, kNotANumber}}) {
     EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive));
+    const std::uint64_t before = s.world.state_hash();
+    const JointDrive second_is_bad[] = {{0, 0, 1, 1, 1}, drive};
+    EXPECT_FALSE(s.world.set_drives(id, second_is_bad));
+    EXPECT_EQ(s.world.state_hash(), before);
   }
 }
 
@@ -110,6 +114,11 @@ TEST(EveryCall, RefusesWhatDoesNotExist) {
     EXPECT_FALSE(s.world.set_drive(id, out_of_range, 0, {}));
     EXPECT_EQ(s.world.link_body(id, out_of_range), BodyId{});
   }
+  const JointDrive three[3];
+  for (const std::size_t count : {0u, 1u, 3u}) {
+    EXPECT_FALSE(s.world.set_drives(id, std::span(three).first(count)));
+  }
+  EXPECT_FALSE(s.world.set_drives({}, std::span(three).first(2)));
   EXPECT_EQ(s.world.model({}), nullptr);
   EXPECT_EQ(s.world.state_hash(), before);
 }

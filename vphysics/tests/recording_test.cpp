@@ -147,6 +147,11 @@ std::vector<Change> changes() {
        [](Yard& y) {
          must(y.world.set_drive(y.rod, 0, 1, {1.0, 0, 100, 1, 20}));
        }},
+      {"set_drives of an articulation",
+       [](Yard& y) {
+         const JointDrive drives[] = {{}, {1.0, 0, 100, 1, 20}};
+         must(y.world.set_drives(y.rod, drives));
+       }},
       {"set_drive of a joint",
        [](Yard& y) {
          must(y.world.set_drive(y.hinge, {0.5, 0, 1e4, 100, 1e3}));

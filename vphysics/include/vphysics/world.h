@@ -175,6 +175,9 @@ class World {
                                  double velocity);
   // Of any joint.
   Expected<void> set_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
+  // The same of all its degrees of freedom, in the order of velocities(): for many joints cheaper
+  // than a call for each. Refused: another number of drives, or one refused; then all stay.
+  Expected<void> set_drives(ArticulationId articulation, std::span<const JointDrive> drives);
 
   bool contains(JointId joint) const;
   // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six

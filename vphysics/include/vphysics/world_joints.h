@@ -39,6 +39,7 @@ struct JointDrive {
   double stiffness = 0.0;  // [N/m] | [N m/rad]; this and damping at most 1e15
   double damping = 0.0;    // [N s/m] | [N m s/rad]
   double max_force = 0.0;  // [N] | [N m]; 0: no motor
+  bool operator==(const JointDrive&) const = default;
 };
 
 // The origins coincide.

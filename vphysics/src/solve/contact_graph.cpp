@@ -43,6 +43,9 @@ void clear_lane(ContactBlock<P>& block, int lane) {
 // Of several regions, the contacts between them are of the bodies at their faces: of a cube of n^3,
 // some 2 n^2 where each face is of two.
 void ContactGraph::reserve(std::size_t bodies) {
+  if (bodies == reserved_bodies_ && regions() == reserved_regions_) return;
+  reserved_bodies_ = bodies;
+  reserved_regions_ = regions();
   constexpr int kReady = 8, kReadyFixed = 4;  // colours
   const std::size_t within = regions() - 1;
   const auto all = static_cast<double>(bodies);

@@ -153,6 +153,7 @@ class ContactGraph {
   };
   std::vector<Region> regions_{1};
   std::size_t regions_in_use_ = 1;
+  std::size_t reserved_bodies_ = 0, reserved_regions_ = 0;  // by reserve()
   std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
 };
 

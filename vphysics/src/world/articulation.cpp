@@ -70,6 +70,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       if (gives_way) continue;
       dof.lower = std::max(dof.lower, dof.forces.lower);
       dof.upper = std::min(dof.upper, dof.forces.upper);
+      if (std::isfinite(dof.forces.lower) || std::isfinite(dof.forces.upper)) stopped_.push_back(i);
       double& start = q[static_cast<std::size_t>(dof.coordinate)];
       start = std::clamp(start, dof.lower, dof.upper);
     }
@@ -153,9 +154,8 @@ void Articulation::find_responses() {
 
 // So far that no stop gets a row (add_stops(), articulations.cpp).
 bool Articulation::stops_are_far(double h) const {
-  for (std::size_t i = 0; i < v.size(); ++i) {
+  for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];
-    if (dof.coordinate < 0) continue;
     const double x = q[static_cast<std::size_t>(dof.coordinate)];
     const double near = h * (2.0 * std::fabs(v[i]) + 1.0);
     if (dof.lower - x > -near || dof.upper - x < near) return false;
@@ -163,16 +163,26 @@ bool Articulation::stops_are_far(double h) const {
   return true;
 }
 
-// p = push - gain (v + response p)
+// p = push - gain (v + response p). Men of a row that move together and are driven alike have one
+// impulse.
 bool Articulation::settle_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
+  double impulse = 0.0, x_before = 0.0, v_before = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i) {
     JointDof& dof = dofs[i];
     const double x = dof.coordinate < 0 ? 0.0 : q[static_cast<std::size_t>(dof.coordinate)];
-    const Motor motor = motor_of(dof, h, x);
-    const double p = (motor.push - motor.gain * v[i]) / (1.0 + motor.gain * responses_[i]);
-    dof.drive_impulse = std::clamp(p, -motor.most, motor.most);
-    v[i] += responses_[i] * dof.drive_impulse;
+    const bool alike = i > 0 && v[i] == v_before && x == x_before &&
+                       responses_[i] == responses_[i - 1] && dof.drive == dofs[i - 1].drive &&
+                       dof.forces.motor_limit == dofs[i - 1].forces.motor_limit;
+    if (!alike) {
+      x_before = x;
+      v_before = v[i];
+      const Motor motor = motor_of(dof, h, x);
+      const double p = (motor.push - motor.gain * v[i]) / (1.0 + motor.gain * responses_[i]);
+      impulse = std::clamp(p, -motor.most, motor.most);
+    }
+    dof.drive_impulse = impulse;
+    v[i] += responses_[i] * impulse;
   }
   if (!remote) update_twists();
   return true;

@@ -132,8 +132,9 @@ class Articulation {
   Data data_;
   detail::ImpulseFactor factor_;
   std::vector<FloatingTree> floating_;
-  std::vector<int> first_dof_;   // of each link, and one more
-  std::vector<double> damping_;  // of each degree of freedom
+  std::vector<int> first_dof_;        // of each link, and one more
+  std::vector<std::size_t> stopped_;  // degrees of freedom with hard stops
+  std::vector<double> damping_;       // of each degree of freedom
   bool damped_ = false;
   // All joints move along and about one line on which all masses are balanced, and none is damped,
   // as of a table's rods: the mass matrix and the forces of gravity never change, and the

@@ -141,24 +141,49 @@ Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, doub
   return {};
 }
 
+namespace {
+
+bool can_drive(const JointDof& joint, const JointDrive& drive) {
+  return is_drive(drive) && (joint.coordinate >= 0 || drive.stiffness == 0.0);
+}
+
+}  // namespace
+
+// At every step for many joints: the texts of what is refused lie apart, else they cost registers.
 Expected<void> World::set_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
   Articulation* art = impl_->find(id);
   const int i = art ? art->dof_index(link, dof) : -1;
-  if (i < 0)
-    return refuse("set_drive: no such degree of freedom; check articulation, link and dof");
-  JointDof& joint = art->dofs[static_cast<std::size_t>(i)];
-  if (!is_drive(drive)) return refuse("set_drive: " + *problem_with(drive));
-  if (joint.coordinate < 0 && drive.stiffness > 0.0) {
-    return refuse(
-        "set_drive: a ball or a free joint has no position to be driven to; set the "
-        "stiffness to 0, the damping drives its velocity");
+  JointDof* joint = i >= 0 ? &art->dofs[static_cast<std::size_t>(i)] : nullptr;
+  if (!joint || !can_drive(*joint, drive)) {
+    return refuse("set_drive: " + why_no_drive(joint != nullptr, drive));
   }
-  joint.drive = drive;
-  if (impl_->recorder) {
-    impl_->log({calls::SetLinkDrive{id, static_cast<std::uint32_t>(link),
-                                    static_cast<std::uint32_t>(dof), drive}});
+  joint->drive = drive;
+  if (impl_->recorder) impl_->log_drive(id, link, dof, drive);
+  return {};
+}
+
+Expected<void> World::set_drives(ArticulationId id, std::span<const JointDrive> drives) {
+  Articulation* art = impl_->find(id);
+  if (!art || drives.size() != art->dofs.size()) {
+    return refuse("set_drives: give each degree of freedom of an articulation a drive");
+  }
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    if (!can_drive(art->dofs[i], drives[i]))
+      return refuse("set_drives: " + why_no_drive(true, drives[i]));
+  }
+  for (std::size_t i = 0; i < drives.size(); ++i) art->dofs[i].drive = drives[i];
+  if (!impl_->recorder) return {};
+  for (int link = 0, i = 0; link < art->model().links(); ++link) {
+    for (int dof = 0; art->dof_index(link, dof) >= 0; ++dof, ++i) {
+      impl_->log_drive(id, link, dof, drives[static_cast<std::size_t>(i)]);
+    }
   }
   return {};
+}
+
+void World::Impl::log_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
+  log({calls::SetLinkDrive{id, static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(dof),
+                           drive}});
 }
 
 }  // namespace vp

@@ -116,6 +116,7 @@ void World::Impl::list_bodies() {
   sort_movers_by_region();
   list_remote_articulations();
   list_discrete_filters();
+  reserve_link_rows();
 }
 
 namespace {

@@ -337,6 +337,7 @@ struct World::Impl {
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
+  void log_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
 
   // world.cpp
   Body* find(BodyId id);

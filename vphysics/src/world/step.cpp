@@ -86,7 +86,6 @@ void World::Impl::begin_impact_stage() {
   contacts.reserve(room);
   link_contacts.reserve(room);
   bodies_on_links.reserve(n);
-  reserve_link_rows();
   drift.assign(n, {});
   bounds.resize(n);
   discrete_bounds.resize(n);

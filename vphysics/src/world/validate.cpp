@@ -211,4 +211,11 @@ std::optional<std::string> problem_with(const JointDrive& drive) {
   return "drive: max_force must be finite and zero or more";
 }
 
+std::string why_no_drive(bool exists, const JointDrive& drive) {
+  if (!exists) return "no such degree of freedom; check articulation, link and dof";
+  if (const auto problem = problem_with(drive)) return *problem;
+  return "a ball or a free joint has no position to be driven to; set the stiffness to 0, the "
+         "damping drives its velocity";
+}
+
 }  // namespace vp

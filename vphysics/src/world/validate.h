@@ -56,5 +56,7 @@ inline bool is_drive(const JointDrive& drive) {
          up_to(drive.max_force, std::numeric_limits<double>::max());
 }
 std::optional<std::string> problem_with(const JointDrive& drive);
+// Of a link's joint that refuses this drive; exists: it has that degree of freedom.
+std::string why_no_drive(bool exists, const JointDrive& drive);
 
 }  // namespace vp
