@@ -61,6 +61,9 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"above-goalie-in-hand", 0.9, 2, 0, View::above},
                            {"follow-goalie-in-hand", 0.9, 2, 1, View::follow},
                            {"drawn", 1.0, 4, 0},
+                           {"fame", 0.4, 0, 0},
+                           {"watching-fame", 0.4, 0, -1},
+                           {"above-fame", 8.4, 0, 0, View::above},
                            {"survey-consent", 1.0, 4, 0},
                            {"survey-statement", 0.4, 0, 0},
                            {"survey-four", 0.4, 0, 0},
@@ -203,6 +206,16 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
       hud.menu = menu_page(Menu::Page::settings, 5);
     }
     if (name.find("survey") != std::string::npos) hud.survey = survey_panels(name);
+    static const wire::Report report{
+        4,
+        {{{14, 9, 6, 23, 0, 71.0f, 1561.0f, 14.0f}, {9, 4, 11, 17, 1, 54.0f, 1533.0f, -14.0f}}},
+        {{"Annemarie", 1604.0f, 31, 22},
+         {"지훈", 1561.0f, 18, 11},
+         {"computer 4:gambler", 1533.0f, 12, 6},
+         {"player", 1488.0f, 9, 4},
+         {"computer 2", 1420.0f, 40, 11}}};
+    if (name.ends_with("end") || name == "survey-consent") hud.report = &report;
+    if (name.ends_with("fame")) hud.fame = report.fame;
     if (name == "drawn") state.score = {2, 2};
     if (name == "seats" || name == "above-seats") hud.menu = menu_page(Menu::Page::seats, 4);
     if (name == "tuning") hud.menu = menu_page(Menu::Page::tuning, 12);
@@ -213,7 +226,8 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
                        "gamepad 2", "mouse",     "Annemarie ...", "Annemarie ..."};
     }
     if (std::strcmp(shot.name, "lost") == 0) {
-      hud.connection_message = "Physics server lost: waiting at 127.0.0.1:4750";
+      hud.connection_message =
+          std::string(tr("Physics server lost: waiting at")) + " 127.0.0.1:4750";
       hud.connection_detail = "The scene stands as it was last heard.";
     }
     state.paused = std::strcmp(shot.name, "pause") == 0;

@@ -17,6 +17,10 @@ for source in list((client / 'src').rglob('*.cpp')):
 tuning = (client.parent / 'foosball/include/foosball/tuning.h').read_text(encoding='utf-8')
 for meaning in re.findall(r'&Tuning::\w+, [^"]*?((?:"(?:[^"\\]|\\.)*"\s*)+)\}', tuning):
     sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', meaning)))
+# The characters that come with the game.
+for character in sorted((client.parent / 'characters/data').glob('*.toml')):
+    text = character.read_text(encoding='utf-8')
+    sentences.update(re.findall(r'^(?:name|specialty) = "(.*)"$', text, re.M))
 # The statements of the questionnaire are what the results' summary calls them.
 asked = (client.parent / 'results/include/results/questionnaire.h').read_text(encoding='utf-8')
 statements = re.findall(r'\{"\w+", "([^"]+)"\}', asked)

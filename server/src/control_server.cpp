@@ -55,6 +55,10 @@ void ControlServer::ask(std::uint32_t match, RodSet cabinet_rods) {
   if (questionnaires_.push({match, cabinet_rods})) ::eventfd_write(wake_.get(), 1);
 }
 
+void ControlServer::report(const wire::Report& report) {
+  if (reports_.push(report)) ::eventfd_write(wake_.get(), 1);
+}
+
 void ControlServer::stop(const std::string& reason) {
   if (!thread_.joinable()) return;
   bye_reason_ = reason;
@@ -95,6 +99,7 @@ void ControlServer::run() {
     publish_notices();
     publish_tuning();
     publish_questionnaires();
+    publish_report();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       if (polled_[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) serve(*connections_[i]);
     }
@@ -330,6 +335,17 @@ void ControlServer::publish_tuning() {
   tuning_ = tuning;
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, tuning);
+  }
+}
+
+void ControlServer::publish_report() {
+  wire::Report report;
+  bool any = false;
+  while (reports_.pop(report)) any = true;
+  if (!any) return;
+  report_ = std::move(report);
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined) send(*connection, *report_);
   }
 }
 

@@ -93,6 +93,8 @@ class ControlServer {
   // A match was won that is kept: who has rods may answer. cabinet_rods: those that its own hands
   // have, who are asked at the first host's at this machine. Left out if 8 are waiting.
   void ask(std::uint32_t match, RodSet cabinet_rods);
+  // The same for a report; left out if 8 are waiting.
+  void report(const wire::Report& report);
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const std::string& reason);
 
@@ -142,6 +144,7 @@ class ControlServer {
   void publish_notices();
   void publish_tuning();
   void publish_questionnaires();
+  void publish_report();
   void tell(const wire::Notice& notice);
   void tell_tick();
   void say(LogLevel level, const std::string& text);
@@ -190,6 +193,8 @@ class ControlServer {
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<wire::Notice, 64> outbound_;
   SpscQueue<wire::Tuning, 8> tunings_;
+  SpscQueue<wire::Report, 8> reports_;
+  std::optional<wire::Report> report_;                // the last one
   SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's
   std::optional<wire::Tuning> tuning_;                // of the match, as it was last told
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kCount)> counts_{};

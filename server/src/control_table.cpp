@@ -279,6 +279,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   send(connection, options_.characters);
   for (const auto& [topic, notice] : notices_) send(connection, notice);
   if (tuning_) send(connection, *tuning_);
+  if (report_) send(connection, *report_);
   roster_changed_ = true;
   return true;
 }

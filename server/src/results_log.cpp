@@ -1,11 +1,13 @@
 #include "results_log.h"
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <semaphore>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -54,6 +56,15 @@ class ResultsLog::Keeper {
     if (lost == 0) return problem_;
     return problem_ + (problem_.empty() ? "" : "; ") + std::to_string(lost) + " results are lost";
   }
+  bool report_changed(Report& report) {
+    if (!reported_.load(std::memory_order_acquire)) return false;
+    const std::unique_lock guard(mutex_, std::try_to_lock);
+    if (!guard) return false;
+    reported_.store(false, std::memory_order_relaxed);
+    report = std::move(report_);
+    report_ = {};
+    return true;
+  }
   std::uint64_t kept() const { return kept_.load(std::memory_order_relaxed); }
   std::uint64_t answers() const { return answers_.load(std::memory_order_relaxed); }
 
@@ -74,6 +85,7 @@ class ResultsLog::Keeper {
 
  private:
   void keep();
+  void report(std::uint32_t number);
   tl::expected<std::int64_t, std::string> keep(const Entry& entry);
 
   const ResultsLogOptions options_;
@@ -81,7 +93,9 @@ class ResultsLog::Keeper {
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> closing_{false};
   std::atomic<std::uint64_t> kept_{0}, answers_{0}, lost_{0};
+  std::atomic<bool> reported_{false};
   mutable std::mutex mutex_;
+  Report report_;               // not taken by the tick yet
   std::string problem_, told_;  // told_: to the tick
   // The thread's own.
   std::optional<results::Store> store_;
@@ -108,6 +122,7 @@ tl::expected<std::int64_t, std::string> ResultsLog::Keeper::keep(const Entry& en
     matches_[entry.number] = {*id};
     if (matches_.size() > kWaiting) matches_.erase(matches_.begin());
     kept_.fetch_add(1, std::memory_order_relaxed);
+    report(entry.number);
     return id;
   }
   results::Answers answers = std::get<results::Answers>(entry.what);
@@ -122,12 +137,40 @@ tl::expected<std::int64_t, std::string> ResultsLog::Keeper::keep(const Entry& en
   return id;
 }
 
+// What cannot be read is not reported: play goes on without it.
+void ResultsLog::Keeper::report(std::uint32_t number) {
+  const auto matches = store_->matches({.player = {}, .newest = kRated});
+  if (!matches || matches->empty()) return;
+  Report report;
+  report.number = number;
+  report.match = matches->back();
+  report.fame = results::standings(*matches);
+  const auto before = results::standings(std::span(*matches).first(matches->size() - 1));
+  const auto mean = [](const std::vector<results::Standing>& all, const results::Team& team) {
+    double sum = 0.0;
+    for (const results::Player& player : team.players) {
+      const auto own = std::ranges::find(all, player.name, &results::Standing::name);
+      sum += own != all.end() ? own->rating : results::kFirstRating;
+    }
+    return sum / static_cast<double>(team.players.size());
+  };
+  for (std::size_t t = 0; t < report.rating.size(); ++t) {
+    report.rating[t] = mean(report.fame, report.match.teams[t]);
+    report.change[t] = report.rating[t] - mean(before, report.match.teams[t]);
+  }
+  if (report.fame.size() > kFame) report.fame.resize(kFame);
+  const std::lock_guard guard(mutex_);
+  report_ = std::move(report);
+  reported_.store(true, std::memory_order_release);
+}
+
 // A store that has failed is closed and opened anew the next time: the file may be another then.
 void ResultsLog::Keeper::keep() {
   if (!store_) {
     auto opened = results::Store::open(options_.path, results::Access::create);
     if (opened) {
       store_ = std::move(*opened);
+      if (matches_.empty()) report(0);
     } else {
       tell(opened.error() + "; play goes on");
     }
@@ -181,6 +224,9 @@ void ResultsLog::close() {
   }
 }
 
+bool ResultsLog::report_changed(Report& report) {
+  return keeper_->report_changed(report);
+}
 bool ResultsLog::problem_changed(std::string& problem) {
   return keeper_->problem_changed(problem);
 }

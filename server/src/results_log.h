@@ -3,15 +3,18 @@
 // many as there is room for, until the file takes them or the program ends.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <future>
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "results/match_result.h"
 #include "results/questionnaire.h"
+#include "results/rating.h"
 
 namespace server {
 
@@ -24,6 +27,8 @@ struct ResultsLogOptions {
 class ResultsLog {
  public:
   static constexpr std::size_t kWaiting = 64;  // results; a match takes minutes
+  // For a report ratings are of so many of the newest matches, and so many of the best are named.
+  static constexpr std::size_t kRated = 10'000, kFame = 8;
 
   explicit ResultsLog(const ResultsLogOptions& options);
   ~ResultsLog();  // closes, if close() was not called
@@ -42,6 +47,15 @@ class ResultsLog {
   std::string problem() const;
   // Tick thread: it is another one than at the last call. False too while the thread is writing it.
   bool problem_changed(std::string& problem);
+  // What is kept now: the last match of this run, and who plays best in all of them.
+  struct Report {
+    std::uint32_t number = 0;  // add()'s; 0: none yet
+    results::MatchResult match;
+    std::array<double, results::kTeams> rating{}, change{};  // mean of the team's players
+    std::vector<results::Standing> fame;                     // best first
+  };
+  // Tick thread: there is another one than at the last call. False too while it is being written.
+  bool report_changed(Report& report);
   std::uint64_t kept() const;     // matches
   std::uint64_t answers() const;  // kept
 

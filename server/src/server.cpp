@@ -61,6 +61,7 @@ struct Server::Impl {
   void keep_result();
   void keep_answers(const ControlEvent& event);
   void watch_results();
+  void tell_report();
   MatchScribe::Players players() const;
   void watch_sending();
   void watch_tuning();
@@ -402,6 +403,34 @@ void Server::Impl::watch_results() {
          problem.empty() ? "results are kept again" : problem);
 }
 
+// Clients show it at the match's end and on the logo.
+void Server::Impl::tell_report() {
+  ResultsLog::Report kept;
+  if (!results || !results->report_changed(kept)) return;
+  wire::Report report;
+  report.match = kept.number;
+  for (std::size_t t = 0; t < report.teams.size(); ++t) {
+    const auto s = kept.match.teams[t].statistics.value_or(results::TeamStatistics{});
+    const auto count = [](std::uint64_t n) {
+      return static_cast<std::uint32_t>(std::min<std::uint64_t>(n, 0xffffffffu));
+    };
+    report.teams[t] = {count(s.shots),
+                       count(s.shots_on_target),
+                       count(s.saves),
+                       count(s.passes),
+                       count(s.own_goals),
+                       static_cast<float>(s.possession_seconds),
+                       static_cast<float>(kept.rating[t]),
+                       static_cast<float>(kept.change[t])};
+  }
+  for (const results::Standing& one : kept.fame) {
+    const auto small = [](std::uint64_t n) { return static_cast<std::uint32_t>(n); };
+    report.fame.push_back(
+        {one.name, static_cast<float>(one.rating), small(one.matches), small(one.wins)});
+  }
+  control.report(report);
+}
+
 // Clients show it, and move their own rods by it.
 void Server::Impl::watch_tuning() {
   const foosball::Tuning& now = match.view().tuning;
@@ -496,6 +525,7 @@ void Server::tick(std::int64_t now_us) {
   }
   s.watch_journal();
   s.watch_results();
+  s.tell_report();
   s.watch_sending();
   s.watch_tuning();
 }

@@ -65,6 +65,13 @@ TEST_F(QuestionnaireTest, WhoHasPlayedIsAskedAndTheAnswersAreKeptWithTheMatch) {
     }
     ASSERT_TRUE(table.tick_until([&] { return table->counters().answers_kept == 1; }));
     EXPECT_FALSE(watcher.hear_a<wire::Questionnaire>(50)) << "a watcher has not played";
+    for (ProbeClient* client : {&player, &watcher}) {
+      const auto& report = client->report();
+      ASSERT_TRUE(table.tick_until([&] { return client->hear(1), report.has_value(); }))
+          << "all see the result";
+      EXPECT_LE(report->match, 2u);
+      EXPECT_EQ(report->fame.size(), 2u);
+    }
   }
   const auto answers = kept();
   ASSERT_EQ(answers.size(), 1u);

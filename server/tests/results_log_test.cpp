@@ -139,6 +139,35 @@ TEST(ResultsLog, LosesWhatIsNoAnswerAndGoesOn) {
   remove(path);
 }
 
+// The ratings are those of the standings, before and after the match.
+TEST(ResultsLog, ReportsTheLastMatchAndWhoPlaysBest) {
+  const std::string path = temp_path();
+  {
+    ResultsLog log({.path = path});
+    for (int i = 0; i < 3; ++i) log.add(won(i), static_cast<std::uint32_t>(i + 1));
+    log.close();
+    ResultsLog::Report report;
+    ASSERT_TRUE(log.report_changed(report));
+    EXPECT_FALSE(log.report_changed(report)) << "once";
+    EXPECT_EQ(report.number, 3u);
+    EXPECT_EQ(report.match.finished_at, "2026-11-22T20:12:00Z");
+    ASSERT_EQ(report.fame.size(), 2u);
+    EXPECT_EQ(report.fame[0].name, "Ann");
+    EXPECT_EQ(report.fame[0].matches, 3u);
+    EXPECT_DOUBLE_EQ(report.rating[0], report.fame[0].rating);
+    EXPECT_DOUBLE_EQ(report.rating[0] + report.rating[1], 2.0 * results::kFirstRating);
+    EXPECT_GT(report.change[0], 0.0);
+    EXPECT_DOUBLE_EQ(report.change[0], -report.change[1]);
+  }
+  ResultsLog log({.path = path});
+  log.close();
+  ResultsLog::Report report;
+  ASSERT_TRUE(log.report_changed(report)) << "of the runs before";
+  EXPECT_EQ(report.number, 0u);
+  EXPECT_EQ(report.fame.size(), 2u);
+  remove(path);
+}
+
 // Of totals over several matches, what the last has more.
 TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
   foosball::Statistics before, now;

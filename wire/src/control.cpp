@@ -91,6 +91,23 @@ auto build(Builder& b, const Questionnaire& m) {
 auto build(Builder& b, const Answers& m) {
   return fb::CreateAnswers(b, m.match, m.rods, b.CreateVector(m.scores.data(), m.scores.size()));
 }
+auto build(Builder& b, const TeamReport& m) {
+  return fb::CreateTeamReport(b, m.shots, m.shots_on_target, m.saves, m.passes, m.own_goals,
+                              m.possession, m.rating, m.rating_change);
+}
+auto build(Builder& b, const Fame& m) {
+  return fb::CreateFame(b, text(b, m.name, kMaxName), m.rating, m.matches, m.wins);
+}
+auto build(Builder& b, const Report& m) {
+  std::vector<flatbuffers::Offset<fb::TeamReport>> teams;
+  for (const TeamReport& team : m.teams) teams.push_back(build(b, team));
+  std::vector<flatbuffers::Offset<fb::Fame>> fame;
+  for (const Fame& one : m.fame) {
+    if (fame.size() < kMaxFame) fame.push_back(build(b, one));
+  }
+  const auto all = b.CreateVector(teams);
+  return fb::CreateReport(b, m.match, all, b.CreateVector(fame));
+}
 
 template <class Table>
 fb::Message kind_of(flatbuffers::Offset<Table>) {
@@ -219,6 +236,29 @@ bool take(const fb::Answers& t, Answers& m) {
   }
   return m.rods != 0;
 }
+bool take(const fb::TeamReport& t, TeamReport& m) {
+  m = {t.shots(),     t.shots_on_target(), t.saves(),  t.passes(),
+       t.own_goals(), t.possession(),      t.rating(), t.rating_change()};
+  return std::isfinite(m.possession) && std::isfinite(m.rating) && std::isfinite(m.rating_change);
+}
+bool take(const fb::Fame& t, Fame& m) {
+  m.rating = t.rating();
+  m.matches = t.matches();
+  m.wins = t.wins();
+  return take(t.name(), kMaxName, m.name) && std::isfinite(m.rating);
+}
+bool take(const fb::Report& t, Report& m) {
+  m.match = t.match();
+  if (t.teams()->size() != m.teams.size() || t.fame()->size() > kMaxFame) return false;
+  for (std::size_t i = 0; i < m.teams.size(); ++i) {
+    if (!take(*t.teams()->Get(static_cast<flatbuffers::uoffset_t>(i)), m.teams[i])) return false;
+  }
+  m.fame.clear();
+  for (const auto* one : *t.fame()) {
+    if (!take(*one, m.fame.emplace_back())) return false;
+  }
+  return true;
+}
 
 template <class Struct, class Table>
 bool take_as(const Table* table, ControlMessage& message) {
@@ -260,6 +300,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Questionnaire>(control.message_as_Questionnaire(), message);
     case fb::Message::Answers:
       return take_as<Answers>(control.message_as_Answers(), message);
+    case fb::Message::Report:
+      return take_as<Report>(control.message_as_Report(), message);
     case fb::Message::NONE:
       break;
   }

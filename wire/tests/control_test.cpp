@@ -201,6 +201,16 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Answers, answers(1, 60'000, 1))) << "a flood";
   EXPECT_TRUE(refused(fb::Message::Answers, answers(0, kQuestionCount, 1))) << "nobody's";
   EXPECT_TRUE(refused(fb::Message::Questionnaire, fb::CreateQuestionnaire(b, 1, 0))) << "nobody's";
+  const auto report = [&](std::size_t teams, std::size_t fame, float rating) {
+    const std::vector all(teams, fb::CreateTeamReport(b, 1, 1, 1, 1, 1, 1.0f, rating, 0.0f));
+    const auto one = fb::CreateFameDirect(b, "a", rating, 1, 1);
+    const std::vector best(fame, one);
+    return fb::CreateReportDirect(b, 1, &all, &best);
+  };
+  EXPECT_FALSE(refused(fb::Message::Report, report(2, kMaxFame, 1500.0f)));
+  EXPECT_TRUE(refused(fb::Message::Report, report(1, 0, 1500.0f))) << "a team is missing";
+  EXPECT_TRUE(refused(fb::Message::Report, report(2, kMaxFame + 1, 1500.0f))) << "too many";
+  EXPECT_TRUE(refused(fb::Message::Report, report(2, 1, std::nanf("")))) << "no number";
   const auto roster = [&](std::size_t seats, std::uint8_t team) {
     const auto seat = fb::CreateSeatDirect(b, 1, "a", team, 1, 1, false);
     const std::vector all(seats, seat);

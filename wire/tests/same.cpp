@@ -61,6 +61,13 @@ auto tied(const Questionnaire& m) {
 auto tied(const Answers& m) {
   return std::tie(m.match, m.rods, m.scores);
 }
+auto tied(const TeamReport& m) {
+  return std::tie(m.shots, m.shots_on_target, m.saves, m.passes, m.own_goals, m.possession,
+                  m.rating, m.rating_change);
+}
+auto tied(const Fame& m) {
+  return std::tie(m.name, m.rating, m.matches, m.wins);
+}
 auto tied(const Seat& m) {
   return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);
 }
@@ -118,6 +125,17 @@ struct TiedRoster {
   }
 };
 TiedRoster tied(const Roster& m) {
+  return {m};
+}
+
+struct TiedReport {
+  const Report& report;
+  friend bool operator==(const TiedReport& a, const TiedReport& b) {
+    return a.report.match == b.report.match && all_tied(a.report.teams, b.report.teams) &&
+           all_tied(a.report.fame, b.report.fame);
+  }
+};
+TiedReport tied(const Report& m) {
   return {m};
 }
 

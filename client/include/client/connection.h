@@ -78,6 +78,8 @@ class Connection {
   std::optional<wire::Tuning> tuning() const;  // of the match that is joined, once it is known
   // What the server asked last, of the session that is joined: who played may answer.
   std::optional<wire::Questionnaire> questionnaire() const;
+  // What is kept of the last match, and who plays best, as its server said; empty: nothing yet.
+  std::optional<wire::Report> report() const;
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one

@@ -116,7 +116,7 @@ void App::follow_connection() {
   if (status_.joins == joins_seen_) return;
   joins_seen_ = status_.joins;
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
-  surveyed_ = 0;
+  surveyed_ = report_before_ = 0;
   // Joined anew: the rods are where the server has them, so a hand begins anew too.
   const wire::Welcome& welcome = status_.welcome;
   const auto layout = static_cast<foosball::Layout>(welcome.layout);
@@ -274,28 +274,33 @@ HudState App::hud(const Camera& camera) {
   hud.statistics = story_.statistics();
   hud.menu = menu_.page(menu_context());
   hud.rod_names = rod_names();
+  if (report_) hud.fame = report_->fame;
+  if (report_ && report_->match != report_before_) hud.report = &*report_;
   hud.survey = survey_.panels(os::monotonic_us());
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
   hud.notices.insert(hud.notices.end(), pad_news_.begin(), pad_news_.end());
+  const auto message = [this](const char* text) {
+    return std::string(text) + " " + connection_->address();
+  };
   switch (status_.link) {
     case Link::joined:
       if (!scene_is_current())
-        hud.connection_message = "Waiting for the first snapshot from " + connection_->address();
+        hud.connection_message = message(tr("Waiting for the first snapshot from"));
       hud.starving = sample_.starving;
       break;
     case Link::connecting:
-      hud.connection_message = "Waiting for the physics server at " + connection_->address();
+      hud.connection_message = message(tr("Waiting for the physics server at"));
       hud.connection_detail = status_.detail;
       break;
     case Link::lost:
       if (match_is_over()) break;
-      hud.connection_message = "Physics server lost: waiting at " + connection_->address();
+      hud.connection_message = message(tr("Physics server lost: waiting at"));
       hud.connection_detail = status_.detail;
       break;
     case Link::refused:
-      hud.connection_message = "The physics server at " + connection_->address() + " refuses";
+      hud.connection_message = message(tr("Refused by the physics server at"));
       hud.connection_detail = status_.detail;
       break;
   }
@@ -398,6 +403,7 @@ int App::loop() {
     predict(input_us);
     play_reel(input_us);
     follow_survey(input_us);
+    follow_report();
     draw(dt);
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {

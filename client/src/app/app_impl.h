@@ -63,6 +63,7 @@ class App {
   void take_input(std::int64_t now);
   std::vector<SurveyPerson> survey_people(std::uint8_t rods) const;
   void follow_survey(std::int64_t now);
+  void follow_report();
   bool take_survey_input(std::int64_t now);
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
@@ -104,7 +105,9 @@ class App {
   SeatsView seats_;  // what the page of seats is made of
   MenuHand menu_hand_;
   Survey survey_;
-  std::uint32_t surveyed_ = 0;         // the match that was asked about last
+  std::uint32_t surveyed_ = 0;  // the match that was asked about last
+  std::optional<wire::Report> report_;
+  std::uint32_t report_before_ = 0;    // the last one while the match was played
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
   std::string names_;                  // of people, whose letters the font has

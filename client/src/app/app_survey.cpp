@@ -33,6 +33,12 @@ std::vector<SurveyPerson> App::survey_people(std::uint8_t rods) const {
   return people;
 }
 
+// The match that has just ended is the one that was reported since it was played.
+void App::follow_report() {
+  report_ = connection_->report();
+  if (report_ && drawn_.screen == number(wire::Screen::play)) report_before_ = report_->match;
+}
+
 // Asked once the last goal has been seen again; a new match ends it.
 void App::follow_survey(std::int64_t now) {
   const auto screen = static_cast<wire::Screen>(drawn_.screen);

@@ -62,6 +62,9 @@ std::optional<wire::Tuning> Connection::tuning() const {
 std::optional<wire::Questionnaire> Connection::questionnaire() const {
   return impl_->link.questionnaire();
 }
+std::optional<wire::Report> Connection::report() const {
+  return impl_->link.report();
+}
 wire::Roster Connection::roster() const {
   return impl_->link.roster();
 }

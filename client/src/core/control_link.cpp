@@ -77,6 +77,11 @@ std::optional<wire::Questionnaire> ControlLink::questionnaire() const {
   return questionnaire_;
 }
 
+std::optional<wire::Report> ControlLink::report() const {
+  const std::lock_guard lock(mutex_);
+  return report_;
+}
+
 std::optional<wire::Tuning> ControlLink::tuning() const {
   const std::lock_guard lock(mutex_);
   return tuning_;
@@ -265,6 +270,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     questionnaire_ = *questionnaire;
   }
+  if (const auto* report = std::get_if<wire::Report>(&message)) {
+    const std::lock_guard lock(mutex_);
+    report_ = *report;
+  }
   if (const auto* record = std::get_if<wire::Characters>(&message)) {
     return on_characters(*record, now_us);
   }
@@ -329,6 +338,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   roster_ = {};
   tuning_.reset();
   questionnaire_.reset();
+  report_.reset();
   notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;

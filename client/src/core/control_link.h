@@ -29,6 +29,7 @@ class ControlLink {
   wire::Roster roster() const;
   std::optional<wire::Tuning> tuning() const;
   std::optional<wire::Questionnaire> questionnaire() const;
+  std::optional<wire::Report> report() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
   void answer(std::uint64_t session, const wire::Answers& answers);
@@ -85,6 +86,7 @@ class ControlLink {
   wire::Roster roster_;
   std::optional<wire::Tuning> tuning_;
   std::optional<wire::Questionnaire> questionnaire_;
+  std::optional<wire::Report> report_;
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

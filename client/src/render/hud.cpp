@@ -122,6 +122,28 @@ float draw_help(const HudPen& pen, const HudState& hud) {
   return 0.0f;
 }
 
+// On the logo who plays best, below its title; where there is no room beside the keys, by turns.
+float draw_logo_panels(const HudPen& pen, const HudState& hud) {
+  constexpr float kBelowTitle = 262.0f, kKeysAtMost = 240.0f, kTurn = 7.0f;  // units, [s]
+  const bool logo = hud.state != nullptr && hud.state->screen == number(wire::Screen::logo);
+  if (!logo || hud.fame.empty() || hud.show_help) return draw_help(pen, hud);
+  const bool keys = hud.viewer_team >= 0;
+  const float room = pen.bottom - (keys ? kKeysAtMost : 0.0f) - kBelowTitle - 10.0f;
+  std::size_t players = hud.fame.size();
+  while (players > 3 && fame_height(players) > room) --players;
+  if (fame_height(players) <= room) {
+    draw_fame(pen, std::span(hud.fame).first(players), kBelowTitle);
+    return draw_help(pen, hud);
+  }
+  if (keys && std::fmod(hud.state->screen_seconds, 2.0f * kTurn) < kTurn)
+    return draw_help(pen, hud);
+  const float low = pen.bottom - 10.0f;
+  while (players > 3 && fame_height(players) > low - kBelowTitle) --players;
+  players = std::min(players, hud.fame.size());
+  draw_fame(pen, std::span(hud.fame).first(players), low - fame_height(players));
+  return fame_height(players) + 10.0f;
+}
+
 void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   float y = pen.bottom - 22.0f - room_below;
   const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
@@ -186,7 +208,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_ceremony(pen, state, hud.goal, hud.replay, hud.still, above);
       break;
     case ScreenKind::end:
-      draw_end(pen, state, hud.statistics);
+      draw_end(pen, state, hud.statistics, hud.report);
       break;
   }
   draw_score(pen, hud, above);
@@ -202,7 +224,7 @@ void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& s
   // From above each side reads its own.
   const int reader = hud.view != View::above ? -1 : pen.left_is_team_0 ? 0 : 1;
   const float survey_height = draw_survey(pen, hud.survey, reader);
-  const float help_height = survey_height > 0.0f ? survey_height : draw_help(pen, hud);
+  const float help_height = survey_height > 0.0f ? survey_height : draw_logo_panels(pen, hud);
   draw_notices(pen, hud, hud.view == View::above ? std::max(help_height, 74.0f) : help_height);
   if (!hud.connection_message.empty()) draw_connection(pen, hud);
   if (!hud.menu.rows.empty()) draw_menu(pen, hud.menu);

@@ -14,6 +14,7 @@
 #include "foosball/character.h"
 #include "render/camera.h"
 #include "render/ui_batch.h"
+#include "wire/control.h"
 #include "wire/enums.h"
 #include "wire/snapshot.h"
 
@@ -45,6 +46,8 @@ struct HudState {
   GoalStory goal;
   float since_foul = 1e3f;  // [s]
   std::array<TeamStatistics, 2> statistics;
+  const wire::Report* report = nullptr;  // of the match that has just ended; null: none is kept
+  std::vector<wire::Fame> fame;          // who plays best; none: not known
   MenuPage menu;                         // no rows: closed
   std::vector<SurveyPanel> survey;       // the questionnaire, by person; none: not asked
   std::array<std::string, 8> rod_names;  // who plays each, to be shown at its handle

@@ -103,8 +103,8 @@ Traits traits_of(const foosball::Characters& characters, const foosball::Charact
 }
 
 void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float width,
-                const Colour& colour) {
-  pen.text(name, {Face::regular, 12.5f, 0.0f, Align::left}, at, kFaint, 0.55f, 56.0f);
+                const Colour& colour, float text_size) {
+  pen.text(name, {Face::regular, text_size, 0.0f, Align::left}, at, kFaint, 0.55f, 56.0f);
   const glm::vec2 low = at + glm::vec2(60.0f, -8.0f);
   pen.panel(low, low + glm::vec2(width, 7.0f), 3.5f, {0.25f, 0.30f, 0.36f, 0.8f});
   pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), 7.0f), 3.5f, colour);
@@ -128,9 +128,13 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
   const Traits traits = traits_of(characters, shown);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
   const float bars = std::max(room - 60.0f, 10.0f);
-  draw_trait(pen, tr("attack"), traits.attack, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar);
-  draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar);
-  draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar);
+  const float line = std::min(12.5f, 0.175f * size.y);  // no line touches the next
+  draw_trait(pen, tr("attack"), traits.attack, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar,
+             line);
+  draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar,
+             line);
+  draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar,
+             line);
 }
 
 std::string named_team(std::size_t team) {
@@ -285,31 +289,89 @@ struct EndRow {
   std::array<std::string, 2> values;  // by team
 };
 
+std::string fixed(float number, const char* unit) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %s", static_cast<double>(number), unit);
+  return text;
+}
+
+// Two by two, of the teams.
+template <class Team, class Value>
+std::array<std::string, 2> both(const std::array<Team, 2>& teams, Value value) {
+  return {value(teams[0]), value(teams[1])};
+}
+
 std::vector<EndRow> end_rows(const std::array<TeamStatistics, 2>& s) {
-  const auto both = [&](auto value) { return std::array{value(s[0]), value(s[1])}; };
   const float played = std::max(s[0].possession + s[1].possession, 1e-3f);
-  const auto fixed = [](float number, const char* unit) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f %s", static_cast<double>(number), unit);
-    return std::string(text);
-  };
-  return {
-      {tr("shots"), both([](const TeamStatistics& t) { return std::to_string(t.shots); })},
-      {tr("saves"), both([](const TeamStatistics& t) { return std::to_string(t.saves); })},
-      {tr("fastest shot"),
-       both([&](const TeamStatistics& t) { return fixed(t.fastest_shot, "m/s"); })},
-      {tr("possession"), both([&](const TeamStatistics& t) {
-         return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
-       })},
-      {tr("own goals"), both([](const TeamStatistics& t) { return std::to_string(t.own_goals); })}};
+  return {{tr("shots"), both(s, [](const auto& t) { return std::to_string(t.shots); })},
+          {tr("saves"), both(s, [](const auto& t) { return std::to_string(t.saves); })},
+          {tr("fastest shot"), both(s, [](const auto& t) { return fixed(t.fastest_shot, "m/s"); })},
+          {tr("possession"),
+           both(s,
+                [&](const auto& t) {
+                  return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
+                })},
+          {tr("own goals"), both(s, [](const auto& t) { return std::to_string(t.own_goals); })}};
+}
+
+// The same by the referee's own count, and what that does not see from here.
+void take_report(std::vector<EndRow>& rows, const wire::Report& report) {
+  const auto& r = report.teams;
+  const float played = std::max(r[0].possession + r[1].possession, 1e-3f);
+  rows[0] = {tr("shots (on target)"), both(r, [](const auto& t) {
+               return std::to_string(t.shots) + " (" + std::to_string(t.shots_on_target) + ")";
+             })};
+  rows[1].values = both(r, [](const auto& t) { return std::to_string(t.saves); });
+  rows[3].values = both(r, [&](const auto& t) {
+    return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
+  });
+  rows[4].values = both(r, [](const auto& t) { return std::to_string(t.own_goals); });
+  rows.insert(rows.begin() + 2,
+              {tr("passes"), both(r, [](const auto& t) { return std::to_string(t.passes); })});
+  rows.push_back({tr("rating (Elo)"), both(r, [](const auto& t) {
+                    char text[40];
+                    std::snprintf(text, sizeof text, "%.0f (%+.0f)", static_cast<double>(t.rating),
+                                  static_cast<double>(t.rating_change));
+                    return std::string(text);
+                  })});
 }
 
 }  // namespace
 
+float fame_height(std::size_t players) {
+  return 52.0f + 24.0f * static_cast<float>(players);
+}
+
+void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
+  const float half = 250.0f;
+  const HudPen pen = whole.fitting(half + 8.0f, whole.bottom);
+  const float top = y * whole.scale / pen.scale;
+  pen.panel({-half, top}, {half, top + fame_height(fame.size())}, 14.0f,
+            {kPanel.r, kPanel.g, kPanel.b, 0.88f});
+  pen.text(tr("HALL OF FAME"), {Face::bold, 17.0f, 0.10f, Align::centre}, {0.0f, top + 27.0f},
+           {0.62f, 0.84f, 1.0f, 1.0f}, 0.55f, 2.0f * half - 30.0f);
+  float line = top + 54.0f;
+  for (std::size_t i = 0; i < fame.size(); ++i) {
+    const Colour& ink = i == 0 ? kWarning : kInk;
+    pen.text(std::to_string(i + 1), {Face::bold, 15.0f, 0.0f, Align::right}, {-half + 34.0f, line},
+             kFaint);
+    pen.text(fame[i].name, {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line}, ink,
+             0.55f, 210.0f);
+    const std::string won = std::to_string(fame[i].wins) + " / " + std::to_string(fame[i].matches);
+    pen.text(won, {Face::regular, 14.0f, 0.0f, Align::right}, {half - 100.0f, line}, kFaint, 0.55f,
+             130.0f);
+    char rating[24];
+    std::snprintf(rating, sizeof rating, "%.0f", static_cast<double>(fame[i].rating));
+    pen.text(rating, {Face::bold, 15.0f, 0.0f, Align::right}, {half - 24.0f, line}, ink);
+    line += 24.0f;
+  }
+}
+
 void draw_end(const HudPen& whole, const wire::Snapshot& state,
-              const std::array<TeamStatistics, 2>& statistics) {
+              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report) {
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
-  const std::vector<EndRow> rows = end_rows(statistics);
+  std::vector<EndRow> rows = end_rows(statistics);
+  if (report != nullptr) take_report(rows, *report);
   const float half = 310.0f, height = 210.0f + 28.0f * static_cast<float>(rows.size());
   const HudPen pen = whole.fitting(half + 10.0f, height + 120.0f);
   const float top = 0.5f * (pen.bottom - height);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "core/match_story.h"
 #include "foosball/character.h"
 #include "render/ui_batch.h"
+#include "wire/control.h"
 #include "wire/snapshot.h"
 
 namespace client {
@@ -67,8 +69,12 @@ void draw_selection(const HudPen& pen, const wire::Snapshot& state,
 // A band at the upper edge, or the lower: the field stays free. Own goals and the scorer are named.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
                    bool replay, bool still, bool at_the_bottom);
+// report: as it is kept, or null: what was seen here.
 void draw_end(const HudPen& pen, const wire::Snapshot& state,
-              const std::array<TeamStatistics, 2>& statistics);
+              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report);
+// Its upper edge at y; how high it is with so many players.
+void draw_fame(const HudPen& pen, std::span<const wire::Fame> fame, float y);
+float fame_height(std::size_t players);
 void draw_paused(const HudPen& pen);
 
 // "4 attack"... in the person's language: of a rod by its line.

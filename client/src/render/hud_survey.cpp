@@ -103,11 +103,15 @@ float draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int 
     if (team < 0 || panel.team == team) shown.push_back(&panel);
   }
   if (shown.empty()) return 0.0f;
-  const std::size_t columns = std::min<std::size_t>(shown.size(), 2);
+  // One below another where two beside one another would be too small to read.
+  const bool narrow = whole.half_width < 1.6f * kHalf;
+  const std::size_t columns = narrow ? 1 : std::min<std::size_t>(shown.size(), 2);
   const std::size_t rows = (shown.size() + columns - 1) / columns;
   const float wide = static_cast<float>(columns) * (2.0f * kHalf + kBetween);
   const float high = static_cast<float>(rows) * (kHeight + kBetween);
-  const HudPen pen = whole.fitting(0.5f * wide + 4.0f, std::max(high + 10.0f, 2.0f * high / 1.6f));
+  const float half = 0.5f * wide + 4.0f;
+  const HudPen pen =
+      whole.fitting(half, std::max(high + 10.0f, 1.25f * high)).readable(0.75f, half);
   const float top = pen.bottom - high - 4.0f;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto column = static_cast<float>(i % columns), row = static_cast<float>(i / columns);

@@ -27,6 +27,7 @@ inline constexpr std::size_t kMaxText = 200;  // bytes: reason, text
 
 inline constexpr std::uint8_t kWatchOnly = 255;
 inline constexpr std::size_t kMaxSeats = 64;
+inline constexpr std::size_t kMaxFame = 8;
 
 // Client to server, first message from another machine: the exchange of wire/password_exchange.h.
 // What follows its Challenge, both ways, is a sealed stream (wire/seal.h) of messages.
@@ -153,9 +154,27 @@ struct Answers {
   std::array<std::uint8_t, kQuestionCount> scores{};
 };
 
+// What a team did in a match, as it is kept.
+struct TeamReport {
+  std::uint32_t shots = 0, shots_on_target = 0, saves = 0, passes = 0, own_goals = 0;
+  float possession = 0.0f;                    // since its last touch [s]; finite, as all here
+  float rating = 0.0f, rating_change = 0.0f;  // its players' mean Elo after the match; by it
+};
+struct Fame {
+  std::string name;
+  float rating = 0.0f;
+  std::uint32_t matches = 0, wins = 0;
+};
+// Server to client, on joining and after each match that is kept: the last one, and who plays best.
+struct Report {
+  std::uint32_t match = 0;  // counted from 1 since the server's start; 0: none yet
+  std::array<TeamReport, kTeamCount> teams{};
+  std::vector<Fame> fame;  // <= kMaxFame, best first
+};
+
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers>;
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.
