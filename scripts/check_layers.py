@@ -100,7 +100,7 @@ MAY_USE = {
     'firmware': {'device-frame'},
     'results': set(),
     'profile': {ENGINE_FACE, 'table'},
-    'characters': {ENGINE_FACE, 'table', 'wire'},
+    'characters': {ENGINE_FACE, 'profile', 'table', 'wire'},
     'server': {ENGINE_FACE, 'profile', 'characters', 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
     'match': {ENGINE_FACE, 'profile', 'characters', 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},

@@ -12,13 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "profile/toml_text.h"
 #include "wire/read_file.h"
-
-#define TOML_EXCEPTIONS 0
-// Its parser asserts on some broken keys, which it then refuses as it should. Without NDEBUG (see
-// CMakeLists.txt), so that it does not take them for granted either.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
 
 namespace characters {
 namespace {
@@ -65,7 +60,8 @@ std::string unknown(std::string_view key, std::span<const char* const> names,
   const std::string_view short_key = key.substr(0, 40);
   const char* nearest = *std::ranges::min_element(
       names, {}, [&](const char* name) { return distance(short_key, name); });
-  return fmt::format("{} has no \"{}\"; the nearest name is {}", where, shown(key), nearest);
+  return fmt::format("{} has no \"{}\"; the nearest name is {}", where,
+                     shown(profile::as_written(key)), nearest);
 }
 
 template <class T>
@@ -116,7 +112,8 @@ bool has_control(std::string_view text) {
 
 Problem take_text(const toml::node& node, const char* name, std::size_t least, std::size_t most,
                   std::string_view file, std::string& text) {
-  const auto value = node.value<std::string_view>();
+  const auto parsed = node.value<std::string_view>();
+  const auto value = parsed ? std::optional(profile::as_written(*parsed)) : std::nullopt;
   const bool fits =
       value && value->size() >= least && value->size() <= most && !has_control(*value);
   if (!fits) {
@@ -304,11 +301,11 @@ std::string hex(const Colour& colour) {
 }  // namespace
 
 tl::expected<Character, std::string> parse_character(std::string_view text, std::string_view name) {
-  const toml::parse_result parsed = toml::parse(text);
+  const toml::parse_result parsed = profile::parse_toml(text);
   if (!parsed) {
     return tl::unexpected(at(name, parsed.error().source(),
                              fmt::format("not TOML ({}); write one `name = value` a line",
-                                         parsed.error().description())));
+                                         profile::as_written(parsed.error().description()))));
   }
   Character character;
   const toml::table& table = parsed.table();

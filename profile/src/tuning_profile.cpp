@@ -7,11 +7,7 @@
 #include <iterator>
 #include <optional>
 
-#define TOML_EXCEPTIONS 0
-// Its parser asserts on some broken keys, which it then refuses as it should. Without NDEBUG (see
-// CMakeLists.txt), so that it does not take them for granted either.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
+#include "profile/toml_text.h"
 
 namespace profile {
 namespace {
@@ -38,11 +34,11 @@ std::string range_of(const TuningField& field) {
 }  // namespace
 
 tl::expected<Tuning, std::string> parse_tuning(std::string_view text, std::string_view name) {
-  const toml::parse_result parsed = toml::parse(text);
+  const toml::parse_result parsed = parse_toml(text);
   if (!parsed) {
     return refuse(name, parsed.error().source(),
                   fmt::format("not TOML ({}); write one `name = value` a line",
-                              parsed.error().description()));
+                              as_written(parsed.error().description())));
   }
   Tuning tuning;
   for (const auto& [key, node] : parsed.table()) {
@@ -51,7 +47,7 @@ tl::expected<Tuning, std::string> parse_tuning(std::string_view text, std::strin
       return refuse(name, key.source(),
                     fmt::format("no tuning value is named {}; "
                                 "space-foosball-server --list-tuning shows their names",
-                                key.str()));
+                                as_written(key.str())));
     }
     const TuningField& field = kTuningFields[static_cast<std::size_t>(index)];
     const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
