@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "foosball/match.h"
+#include "ticks.h"
 
 namespace foosball {
 
@@ -16,7 +17,7 @@ class IdleWatch {
   void reset() { ticks_ = 0; }
   // One tick of the hands' targets. counts: bit i for a rod that a person may hold.
   void update(const RodTargets& hands, std::uint8_t counts) {
-    ++ticks_;
+    count_tick(ticks_);
     for (int rod = 0; rod < kRods; ++rod) {
       const RodTarget& hand = hands[rod];
       if (!hand.live || (counts >> rod & 1u) == 0) continue;
@@ -33,7 +34,7 @@ class IdleWatch {
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
-    archive.count(self.ticks_, kMaxIdle);
+    archive.count(self.ticks_, kMaxTicks);
     for (int rod = 0; rod < kRods; ++rod) {
       archive.real(self.slide_[rod], -kAny, kAny);
       archive.real(self.angle_[rod], -kAny, kAny);
@@ -41,7 +42,6 @@ class IdleWatch {
   }
 
  private:
-  static constexpr std::uint64_t kMaxIdle = std::uint64_t{1} << 47;  // as long as a match lasts
   // What a sensor's noise or a table that is leant on does not reach.
   static constexpr double kSlide = 0.003;  // [m]
   static constexpr double kAngle = 0.05;   // [rad]

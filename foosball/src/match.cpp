@@ -86,7 +86,7 @@ void Match::Impl::step(const TickInput& input) {
     read_gestures();
     run_screen();
   }
-  ++state.tick;
+  count_tick(state.tick);
   refresh_view();
 }
 

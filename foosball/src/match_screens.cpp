@@ -14,7 +14,7 @@ constexpr double kCeremonyAtLeast = 0.5;  // [s]
 }  // namespace
 
 void Match::Impl::run_screen() {
-  ++state.screen_ticks;
+  count_tick(state.screen_ticks);
   switch (state.screen) {
     case Screen::logo:
     case Screen::selection:
@@ -35,8 +35,8 @@ void Match::Impl::run_screen() {
 
 void Match::Impl::run_play() {
   if (state.time_out_left > 0) return run_time_out();
-  ++state.play_ticks;
-  ++state.tally.set_ticks;
+  count_tick(state.play_ticks);
+  count_tick(state.tally.set_ticks);
   const std::uint64_t limit = to_ticks(rules().match_seconds);
   const bool time_over = limit > 0 && state.tally.set_ticks >= limit && !state.ball_in_goal;
   if (time_over && !state.tally.golden_goal && mode() != Mode::training) {

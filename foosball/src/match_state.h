@@ -9,6 +9,7 @@
 #include "idle_watch.h"
 #include "referee.h"
 #include "spin_watch.h"
+#include "ticks.h"
 
 namespace foosball {
 
@@ -19,15 +20,6 @@ inline constexpr int kMaxCount = 250;           // of fouls and time-outs; count
 inline constexpr double kMaxDuration = 3600.0;  // [s]
 // A rod turned further than this [rad] has been held by nobody: two million revolutions.
 inline constexpr double kMaxAngle = 1e7;
-
-// No match lasts longer [ticks]: 8900 years. Below 2^48, as a snapshot's tick must be, and with
-// room for more matches after it.
-inline constexpr std::uint64_t kMaxTicks = std::uint64_t{1} << 47;
-constexpr std::uint64_t ticks_of(double seconds) {
-  const double ticks = seconds / kTick;
-  const auto whole = static_cast<std::uint64_t>(ticks);
-  return ticks - static_cast<double>(whole) < 0.5 ? whole : whole + 1;  // the nearest
-}
 inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
 // So long men may fill every place for the ball before the other side has it.
 inline constexpr double kServeWait = 5.0;  // [s]

@@ -98,20 +98,22 @@ BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
     if (advanced) ticks_possessed_ = 0;
     rod_ = rod;
     left_ = false;
-    ++ticks_possessed_;
+    count_tick(ticks_possessed_);
     ticks_unreached_ = 0;
   } else {
     left_ = left_ || rod_ == kRods || !behind_defence(table, table.rods[rod_].team, sight.ball.x);
-    ++ticks_unreached_;
+    count_tick(ticks_unreached_);
   }
   if (vp::norm(sight.ball - anchor_) > kHere) {
     anchor_ = sight.ball;
     ticks_untouched_ = 0;
   }
-  ticks_untouched_ = sight.touched ? 0 : ticks_untouched_ + 1;
+  count_tick(ticks_untouched_);
+  if (sight.touched) ticks_untouched_ = 0;
 
   const bool stopped = !in_reach_ && vp::norm(sight.velocity) < kStopped;
-  ticks_stopped_ = stopped ? ticks_stopped_ + 1 : 0;
+  count_tick(ticks_stopped_);
+  if (!stopped) ticks_stopped_ = 0;
   if (!in_reach_) {
     const bool dead = seconds(ticks_stopped_) >= kStoppedSeconds ||
                       seconds(ticks_unreached_) >= rules.dead_ball_seconds;

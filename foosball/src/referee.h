@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "foosball/match.h"
+#include "ticks.h"
 
 namespace foosball {
 
@@ -93,14 +94,11 @@ class BallWatch {
     archive.flag(self.left_);
     for (auto* ticks : {&self.ticks_possessed_, &self.ticks_unreached_, &self.ticks_stopped_,
                         &self.ticks_untouched_}) {
-      archive.count(*ticks, kMaxWatched);
+      archive.count(*ticks, kMaxTicks);
     }
   }
 
  private:
-  // Longer than any rule allows [ticks]; a verdict ends each count.
-  static constexpr std::uint64_t kMaxWatched = std::uint64_t{1} << 32;
-
   vp::Vec3 anchor_;                    // the ball has stayed near this point
   int rod_ = kRods;                    // of possession; kRods: none yet
   bool in_reach_ = false;              // now

@@ -26,7 +26,7 @@ void SpinWatch::update(double angle, bool touches) {
     furthest_ = angle;
     still_ticks_ = 0;
   } else {
-    ++still_ticks_;
+    count_tick(still_ticks_);
   }
   // Turned back, or stopped: a new turn begins.
   if (ahead < -kBack || still_ticks_ >= kStopTicks) {

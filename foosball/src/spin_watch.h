@@ -6,6 +6,7 @@
 
 #include "foosball/rules.h"
 #include "foosball/table.h"
+#include "ticks.h"
 
 namespace foosball {
 
@@ -26,13 +27,12 @@ class SpinWatch {
     archive.real(self.from_, -1e9, 1e9);
     archive.real(self.furthest_, -1e9, 1e9);
     archive.real(self.struck_at_, -1e9, 1e9);
-    archive.count(self.still_ticks_, kMaxStill);
+    archive.count(self.still_ticks_, kMaxTicks);
     archive.flag(self.struck_);
     archive.flag(self.spun_);
   }
 
  private:
-  static constexpr std::uint64_t kMaxStill = std::uint64_t{1} << 47;  // as long as a match lasts
   // So long without progress [ticks], and the hand has stopped the rod.
   static constexpr std::uint64_t kStopTicks = 60;
 

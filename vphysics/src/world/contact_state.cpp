@@ -58,7 +58,7 @@ void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
   in.check(flags <= 3);
   body.rested = (flags & 1u) != 0;
   body.asleep = (flags & 2u) != 0;
-  body.rest_time = in.bounded();
+  body.rest_time = in.number();
   for (int k = 0; k < 6; ++k) {
     const Reader::TwoFloats both = in.two_floats();
     body.way[k] = both.high;
@@ -150,7 +150,7 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_par
     const std::uint64_t feature = in.word();
     in.check(feature <= 0xffffffffu);
     c.feature[i] = static_cast<std::uint32_t>(feature);
-    c.position[i] = in.vector();
+    c.position[i] = in.finite_vector();
   }
 }
 
@@ -202,7 +202,7 @@ void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> 
 void World::Impl::ContactState::read_regions(Reader& in) {
   const std::uint32_t count = in.index(kMostRegions + 1);
   in.check(count == 0 || (std::has_single_bit(count) && count > 1));
-  region_age_ = in.bounded();
+  region_age_ = in.number();
   in.check(region_age_ >= 0.0);
   if (!in.ok() || count == 0) return;
   region_axes_.resize(count);

@@ -64,7 +64,8 @@ class Reader {
     const double x = bounded(), y = bounded(), z = bounded();
     return {x, y, z};
   }
-  // Of a velocity, which a call may have taken out of range: the next step brings it back.
+  // Of a velocity, which a call may have taken out of range: the next step brings it back; of a
+  // point of what lies at the edge of the range.
   Vec3 finite_vector() {
     const double x = number(), y = number(), z = number();
     return {x, y, z};
