@@ -20,7 +20,8 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
                           wire::to_text(wire::journal_format()) +
                           "; replay it with the release that recorded it");
   }
-  std::unique_ptr<Playback> playback(new Playback(std::move(file), name));
+  std::unique_ptr<Playback> playback(
+      new Playback(std::make_shared<const std::vector<std::byte>>(std::move(file)), name));
   const auto first = playback->reader_.next();
   const auto* header = first ? std::get_if<wire::JournalHeader>(&*first) : nullptr;
   if (header == nullptr) {
@@ -46,11 +47,27 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
   return playback;
 }
 
-Playback::Playback(std::vector<std::byte> file, std::string name)
-    : file_(std::move(file)), name_(std::move(name)), reader_(file_) {}
+Playback::Playback(std::shared_ptr<const std::vector<std::byte>> file, std::string name)
+    : file_(std::move(file)), name_(std::move(name)), reader_(*file_) {}
+
+std::unique_ptr<Playback> Playback::twin() const {
+  std::unique_ptr<Playback> twin(new Playback(file_, name_));
+  twin->reader_.next();  // the header
+  twin->match_ = match_;
+  return twin;
+}
+
+void Playback::go_to(const Place& place) {
+  reader_ = place.reader;
+  ticks_ = place.ticks;
+  checked_ = place.checked;
+  first_difference_ = place.first_difference;
+  ended_ = place.ended;
+  exhausted_ = place.exhausted;
+}
 
 bool Playback::holds_a_tick() const {
-  wire::JournalReader reader(file_);
+  wire::JournalReader reader(*file_);
   while (const auto entry = reader.next()) {
     if (std::holds_alternative<wire::JournalTick>(*entry)) return true;
   }
@@ -58,7 +75,7 @@ bool Playback::holds_a_tick() const {
 }
 
 std::uint64_t Playback::total_ticks() const {
-  wire::JournalReader reader(file_);
+  wire::JournalReader reader(*file_);
   std::uint64_t ticks = 0;
   while (const auto entry = reader.next()) {
     ticks += std::holds_alternative<wire::JournalTick>(*entry) ? 1 : 0;

@@ -22,6 +22,33 @@ RecordedScene::RecordedScene(std::unique_ptr<Playback> playback, foosball::Match
   build_snapshot(match_.view(), snapshot_);
 }
 
+tl::expected<RecordedScene, std::string> RecordedScene::twin() const {
+  auto playback = playback_->twin();
+  auto match = foosball::Match::create(playback->match());
+  if (!match) return tl::unexpected("the recording cannot be replayed: " + match.error().message);
+  return RecordedScene(std::move(playback), std::move(*match));
+}
+
+RecordedScene::Mark RecordedScene::mark() const {
+  Mark mark{playback_->place(), {}, match_.state_hash(), snapshot_, last_event_};
+  match_.snapshot(mark.match);
+  return mark;
+}
+
+bool RecordedScene::go_to(const Mark& mark) {
+  const Mark before = this->mark();
+  if (!match_.restore(mark.match)) return false;
+  if (match_.state_hash() != mark.state_hash) {
+    (void)match_.restore(before.match);
+    return false;
+  }
+  playback_->go_to(mark.place);
+  snapshot_ = mark.scene;
+  last_event_ = mark.last_event;
+  events_.clear();
+  return true;
+}
+
 bool RecordedScene::advance_to(std::uint64_t tick) {
   while (ticks() < tick) {
     const wire::JournalTick* recorded = playback_->next(match_);

@@ -125,6 +125,11 @@ bool JournalEncoder::add(const JournalEntry& entry, std::vector<std::byte>& out)
     large_.resize(kSmallPayload + keyframe->snapshot.size());
     const auto describe = [](auto& codec, auto& k) { describe_journal_keyframe(codec, k); };
     append_record(out, encode(large_, describe, *keyframe));
+  } else if (const auto* standing = std::get_if<JournalStanding>(&entry)) {
+    if (standing->tick != next_tick_) return false;
+    flush(out);
+    const auto describe = [](auto& codec, auto& s) { describe_journal_standing(codec, s); };
+    append_record(out, encode(scratch, describe, *standing));
   } else if (const auto* end = std::get_if<JournalEnd>(&entry)) {
     if (end->ticks != next_tick_) return false;
     flush(out);

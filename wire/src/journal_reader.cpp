@@ -59,7 +59,9 @@ std::vector<NamedLayout> journal_layouts() {
       {"keyframe", "the match's whole state, to start from",
        list_layout<JournalKeyframe>([](Lister& l, auto& k) { describe_journal_keyframe(l, k); })},
       {"end", "the last record",
-       list_layout<JournalEnd>([](Lister& l, auto& e) { describe_journal_end(l, e); })}};
+       list_layout<JournalEnd>([](Lister& l, auto& e) { describe_journal_end(l, e); })},
+      {"standing", "how the match stands, for lists of recordings",
+       list_layout<JournalStanding>([](Lister& l, auto& s) { describe_journal_standing(l, s); })}};
 }
 
 std::uint32_t journal_layout_hash() {
@@ -226,8 +228,61 @@ std::optional<JournalEntry> JournalReader::read_entry() {
       ended_ = entry.has_value();
       return entry;
     }
+    case JournalKind::standing: {
+      auto entry =
+          read_whole(JournalStanding{}, [](auto& d, auto& s) { describe_journal_standing(d, s); });
+      return at_tick(entry, entry ? std::get<JournalStanding>(*entry).tick : 0);
+    }
   }
   return fail("of unknown kind " + std::to_string(static_cast<int>(kind)));
+}
+
+JournalReader JournalReader::over(std::span<const std::byte> longer) const {
+  JournalReader reader = *this;
+  reader.file_ = longer;
+  if (!problem_.empty()) {
+    reader.at_ = record_at_;
+    reader.problem_.clear();
+  } else if (!record_.empty()) {
+    reader.record_ =
+        longer.subspan(static_cast<std::size_t>(record_.data() - file_.data()), record_.size());
+  }
+  return reader;
+}
+
+namespace {
+
+// Of the record that begins here, if it is one of this kind.
+template <class Entry, class Describe>
+std::optional<Entry> whole_record(std::span<const std::byte> at, JournalKind kind,
+                                  Describe describe) {
+  constexpr std::size_t kLongest = 40;  // payload of either kind
+  if (at.size() <= kRecordHead || at[kRecordHead] != static_cast<std::byte>(kind)) return {};
+  const std::size_t size = get32(at);
+  if (size > kLongest || size > at.size() - kRecordHead) return {};
+  const auto payload = at.subspan(kRecordHead, size);
+  if (crc32(payload) != get32(at.subspan(4))) return {};
+  Entry entry;
+  Decoder decoder(payload, journal_layout_hash());
+  describe(decoder, entry);
+  if (!decoder.ok() || !decoder.at_end()) return {};
+  return entry;
+}
+
+}  // namespace
+
+// From the end backwards: each byte may be the first of a record.
+JournalTail read_journal_tail(std::span<const std::byte> tail) {
+  JournalTail read;
+  for (std::size_t at = tail.size(); at-- > 0 && !read.standing;) {
+    const auto here = tail.subspan(at);
+    if (!read.end)
+      read.end = whole_record<JournalEnd>(here, JournalKind::end,
+                                          [](auto& d, auto& e) { describe_journal_end(d, e); });
+    read.standing = whole_record<JournalStanding>(
+        here, JournalKind::standing, [](auto& d, auto& s) { describe_journal_standing(d, s); });
+  }
+  return read;
 }
 
 std::optional<JournalEntry> JournalReader::next() {

@@ -107,6 +107,43 @@ TEST(Journal, EverySingleBitFlipStopsTheReaderThereAndKeepsAllBefore) {
   }
 }
 
+TEST(Journal, TheTailTellsHowTheMatchStoodFromWhateverByteItBegins) {
+  const Bytes whole = encoded(samples::journal());
+  const auto [standing, end] = read_journal_tail(whole);
+  ASSERT_TRUE(standing && end);
+  EXPECT_EQ(standing->score, (std::array<std::uint8_t, 2>{5, 3}));
+  EXPECT_EQ(end->ticks, 3u);
+  const JournalTail cut = read_journal_tail(std::span(whole).first(whole.size() - 1));
+  ASSERT_TRUE(cut.standing) << "a recording that was cut off tells it too";
+  EXPECT_FALSE(cut.end);
+  for (std::size_t from = 0; from <= whole.size(); ++from) {
+    const JournalTail part = read_journal_tail(std::span(whole).subspan(from));
+    if (part.standing) {
+      EXPECT_EQ(*part.standing, *standing) << from;
+    }
+  }
+  EXPECT_FALSE(read_journal_tail({}).standing);
+}
+
+TEST(Journal, AReaderGoesOnWhenItsFileHasGrown) {
+  std::mt19937_64 random(24);
+  const auto entries = samples::random_journal(random, 300);
+  const Bytes whole = encoded(entries);
+  for (std::size_t size = 1; size < whole.size(); size += 37) {
+    const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    JournalReader reader(part);
+    std::size_t read = 0;
+    while (const auto entry = reader.next()) {
+      ASSERT_TRUE(samples::same(*entry, entries[read++]));
+      if (read % 7 == 0) reader = reader.over(whole);  // within a record of ticks, too
+      if (read % 7 == 3) break;
+    }
+    reader = reader.over(whole);
+    while (const auto entry = reader.next()) ASSERT_TRUE(samples::same(*entry, entries[read++]));
+    ASSERT_EQ(read, entries.size()) << size << reader.problem();
+  }
+}
+
 TEST(Journal, RecordsOutOfOrderAreRefused) {
   const Bytes whole = encoded(samples::journal());
   const std::size_t header = record_size(whole, 0), ticks = record_size(whole, header);

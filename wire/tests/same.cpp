@@ -108,6 +108,9 @@ auto tied(const JournalHash& e) {
 auto tied(const JournalKeyframe& e) {
   return std::tie(e.tick, e.snapshot);
 }
+auto tied(const JournalStanding& e) {
+  return std::tie(e.tick, e.score, e.sets, e.character, e.computer, e.won);
+}
 auto tied(const JournalEnd& e) {
   return std::tie(e.ticks, e.state_hash);
 }

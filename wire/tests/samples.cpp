@@ -248,6 +248,7 @@ std::vector<JournalEntry> journal() {
   entries.emplace_back(tick);
   entries.emplace_back(JournalHash{3, 0xFEEDFACECAFEBEEF});
   entries.emplace_back(JournalKeyframe{3, {std::byte{1}, std::byte{2}, std::byte{3}}});
+  entries.emplace_back(JournalStanding{3, {5, 3}, {2, 1}, {0, 4}, {false, true}, 1});
   entries.emplace_back(JournalEnd{3, 0xFEEDFACECAFEBEEF});
   return entries;
 }
@@ -335,6 +336,15 @@ std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
     }
     entries.emplace_back(tick);
     if (random() % 50 == 0) entries.emplace_back(JournalHash{tick.tick + 1, random()});
+    if (random() % 50 == 0) {
+      const auto any = [&] { return below<std::uint8_t>(random, 256); };
+      entries.emplace_back(JournalStanding{tick.tick + 1,
+                                           {any(), any()},
+                                           {any(), any()},
+                                           {any(), any()},
+                                           {random() % 2 == 0, random() % 2 == 0},
+                                           any()});
+    }
     if (random() % 100 == 0) {
       JournalKeyframe keyframe{tick.tick + 1, Bytes(random() % 3000)};
       for (std::byte& b : keyframe.snapshot) b = static_cast<std::byte>(random());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 #include "foosball/match.h"
@@ -31,6 +32,20 @@ class Playback {
 
   const foosball::MatchDesc& match() const { return match_; }
 
+  // Another reader of the same bytes, from their beginning.
+  std::unique_ptr<Playback> twin() const;
+
+  // How far it has been read: to go back there with a match that is restored to the same tick. A
+  // place is good for the playback it came from and its twins.
+  struct Place {
+    wire::JournalReader reader;
+    std::uint64_t ticks, checked;
+    std::optional<std::uint64_t> first_difference;
+    bool ended, exhausted;
+  };
+  Place place() const { return {reader_, ticks_, checked_, first_difference_, ended_, exhausted_}; }
+  void go_to(const Place& place);
+
   // Checks what the journal says about the match as it stands, then gives the inputs of its next
   // tick; nothing at the end. The match must have been stepped with every tick given before.
   const wire::JournalTick* next(const foosball::Match& match);
@@ -42,13 +57,13 @@ class Playback {
   std::uint64_t hashes_checked() const { return checked_; }
 
  private:
-  Playback(std::vector<std::byte> file, std::string name);
+  Playback(std::shared_ptr<const std::vector<std::byte>> file, std::string name);
   bool holds_a_tick() const;
   void check(const foosball::Match& match, const wire::JournalHash& hash);
   void check(const foosball::Match& match, const wire::JournalKeyframe& keyframe);
   void compare(std::uint64_t tick, bool same);
 
-  std::vector<std::byte> file_;
+  std::shared_ptr<const std::vector<std::byte>> file_;  // twins share it
   std::string name_;
   wire::JournalReader reader_;
   foosball::MatchDesc match_;

@@ -1,9 +1,10 @@
-// What goes into a match's journal, and when: the header, every tick's inputs, a hash each second,
-// a keyframe every 10 s, the end. Where it goes is the sink's affair: a file of the server, or
-// memory.
+// What goes into a match's journal, and when: the header, every tick's inputs, a hash and how the
+// match stands each second, a keyframe every 10 s, the end. Where it goes is the sink's affair: a
+// file of the server, or memory.
 #pragma once
 
 #include "foosball/match.h"
+#include "server/match_standing.h"
 #include "wire/journal.h"
 
 namespace server {
@@ -26,7 +27,11 @@ class RecordSchedule {
     std::get<wire::JournalTick>(tick_entry_) = tick;
     sink_.add(tick_entry_);
     ++ticks_;
-    if (ticks_ % kHashTicks == 0) sink_.add(wire::JournalHash{ticks_, match.state_hash()});
+    standing_.observe(match);
+    if (ticks_ % kHashTicks == 0) {
+      sink_.add(wire::JournalHash{ticks_, match.state_hash()});
+      sink_.add(standing_.at(ticks_));
+    }
     if (ticks_ % kKeyframeTicks == 0) {
       auto& keyframe = std::get<wire::JournalKeyframe>(keyframe_entry_);
       keyframe.tick = ticks_;
@@ -36,12 +41,14 @@ class RecordSchedule {
     }
   }
   void finish(const foosball::Match& match) {
+    sink_.add(standing_.at(ticks_));
     sink_.add(wire::JournalEnd{ticks_, match.state_hash()});
   }
 
  private:
   Sink& sink_;
   std::uint64_t ticks_ = 0;
+  MatchStanding standing_;
   // Kept from tick to tick for their memory.
   wire::JournalEntry tick_entry_{wire::JournalTick{}};
   wire::JournalEntry keyframe_entry_{wire::JournalKeyframe{}};

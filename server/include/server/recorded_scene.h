@@ -20,6 +20,23 @@ class RecordedScene {
   // The error is a sentence that names the file: see Playback::open.
   static tl::expected<RecordedScene, std::string> open(const std::string& path);
 
+  // Another scene of the same recording, at its beginning; shares the bytes.
+  tl::expected<RecordedScene, std::string> twin() const;
+
+  // Where the recording was: the match and how far the recording was read, about 10 kB. Good for
+  // this scene and its twins.
+  struct Mark {
+    Playback::Place place;
+    std::vector<std::byte> match;
+    std::uint64_t state_hash;
+    wire::Snapshot scene;
+    std::uint32_t last_event;
+  };
+  Mark mark() const;
+  // False, and nothing has changed, if the match does not come out with the mark's hash. Events
+  // that wait are dropped.
+  bool go_to(const Mark& mark);
+
   // Steps the match until so many ticks of the recording are played; false when it is over before.
   bool advance_to(std::uint64_t tick);
 
@@ -32,6 +49,7 @@ class RecordedScene {
   std::uint64_t total_ticks() const { return total_ticks_; }  // of the recording
   const foosball::Characters& characters() const { return playback_->match().characters; }
   const Playback& playback() const { return *playback_; }
+  std::uint64_t state_hash() const { return match_.state_hash(); }
 
  private:
   RecordedScene(std::unique_ptr<Playback> playback, foosball::Match match);

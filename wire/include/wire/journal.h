@@ -89,13 +89,24 @@ struct JournalKeyframe {
   std::vector<std::byte> snapshot;  // foosball::Match::snapshot, at most kMaxKeyframe
 };
 
+// How the match stands, for whoever lists recordings; a replay does not need it.
+struct JournalStanding {
+  std::uint64_t tick = 0;               // ticks stepped so far
+  std::array<std::uint8_t, 2> score{};  // of the last match with a goal; sets won, in that match
+  std::array<std::uint8_t, 2> sets{};
+  std::array<std::uint8_t, 2> character{};  // by the header's list
+  std::array<bool, 2> computer{};           // plays the team
+  std::uint16_t won = 0;                    // matches that were won so far
+  bool operator==(const JournalStanding&) const = default;
+};
+
 struct JournalEnd {
   std::uint64_t ticks = 0;
   std::uint64_t state_hash = 0;
 };
 
-using JournalEntry =
-    std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe, JournalEnd>;
+using JournalEntry = std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe,
+                                  JournalEnd, JournalStanding>;
 
 // How a rod's target differs from the tick before (at tick 0: from a rod that is not live, at 0).
 struct JournalRodChange {
@@ -149,6 +160,15 @@ class JournalEncoder {
   bool started_ = false, ended_ = false;
 };
 
+// What the last records of a file say without reading all of it: how the match stood, and how long
+// the recording is.
+struct JournalTail {
+  std::optional<JournalStanding> standing;
+  std::optional<JournalEnd> end;  // none: cut off, or still being written
+};
+// tail: the file's last bytes, from any byte on. What stands between the two is not looked at.
+JournalTail read_journal_tail(std::span<const std::byte> tail);
+
 // Reads entries from the bytes of a whole file, which must outlive the reader.
 class JournalReader {
  public:
@@ -160,6 +180,9 @@ class JournalReader {
   const std::string& problem() const { return problem_; }
   // The file's format, where it is one of another release; else 0.
   unsigned other_version() const { return other_version_; }
+  // The same reader at the same entry of a longer file, which begins with the same bytes: one that
+  // had come to the end, or to a record cut off there, goes on.
+  JournalReader over(std::span<const std::byte> longer) const;
 
  private:
   std::nullopt_t fail(const std::string& what);

@@ -18,7 +18,14 @@ inline constexpr std::uint64_t kJournalMagic = 0x4C4A4653;  // "SFJL"
 inline constexpr std::uint64_t kJournalVersion = 2;
 
 // First byte of each payload.
-enum class JournalKind : std::uint8_t { header = 1, ticks = 2, hash = 3, keyframe = 4, end = 5 };
+enum class JournalKind : std::uint8_t {
+  header = 1,
+  ticks = 2,
+  hash = 3,
+  keyframe = 4,
+  end = 5,
+  standing = 6
+};
 
 constexpr Constant journal_kind(JournalKind kind) {
   return Constant{"kind", 8, static_cast<std::uint64_t>(kind), "of payload"};
@@ -136,6 +143,26 @@ void describe_journal_end(Codec& codec, E& end) {
   codec.varint(Varint{"ticks", kAnyTick, "", "in all"}, end.ticks);
   codec.integer(Integer{"state_hash", 64, std::numeric_limits<std::uint64_t>::max(), "", ""},
                 end.state_hash);
+}
+
+template <class Codec, class S>
+void describe_journal_standing(Codec& codec, S& s) {
+  codec.constant(journal_kind(JournalKind::standing));
+  codec.varint(Varint{"tick", kAnyTick, "", "ticks stepped so far"}, s.tick);
+  codec.array(Group{"score", "of the last match with a goal"}, s.score, [&](auto& goals) {
+    codec.integer(Integer{"goals", 8, 255, "", ""}, goals);
+  });
+  codec.array(Group{"sets", "won in that match"}, s.sets, [&](auto& sets) {
+    codec.integer(Integer{"sets", 8, 255, "", ""}, sets);
+  });
+  codec.array(Group{"character", "by the header's list"}, s.character, [&](auto& character) {
+    codec.integer(Integer{"character", 8, 255, "", ""}, character);
+  });
+  codec.array(Group{"computer", "plays the team"}, s.computer, [&](auto& computer) {
+    codec.flag(Flag{"computer", ""}, computer);
+  });
+  codec.align();
+  codec.integer(Integer{"won", 16, 65535, "", "matches that were won so far"}, s.won);
 }
 
 }  // namespace wire
