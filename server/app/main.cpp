@@ -176,6 +176,13 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.random = random_number;
   wanted.record = options.record;
   wanted.overwrite = options.overwrite;
+  if (!options.recordings.empty()) {
+    const auto path =
+        server::new_recording(options.recordings, options.recording_limits, std::time(nullptr));
+    if (path) wanted.record = *path;
+    if (!path) log(server::LogLevel::warning, path.error());
+    wanted.record_by_default_bytes = options.recording_limits.bytes_of_one;
+  }
   wanted.results = options.results;
   wanted.date = date;
   wanted.questionnaire = !options.no_questionnaire;
@@ -196,12 +203,12 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
 }
 
 // The exit code, as far as the recording and the results that were written have a say in it.
-int judge_record(const server::Server& server, const server::Log& log) {
+int judge_record(const server::Server& server, bool asked, const server::Log& log) {
   int code = server::kExitOk;
   for (const std::string& problem : {server.journal_problem(), server.results_problem()}) {
     if (problem.empty()) continue;
     log(server::LogLevel::warning, problem);
-    code = server::kExitFailed;
+    if (asked || problem != server.journal_problem()) code = server::kExitFailed;
   }
   return code;
 }
@@ -243,8 +250,8 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   server.finish(server::to_text(end));
 
   // Never both: a replay is not recorded.
-  int code =
-      options.replay.empty() ? judge_record(server, log) : judge_replay(server, options.quiet, log);
+  int code = options.replay.empty() ? judge_record(server, options.recordings.empty(), log)
+                                    : judge_replay(server, options.quiet, log);
   if (code == server::kExitOk) code = judge_sending(server, log);
   if (!options.quiet) {
     outputs.out.write(

@@ -98,7 +98,7 @@ struct Raw {
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed, tuning;
   std::string password_file, host_password_file;
   std::string characters, check_character;
-  double seconds = 0.0, keep_seats = 30.0;
+  double seconds = 0.0, keep_seats = 30.0, recordings_gb = 2.0;
   int level = foosball::PlayerSpec{}.level;
   std::string style;
   bool fast = false, no_real_time = false, list_tuning = false;
@@ -189,6 +189,20 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)
           ->excludes("--device");
+  auto* recordings =
+      cli.add_option("--recordings", o.recordings,
+                     "record into this folder, under the time of day; the oldest are dropped, and "
+                     "what cannot be recorded is only said")
+          ->excludes(record)
+          ->excludes(replay);
+  cli.add_option("--recordings-kept", o.recording_limits.count, "... of them at most so many")
+      ->needs(recordings)
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  cli.add_option("--recordings-gb", raw.recordings_gb, "... and so many GiB")
+      ->needs(recordings)
+      ->check(CLI::Range(0.5, 1e4))
+      ->capture_default_str();
   cli.add_flag("--fast", raw.fast, "replay as fast as it goes")->needs(replay);
   cli.add_option("--seconds", raw.seconds, "end after so much time of the match")
       ->check(check_seconds);
@@ -254,6 +268,7 @@ void translate(Options& o, const Raw& raw) {
   }
   o.limits.seat_kept_us = std::llround(raw.keep_seats * 1e6);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
+  o.recording_limits.bytes = static_cast<std::uint64_t>(raw.recordings_gb * (1 << 30));
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
   o.loop.drop_rights = true;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/loop.h"
+#include "server/recordings.h"
 #include "server/run.h"
 #include "server/server.h"
 
@@ -23,6 +24,8 @@ struct Options {
   server::RunOptions run;
   server::LoopOptions loop;
   std::vector<std::string> devices;
+  std::string recordings;  // folder for a recording that is made without being asked for
+  server::RecordingLimits recording_limits;
   std::string calibration, record, replay, results, ready_file, stats_file;
   bool no_questionnaire = false;
   bool password_was_made = false;  // for this run: it is to be said

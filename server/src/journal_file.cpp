@@ -75,7 +75,7 @@ class JournalFile::Writer {
         wake_(std::move(wake)),
         ring_(options.ring_bytes) {}
 
-  enum class Failure : int { none, ring_full, write_failed, stalled };
+  enum class Failure : int { none, ring_full, write_failed, stalled, too_large };
 
   // Tick thread.
   bool write(std::span<const std::byte> bytes) { return ring_.write(bytes); }
@@ -129,6 +129,9 @@ std::string JournalFile::Writer::problem() const {
       return begin + "the disk is too slow; play goes on";
     case Failure::write_failed:
       return begin + errno_text(error_number_.load(std::memory_order_relaxed)) + "; play goes on";
+    case Failure::too_large:
+      return begin + "it has reached its " + std::to_string(options_.max_bytes >> 20) +
+             " MiB; play goes on";
     case Failure::stalled:
       return begin + "the disk, or the pipe's reader, did not take the rest in time";
   }
@@ -228,7 +231,9 @@ tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
 }
 
 JournalFile::JournalFile(const JournalFileOptions& options, std::shared_ptr<Writer> writer)
-    : close_patience_(options.close_patience), writer_(std::move(writer)) {
+    : close_patience_(options.close_patience),
+      room_(options.max_bytes),
+      writer_(std::move(writer)) {
   encoded_.reserve(std::size_t{2} << 20);
   std::promise<void> end;
   ended_ = end.get_future();
@@ -254,7 +259,11 @@ void JournalFile::add(const wire::JournalEntry& entry) {
 
 void JournalFile::push() {
   if (encoded_.empty()) return;
-  if (writer_->write(encoded_)) {
+  if (encoded_.size() > room_) {
+    ++dropped_;
+    writer_->fail(Writer::Failure::too_large, 0);
+  } else if (writer_->write(encoded_)) {
+    room_ -= encoded_.size();
     writer_->signal();
   } else {
     ++dropped_;

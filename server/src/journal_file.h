@@ -18,12 +18,14 @@
 #include <vector>
 
 #include "wire/journal.h"
+#include "wire/read_file.h"
 
 namespace server {
 
 struct JournalFileOptions {
   std::string path;
   bool overwrite = false;  // a recording that is there already; nothing else ever is
+  std::uint64_t max_bytes = wire::kMaxJournalFile;  // what nobody could read is not written
   std::size_t ring_bytes = std::size_t{8} << 20;  // minutes of play, or 8 of the largest keyframes
   // What is lost at most when the machine loses its power, if the disk keeps up.
   std::chrono::milliseconds sync_period{1000};
@@ -60,6 +62,7 @@ class JournalFile {
   void push();
 
   std::chrono::milliseconds close_patience_;
+  std::uint64_t room_;  // bytes that may still be written
   std::shared_ptr<Writer> writer_;  // the thread's too, which may outlast this object
   wire::JournalEncoder encoder_;
   std::vector<std::byte> encoded_;

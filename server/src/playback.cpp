@@ -47,7 +47,7 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
   return playback;
 }
 
-Playback::Playback(std::shared_ptr<const std::vector<std::byte>> file, std::string name)
+Playback::Playback(Bytes file, std::string name)
     : file_(std::move(file)), name_(std::move(name)), reader_(*file_) {}
 
 std::unique_ptr<Playback> Playback::twin() const {
@@ -57,8 +57,16 @@ std::unique_ptr<Playback> Playback::twin() const {
   return twin;
 }
 
+void Playback::extend(Bytes longer) {
+  reader_ = reader_.over(*longer);
+  file_ = std::move(longer);
+  exhausted_ = false;
+}
+
 void Playback::go_to(const Place& place) {
-  reader_ = place.reader;
+  // Whichever is longer holds the bytes of both.
+  if (place.file->size() > file_->size()) file_ = place.file;
+  reader_ = place.file == file_ ? place.reader : place.reader.over(*file_);
   ticks_ = place.ticks;
   checked_ = place.checked;
   first_difference_ = place.first_difference;
@@ -75,8 +83,8 @@ bool Playback::holds_a_tick() const {
 }
 
 std::uint64_t Playback::total_ticks() const {
-  wire::JournalReader reader(*file_);
-  std::uint64_t ticks = 0;
+  wire::JournalReader reader = reader_;
+  std::uint64_t ticks = ticks_;
   while (const auto entry = reader.next()) {
     ticks += std::holds_alternative<wire::JournalTick>(*entry) ? 1 : 0;
   }

@@ -29,6 +29,11 @@ tl::expected<RecordedScene, std::string> RecordedScene::twin() const {
   return RecordedScene(std::move(playback), std::move(*match));
 }
 
+void RecordedScene::extend(Playback::Bytes longer, std::optional<std::uint64_t> total_ticks) {
+  playback_->extend(std::move(longer));
+  total_ticks_ = total_ticks ? *total_ticks : playback_->total_ticks();
+}
+
 RecordedScene::Mark RecordedScene::mark() const {
   Mark mark{playback_->place(), {}, match_.state_hash(), snapshot_, last_event_};
   match_.snapshot(mark.match);

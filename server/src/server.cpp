@@ -1,6 +1,7 @@
 #include "server/server.h"
 
 #include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -98,6 +99,7 @@ struct Server::Impl {
   bool sending_fails = false;
   std::optional<foosball::Tuning> tuning_told;
   bool replay_over = false, journal_told = false, finished = false;
+  bool was_played = false;  // somebody has, and not the computers for show
 
   wire::JournalTick next;  // the inputs of the tick under way
   wire::Snapshot snapshot;
@@ -489,9 +491,17 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
 
   std::unique_ptr<Recorder> recorder;
   if (!options.record.empty()) {
-    auto file = JournalFile::create({.path = options.record, .overwrite = options.overwrite});
-    if (!file) return tl::unexpected(StartError{Kind::bad_option, file.error()});
-    recorder = std::make_unique<Recorder>(std::move(*file), header);
+    JournalFileOptions wanted{.path = options.record, .overwrite = options.overwrite};
+    if (options.record_by_default_bytes > 0) wanted.max_bytes = options.record_by_default_bytes;
+    auto file = JournalFile::create(wanted);
+    if (file) {
+      recorder = std::make_unique<Recorder>(std::move(*file), header);
+    } else if (options.record_by_default_bytes == 0) {
+      return tl::unexpected(StartError{Kind::bad_option, file.error()});
+    } else {
+      options.log(LogLevel::warning, file.error());
+      options.record.clear();
+    }
   }
   return std::unique_ptr<Server>(
       new Server(std::make_unique<Impl>(std::move(options), std::move(*match), std::move(*ports),
@@ -519,6 +529,8 @@ void Server::tick(std::int64_t now_us) {
     s.events.add(s.match.events());
     s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
     if (s.recorder) s.recorder->add(s.next, s.match);
+    const foosball::MatchView& view = s.match.view();
+    if (view.screen == foosball::Screen::play && !view.attract) s.was_played = true;
     if (s.results) s.keep_result();
   } else {
     s.broadcast(now_us, began_ns);
@@ -548,6 +560,8 @@ void Server::finish(const std::string& reason) {
   impl_->broadcaster.close();  // the last snapshot before the Bye
   impl_->control.stop(reason);
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
+  if (impl_->recorder && impl_->options.record_by_default_bytes > 0 && !impl_->was_played)
+    ::unlink(impl_->options.record.c_str());
   if (impl_->results) impl_->results->close();
 }
 

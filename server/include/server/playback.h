@@ -32,18 +32,25 @@ class Playback {
 
   const foosball::MatchDesc& match() const { return match_; }
 
+  using Bytes = std::shared_ptr<const std::vector<std::byte>>;  // of a whole file
+  const Bytes& bytes() const { return file_; }
   // Another reader of the same bytes, from their beginning.
   std::unique_ptr<Playback> twin() const;
+  // The file has grown: goes on in the longer one. Precondition: it begins with bytes().
+  void extend(Bytes longer);
 
   // How far it has been read: to go back there with a match that is restored to the same tick. A
-  // place is good for the playback it came from and its twins.
+  // place is good for the playback it came from and its twins, whichever of them were extended.
   struct Place {
+    Bytes file;
     wire::JournalReader reader;
     std::uint64_t ticks, checked;
     std::optional<std::uint64_t> first_difference;
     bool ended, exhausted;
   };
-  Place place() const { return {reader_, ticks_, checked_, first_difference_, ended_, exhausted_}; }
+  Place place() const {
+    return {file_, reader_, ticks_, checked_, first_difference_, ended_, exhausted_};
+  }
   void go_to(const Place& place);
 
   // Checks what the journal says about the match as it stands, then gives the inputs of its next
@@ -53,17 +60,17 @@ class Playback {
   Verdict verdict() const;
   std::string verdict_sentence() const;
   std::uint64_t ticks() const { return ticks_; }  // given so far
-  std::uint64_t total_ticks() const;              // of the recording; reads all of it
+  std::uint64_t total_ticks() const;              // of the recording; reads the rest of it
   std::uint64_t hashes_checked() const { return checked_; }
 
  private:
-  Playback(std::shared_ptr<const std::vector<std::byte>> file, std::string name);
+  Playback(Bytes file, std::string name);
   bool holds_a_tick() const;
   void check(const foosball::Match& match, const wire::JournalHash& hash);
   void check(const foosball::Match& match, const wire::JournalKeyframe& keyframe);
   void compare(std::uint64_t tick, bool same);
 
-  std::shared_ptr<const std::vector<std::byte>> file_;  // twins share it
+  Bytes file_;  // twins share it
   std::string name_;
   wire::JournalReader reader_;
   foosball::MatchDesc match_;

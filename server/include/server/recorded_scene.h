@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -47,6 +48,9 @@ class RecordedScene {
 
   std::uint64_t ticks() const { return playback_->ticks(); }
   std::uint64_t total_ticks() const { return total_ticks_; }  // of the recording
+  // The file has grown: see Playback::extend. total_ticks: of a twin that was extended by the same
+  // bytes; none: they are counted here.
+  void extend(Playback::Bytes longer, std::optional<std::uint64_t> total_ticks = {});
   const foosball::Characters& characters() const { return playback_->match().characters; }
   const Playback& playback() const { return *playback_; }
   std::uint64_t state_hash() const { return match_.state_hash(); }

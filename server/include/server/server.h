@@ -37,6 +37,9 @@ struct ServerOptions {
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
   bool overwrite = false;                 // the recording that is there already
+  // Recorded without being asked: play goes on whatever becomes of the file, which is removed in
+  // the end if nobody has played; it has at most so many bytes. 0: asked for.
+  std::uint64_t record_by_default_bytes = 0;
   // A file of results (results/store.h) to which every match that was won or drawn is added, or
   // empty; and then what date it is, as 2026-11-22T23:59:59Z. Not of a replay.
   std::string results;
