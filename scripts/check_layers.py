@@ -70,6 +70,7 @@ LAYERS = {
     'foosball/include/foosball/tuning.h': 'table',
     'tools/': 'tools',
     'tools/video/': 'video',
+    'tools/watch/': 'watch',
     'benchmarks/': 'benchmarks',
     'tests/': 'tests',
 }
@@ -109,8 +110,10 @@ MAY_USE = {
     'client': {ENGINE_FACE, 'characters', 'os', 'draw', 'profile', 'table', 'wire', 'device-frame', 'hand'},
     # Has its worlds in its own process; knows of no match and no wire.
     'sandbox': {ENGINE_FACE, 'os', 'draw', 'scenes'},
-    # A recording drawn as the client draws it: here, and only here, server and client meet.
+    # A recording drawn as the client draws it: in these two, and only there, server and client meet.
     'video': {ENGINE_FACE, 'characters', 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'server', 'client'},
+    'watch': {ENGINE_FACE, 'characters', 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'hand', 'server',
+              'client', 'video'},
     'tools': {ENGINE_FACE, 'os', 'results', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
     'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',

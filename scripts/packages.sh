@@ -50,6 +50,7 @@ check  shellcheck            static checks of the scripts
 check  ffmpeg                writes and measures videos of recordings
 check  dpkg-dev              the libraries that the Debian package depends on
 check  systemd               verifies the service that the package installs
+check  xdotool               keys and mouse for the test that watches a recording
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests
 check  libeigen3-dev         6x6 matrices that the tests compare with

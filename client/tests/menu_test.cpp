@@ -238,7 +238,7 @@ TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
     titles.insert(menu.page(context).title);
     menu.step({.right = 1}, 0, context);
   }
-  EXPECT_EQ(titles.size(), 3u);
+  EXPECT_EQ(titles.size(), 4u);
   menu.step({.back = true}, 0, context);
   EXPECT_TRUE(menu.page(context).rows.empty());
   menu.toggle(Menu::Page::tuning);
@@ -247,12 +247,29 @@ TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
   EXPECT_FALSE(menu.open());
 }
 
+TEST(Menu, AsksForTheListOfRecordingsAndTurnsRecordingOff) {
+  Settings settings;
+  const SeatsView nothing;
+  Menu menu("");
+  const Menu::Context context{settings, nothing, nullptr};
+  menu.toggle(Menu::Page::recordings);
+  EXPECT_FALSE(menu.step({.right = 1}, 0, context).watch_recordings);
+  EXPECT_TRUE(menu.step({.confirm = true}, 0, context).watch_recordings);
+  const auto turned = menu.step({.down = 1, .confirm = true}, 0, context);
+  EXPECT_TRUE(turned.settings_changed);
+  EXPECT_FALSE(turned.watch_recordings);
+  EXPECT_FALSE(settings.record_matches);
+  EXPECT_NE(format_settings(settings).find("record_matches = no"), std::string::npos);
+  EXPECT_EQ(parse_settings(format_settings(settings)).settings, settings);
+}
+
 TEST(Menu, StandsWithoutAServer) {
   Settings settings;
   const SeatsView nothing;
   Menu menu("");
   const Menu::Context context{settings, nothing, nullptr};
-  for (const auto page : {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning}) {
+  for (const auto page :
+       {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning, Menu::Page::recordings}) {
     menu.toggle(page);
     for (int i = 0; i < 80; ++i) menu.step({.down = 1, .confirm = i % 3 == 0}, 0, context);
     EXPECT_FALSE(menu.page(context).rows.empty());

@@ -42,10 +42,15 @@ TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
   }
   pad.set(SDL_CONTROLLER_BUTTON_A, true);
   pad.set(SDL_CONTROLLER_BUTTON_A, false);
+  for (const auto button : {SDL_CONTROLLER_BUTTON_B, SDL_CONTROLLER_BUTTON_X}) {
+    pad.set(button, true);
+    pad.set(button, false);
+  }
   pads.poll(input);
   InputEvents events = input.take(bit_of(Device::pad_1));
   EXPECT_EQ(events.wheel, 2);
   EXPECT_TRUE(events.pad_push);
+  EXPECT_TRUE(events.pad_back && events.pad_share);
   input.clear();
   ASSERT_EQ(SDL_JoystickSetVirtualAxis(pad.joystick(), SDL_CONTROLLER_AXIS_LEFTY, -32768), 0);
   SDL_JoystickUpdate();

@@ -17,7 +17,7 @@ deb=("$work"/space-foosball_*.deb)
 dpkg-deb -x "${deb[0]}" "$work/root"
 dpkg-deb -e "${deb[0]}" "$work/control"
 
-for file in usr/bin/space-foosball usr/bin/space-foosball-server usr/bin/foosball-replay usr/bin/space-foosball-results \
+for file in usr/bin/space-foosball usr/bin/space-foosball-server usr/bin/foosball-replay usr/bin/space-foosball-results usr/bin/space-foosball-watch \
   lib/systemd/system/space-foosball-server.service lib/udev/rules.d/70-space-foosball.rules \
   etc/default/space-foosball-server usr/share/doc/space-foosball/README.md \
   usr/share/space-foosball/characters/2-average.toml; do

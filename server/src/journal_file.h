@@ -62,7 +62,7 @@ class JournalFile {
   void push();
 
   std::chrono::milliseconds close_patience_;
-  std::uint64_t room_;  // bytes that may still be written
+  std::uint64_t room_;              // bytes that may still be written
   std::shared_ptr<Writer> writer_;  // the thread's too, which may outlast this object
   wire::JournalEncoder encoder_;
   std::vector<std::byte> encoded_;

@@ -206,6 +206,11 @@ RecordingSummary summarise_recording(const std::string& path) {
   return summary;
 }
 
+bool is_being_recorded(const std::string& path) {
+  const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  return file && is_locked(file.get());
+}
+
 tl::expected<std::vector<RecordingSummary>, std::string> list_recordings(
     const std::string& folder) {
   std::vector<RecordingSummary> all;

@@ -45,6 +45,13 @@ void Staging::advance(const wire::Snapshot& state, std::span<const wire::EventSn
   view_ = motion_.step(&state, team_, dt);
 }
 
+void Staging::jump(const client::MatchStory& story) {
+  story_ = story;
+  particles_ = {};
+  effects_ = {};
+  effects_.set_characters(characters_);
+}
+
 client::Camera Staging::camera(const glm::ivec2& size) const {
   return client::player_camera(view_, size);
 }

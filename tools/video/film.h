@@ -20,19 +20,25 @@ namespace video {
 // What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
 class Staging {
  public:
-  Staging(int team, const foosball::Characters& characters) : team_(team) {
-    effects_.set_characters(characters);
+  Staging(int team, const foosball::Characters& characters) : team_(team), characters_(characters) {
+    effects_.set_characters(characters_);
   }
 
   // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
   void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
                client::SoundPlayer* sounds);
   client::Camera camera(const glm::ivec2& size) const;
+  client::Camera camera(client::View view, const glm::ivec2& size) const {
+    return motion_.camera(view, size);
+  }
+  // Goes to another moment, of which a person has been told this.
+  void jump(const client::MatchStory& story);
   client::Particles& particles() { return particles_; }
   const client::MatchStory& story() const { return story_; }
 
  private:
   int team_;
+  foosball::Characters characters_;
   client::MatchStory story_;
   client::Effects effects_;
   client::Particles particles_;

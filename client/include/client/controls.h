@@ -28,8 +28,9 @@ enum class Action : std::uint8_t {
   seats,
   tuning,
   time_out,
+  recordings,
 };
-inline constexpr int kActions = 19;
+inline constexpr int kActions = 20;
 
 constexpr std::size_t index_of(Action action) {
   return static_cast<std::size_t>(action);

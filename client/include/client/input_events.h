@@ -28,6 +28,8 @@ struct InputEvents {
   bool pad_pause = false;
   bool pad_menu = false;
   bool pad_time_out = false;
+  bool pad_back = false;            // out of a menu or a screen
+  bool pad_share = false;           // a recording
   int pad_up = 0, pad_right = 0;    // presses of its cross, with their sign
   int held_up = 0, held_right = 0;  // -1, 0, 1: cross or left stick of a pad, as held
   bool back = false;                // Esc, while the pointer is free

@@ -1,5 +1,5 @@
-// The menu: pages of settings, seats and tuning, worked alike with keys, mouse, gamepad or rods.
-// Its first row chooses the page.
+// The menu: pages of settings, seats, tuning and recordings, worked alike with keys, mouse, gamepad
+// or rods. Its first row chooses the page.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace client {
 
 class Menu {
  public:
-  enum class Page : std::uint8_t { settings, seats, tuning };
-  static constexpr int kPages = 3;
+  enum class Page : std::uint8_t { settings, seats, tuning, recordings };
+  static constexpr int kPages = 4;
 
   explicit Menu(std::string profiles) : tuning_(std::move(profiles)) {}
 
@@ -34,6 +34,7 @@ class Menu {
   };
   struct Outcome {
     bool settings_changed = false;
+    bool watch_recordings = false;  // the list of them is asked for
     SeatsAsked asked;
   };
   // key: pressed in this frame, 0: none.

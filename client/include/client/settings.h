@@ -46,7 +46,8 @@ struct Settings {
   bool automatic_rod = false;  // assists, each by itself
   bool goalie_follows = false;
   bool aim = false;
-  bool questionnaire = true;  // may be asked for after a match
+  bool questionnaire = true;   // may be asked for after a match
+  bool record_matches = true;  // read by whatever starts the server, as ./play does
   // Of each handle outside the screen against its rod in the picture, along the table [m]: for the
   // view from above on a cabinet. kHandleOffset at most either way.
   std::array<float, 8> handle_offset{};

@@ -11,11 +11,12 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_leave = 0;
 
+constexpr double kHiddenFrame = 0.02;                  // [s] while recordings are watched
 constexpr std::int64_t kProblemsShownUs = 12'000'000;  // of the settings file
 
 bool asks_for_menu(const InputEvents& events) {
   bool asks = events.pad_menu;
-  for (const Action action : {Action::settings, Action::seats, Action::tuning})
+  for (const Action action : {Action::settings, Action::seats, Action::tuning, Action::recordings})
     asks = asks || events.presses[index_of(action)] % 2 != 0;
   return asks;
 }
@@ -368,8 +369,9 @@ bool App::match_is_over() const {
 }
 
 bool App::leaving(double seconds) const {
-  return window_->should_close() || asked_to_leave != 0 || match_is_over() ||
-         (options_.seconds && seconds >= *options_.seconds);
+  const bool time_over = options_.seconds && seconds >= *options_.seconds;
+  return window_->should_close() || asked_to_leave != 0 ||
+         (!watching_ && (match_is_over() || time_over));
 }
 
 // The first picture may take long to draw, while the driver compiles shaders: it should show the
@@ -404,7 +406,12 @@ int App::loop() {
     play_reel(input_us);
     follow_survey(input_us);
     follow_report();
-    draw(dt);
+    follow_watching();
+    if (watching_) {
+      window_->wait(kHiddenFrame);
+    } else {
+      draw(dt);
+    }
     last = leaving(seconds_);
     if (!shot && (last || (options_.screenshot_at && seconds_ >= *options_.screenshot_at))) {
       shot = true;
@@ -413,7 +420,7 @@ int App::loop() {
       picture_us = os::monotonic_us() - pause;
     }
     drawing = 1e-6 * static_cast<double>(os::monotonic_us() - began - picture_us);
-    window_->swap();
+    if (!watching_) window_->swap();
     if (scene_is_current() && !sample_.starving) say_when_in_step(os::monotonic_us());
     meter_.end(os::monotonic_us());
     judge_quality();

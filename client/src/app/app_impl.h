@@ -13,6 +13,7 @@
 #include "app/frame_meter.h"
 #include "app/log.h"
 #include "app/view_motion.h"
+#include "app/watch_program.h"
 #include "app/window.h"
 #include "client/crew.h"
 #include "client/menu.h"
@@ -50,6 +51,8 @@ class App {
   void open_menu(const InputEvents& events);
   SeatsView seats_view() const;
   Menu::Context menu_context();
+  void watch_recordings();
+  void follow_watching();
   void turn_view();
   void play_reel(std::int64_t now);
   void hear(std::int64_t now);
@@ -68,6 +71,7 @@ class App {
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
   void hear_of_pads();
+  void tell(const std::string& line);
   void predict(std::int64_t now);
   void draw(float dt);
   std::uint8_t active_rods() const;
@@ -101,6 +105,7 @@ class App {
   wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
   bool show_help_ = false;
   Settings settings_;
+  std::optional<WatchProgram> watching_;  // while it runs, this window is hidden
   Menu menu_{tuning_directory()};
   SeatsView seats_;  // what the page of seats is made of
   MenuHand menu_hand_;

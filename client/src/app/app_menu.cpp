@@ -91,6 +91,7 @@ void App::open_menu(const InputEvents& events) {
   if (asked(Action::settings) || events.pad_menu) menu_.toggle(Menu::Page::settings);
   if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
   if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
+  if (asked(Action::recordings)) return watch_recordings();
   menu_hand_.restart();
 }
 
@@ -102,14 +103,59 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   };
   if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
   if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
+  if (pressed(Action::recordings)) return watch_recordings();
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
   const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
   const Menu::Outcome outcome =
       menu_.step(waits ? MenuSteps{.back = events.back} : steps, events.any_key, menu_context());
   if (outcome.settings_changed) change_settings();
+  if (outcome.watch_recordings) watch_recordings();
   if (!crew_) return;
   if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
   for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
+}
+
+// The match waits, if the person plays in it; a pause that others must agree to is theirs.
+void App::watch_recordings() {
+  if (watching_) return;
+  std::vector<std::string> options;
+  if (options_.fullscreen) options.emplace_back("--fullscreen");
+  if (options_.mute) options.emplace_back("--mute");
+  auto program = WatchProgram::start(options);
+  if (!program) {
+    log_warning(program.error());
+    tell(program.error());
+    return;
+  }
+  watching_.emplace(std::move(*program));
+  log_info("showing the recordings");
+  const bool playing = sample_.any && sample_.state.screen == number(wire::Screen::play);
+  if (crew_ && crew_->plays() && playing && !sample_.state.paused) {
+    const auto team = static_cast<std::uint8_t>(crew_->team());
+    connection_->wish(crew_->session(), {number(wire::WishKind::pause), team, 1});
+  }
+  if (sounds_) sounds_->set_volume(0.0f);
+  window_->set_visible(false);
+}
+
+void App::follow_watching() {
+  const auto code = watching_ ? watching_->ended() : std::nullopt;
+  if (!code) return;
+  watching_.reset();
+  window_->set_visible(true);
+  log_info("back from the recordings");
+  if (sounds_) sounds_->set_volume(settings_.volume);
+  if (*code == 0) return;
+  const std::string said = "space-foosball-watch ended with " + std::to_string(*code) +
+                           ": what it said is in the terminal, or in the log of ./play";
+  log_warning(said);
+  tell(said);
+}
+
+// For a while, as of gamepads.
+void App::tell(const std::string& line) {
+  pad_news_ = {line};
+  pad_news_until_ = seconds_ + 8.0;
 }
 
 void App::turn_view() {

@@ -20,6 +20,10 @@ std::optional<PadButton> meaning_of(int button) {
       return PadButton::pause;
     case SDL_CONTROLLER_BUTTON_BACK:
       return PadButton::menu;
+    case SDL_CONTROLLER_BUTTON_B:
+      return PadButton::back;
+    case SDL_CONTROLLER_BUTTON_X:
+      return PadButton::share;
     case SDL_CONTROLLER_BUTTON_Y:
       return PadButton::time_out;
     case SDL_CONTROLLER_BUTTON_LEFTSHOULDER:

@@ -97,6 +97,17 @@ bool Window::should_close() const {
 void Window::close() {
   impl_->close_asked = true;
 }
+void Window::set_visible(bool visible) {
+  const bool fullscreen = glfwGetWindowMonitor(impl_->handle) != nullptr;
+  if (!visible) impl_->capture(false);
+  if (!visible) impl_->input.release_keys();
+  if (fullscreen) {
+    visible ? glfwRestoreWindow(impl_->handle) : glfwIconifyWindow(impl_->handle);
+  } else {
+    visible ? glfwShowWindow(impl_->handle) : glfwHideWindow(impl_->handle);
+  }
+  if (visible) glfwFocusWindow(impl_->handle);
+}
 bool Window::captured() const {
   return impl_->captured;
 }

@@ -22,8 +22,9 @@ class Window {
 
   bool should_close() const;
   void close();
-  glm::ivec2 size() const;  // of the framebuffer [px]
-  void swap();              // shows the frame; waits for the display's refresh
+  void set_visible(bool visible);  // hidden: another program has the screen
+  glm::ivec2 size() const;         // of the framebuffer [px]
+  void swap();                     // shows the frame; waits for the display's refresh
   void set_keys(const KeyBindings& keys);
   // Takes what has happened, by events: nothing that is over by now is lost.
   void poll();

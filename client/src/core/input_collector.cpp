@@ -115,6 +115,8 @@ void InputCollector::take_pad(const Pad& pad, InputEvents& events) const {
   events.pad_push = events.pad_push || presses(PadButton::push) > 0;
   events.pad_pause = events.pad_pause || presses(PadButton::pause) % 2 != 0;
   events.pad_menu = events.pad_menu || presses(PadButton::menu) % 2 != 0;
+  events.pad_back = events.pad_back || presses(PadButton::back) > 0;
+  events.pad_share = events.pad_share || presses(PadButton::share) > 0;
   events.pad_time_out = events.pad_time_out || presses(PadButton::time_out) > 0;
   events.wheel += presses(PadButton::next_rod) - presses(PadButton::previous_rod);
   events.pad_up += presses(PadButton::up) - presses(PadButton::down);

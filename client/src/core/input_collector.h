@@ -17,6 +17,8 @@ enum class PadButton : std::uint8_t {
   pause,
   menu,
   time_out,
+  back,
+  share,
   previous_rod,
   next_rod,
   up,
@@ -24,7 +26,7 @@ enum class PadButton : std::uint8_t {
   left,
   right,
 };
-inline constexpr int kPadButtons = 10;
+inline constexpr int kPadButtons = 12;
 
 class InputCollector {
  public:

@@ -6,6 +6,22 @@
 #define N_(english) english  // for xgettext: render/translate.h
 
 namespace client {
+namespace {
+
+enum RecordingsRow : int { row_watch, row_record, recordings_rows };
+
+MenuPage recordings_page(const Settings& settings, int row) {
+  MenuPage page;
+  page.rows = {{N_("Watch recorded matches"), ""},
+               {N_("Record what is played"), settings.record_matches ? N_("on") : N_("off")}};
+  page.note = row == row_record
+                  ? N_("from the next start of the game on; the oldest recordings are dropped, "
+                       "never one that you keep or share")
+                  : N_("opens the list: watch, slow motion, goals, share; the match waits");
+  return page;
+}
+
+}  // namespace
 
 void Menu::toggle(Page page) {
   open_ = !open_ || page != page_;
@@ -28,6 +44,7 @@ int Menu::rows(const Context& context) const {
   if (page_ == Page::settings) rows = static_cast<int>(settings_.rows(context.settings).size());
   if (page_ == Page::seats && context.crew != nullptr) rows = seats_.rows(context.seats);
   if (page_ == Page::tuning) rows = tuning_.rows();
+  if (page_ == Page::recordings) rows = recordings_rows;
   return rows + 1;
 }
 
@@ -57,18 +74,26 @@ Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context
     outcome.asked = seats_.step(context.seats, row_ - 1, inside, *context.crew);
   } else if (page_ == Page::tuning) {
     tuning_.step(row_ - 1, inside);
+  } else if (page_ == Page::recordings) {
+    const bool changes = inside.right % 2 != 0 || inside.confirm;
+    outcome.watch_recordings = row_ - 1 == row_watch && inside.confirm;
+    outcome.settings_changed = row_ - 1 == row_record && changes;
+    if (outcome.settings_changed)
+      context.settings.record_matches = !context.settings.record_matches;
   }
   return outcome;
 }
 
 MenuPage Menu::page(const Context& context) const {
-  constexpr std::array<const char*, kPages> kTitles{N_("Settings"), N_("Seats"), N_("Tuning")};
+  constexpr std::array<const char*, kPages> kTitles{N_("Settings"), N_("Seats"), N_("Tuning"),
+                                                    N_("Recordings")};
   MenuPage page;
   if (!open_) return page;
   if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
   if (page_ == Page::seats && context.crew != nullptr)
     page = seats_.page(context.seats, *context.crew, row_ - 1);
   if (page_ == Page::tuning) page = tuning_.page(row_ - 1);
+  if (page_ == Page::recordings) page = recordings_page(context.settings, row_ - 1);
   page.title = kTitles[static_cast<std::size_t>(page_)];
   page.rows.insert(page.rows.begin(), MenuRow{.label = N_("Page"), .value = page.title});
   page.chosen = row_;

@@ -10,9 +10,9 @@ namespace client {
 namespace {
 
 constexpr std::array<const char*, kActions> kActionNames{
-    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",   "rod_2",     "rod_3",
-    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",   "automatic", "camera",
-    "settings",   "help",       "seats",        "tuning",    "time_out"};
+    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",    "rod_2",     "rod_3",
+    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",    "automatic", "camera",
+    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings"};
 
 struct NamedKey {
   const char* name;
@@ -127,6 +127,7 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "goalie_follows") return flag(s.goalie_follows);
   if (name == "aim") return flag(s.aim);
   if (name == "questionnaire") return flag(s.questionnaire);
+  if (name == "record_matches") return flag(s.record_matches);
   if (name == "handle_offset_mm")
     return read_offsets(value, s.handle_offset) ? "" : "eight numbers from -60 to 60";
   if (name.starts_with("key.")) {
@@ -164,6 +165,7 @@ KeyBindings default_keys() {
   set(Action::seats, "F3");
   set(Action::tuning, "F4");
   set(Action::time_out, "T");
+  set(Action::recordings, "F5");
   return keys;
 }
 
@@ -233,6 +235,7 @@ std::string format_settings(const Settings& s) {
   out << "goalie_follows = " << yes_no(s.goalie_follows) << "\n";
   out << "aim = " << yes_no(s.aim) << "\n";
   out << "questionnaire = " << yes_no(s.questionnaire) << "\n";
+  out << "record_matches = " << yes_no(s.record_matches) << "\n";
   out << "handle_offset_mm =";
   for (const float offset : s.handle_offset) out << " " << std::lround(1e3f * offset);
   out << "\n";

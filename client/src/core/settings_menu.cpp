@@ -48,7 +48,8 @@ constexpr std::array<const char*, kActions> kActionLabels{N_("Slide away"),
                                                           N_("All keys"),
                                                           N_("Seats"),
                                                           N_("Tuning"),
-                                                          N_("Time-out")};
+                                                          N_("Time-out"),
+                                                          N_("Recordings")};
 constexpr std::array<const char*, 3> kQualities{N_("automatic"), N_("low"), N_("high")};
 constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system"), "English",
                                                              "한국어", "Deutsch"};
@@ -115,8 +116,8 @@ MenuSteps MenuHand::steps(const InputEvents& events, const wire::Snapshot* scene
   steps.down += whole_steps(mouse_down_, kMouseStep);
   steps.right += whole_steps(mouse_right_, kMouseStep);
   steps.confirm = events.push || events.pad_push;
-  steps.back =
-      events.back || events.pad_pause || events.pad_menu || pressed(Action::settings) % 2 != 0;
+  steps.back = events.back || events.pad_back || events.pad_pause || events.pad_menu ||
+               pressed(Action::settings) % 2 != 0;
   if (scene == nullptr || team < 0) return steps;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene->layout));
   for (std::size_t i = 0; i < scene->rods.size(); ++i) {

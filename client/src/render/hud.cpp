@@ -113,6 +113,7 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
 // What the keys do: all of it on the logo and when asked for, a line where a choice is to be made.
 // How much room it takes at the bottom.
 float draw_help(const HudPen& pen, const HudState& hud) {
+  if (hud.recorded) return 0.0f;
   const auto screen =
       hud.state != nullptr ? static_cast<ScreenKind>(hud.state->screen) : ScreenKind::logo;
   const bool plays = hud.viewer_team >= 0;
@@ -184,7 +185,7 @@ void draw_corner_texts(const HudPen& pen, const HudState& hud) {
              {pen.half_width - 16.0f, 46.0f}, kWarning);
   }
   // Who has not joined yet, or is refused, is no watcher.
-  if (hud.viewer_team < 0 && hud.connection_message.empty())
+  if (hud.viewer_team < 0 && hud.connection_message.empty() && !hud.recorded)
     pen.text(tr("watching"), small, {x, 26.0f}, kFaint);
   if (hud.automatic_rod) pen.text(tr("automatic rod (Tab)"), small, {x, 26.0f}, kFaint);
   if (hud.mouse_free && hud.viewer_team >= 0)
@@ -197,10 +198,10 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
   const bool above = hud.view == View::above;
   switch (static_cast<ScreenKind>(state.screen)) {
     case ScreenKind::logo:
-      draw_logo(pen, state, hud.viewer_team < 0, hud.still);
+      draw_logo(pen, state, hud.viewer_team < 0 || hud.recorded, hud.still);
       return;
     case ScreenKind::selection:
-      draw_selection(pen, state, *hud.characters, hud.viewer_team);
+      draw_selection(pen, state, *hud.characters, hud.recorded ? -1 : hud.viewer_team);
       return;
     case ScreenKind::play:
       break;

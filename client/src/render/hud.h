@@ -40,8 +40,9 @@ struct HudState {
   std::uint8_t active_rods = 0;  // in a hand here, by bit
   View view = View::seat;
   float text_scale = 1.0f;
-  bool still = false;   // nothing pulses or grows
-  bool replay = false;  // what is seen is the goal again
+  bool still = false;     // nothing pulses or grows
+  bool replay = false;    // what is seen is the goal again
+  bool recorded = false;  // a recording: nobody is waited for, nor called to play
   std::array<float, 8> rod_shift{};
   GoalStory goal;
   float since_foul = 1e3f;  // [s]

@@ -33,7 +33,7 @@ constexpr std::array<KeyHelp, 14> kAllKeys{
      {N_("Space, click"), N_("push: begin, confirm")},
      {"P", N_("pause")},
      {"C", N_("camera: seat, above, follow, spectator")},
-     {"F2 F3 F4", N_("settings, seats, tuning")},
+     {"F2 F3 F4 F5", N_("settings, seats, tuning, recordings")},
      {"T", N_("time-out")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};

@@ -50,17 +50,17 @@ void Post::pass(const draw::Program& program, const draw::Target& to, GLuint ima
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Post::present(const glm::ivec2& screen) {
+void Post::present(const glm::ivec2& screen, int room_below) {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   scene_.resolve();
   if (quality_ == draw::Quality::low) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, scene_.framebuffer());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, scene_.size().x, scene_.size().y, 0, 0, screen.x, screen.y,
-                      GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    glBlitFramebuffer(0, 0, scene_.size().x, scene_.size().y, 0, room_below, screen.x,
+                      room_below + screen.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, screen.x, screen.y);
+    glViewport(0, room_below, screen.x, screen.y);
     return;
   }
   glBindVertexArray(empty_.get());
@@ -75,7 +75,7 @@ void Post::present(const glm::ivec2& screen) {
     below = bloom_[i].texture();
   }
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, screen.x, screen.y);
+  glViewport(0, room_below, screen.x, screen.y);
   present_.use();
   present_.set("u_image", 0);
   present_.set("u_bloom", 1);

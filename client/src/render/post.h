@@ -19,7 +19,7 @@ class Post {
   // The target that the scene is drawn into.
   const draw::Target& scene() const { return scene_; }
   // To the window's framebuffer, which stays bound.
-  void present(const glm::ivec2& screen);
+  void present(const glm::ivec2& screen, int room_below);
 
  private:
   void pass(const draw::Program& program, const draw::Target& to, GLuint image) const;

@@ -468,7 +468,7 @@ void Scene::draw(const wire::Snapshot& state, const SceneView& view, Particles& 
   draw_glass(view);
   draw_particles(view.camera, height);
   glDisable(GL_CULL_FACE);
-  post_.present(screen);
+  post_.present(screen, view.room_below);
 }
 
 }  // namespace client

@@ -27,6 +27,7 @@ struct SceneView {
   bool reduced_flashes = false;      // nothing pulses
   bool distinct_teams = false;       // team 1 wears stripes
   std::array<float, 8> rod_shift{};  // along x, of what is drawn [m]: see shift_scene()
+  int room_below = 0;                // [px] of the window that the picture leaves free
 };
 
 // The ball is drawn larger with height (paper, section 5: "a sense of height cues"), by the height

@@ -52,6 +52,8 @@ struct RecordingSummary {
 
 // Never waits: a pipe, a device or a folder is bad without being opened.
 RecordingSummary summarise_recording(const std::string& path);
+// A server writes it now.
+bool is_being_recorded(const std::string& path);
 // All *.sfr of the folder, newest first. The error is a sentence; no folder is no error.
 tl::expected<std::vector<RecordingSummary>, std::string> list_recordings(const std::string& folder);
 

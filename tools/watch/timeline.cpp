@@ -1,0 +1,198 @@
+#include "timeline.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "server/recordings.h"
+#include "wire/enums.h"
+#include "wire/read_file.h"
+
+namespace watch {
+namespace {
+
+constexpr std::uint64_t kStepTicks = 20;  // how finely the reader follows what a person is told
+constexpr std::chrono::milliseconds kLookAgain{500};
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Timeline>, std::string> Timeline::open(const std::string& path) {
+  const server::RecordingSummary summary = server::summarise_recording(path);
+  if (summary.state == server::RecordingSummary::State::bad) return tl::unexpected(summary.problem);
+  struct stat about {};
+  FileIdentity file;
+  if (::stat(path.c_str(), &about) == 0) file = {about.st_dev, about.st_ino};
+  auto scene = server::RecordedScene::open(path);
+  if (!scene) return tl::unexpected(scene.error());
+  auto reader = scene->twin();
+  if (!reader) return tl::unexpected(reader.error());
+  return std::unique_ptr<Timeline>(new Timeline(path, file, std::move(*scene), std::move(*reader)));
+}
+
+Timeline::Timeline(std::string path, FileIdentity file, server::RecordedScene scene,
+                   server::RecordedScene reader)
+    : path_(std::move(path)), file_(file), scene_(std::move(scene)), reader_(std::move(reader)) {
+  findings_.total = scene_.total_ticks();
+  leave_mark({});
+  thread_ = std::thread([this] { run(); });
+}
+
+Timeline::~Timeline() {
+  {
+    const std::lock_guard guard(mutex_);
+    stop_ = true;
+  }
+  news_.notify_all();
+  thread_.join();
+}
+
+void Timeline::run() {
+  client::MatchStory story;
+  do {
+    read(story);
+  } while (await_growth());
+}
+
+// All that is there.
+void Timeline::read(client::MatchStory& story) {
+  bool more = true;
+  while (more && !stop_) {
+    more = reader_.advance_to(reader_.ticks() + kStepTicks);
+    const auto events = reader_.take_events();
+    story.update(events, reader_.snapshot(), 1e-3f * kStepTicks);
+    note(events, story);
+    if (reader_.ticks() < next_mark_) continue;
+    leave_mark(story);
+    next_mark_ = reader_.ticks() + between_;
+  }
+}
+
+// False: there is nothing to come, or nobody to read it for.
+bool Timeline::await_growth() {
+  const server::Playback& playback = reader_.playback();
+  const bool open_end = playback.verdict() == server::Playback::Verdict::cut_short;
+  const bool being_made = open_end && server::is_being_recorded(path_);
+  {
+    const std::lock_guard guard(mutex_);
+    findings_.done = true;
+    findings_.being_made = being_made;
+    findings_.verdict = playback.verdict();
+    findings_.sentence = playback.verdict_sentence();
+  }
+  news_.notify_all();
+  while (open_end && !stop_) {
+    if (grow()) return true;
+    std::unique_lock lock(mutex_);
+    news_.wait_for(lock, kLookAgain, [&] { return stop_ || look_; });
+    look_ = false;
+    lock.unlock();
+    // Its end may have come since it was last read.
+    const bool still = server::is_being_recorded(path_);
+    lock.lock();
+    findings_.being_made = still;
+  }
+  return false;
+}
+
+// True: there is more of the same file.
+bool Timeline::grow() {
+  const auto& had = *reader_.playback().bytes();
+  struct stat about {};
+  if (::stat(path_.c_str(), &about) != 0 || !S_ISREG(about.st_mode) ||
+      about.st_dev != file_.device || about.st_ino != file_.node ||
+      static_cast<std::uint64_t>(about.st_size) <= had.size()) {
+    return false;
+  }
+  auto bytes = wire::read_file(path_, wire::kMaxJournalFile);
+  if (!bytes || bytes->size() <= had.size() ||
+      std::memcmp(bytes->data(), had.data(), had.size()) != 0) {
+    return false;
+  }
+  auto longer = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
+  reader_.extend(longer);
+  const std::lock_guard guard(mutex_);
+  grown_ = std::move(longer);
+  findings_.total = reader_.total_ticks();
+  return true;
+}
+
+// Window's thread.
+void Timeline::take_growth() {
+  server::Playback::Bytes longer;
+  std::uint64_t total = 0;
+  {
+    const std::lock_guard guard(mutex_);
+    longer = std::exchange(grown_, nullptr);
+    total = findings_.total;
+  }
+  if (longer) scene_.extend(std::move(longer), total);
+}
+
+void Timeline::note(const std::vector<wire::EventSnapshot>& events,
+                    const client::MatchStory& story) {
+  const std::lock_guard guard(mutex_);
+  findings_.read = reader_.ticks();
+  for (const wire::EventSnapshot& event : events) {
+    if (event.kind == wire::number(wire::EventKind::goal))
+      findings_.goals.push_back({reader_.ticks(), story.last_goal().team});
+  }
+}
+
+void Timeline::leave_mark(const client::MatchStory& story) {
+  auto mark = std::make_shared<const Mark>(Mark{reader_.mark(), story});
+  const std::lock_guard guard(mutex_);
+  marks_.push_back(std::move(mark));
+  if (marks_.size() < kMostMarks) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < marks_.size(); i += 2) marks_[kept++] = std::move(marks_[i]);
+  marks_.resize(kept);
+  between_ *= 2;
+}
+
+std::shared_ptr<const Timeline::Mark> Timeline::mark_before(std::uint64_t tick) const {
+  const std::lock_guard guard(mutex_);
+  const auto after = std::ranges::upper_bound(
+      marks_, tick, {}, [](const auto& mark) { return mark->scene.place.ticks; });
+  return *std::prev(after);  // the first is at 0
+}
+
+void Timeline::play_to(std::uint64_t tick) {
+  take_growth();
+  scene_.advance_to(tick);
+}
+
+bool Timeline::seek(std::uint64_t tick) {
+  take_growth();
+  tick = std::min(tick, std::max(findings().read, scene_.ticks()));
+  const auto mark = mark_before(tick);
+  if (!scene_.go_to(mark->scene)) return false;
+  story_ = mark->story;
+  while (scene_.ticks() < tick && scene_.advance_to(std::min(tick, scene_.ticks() + kStepTicks))) {
+    story_.update(scene_.take_events(), scene_.snapshot(), 1e-3f * kStepTicks);
+  }
+  scene_.take_events();
+  return true;
+}
+
+Findings Timeline::findings() const {
+  const std::lock_guard guard(mutex_);
+  return findings_;
+}
+
+void Timeline::wait_until_read() const {
+  std::unique_lock lock(mutex_);
+  news_.wait(lock, [&] { return findings_.done && findings_.read >= findings_.total; });
+}
+
+void Timeline::look_again() {
+  {
+    const std::lock_guard guard(mutex_);
+    look_ = true;
+  }
+  news_.notify_all();
+}
+
+}  // namespace watch
