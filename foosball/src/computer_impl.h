@@ -10,6 +10,7 @@ namespace foosball {
 struct ComputerPlayer::Impl {
   virtual ~Impl() = default;
   virtual void play(const MatchView& view, RodTargets& targets) = 0;
+  virtual PlayedPass passed() const { return {}; }
 };
 
 std::unique_ptr<ComputerPlayer::Impl> make_classic_player(const ComputerPlayerDesc& desc);

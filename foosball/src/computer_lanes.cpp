@@ -19,15 +19,16 @@ double within(double margin, double spread) {
 
 }  // namespace
 
-double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope) {
+LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView& view,
+                     double slope, double run) {
   const double goal_line = 0.5 * table.length;
-  double worth = 0.0, passes = 1.0;
+  LanePassage passage;
   // The rods in the order in which the ball meets them.
   for (int k = 0; k < kRods; ++k) {
     const int rod = view.team == 0 ? k : kRods - 1 - k;
     const RodSpec& spec = table.rods[rod];
     const double way = attack_sign(view.team) * spec.x - now.ball.x;
-    if (rod == view.from_rod || way < 0.04) continue;
+    if (rod == view.from_rod || way < 0.04 || way > run) continue;
     const bool up = std::fabs(std::remainder(now.swing[rod], 2.0 * vp::kPi)) > kFeetUp;
     if (up && spec.team == view.team) continue;
     const double y = y_after(table, now.ball.y, slope, way);
@@ -38,20 +39,26 @@ double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& v
     gap -= view.half_foot[spec.team] + table.ball_radius;
     double free = within(gap, 0.004 + view.slope_error * way);
     if (up) free += kStaysUp * (1.0 - free);
-    const double blocked = passes * (1.0 - free);
+    const double blocked = passage.free * (1.0 - free);
     // It comes back the faster and the less expected, the nearer that man stands.
     const double near = std::clamp(1.0 - way / 0.5, 0.0, 1.0);
     const double to_own_goal = now.ball.x + goal_line;
     const double danger = std::clamp(1.2 - to_own_goal, 0.1, 1.0);
-    worth -= view.risk_cost * blocked * (0.05 + 0.25 * near * danger);
-    passes *= free;
+    passage.cost -= view.risk_cost * blocked * (0.05 + 0.25 * near * danger);
+    passage.free *= free;
   }
+  return passage;
+}
+
+double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope) {
+  const double goal_line = 0.5 * table.length;
   const double run = goal_line - now.ball.x;
+  const LanePassage men = pass_men(table, now, view, slope, run);
   const double y = y_after(table, now.ball.y, slope, run);
   const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
   const double scores = within(inside, 0.004 + view.slope_error * run);
   constexpr double kFar = 0.10;  // a ball beside the opponent's goal
-  return worth + passes * (scores + (1.0 - scores) * kFar);
+  return men.cost + men.free * (scores + (1.0 - scores) * kFar);
 }
 
 double foot_offset(double slope, double half_foot, double ahead) {

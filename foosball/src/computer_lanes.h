@@ -15,6 +15,14 @@ struct LaneView {
   double risk_cost = 1.0;                  // Temperament
 };
 
+// Past the men in the way of a ball that is sent along dy/dx = slope, as far as run [m].
+struct LanePassage {
+  double free = 1.0;  // probability that none of them meets it
+  double cost = 0.0;  // of those who may: below 0 the nearer its own goal it would come back
+};
+LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView& view,
+                     double slope, double run);
+
 // Expected worth of a ball that is sent from where it is along dy/dx = slope: 1 a goal; less where
 // men are in the way, and below 0 where it would come back towards the own goal.
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);

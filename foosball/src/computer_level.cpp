@@ -14,9 +14,9 @@ struct LevelRow {
   double pause_low, pause_high;
 };
 constexpr std::array<LevelRow, kLevels> kRows{{
-    {0.30, 0.36, 0.0070, {0.6, 9}, {10, 220}, {45, 1700}, 0.35, 0.90},
-    {0.21, 0.27, 0.0040, {1.0, 17}, {15, 420}, {65, 3500}, 0.18, 0.50},
-    {0.16, 0.22, 0.0025, {1.4, 26}, {20, 600}, {80, 5500}, 0.10, 0.30},
+    {0.30, 0.36, 0.0070, {0.6, 9}, {10, 220}, {45, 1700}, 0.15, 0.45},
+    {0.21, 0.27, 0.0040, {1.0, 17}, {15, 420}, {65, 3500}, 0.10, 0.30},
+    {0.16, 0.22, 0.0025, {1.4, 26}, {20, 600}, {80, 5500}, 0.06, 0.20},
     {0.12, 0.18, 0.0014, {2.0, 42}, {26, 850}, {95, 8000}, 0.05, 0.18},
     {0.08, 0.12, 0.0006, {2.8, 65}, {34, 1250}, {112, 10000}, 0.02, 0.08},
 }};
@@ -38,9 +38,11 @@ Temperament temperament_of(int level, PlayStyle style) {
                 .clear_power = 1.0,
                 .risk_cost = 1.5,
                 .feint = 0.04 * level,
+                .pass_value = 0.12,
                 .stays_home = false};
   switch (style) {
     case PlayStyle::wall:
+      t.pass_value = 0.05;
       t.stays_home = true;
       t.risk_cost = 3.0;
       break;
@@ -48,9 +50,11 @@ Temperament temperament_of(int level, PlayStyle style) {
       t.shot_bar = 0.15;
       t.patience = 0.5;
       t.feint = 0.0;
+      t.pass_value = 0.02;
       break;
     case PlayStyle::passer:
       t.clear_power = 0.5;
+      t.pass_value = 0.45;
       t.shot_bar = 0.35;
       break;
     case PlayStyle::gambler:

@@ -23,6 +23,7 @@ struct Temperament {
   double clear_power;  // of a ball that is only to be cleared, share of the full strike
   double risk_cost;    // of a ball that comes back
   double feint;        // probability of a feint before a shot
+  double pass_value;   // of a ball at the foot of a man further ahead
   bool stays_home;     // both hands at the goal whenever the ball is the opponent's
 };
 

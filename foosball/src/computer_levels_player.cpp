@@ -18,6 +18,7 @@ class LevelPlayer final : public ComputerPlayer::Impl {
         mind_(team_, t, d.seed) {}
 
   void play(const MatchView& view, RodTargets& targets) override;
+  PlayedPass passed() const override { return mind_.passed(); }
 
  private:
   void come_to(const MatchView& view);

@@ -37,6 +37,7 @@ void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
 }
 
 void ComputerMind::rest() {
+  passed_ = {};
   hands_.let_go();
   for (ComputerRod& rod : rods_) rod.give_up();
 }
@@ -72,6 +73,7 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
       rod.rest();
     }
   }
+  note_strokes(now);
 }
 
 // The ball as it is expected to be now. What a stroke does to it is known before it is seen.
@@ -91,10 +93,22 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
   ball = advance(model_, tuning, now, ball, age);
   now.ball = ball.position;
   now.velocity = ball.velocity;
+}
+
+// A ball that a foot has just sent off: where it goes is known, and whom it is for.
+void ComputerMind::note_strokes(const Sighting& now) {
+  passed_ = {};
   for (const ComputerRod& rod : rods_) {
     if (!rod.struck()) continue;
     sent_ = {now.ball, rod.sent_velocity()};
     sent_ticks_ = 0;
+    const PassPlan& pass = rod.sent_to();
+    if (pass.rod < 0) continue;
+    passed_ = {rod.index(), pass.rod, pass.man};
+    for (ComputerRod& to : rods_) {
+      if (to.index() != pass.rod) continue;
+      to.expect_pass(pass.man, pass.y, (to.x() - now.ball.x) / rod.sent_velocity().x);
+    }
   }
 }
 
@@ -116,6 +130,10 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
         return {kAttack, kDefence};
     }
   }
+  for (const int line : {kMidfield, kAttack}) {
+    const ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
+    if (rod.expects_pass() && hands_.holds(line)) return {line, kDefence};
+  }
   const double soon = now.ball.x + 0.10 * std::clamp(now.velocity.x, -3.0, 3.0);
   if (now.velocity.x < -1.2 && now.ball.x < 0.30) return {kDefence, kGoalie};
   if (soon < -0.45) return {kGoalie, kDefence};
@@ -131,7 +149,7 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
 double ComputerMind::guard_y(int line, const Sighting& now) const {
   const double way = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
   const double vx = now.velocity.x;
-  const bool from_front = vx < -0.4 && way > 0.0;
+  const bool from_front = (vx < -0.4 || (vx < -0.08 && way < 0.15 && line == kGoalie)) && way > 0.0;
   if (from_front) return y_after(*table_, now.ball.y, now.velocity.y, way / -vx);
   if (line == kMidfield || line == kAttack || way < 0.0) return now.ball.y;
   return cover_y(line, now);

@@ -10,6 +10,7 @@
 #include "computer_level.h"
 #include "computer_rod.h"
 #include "computer_sight.h"
+#include "foosball/played_pass.h"
 #include "random.h"
 
 namespace foosball {
@@ -27,10 +28,13 @@ class ComputerMind {
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
   std::vector<ComputerRod>& rods() { return rods_; }  // by Line
+  // A pass that its foot has sent off in this tick; to_rod < 0: none.
+  const PlayedPass& passed() const { return passed_; }
 
  private:
   using Lines = std::array<int, 2>;  // the more urgent first
 
+  void note_strokes(const Sighting& now);
   void guess_ball(Sighting& now, const Tuning& tuning);
   Lines wanted_lines(const Sighting& now) const;
   double guard_y(int line, const Sighting& now) const;
@@ -45,6 +49,7 @@ class ComputerMind {
   BallGuess sent_;       // the ball as a stroke has just sent it off, not yet seen
   int sent_ticks_ = -1;  // since then; -1: what is seen is newer
   std::vector<ComputerRod> rods_;
+  PlayedPass passed_;
   double side_ = 1.0;  // of the mouth that the defence covers
   bool was_in_play_ = false;
   bool own_serve_ = false;

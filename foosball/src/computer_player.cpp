@@ -21,4 +21,8 @@ void ComputerPlayer::play(const MatchView& view, RodTargets& targets) {
   impl_->play(view, targets);
 }
 
+PlayedPass ComputerPlayer::passed() const {
+  return impl_->passed();
+}
+
 }  // namespace foosball

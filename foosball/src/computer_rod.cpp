@@ -1,6 +1,7 @@
 #include "computer_rod.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace foosball {
@@ -19,12 +20,27 @@ constexpr double kFrom = -0.030, kTo = 0.058;
 constexpr double kScoopFrom = -0.062;    // a ball at rest behind the foot is scooped forward:
 constexpr double kScoopTo = -0.030;      // struck from above it would only be pinned, or fly back
 constexpr double kScoopBeside = 0.0115;  // by the foot's edge, so far beyond the foot [m],
-constexpr double kScoopLeast = 4.0, kScoopMost = 12.0;  // and so gently [rad/s]
+constexpr double kScoopLeast = 4.0, kScoopMost = 12.0;  // and so gently [rad/s];
+constexpr double kHookFrom = -0.042;  // one not so far behind goes off at a known slope
+struct Hook {
+  double beside, rate;  // [m], [rad/s]
+  double slope, speed;  // of the ball; [m/s]
+};
+// Measured on the simulated table, both layouts, a ball 30 to 40 mm behind the axis.
+constexpr std::array<Hook, 2> kHooks{{{0.005, 20.0, 0.48, 1.6}, {0.008, 35.0, 0.72, 2.4}}};
+
+constexpr double kPassSpeed = 2.2;    // [m/s]
+constexpr double kCatch = 0.6;        // a foot leant forward holds a ball that comes from behind
+constexpr double kFootSpeed = 0.11;   // ball's speed [m/s] for the foot's [rad/s]
+constexpr double kSoftSpeed = 0.090;  // the same of a soft stroke
 
 constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 
 // Faster balls [m/s] are blocked, not played.
 constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
+// A ball that rolls towards its own goal faster is stopped with the foot down first: a foot that is
+// drawn back lets it roll on beneath.
+constexpr double kStopFirst = 0.12;  // [m/s]
 
 // A hand that follows the ball holds still for less than this, and turns round no sooner than that
 // unless it has far to go.
@@ -82,6 +98,8 @@ void ComputerRod::adopt(double slide, double swing) {
 }
 
 void ComputerRod::rest() {
+  struck_ = false;
+  receives_ = 0;
   adopt(slide_.position(), swing_.position());
 }
 
@@ -93,6 +111,8 @@ void ComputerRod::enter(Act act) {
 void ComputerRod::play(const Sighting& now, double guard_y, const Temperament& t, Random& random) {
   since_ += kTick;
   turned_ += kTick;
+  struck_ = false;
+  if (receives_ > 0) --receives_;
   switch (act_) {
     case Act::watch:
       watch(now, guard_y, t, random);
@@ -107,8 +127,7 @@ void ComputerRod::play(const Sighting& now, double guard_y, const Temperament& t
       brake(t);
       break;
     case Act::scoop:
-      swing_.move(level(), {scoop_rate_, t.swing.acceleration});
-      if (angle() > -0.02 || since_ > 0.5) enter(Act::watch);
+      scoop(t);
       break;
   }
   goal_ = std::clamp(goal_, -spec().slide_limit, spec().slide_limit);
@@ -124,8 +143,10 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
     return;
   }
   if (can_control(now)) return begin_control(now, t, random);
+  if (receives_ > 0 && ahead(now) < 0.02) return receive(now, t);
   // The nearer in time a ball that comes, the closer it is followed.
-  const bool comes = now.velocity.x < -0.3 && ahead(now) > 0.0;
+  const bool comes =
+      now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
   constexpr double kSoon = 0.20;  // [s]
   const bool soon = comes && ahead(now) < -kSoon * now.velocity.x + 0.03;
   const double to = slide_for(guard_y);
@@ -223,11 +244,19 @@ void ComputerRod::step_aside(const Sighting& now) {
 
 // --- playing the ball ----------------------------------------------------------------------------
 
+// The fastest ball from the front [m/s] that is played without being stopped first. Nobody stands
+// behind the goalie; hinged men strike a rolling ball less surely.
+double ComputerRod::approach() const {
+  const bool careful =
+      spec().line == Line::goalie || (spec().line == Line::defence && hinged_men(table_->layout));
+  return careful ? kStopFirst : kTameApproach;
+}
+
 bool ComputerRod::can_control(const Sighting& now) const {
   const double way = ahead(now);
   const double speed = vp::norm(now.velocity);
   if (now.ball.z > 2.5 * table_->ball_radius || speed > kTame) return false;
-  if (now.velocity.x < -kTameApproach) return false;
+  if (now.velocity.x < -approach()) return false;
   const double from = speed < kResting ? kScoopFrom : kFrom;
   if (way <= from || way >= kTo) return false;
   int man = 0;
@@ -243,12 +272,16 @@ void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Rando
   noise_ = t.aim_error * random.bell();
   feints_ = random.unit() < t.feint;
   scoop_side_ = 0.0;
+  pass_ = {};
+  receives_ = 0;
   enter(Act::draw);
   draw(now, t, random);
 }
 
 bool ComputerRod::lost(const Sighting& now) const {
   const double way = ahead(now);
+  const bool rolls_home = spec().line == Line::goalie && now.velocity.x < -kStopFirst;
+  if (rolls_home && (way < 0.0 || !over_)) return true;
   return !now.ball_in_play || way < kScoopFrom - 0.01 || way > kTo + 0.012 ||
          vp::norm(now.velocity) > 1.5 * kTame;
 }
@@ -256,16 +289,18 @@ bool ComputerRod::lost(const Sighting& now) const {
 // The foot goes back behind the ball; then it waits for a lane, follows the ball and strikes.
 void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random) {
   if (lost(now)) return enter(Act::watch);
-  const double y = y_after(*table_, now.ball.y, now.velocity.y, strike_time(t.strike));
+  const AxisLimits stroke = stroke_limits(t);
+  const double y = y_after(*table_, now.ball.y, now.velocity.y, strike_time(stroke));
   const double square = y - man_offset(spec(), man_);
   const bool hooked = ahead(now) < 0.5 * table_->ball_radius;
   const double drawn = level() + (hooked ? kDrawnOver : kDrawn);
   if (!over_) return go_behind(now, square, drawn, t);
   swing_.move(drawn, t.swing);
-  if (ahead(now) < kScoopTo) return prepare_scoop(square, random);
+  if (ahead(now) < kScoopTo) return prepare_scoop(now, square, t, random);
   consider_lanes(now, square, t);
-  goal_ = square + noise_ +
-          foot_offset(slope_ - natural_slope(now, t), lanes_.half_foot[team_], ahead(now));
+  goal_ =
+      square + noise_ +
+      foot_offset(slope_ - natural_slope(now, stroke.rate), lanes_.half_foot[team_], ahead(now));
   constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: as if to play it elsewhere
   if (feints_ && since_ < pause_ + kFeintFor) {
     goal_ -= std::copysign(kFeintStep, slope_);
@@ -287,14 +322,94 @@ void ComputerRod::go_behind(const Sighting& now, double square, double drawn,
   }
 }
 
-void ComputerRod::prepare_scoop(double square, Random& random) {
-  if (scoop_side_ == 0.0) {
-    scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
-    scoop_rate_ = random.between(kScoopLeast, kScoopMost);
-  }
-  goal_ = square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + kScoopBeside);
+void ComputerRod::prepare_scoop(const Sighting& now, double square, const Temperament& t,
+                                Random& random) {
+  if (scoop_side_ == 0.0) choose_hook(now, t, random);
+  goal_ = square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + scoop_beside_);
   if (std::fabs(goal_) > spec().slide_limit) scoop_side_ = -scoop_side_;
-  if (std::fabs(goal_ - slide_.position()) < 0.002) enter(Act::scoop);
+  if (std::fabs(goal_ - slide_.position()) < 0.002 && since_ >= pause_) enter(Act::scoop);
+}
+
+// How a ball behind the foot is played on: to a man further ahead, along one of the slopes at which
+// the foot's edge sends it off, or gently.
+void ComputerRod::choose_hook(const Sighting& now, const Temperament& t, Random& random) {
+  scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
+  scoop_rate_ = random.between(kScoopLeast, kScoopMost);
+  scoop_beside_ = kScoopBeside;
+  pass_ = {};
+  slope_ = 0.0;
+  if (ahead(now) < kHookFrom || vp::norm(now.velocity) > kResting) return;
+  const double error = slope_error(false, t);
+  double best = 0.0;
+  const double first = scoop_side_;
+  for (const double side : {first, -first}) {
+    for (const Hook& hook : kHooks) {
+      const double slope = -side * hook.slope;
+      const PassPlan pass = pass_worth(now, slope, hook.speed, error, t);
+      if (pass.worth <= best) continue;
+      best = pass.worth;
+      pass_ = pass;
+      scoop_side_ = side;
+      scoop_rate_ = hook.rate;
+      scoop_beside_ = hook.beside;
+      slope_ = slope;
+      power_ = hook.speed / (kFootSpeed * t.strike.rate);
+    }
+  }
+}
+
+void ComputerRod::scoop(const Temperament& t) {
+  const bool hooks = pass_.rod >= 0;
+  swing_.move(level(), {scoop_rate_, hooks ? t.strike.acceleration : t.swing.acceleration});
+  if (angle() <= -0.02 && since_ <= 0.5) return;
+  if (hooks) {
+    const double speed = kFootSpeed * power_ * t.strike.rate;
+    sent_ = {speed, slope_ * speed, 0.0};
+    struck_ = true;
+  }
+  enter(Act::watch);
+}
+
+// --- passes --------------------------------------------------------------------------------------
+
+void ComputerRod::expect_pass(int man, double y, double time) {
+  constexpr double kWaits = 0.30;  // [s] longer than it should need
+  receives_ = static_cast<int>(std::lround((time + kWaits) / kTick));
+  man_ = man;
+  receive_at_ = y - man_offset(spec(), man);
+}
+
+// The man stands where the ball was sent, leant forward over it.
+void ComputerRod::receive(const Sighting& now, const Temperament& t) {
+  constexpr double kComes = 0.2;  // [m/s]
+  if (now.velocity.x > kComes && ahead(now) < -0.03) {
+    const double y =
+        y_after(*table_, now.ball.y, now.velocity.y, (-0.01 - ahead(now)) / now.velocity.x);
+    receive_at_ = y - man_offset(spec(), man_);
+  }
+  goal_ = receive_at_;
+  swing_.move(level() + kCatch, t.swing);
+}
+
+PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed,
+                                 double slope_error, const Temperament& t) const {
+  const Line line = spec().line;
+  constexpr double kAtRest = 0.25;  // [m/s]; a rolling ball keeps too much of its way
+  if (line == Line::goalie || line == Line::attack || vp::norm(now.velocity) > kAtRest) return {};
+  PassView view;
+  view.lanes = lanes_;
+  view.lanes.slope_error = slope_error;
+  const Line to = line == Line::defence ? Line::midfield : Line::attack;
+  view.to_rod = rods_of_team(*table_, team_)[static_cast<std::size_t>(to)];
+  view.speed = speed;
+  view.hand = t.slide.rate;
+  view.value = t.pass_value;
+  return pass_along(*table_, now, view, slope);
+}
+
+AxisLimits ComputerRod::stroke_limits(const Temperament& t) const {
+  const double rate = pass_.rod >= 0 ? kPassSpeed / kSoftSpeed : t.strike.rate;
+  return {rate, t.strike.acceleration};
 }
 
 // All lanes now and then; whether the chosen one closes, more often.
@@ -303,7 +418,9 @@ void ComputerRod::consider_lanes(const Sighting& now, double square, const Tempe
   if (worth_ < -1e8 || ticks % 20 == 0) {
     choose_lane(now, square, t);
   } else if (ticks % 4 == 0) {
-    worth_ = worth_of(now, slope_, t);
+    const double error = slope_error(false, t);
+    worth_ = pass_.rod >= 0 ? pass_worth(now, slope_, kPassSpeed, error, t).worth
+                            : shot_worth(now, slope_, t);
   }
 }
 
@@ -315,55 +432,85 @@ void ComputerRod::strike_if_ready(const Sighting& now, const Temperament& t) {
   constexpr double kLate = 0.5;  // [s] beyond the patience, then strike at what there is
   if (!(aligned && worth_ >= bar) && since_ <= pause_ + t.patience + kLate) return;
   constexpr double kShot = 0.25;  // worth from which it is a shot at goal
-  power_ = power_at(*table_, way) * (worth_ < kShot ? t.clear_power : 1.0);
+  power_ = pass_.rod >= 0 ? stroke_limits(t).rate / t.strike.rate
+                          : power_at(*table_, way) * (worth_ < kShot ? t.clear_power : 1.0);
+  // A soft stroke has no swing left beyond where it is braked: it goes on to the ball.
+  constexpr double kFull = 0.08, kBeyond = 0.20, kTouches = 0.027;  // [rad], [rad], [m]
+  const double at_ball = std::max(0.0, way - kTouches) / kFoot;
+  through_ = pass_.rod >= 0 ? at_ball + kBeyond : kFull;
   enter(Act::strike);
 }
 
 // The slope at which a flat foot sends off a ball that rolls along the rod: it keeps most of that.
-double ComputerRod::natural_slope(const Sighting& now, const Temperament& t) const {
-  constexpr double kKept = 0.77, kSpeed = 0.11;  // ball's speed [m/s] for the foot's [rad/s]
-  return kKept * now.velocity.y / (kSpeed * t.strike.rate);
+double ComputerRod::natural_slope(const Sighting& now, double rate) const {
+  constexpr double kKept = 0.77;
+  return kKept * now.velocity.y / (kFootSpeed * rate);
 }
 
-double ComputerRod::worth_of(const Sighting& now, double slope, const Temperament& t) const {
+// Of a ball played with the flat of the foot or with its edge [1].
+double ComputerRod::slope_error(bool flat, const Temperament& t) const {
   constexpr double kFlatError = 0.012, kEdge = 50.0;  // slope for a metre beside where it should be
+  constexpr double kBelieved = 0.0015;                // who aims worse does not know it [m]
+  return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, kBelieved);
+}
+
+double ComputerRod::shot_worth(const Sighting& now, double slope, const Temperament& t) const {
   constexpr double kFlat = 0.01;
-  constexpr double kBelieved = 0.0015;  // who aims worse does not know it [m]
   LaneView lanes = lanes_;
-  const bool flat = std::fabs(slope - natural_slope(now, t)) < kFlat;
-  lanes.slope_error = flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, kBelieved);
+  lanes.slope_error = slope_error(std::fabs(slope - natural_slope(now, t.strike.rate)) < kFlat, t);
   return lane_worth(*table_, now, lanes, slope);
 }
 
+// The best shot, or the best pass if that is worth more.
 void ComputerRod::choose_lane(const Sighting& now, double square, const Temperament& t) {
   constexpr double kStep = 0.05, kKeep = 0.05;
   const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would only rub along
-  const double natural = natural_slope(now, t);
   const bool first = worth_ < -1e8;
-  double slope = natural, best = worth_of(now, slope, t);
-  if (!first && std::fabs(slope_ - natural) < kStep) best += kKeep;
+  const bool passed = pass_.rod >= 0;
+  const auto reached = [&](double slope, double natural) {
+    const double turn = slope - natural;
+    if (std::fabs(turn) > kSteepest) return false;
+    const double offset = foot_offset(turn, lanes_.half_foot[team_], ahead(now));
+    if (std::fabs(square + offset) > spec().slide_limit) return false;
+    return !(slope * now.ball.y > 0.0 && std::fabs(now.ball.y) > wall);
+  };
+  const double natural = natural_slope(now, t.strike.rate);
+  double slope = natural, best = shot_worth(now, slope, t);
+  if (!first && !passed && std::fabs(slope_ - natural) < kStep) best += kKeep;
   for (int k = -15; k <= 15; ++k) {
     const double s = kStep * k;
-    if (std::fabs(s - natural) < kStep || std::fabs(s - natural) > kSteepest) continue;
-    const double offset = foot_offset(s - natural, lanes_.half_foot[team_], ahead(now));
-    if (std::fabs(square + offset) > spec().slide_limit) continue;
-    if (s * now.ball.y > 0.0 && std::fabs(now.ball.y) > wall) continue;
-    double worth = worth_of(now, s, t);
-    if (!first && std::fabs(s - slope_) < 1e-9) worth += kKeep;
+    if (std::fabs(s - natural) < kStep || !reached(s, natural)) continue;
+    double worth = shot_worth(now, s, t);
+    if (!first && !passed && std::fabs(s - slope_) < 1e-9) worth += kKeep;
     if (worth > best) {
       best = worth;
       slope = s;
     }
   }
+  PassPlan plan;
+  const double softly = natural_slope(now, kPassSpeed / kSoftSpeed);
+  for (int k = -15; k <= 15; ++k) {
+    const double s = kStep * k;
+    if (!reached(s, softly)) continue;
+    const bool flat = std::fabs(s - softly) < 0.035;
+    const PassPlan pass = pass_worth(now, s, kPassSpeed, slope_error(flat, t), t);
+    const double kept = !first && passed && std::fabs(s - slope_) < 1e-9 ? kKeep : 0.0;
+    if (pass.worth + kept <= best) continue;
+    best = pass.worth + kept;
+    plan = pass;
+    slope = s;
+  }
+  pass_ = plan;
   slope_ = slope;
   worth_ = best;
 }
 
 void ComputerRod::strike(const Temperament& t) {
   swing_.swing(level() + 2.0, {power_ * t.strike.rate, t.strike.acceleration});
-  if (swing_.position() > level() + 0.08) {
-    const double speed = 0.11 * power_ * t.strike.rate;
+  if (swing_.position() > level() + through_) {
+    const double speed = pass_.rod >= 0 ? kPassSpeed : kFootSpeed * power_ * t.strike.rate;
     sent_ = {speed, slope_ * speed, 0.0};
+    struck_ = true;
     enter(Act::brake);
   }
 }

@@ -9,6 +9,7 @@
 #include "computer_hand.h"
 #include "computer_lanes.h"
 #include "computer_level.h"
+#include "computer_pass.h"
 #include "computer_sight.h"
 #include "random.h"
 
@@ -37,8 +38,13 @@ class ComputerRod {
   bool has_ball() const { return act_ == Act::draw || act_ == Act::strike || act_ == Act::scoop; }
   bool busy() const { return act_ == Act::strike || act_ == Act::brake; }
   // Its foot has just met the ball, and sent it off so.
-  bool struck() const { return act_ == Act::brake && since_ == 0.0; }
+  bool struck() const { return struck_; }
   vp::Vec3 sent_velocity() const { return sent_; }
+  // Whom that ball is meant for: rod < 0, nobody.
+  const PassPlan& sent_to() const { return pass_; }
+  // A ball is on its way to this man of the rod, who meets it at y after a time [s].
+  void expect_pass(int man, double y, double time);
+  bool expects_pass() const { return receives_ > 0; }
   // A ball that this rod can take under control.
   bool can_control(const Sighting& now) const;
   // The slide that brings the best man to y: nearest to it, then least moved.
@@ -51,18 +57,26 @@ class ComputerRod {
   void watch(const Sighting& now, double guard_y, const Temperament& t, Random& random);
   void begin_control(const Sighting& now, const Temperament& t, Random& random);
   void draw(const Sighting& now, const Temperament& t, Random& random);
-  double worth_of(const Sighting& now, double slope, const Temperament& t) const;
+  double shot_worth(const Sighting& now, double slope, const Temperament& t) const;
   void go_behind(const Sighting& now, double square, double drawn, const Temperament& t);
-  void prepare_scoop(double square, Random& random);
+  void prepare_scoop(const Sighting& now, double square, const Temperament& t, Random& random);
+  void choose_hook(const Sighting& now, const Temperament& t, Random& random);
+  void scoop(const Temperament& t);
+  void receive(const Sighting& now, const Temperament& t);
+  PassPlan pass_worth(const Sighting& now, double slope, double speed, double slope_error,
+                      const Temperament& t) const;
+  double slope_error(bool flat, const Temperament& t) const;
+  AxisLimits stroke_limits(const Temperament& t) const;
   void consider_lanes(const Sighting& now, double square, const Temperament& t);
   void strike_if_ready(const Sighting& now, const Temperament& t);
   void choose_lane(const Sighting& now, double square, const Temperament& t);
-  double natural_slope(const Sighting& now, const Temperament& t) const;
+  double natural_slope(const Sighting& now, double rate) const;
   bool lost(const Sighting& now) const;
   void strike(const Temperament& t);
   void brake(const Temperament& t);
   void swing_back(double goal, const Sighting& now, const AxisLimits& limits);
   bool ball_in_sweep(double goal, const Sighting& now) const;
+  double approach() const;
   double clear(const Sighting& now) const;
   void step_aside(const Sighting& now);
   void follow(double goal);
@@ -86,9 +100,15 @@ class ComputerRod {
   double noise_ = 0.0;                // of this strike's aim [m]
   double slope_ = 0.0, worth_ = 0.0;  // of the lane chosen
   double power_ = 1.0;
+  double through_ = 0.0;  // swing at which the stroke is braked [rad]
   vp::Vec3 sent_;
-  double scoop_side_ = 0.0;  // 0: not chosen yet
-  double scoop_rate_ = 0.0;  // [rad/s]
+  double scoop_side_ = 0.0;    // 0: not chosen yet
+  double scoop_rate_ = 0.0;    // [rad/s]
+  double scoop_beside_ = 0.0;  // the foot's edge, beyond the ball's middle [m]
+  bool struck_ = false;        // in this tick
+  PassPlan pass_;              // what the stroke is for, if it is a pass
+  int receives_ = 0;           // ticks left to wait for a pass
+  double receive_at_ = 0.0;    // slide [m]
 };
 
 }  // namespace foosball

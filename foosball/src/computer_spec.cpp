@@ -51,8 +51,8 @@ const char* name_of(PlayStyle style) {
 
 PlayStyle style_of_level(int level) {
   constexpr std::array<PlayStyle, kLevels> kStyles{PlayStyle::shooter, PlayStyle::wall,
-                                                   PlayStyle::passer, PlayStyle::gambler,
-                                                   PlayStyle::passer};
+                                                   PlayStyle::passer, PlayStyle::passer,
+                                                   PlayStyle::gambler};
   return kStyles.at(static_cast<std::size_t>(level - 1));
 }
 

@@ -169,6 +169,7 @@ void StatisticsObserver::begin_rally(const MatchView& view, const Event& serve) 
   shot_ = {};
   saver_ = -1;
   pass_open_ = false;
+  meant_ = {};
   stuck_at_ = view.ball_position;
   stuck_ticks_ = unreachable_ticks_ = 0;
   airborne_ = falling_clean_ = false;
@@ -321,6 +322,12 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
   rods_[rod].spin_from = view.rods[rod].angle;
 }
 
+void StatisticsObserver::meant(const PlayedPass& pass, Layout layout) {
+  if (pass.to_rod < 0) return;
+  meant_ = pass;
+  ++totals_.passes_meant[table_spec(layout).rods[pass.from_rod].team];
+}
+
 void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {
   const int team = table_spec(view.layout).rods[rod].team;
   previous_touch_ = touch_;
@@ -343,6 +350,10 @@ void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {
   touch_.arrival_vx = velocity_before_.x;
   touch_.arrival_speed = vp::norm(velocity_before_);
   ++totals_.touches[team];
+  if (meant_.to_rod >= 0 && rod != meant_.from_rod) {
+    if (rod == meant_.to_rod && man == meant_.to_man) ++totals_.passes_arrived[team];
+    meant_ = {};
+  }
   const Touch& from = previous_touch_;
   const bool other_man = from.rod != rod || from.man != man;
   pass_open_ =

@@ -13,6 +13,7 @@
 #include "../src/computer_hands.h"
 #include "../src/computer_level.h"
 #include "foosball/statistics.h"
+#include "match_fixture.h"
 
 namespace foosball {
 namespace {
@@ -172,6 +173,33 @@ TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
   }
   EXPECT_EQ(own, 0);
   EXPECT_GT(moved, 1000);
+}
+
+class RollingBall : public MatchTest {
+ protected:
+  RollingBall() : MatchTest(Layout::paper) {}
+};
+
+// A foot that is drawn back to strike lets such a ball roll on beneath it, into the goal.
+TEST_F(RollingBall, ThatCreepsToTheGoalIsStoppedByTheGoalie) {
+  start_by_commands();
+  int goals = 0;
+  constexpr int kBalls = 8;
+  for (int ball = 0; ball < kBalls; ++ball) {
+    ComputerPlayer home({.team = 0,
+                         .seed = static_cast<std::uint64_t>(ball + 1),
+                         .opens_match = false,
+                         .player = *parse_player("5")});
+    const int before = view().score[1];
+    shoot({-0.44, -0.07 + 0.02 * ball, 0.0174}, {-0.35, 0.10 - 0.03 * ball, 0.0}, 1);
+    for (int tick = 0; tick < 500; ++tick) {
+      home.play(view(), input.rods);
+      step();
+    }
+    goals += view().score[1] - before;
+    if (view().screen == Screen::ceremony) run(1.0);
+  }
+  EXPECT_LE(goals, 1) << "of " << kBalls;
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ class Game {
     }
     input.commands = commands_;
     match_.step(input);
+    for (const auto& player : players_) observer_.meant(player->passed(), desc_.layout);
     observer_.observe(view, match_.events(), input.rods);
     if (record_) {
       tick_.tick = number;

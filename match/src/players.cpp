@@ -22,6 +22,7 @@ class Computer final : public Player {
   Computer(const PlayerDesc& desc, const foosball::PlayerSpec& spec)
       : player_({.team = desc.team, .seed = desc.seed, .opens_match = false, .player = spec}) {}
   void play(const MatchView& view, RodTargets& targets) override { player_.play(view, targets); }
+  foosball::PlayedPass passed() const override { return player_.passed(); }
 
  private:
   foosball::ComputerPlayer player_;

@@ -142,6 +142,9 @@ void add_ball(List& list, const Statistics& s) {
 void add_play(List& list, const Statistics& s) {
   list.add("touches", per_minute(sum(s.touches), s.play_ticks), "a minute");
   list.add("passes", per_minute(sum(s.passes), s.play_ticks), "a minute");
+  list.add("  to a chosen man", per_minute(sum(s.passes_meant), s.play_ticks), "a minute");
+  list.add("    who was the next to touch it", percent(sum(s.passes_arrived), sum(s.passes_meant)),
+           "%");
   list.add("shots", per_minute(sum(s.shots), s.play_ticks), "a minute");
   list.add("  speed, median", quantile(s.shot_speed, 0.5), "m/s");
   list.add("  speed, 99th percentile", quantile(s.shot_speed, 0.99), "m/s");

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "foosball/match.h"
+#include "foosball/played_pass.h"
 #include "vphysics/error.h"
 
 namespace foosball {
@@ -18,7 +19,7 @@ namespace foosball {
 enum class PlayStyle : std::uint8_t {
   wall,     // hands stay at the goal, fears what comes back
   shooter,  // strikes at the first fair chance, from any rod
-  passer,   // plays softly forward where there is no shot
+  passer,   // plays to a man further ahead where another would shoot
   gambler,  // waits for the one chance, feints, takes risks with its own goal
 };
 inline constexpr int kPlayStyles = 4;
@@ -62,6 +63,8 @@ class ComputerPlayer {
   // Targets for the rods of its team; the others are left as they are. Works the screens too:
   // pushes at the logo, chooses and confirms a character.
   void play(const MatchView& view, RodTargets& targets);
+  // The pass that a foot sent off in the last play(), if one did.
+  PlayedPass passed() const;
 
   struct Impl;  // one for each kind
 

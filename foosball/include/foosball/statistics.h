@@ -12,6 +12,7 @@
 #include <span>
 
 #include "foosball/match.h"
+#include "foosball/played_pass.h"
 #include "foosball/reach.h"
 
 namespace foosball {
@@ -98,8 +99,10 @@ struct Statistics {
   PerRod spins{};  // full turns without touching the ball
 
   // Play of the ball.
-  PerTeam touches{};  // by one man, however long
-  PerTeam passes{};   // see docs/match-runner.md
+  PerTeam touches{};         // by one man, however long
+  PerTeam passes{};          // see docs/match-runner.md
+  PerTeam passes_meant{};    // to a chosen man (PlayedPass),
+  PerTeam passes_arrived{};  // who was the next to touch the ball
   PerTeam shots{};
   PerTeam shots_on_target{};
   PerTeam saves{};                      // by the team that defended
@@ -129,6 +132,9 @@ double ground_height(const TableSpec& table, double x, double y);
 class StatisticsObserver {
  public:
   void observe(const MatchView& view, std::span<const Event> events, const RodTargets& targets);
+  // A player has sent off a pass in the tick that is observed next. Only who plays knows what was
+  // meant.
+  void meant(const PlayedPass& pass, Layout layout);
   // The match under way is given up: counts as undecided, if it had begun. Forgets it.
   void abandon();
   const Statistics& totals() const { return totals_; }
@@ -195,6 +201,7 @@ class StatisticsObserver {
   Shot shot_;
   int saver_ = -1;  // team that touched a shot on target; -1: none
   std::uint64_t saved_at_ = 0;
+  PlayedPass meant_;        // on its way; to_rod < 0: none
   bool pass_open_ = false;  // a man received from another of his team; under control yet?
   vp::Vec3 stuck_at_;
   std::uint64_t stuck_ticks_ = 0, unreachable_ticks_ = 0;
@@ -239,6 +246,8 @@ void Statistics::visit(Visitor& visitor, Self& self) {
   list("spins", self.spins);
   list("touches", self.touches);
   list("passes", self.passes);
+  list("passes_meant", self.passes_meant);
+  list("passes_arrived", self.passes_arrived);
   list("shots", self.shots);
   list("shots_on_target", self.shots_on_target);
   list("saves", self.saves);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "foosball/match.h"
+#include "foosball/played_pass.h"
 
 namespace match {
 
@@ -27,6 +28,8 @@ class Player {
   virtual ~Player() = default;
   // Targets for the rods of its team; the others are left as they are. One call a tick.
   virtual void play(const foosball::MatchView& view, foosball::RodTargets& targets) = 0;
+  // The pass that a foot sent off in the last play(), if one did and the player says so.
+  virtual foosball::PlayedPass passed() const { return {}; }
 };
 
 struct PlayerDesc {
