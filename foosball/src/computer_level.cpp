@@ -58,6 +58,7 @@ Temperament temperament_of(int level, PlayStyle style) {
       t.shot_bar = 0.35;
       break;
     case PlayStyle::gambler:
+      t.pass_value = 0.02;
       t.shot_bar = 0.50;
       t.patience = 1.3;
       t.risk_cost = 0.3;

@@ -40,7 +40,7 @@ constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
 // A ball that rolls towards its own goal faster is stopped with the foot down first: a foot that is
 // drawn back lets it roll on beneath.
-constexpr double kStopFirst = 0.12;  // [m/s]
+constexpr double kStopFirst = 0.25;  // [m/s]
 
 // A hand that follows the ball holds still for less than this, and turns round no sooner than that
 // unless it has far to go.
@@ -340,7 +340,8 @@ void ComputerRod::choose_hook(const Sighting& now, const Temperament& t, Random&
   slope_ = 0.0;
   if (ahead(now) < kHookFrom || vp::norm(now.velocity) > kResting) return;
   const double error = slope_error(false, t);
-  double best = 0.0;
+  constexpr double kWorthIt = 0.03;  // else gently
+  double best = kWorthIt;
   const double first = scoop_side_;
   for (const double side : {first, -first}) {
     for (const Hook& hook : kHooks) {
