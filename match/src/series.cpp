@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <initializer_list>
 
 namespace match {
 namespace {
@@ -23,10 +24,9 @@ std::string SeriesDesc::text() const {
   text += draw_characters ? std::string("drawn")
                           : std::to_string(characters[0]) + "/" + std::to_string(characters[1]);
   text += " of " + std::to_string(digest(character_list));
-  const auto add = [&](const char* name, const std::optional<SequentialTest>& t) {
-    if (!t) return;
+  const auto add = [&](const char* name, std::initializer_list<double> values) {
     text += std::string(", ") + name;
-    for (const double value : {t->score0, t->score1, t->alpha, t->beta}) {
+    for (const double value : values) {
       text += ' ';
       text += std::to_string(value);
     }
@@ -38,8 +38,8 @@ std::string SeriesDesc::text() const {
     std::snprintf(digits, sizeof digits, " %.17g", value);
     text += std::string(", ") + field.name + digits;
   });
-  add("test", test);
-  add("band", band);
+  if (test) add("test", {test->score0, test->score1, test->alpha, test->beta});
+  if (band) add("band", {band->limit, band->alpha});
   return text;
 }
 
@@ -72,7 +72,9 @@ void Series::take(const GameResult& result) {
   if (taken_ % 2 == 0) {
     first_of_pair_ = half_points;
   } else {
-    ++pairs_[static_cast<std::size_t>(first_of_pair_ + half_points)];
+    const auto pair = static_cast<std::size_t>(first_of_pair_ + half_points);
+    ++pairs_[pair];
+    band_.take(pair);
   }
   ++taken_;
 }
@@ -83,14 +85,7 @@ bool Series::decided() const {
 
 Verdict Series::verdict() const {
   if (desc_.test) return desc_.test->verdict(pairs_);
-  if (!desc_.band) return Verdict::open;
-  SequentialTest one_side = *desc_.band;
-  one_side.alpha *= 0.5;
-  PairCounts mirrored = pairs_;
-  std::reverse(mirrored.begin(), mirrored.end());
-  const Verdict first = one_side.verdict(pairs_), second = one_side.verdict(mirrored);
-  if (first == Verdict::h1 || second == Verdict::h1) return Verdict::h1;
-  return first == Verdict::h0 && second == Verdict::h0 ? Verdict::h0 : Verdict::open;
+  return desc_.band ? band_.verdict() : Verdict::open;
 }
 
 }  // namespace match

@@ -9,9 +9,20 @@
 // The test ends with H1 when LLR >= log((1 - beta) / alpha), with H0 when LLR <= log(beta / (1 -
 // alpha)): Wald's bounds, so that the errors are at most about alpha and beta.
 // Sources: Wald 1945 (wald1945), Van den Bergh 2020 (vandenbergh2020), docs/references.bib.
+//
+// Whether s lies within a band [1 - c, c] is decided by betting against each of four hypotheses.
+// Against "s >= c" the capital after pairs of scores a is
+//   K = prod (1 + l (c - a)),   0 < l < 1 / (1 - c),
+// a supermartingale if the hypothesis holds, whatever the distribution of the scores: by Ville's
+// inequality K ever reaches 1 / alpha with probability alpha at most, so the test may be looked at
+// after every pair and given up at any time. "s <= c", "s >= 1 - c", "s <= 1 - c" likewise.
+// "Within": "s >= c" and "s <= 1 - c" are both rejected, each with alpha (an s outside is one of
+// them). "Beyond": "s <= c" or "s >= 1 - c" is rejected, each with alpha / 2.
+// Source: Waudby-Smith and Ramdas 2024 (waudbysmith2024).
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace match {
@@ -39,6 +50,26 @@ struct SequentialTest {
   double lower_bound() const;
   double upper_bound() const;
   Verdict verdict(const PairCounts& pairs) const;
+};
+
+struct Band {
+  double limit = 0.6;   // c: 1/2 < c < 1
+  double alpha = 0.05;  // of "within" though s is outside, of "beyond" though s is inside
+};
+
+// Takes the pairs in their order.
+class BandTest {
+ public:
+  explicit BandTest(Band band) : band_(band) {}
+  void take(std::size_t half_points);  // of the pair, 0 to 4
+  Verdict verdict() const;  // h0: within; h1: beyond; does not change once it is not open
+
+ private:
+  Band band_;
+  // Logarithm of the capital against s >= c, s <= 1 - c, s <= c, s >= 1 - c.
+  std::array<double, 4> capital_{};
+  std::array<bool, 4> rejected_{};
+  Verdict verdict_ = Verdict::open;
 };
 
 }  // namespace match

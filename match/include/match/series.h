@@ -33,15 +33,13 @@ struct SeriesDesc {
   std::array<int, 2> characters{1, 1};  // those of the players, of that list; the second may be
                                         // kAnyOther: for each pair drawn from its seed
   std::optional<SequentialTest> test;   // of the first player's score; none: by max_games
-  // As test, of either player's score: decided when one of the two is H1 or both are H0, each with
-  // half of alpha.
-  std::optional<SequentialTest> band;
-  std::string text() const;  // all of it, for a checkpoint's head
+  std::optional<Band> band;             // or: whether that score lies within it
+  std::string text() const;             // all of it, for a checkpoint's head
 };
 
 class Series {
  public:
-  explicit Series(SeriesDesc desc) : desc_(std::move(desc)) {}
+  explicit Series(SeriesDesc desc) : desc_(std::move(desc)), band_(desc_.band.value_or(Band{})) {}
 
   const SeriesDesc& desc() const { return desc_; }
   GameDesc game(std::uint64_t index) const;
@@ -60,6 +58,7 @@ class Series {
 
  private:
   SeriesDesc desc_;
+  BandTest band_;
   std::uint64_t taken_ = 0;
   int first_of_pair_ = 0;
   PairCounts pairs_{};
