@@ -31,8 +31,8 @@ std::string check_player(const std::string& name) {
 }
 
 struct Raw {
-  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning;
-  bool report = false, balance = false, study = false, passive = false;
+  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning, vary;
+  bool report = false, balance = false, study = false, traits = false, passive = false;
   std::vector<std::string> sprt, round_robin;
 };
 
@@ -80,6 +80,18 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
                              "design, in both layouts, played by --home (docs/tuning-study.md)");
   study->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance);
   study->excludes(away)->excludes(passive)->excludes(tuning);
+  auto* vary = cli.add_option(
+      "--vary", raw.vary,
+      "NAME:KEY=LOW:HIGH:STEPS, as in \"jumper:mass=0.05:0.09:5\": the points of a character "
+      "against all others by one of its numbers, --matches at each value, played by --home");
+  auto* traits = cli.add_flag("--traits", raw.traits,
+                              "what sets characters apart: each against itself, --matches each, "
+                              "played by --home");
+  for (auto* mode : {vary, traits}) {
+    mode->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance)->excludes(study);
+    mode->excludes(away)->excludes(passive);
+  }
+  vary->excludes(traits);
   cli.add_option("--samples", o.samples, "points of a study that fill the space of the values")
       ->needs(study)
       ->check(CLI::Range(0, 100'000));
@@ -129,6 +141,13 @@ std::string translate(Options& o, const Raw& raw) {
     auto list = characters::load_characters(raw.characters);
     if (!list) return list.error();
     o.character_list = std::move(*list);
+  }
+  if (raw.traits) o.mode = Mode::traits;
+  if (!raw.vary.empty()) {
+    o.mode = Mode::vary;
+    const auto varied = match::parse_varied(raw.vary, o.character_list);
+    if (!varied) return varied.error();
+    o.varied = *varied;
   }
   o.matches += o.matches % 2;
   o.max_matches += o.max_matches % 2;

@@ -9,10 +9,11 @@
 #include "foosball/character.h"
 #include "foosball/table.h"
 #include "foosball/tuning.h"
+#include "match/character_study.h"
 
 namespace app {
 
-enum class Mode { matches, report, sprt, round_robin, balance, study };
+enum class Mode { matches, report, sprt, round_robin, balance, study, vary, traits };
 
 struct Options {
   Mode mode = Mode::matches;
@@ -25,6 +26,7 @@ struct Options {
   std::uint64_t matches = 100;
   std::uint64_t max_matches = 2000;  // of a sequential test
   std::uint64_t samples = 64;        // of a study
+  match::VariedNumber varied{};      // of --vary
   double max_minutes = 10.0;         // of a match
   double elo0 = 0.0, elo1 = 20.0, alpha = 0.05, beta = 0.05;
   int jobs = 1;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "match/character_study.h"
 #include "match/rating.h"
 #include "match/study.h"
 
@@ -36,7 +37,14 @@ match::ReportPlan report_plan(const Options& o) {
 }
 
 match::StudyPlan study_plan(const Options& o) {
-  return {o.players[0], o.seed, base_of(o).max_ticks, o.matches, o.samples};
+  return {o.players[0], o.seed, base_of(o).max_ticks, o.matches, o.samples, o.character_list};
+}
+
+// Both sides by the same player.
+SeriesDesc mirror_of(const Options& o) {
+  SeriesDesc desc = base_of(o);
+  desc.players[1] = desc.players[0];
+  return desc;
 }
 
 std::vector<SeriesDesc> round_robin(const Options& o) {
@@ -63,8 +71,7 @@ std::vector<SeriesDesc> balance(const Options& o) {
   const int count = static_cast<int>(o.character_list.size());
   for (int a = 0; a < count; ++a) {
     for (int b = a + 1; b < count; ++b) {
-      SeriesDesc desc = base_of(o);
-      desc.players = {o.players[0], o.players[0]};
+      SeriesDesc desc = mirror_of(o);
       desc.max_games = o.max_matches;
       desc.draw_characters = false;
       desc.characters = {a, b};
@@ -267,6 +274,10 @@ std::vector<SeriesDesc> series_of(const Options& o) {
       return balance(o);
     case Mode::study:
       return match::study_series(study_plan(o));
+    case Mode::vary:
+      return match::varied_series(mirror_of(o), o.varied);
+    case Mode::traits:
+      return match::trait_series(mirror_of(o));
   }
   return {};
 }
@@ -289,6 +300,14 @@ Results results_of(const Options& o, const std::vector<Series>& series) {
       return of_balance(o, series);
     case Mode::study:
       return of_study(o, series);
+    case Mode::vary: {
+      Results results;
+      results.figures = match::varied_figures(o.varied, series);
+      results.text = match::as_table(results.figures);
+      return results;
+    }
+    case Mode::traits:
+      return {match::trait_table(series), match::trait_figures(series)};
   }
   return {};
 }

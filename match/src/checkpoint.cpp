@@ -102,10 +102,14 @@ tl::expected<void, std::string> Checkpoint::write(const std::string& text) {
 }
 
 std::uint64_t game_fingerprint() {
-  GameDesc game;
-  game.players = {"classic:0.9", "classic:0.9"};
-  game.max_ticks = 5000;
-  return play_game(game).result.state_hash;
+  std::uint64_t fingerprint = 0;
+  for (const char* player : {"classic:0.9", "5"}) {
+    GameDesc game;
+    game.players = {player, player};
+    game.max_ticks = 5000;
+    fingerprint = mix_seed(fingerprint ^ play_game(game).result.state_hash);
+  }
+  return fingerprint;
 }
 
 }  // namespace match

@@ -82,6 +82,7 @@ std::vector<SeriesDesc> study_series(const StudyPlan& plan) {
     desc.max_ticks = plan.max_ticks;
     desc.max_games = plan.matches;
     desc.tuning = point.tuning;
+    desc.character_list = plan.character_list;
     for (const auto layout : {foosball::Layout::tournament, foosball::Layout::paper}) {
       desc.layout = layout;
       all.push_back(desc);

@@ -61,5 +61,14 @@ TEST(Study, PlaysEachPointWithItsValuesInBothLayouts) {
   EXPECT_EQ(hash(2), hash(2));
 }
 
+TEST(Study, PlaysWithTheCharactersThatItWasGiven) {
+  StudyPlan plan{.matches = 2, .samples = 0};
+  plan.character_list = {foosball::built_in_characters()[2]};
+  for (const SeriesDesc& desc : study_series(plan)) {
+    EXPECT_EQ(desc.character_list, plan.character_list);
+    EXPECT_EQ(Series(desc).game(0).characters, (std::array{0, 0}));
+  }
+}
+
 }  // namespace
 }  // namespace match

@@ -18,6 +18,7 @@ struct StudyPlan {
   std::uint64_t max_ticks = 600'000;
   std::uint64_t matches = 100;  // at each point, in each layout
   std::uint64_t samples = 64;   // points that fill the space
+  foosball::Characters character_list = foosball::built_in_characters();
 };
 
 // A value that is varied, and between which ends: a part of its range, in which a match is still
