@@ -1,5 +1,6 @@
 // For whoever works on the picture: draws scripted moments without a server and writes them as PNG.
-//   client_preview DIRECTORY [low|high] [WxH] [en|de|ko]
+//   client_preview DIRECTORY [low|high] [WxH] [en|de|ko] [NAME]
+// NAME: only the moments whose name begins with it.
 #include <GLES3/gl3.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstring>
 #include <ctime>
 #include <string>
+#include <string_view>
 
 #include "app/window.h"
 #include "client/menu.h"
@@ -28,6 +30,9 @@ struct Shot {
 };
 constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"selection", 1.0, 1, 0},
+                           {"crews-1", 1.0, 1, 0},
+                           {"crews-2", 1.0, 1, 1},
+                           {"crews-3", 1.0, 1, 0},
                            {"play-1", 0.35, 2, 0},
                            {"play-2", 1.62, 2, 1},
                            {"play-3", 2.4, 2, 0},
@@ -139,7 +144,7 @@ Camera camera_of(const Shot& shot, const wire::Snapshot& state, const glm::ivec2
 }
 
 int run(const std::string& directory, draw::Quality quality, const glm::ivec2& size,
-        const std::string& language) {
+        const std::string& language, const std::string& only) {
   auto window = Window::open({.size = size, .title = "preview"});
   if (!window) {
     std::fprintf(stderr, "%s\n", window.error().sentence.c_str());
@@ -164,10 +169,16 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
   std::printf("set up: scene %.0f ms, font %.0f ms of CPU time\n", 1e3 * (scene_done - begin),
               1e3 * (font_done - scene_done));
   for (const Shot& shot : kShots) {
+    if (!std::string_view(shot.name).starts_with(only)) continue;
     wire::Snapshot state = scripted_play(shot.seconds);
     state.screen = shot.screen;
     state.ball_in_play = shot.screen == 2;
     state.confirmed = {true, false};
+    if (std::string_view(shot.name).starts_with("crews-")) {  // two of the six each
+      const auto pair = static_cast<std::uint8_t>(shot.name[6] - '1');
+      state.character = {static_cast<std::uint8_t>(2 * pair),
+                         static_cast<std::uint8_t>(2 * pair + 1)};
+    }
     if (std::strcmp(shot.name, "play-3") == 0) {
       state.rule_set = number(wire::RuleSet::itsf);
       state.sets = {1, 0};
@@ -277,5 +288,6 @@ int main(int argc, char** argv) {
       argc > 2 && std::strcmp(argv[2], "low") == 0 ? draw::Quality::low : draw::Quality::high;
   glm::ivec2 size{1280, 720};
   if (argc > 3) std::sscanf(argv[3], "%dx%d", &size.x, &size.y);
-  return client::run(argc > 1 ? argv[1] : ".", quality, size, argc > 4 ? argv[4] : "en");
+  return client::run(argc > 1 ? argv[1] : ".", quality, size, argc > 4 ? argv[4] : "en",
+                     argc > 5 ? argv[5] : "");
 }

@@ -127,8 +127,9 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
       b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.05f * r.z},
                   {0.95f * r.x, 1.08f * wide, 1.02f * r.z}, 14, 10);
       break;
-    case foosball::Headgear::bubble:  // a ring around the glass
-      b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.05f * r.x, 0.0016f, 14, 6);
+    case foosball::Headgear::bubble:  // a ring around the glass, and a pompon for who looks down
+      b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.15f * r.x, 0.0020f, 14, 6);
+      b.ellipsoid({at.x - 0.50f * r.x, at.y, at.z + 0.98f * r.z}, glm::vec3(0.0044f), 10, 8);
       break;
   }
 }

@@ -37,7 +37,7 @@ constexpr std::array<KeyHelp, 14> kAllKeys{
      {"T", N_("time-out")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};
-constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3", N_("or")},
+constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3 4", N_("or")},
                                                  {N_("wheel, arrows"), N_("choose")},
                                                  {N_("Space, click"), N_("confirm")},
                                                  {"F1", N_("all keys")}}};
@@ -135,6 +135,14 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
              line);
   draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar,
              line);
+}
+
+// The chosen one, large enough to see whose face it is: beside the list, where there is room.
+void draw_chosen(const HudPen& pen, int character, int team, const glm::vec2& low, float width) {
+  const glm::vec2 size(width, 1.25f * width);
+  pen.panel(low, low + size, 14.0f, {0.03f, 0.045f, 0.07f, 0.80f});
+  pen.picture(character, team, low + 3.0f, low + size - 3.0f);
+  pen.panel(low, low + size, 14.0f, kTeamInk[static_cast<std::size_t>(team)], 2.0f);
 }
 
 std::string named_team(std::size_t team) {
@@ -239,6 +247,12 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
     const foosball::Character& one = foosball::nearest(characters, chosen);
     pen.text(capitalised(tr(one.specialty.c_str())), {Face::regular, 13.5f, 0.0f, Align::centre},
              {x + 0.5f * width, end + 16.0f}, kInk, 0.55f, width);
+    constexpr float kPortrait = 168.0f;
+    const bool at_left = (team == 0) == pen.left_is_team_0;
+    const float inner = at_left ? x + width + 26.0f : x - 26.0f - kPortrait;
+    if (pen.half_width - 62.0f - width > kPortrait) {
+      draw_chosen(pen, chosen, team, {inner, top}, kPortrait);
+    }
     if (count > shown) {
       const std::string place = std::to_string(chosen + 1) + " / " + std::to_string(count);
       pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 40.0f}, kFaint);

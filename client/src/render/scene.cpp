@@ -325,7 +325,7 @@ void Scene::see_through(const wire::Snapshot& state, const Camera& camera, const
 
 GLuint Scene::portraits() {
   if (portraits_) return portraits_->texture();
-  constexpr glm::ivec2 kCell{160, 200};  // [px]
+  constexpr glm::ivec2 kCell{200, 250};  // [px]
   auto program = draw::Program::build(shader_source, {"lighting.glsl", "solid.glsl", "solid.vert"},
                                       {"common.glsl", "lighting.glsl", "solid.glsl", "solid.frag"},
                                       draw::Quality::low);  // writes what the screen shows
@@ -341,11 +341,12 @@ GLuint Scene::portraits() {
   glEnable(GL_CULL_FACE);
   draw::bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
   draw::bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
-  // Head and chest, a little from the side, from below the brow.
+  // Head and shoulders, 53 mm of him, a little from the side: faces, headgear and build tell the
+  // characters apart at the size of a thumb.
   Camera camera;
-  camera.eye = {0.30f, -0.12f, 0.05f};
-  camera.view = glm::lookAt(camera.eye, glm::vec3(0.0f, 0.0f, 0.016f), glm::vec3(0, 0, 1));
-  camera.projection = glm::perspective(0.245f, 0.8f, 0.05f, 2.0f);
+  camera.eye = {0.30f, -0.12f, 0.06f};
+  camera.view = glm::lookAt(camera.eye, glm::vec3(0.0f, 0.0f, 0.029f), glm::vec3(0, 0, 1));
+  camera.projection = glm::perspective(0.163f, 0.8f, 0.05f, 2.0f);
   camera.view_projection = camera.projection * camera.view;
   light(*program, camera, 0.0f);
   program->set("u_see_through", glm::vec4(0.0f));
