@@ -57,11 +57,13 @@ class List {
                                                                         : Judgment::falls_short;
     figures.push_back({section_, name, value, unit, goal.text, judgment});
   }
-  // Of a share of n, each by itself [%].
+  // Of a share of n, each by itself [%]. One more of either kind is counted for the error, so that
+  // three of three are not exact (Agresti and Coull).
   void add_share(const char* name, std::uint64_t part, std::uint64_t n, const Goal& goal) {
     add(name, percent(part, n), "%", goal);
-    const double p = ratio(part, n);
-    figures.back().error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n));
+    if (n == 0) return;
+    const double p = ratio(part + 1, n + 2);
+    figures.back().error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n + 2));
   }
   std::vector<Figure> figures;
 
@@ -325,8 +327,12 @@ std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Ser
   const auto score = [&](std::size_t part) {
     return series[part].taken() < 2 ? kNone : 100.0 * mean_score(series[part].pairs());
   };
+  // With a pair lost and a pair won added: pairs that ended alike are few, not exact.
   const auto error = [&](std::size_t part) {
-    return series[part].taken() < 4 ? kNone : 100.0 * score_error(series[part].pairs());
+    PairCounts pairs = series[part].pairs();
+    ++pairs.front();
+    ++pairs.back();
+    return series[part].taken() < 2 ? kNone : 100.0 * score_error(pairs);
   };
   const auto add_points = [&](List& list, const char* name, std::size_t part, const Goal& goal) {
     list.add(name, score(part), "% points", goal);
