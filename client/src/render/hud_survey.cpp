@@ -9,7 +9,8 @@
 namespace client {
 namespace {
 
-constexpr float kHalf = 300.0f, kHeight = 142.0f, kBetween = 10.0f;  // of a panel, in units
+constexpr float kPanelHalf = 300.0f, kPanelHeight = 142.0f,
+                kBetween = 10.0f;  // of a panel, in units
 
 std::string named(const SurveyPanel& panel) {
   const auto team = static_cast<std::size_t>(panel.team == 1);
@@ -33,7 +34,7 @@ void draw_consent(const HudPen& pen, const SurveyPanel& panel, float x, float y,
                   const Colour& ink) {
   pen.text(tr("They stay on this machine, without your name. Stop whenever you like."),
            {Face::regular, 13.5f, 0.0f, Align::centre}, {x, y + 62.0f}, kFaint, 0.55f,
-           2.0f * kHalf - 40.0f);
+           2.0f * kPanelHalf - 40.0f);
   const std::array<const char*, 3> choices{tr("No"), tr("Yes"), tr("Never ask")};
   for (int i = 0; i < 3; ++i) {
     draw_choice(pen, choices[static_cast<std::size_t>(i)],
@@ -64,7 +65,7 @@ void draw_scale(const HudPen& pen, const SurveyPanel& panel, float x, float y, c
 // x: its middle; y: its upper edge.
 void draw_panel(const HudPen& pen, const SurveyPanel& panel, float x, float y) {
   const Colour& ink = kTeamInk[panel.team == 1 ? 1 : 0];
-  const glm::vec2 low{x - kHalf, y}, high{x + kHalf, y + kHeight};
+  const glm::vec2 low{x - kPanelHalf, y}, high{x + kPanelHalf, y + kPanelHeight};
   pen.panel(low, high, 14.0f, {0.03f, 0.045f, 0.07f, 0.96f});
   pen.panel(low, high, 14.0f, ink, 1.5f);
   const bool statement = panel.kind == SurveyPanel::Kind::statement;
@@ -73,24 +74,25 @@ void draw_panel(const HudPen& pen, const SurveyPanel& panel, float x, float y) {
   if (statement) {
     const std::string place =
         std::to_string(panel.question + 1) + " / " + std::to_string(wire::kQuestionCount);
-    pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + kHalf - 16.0f, y + 20.0f},
+    pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + kPanelHalf - 16.0f, y + 20.0f},
              kFaint);
   }
   const bool thanks = panel.kind == SurveyPanel::Kind::thanks;
   pen.text(tr(panel.text), {Face::bold, 19.0f, 0.0f, Align::centre},
-           {x, y + (thanks ? 80.0f : 43.0f)}, kInk, 0.55f, 2.0f * kHalf - 40.0f);
+           {x, y + (thanks ? 80.0f : 43.0f)}, kInk, 0.55f, 2.0f * kPanelHalf - 40.0f);
   if (thanks) return;
   statement ? draw_scale(pen, panel, x, y, ink) : draw_consent(pen, panel, x, y, ink);
   const char* how = panel.cabinet
                         ? tr("spin a rod to choose, hold it still to confirm; push it to "
                              "play on")
                         : tr("left and right choose, push confirms, up goes back, Esc ends");
-  pen.text(how, {Face::regular, 12.5f, 0.0f, Align::centre}, {x, y + kHeight - 12.0f}, kFaint,
-           0.55f, 2.0f * kHalf - 40.0f);
+  pen.text(how, {Face::regular, 12.5f, 0.0f, Align::centre}, {x, y + kPanelHeight - 12.0f}, kFaint,
+           0.55f, 2.0f * kPanelHalf - 40.0f);
   if (panel.standing > 0.0f) {
-    pen.panel({x - kHalf + 16.0f, high.y - 5.0f},
-              {x - kHalf + 16.0f + panel.standing * (2.0f * kHalf - 32.0f), high.y - 2.0f}, 1.5f,
-              ink);
+    pen.panel(
+        {x - kPanelHalf + 16.0f, high.y - 5.0f},
+        {x - kPanelHalf + 16.0f + panel.standing * (2.0f * kPanelHalf - 32.0f), high.y - 2.0f},
+        1.5f, ink);
   }
 }
 
@@ -104,19 +106,20 @@ float draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int 
   }
   if (shown.empty()) return 0.0f;
   // One below another where two beside one another would be too small to read.
-  const bool narrow = whole.half_width < 1.6f * kHalf;
+  const bool narrow = whole.half_width < 1.6f * kPanelHalf;
   const std::size_t columns = narrow ? 1 : std::min<std::size_t>(shown.size(), 2);
   const std::size_t rows = (shown.size() + columns - 1) / columns;
-  const float wide = static_cast<float>(columns) * (2.0f * kHalf + kBetween);
-  const float high = static_cast<float>(rows) * (kHeight + kBetween);
+  const float wide = static_cast<float>(columns) * (2.0f * kPanelHalf + kBetween);
+  const float high = static_cast<float>(rows) * (kPanelHeight + kBetween);
   const float half = 0.5f * wide + 4.0f;
   const HudPen pen =
       whole.fitting(half, std::max(high + 10.0f, 1.25f * high)).readable(0.75f, half);
   const float top = pen.bottom - high - 4.0f;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto column = static_cast<float>(i % columns), row = static_cast<float>(i / columns);
-    const float x = (column - 0.5f * static_cast<float>(columns - 1)) * (2.0f * kHalf + kBetween);
-    draw_panel(pen, *shown[i], x, top + row * (kHeight + kBetween));
+    const float x =
+        (column - 0.5f * static_cast<float>(columns - 1)) * (2.0f * kPanelHalf + kBetween);
+    draw_panel(pen, *shown[i], x, top + row * (kPanelHeight + kBetween));
   }
   return (high + 4.0f) * pen.scale / whole.scale;
 }
