@@ -85,15 +85,16 @@ TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
 }
 
 TEST_P(Exhibition, OfTwentySecondsShowsShots) {
+  constexpr int kExhibitions = 32;  // of eight, one code in twenty has three with a goal by chance
   int with_goal = 0;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kExhibitions; ++seed) {
     Tally tally;
     play(GetParam(), seed, "5:shooter", 20000, false, tally);
     EXPECT_GE(tally.shots, 3) << "seed " << seed;
     with_goal += tally.per_minute(EventKind::goal) > 0.0 ? 1 : 0;
   }
-  std::printf("a goal in %d of 8\n", with_goal);
-  EXPECT_GE(with_goal, 4);
+  std::printf("a goal in %d of %d\n", with_goal, kExhibitions);
+  EXPECT_GE(with_goal, kExhibitions / 2);
 }
 
 TEST_P(Exhibition, AMatchToFiveIsWonWithinSomeMinutes) {
