@@ -104,7 +104,7 @@ MAY_USE = {
     'characters': {ENGINE_FACE, 'profile', 'table', 'wire'},
     'server': {ENGINE_FACE, 'profile', 'characters', 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
-    'match': {ENGINE_FACE, 'profile', 'characters', 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
+    'match': {ENGINE_FACE, 'profile', 'characters', 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server', 'results'},
     # The client draws from snapshots only: the table's geometry, never the match.
     'draw': set(),
     'client': {ENGINE_FACE, 'characters', 'os', 'draw', 'profile', 'table', 'wire', 'device-frame', 'hand'},

@@ -106,6 +106,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::ExistingDirectory);
   cli.add_option("--checkpoint", o.checkpoint,
                  "file that keeps finished matches; the same command goes on from there");
+  cli.add_option("--results", o.results,
+                 "add each match that is played to this file; space-foosball-results lists them");
   cli.add_option("--csv", o.csv, "write the results there too, - for standard output");
   cli.add_option("--json", o.json, "write the results there too, - for standard output");
   cli.add_flag("--quiet", o.quiet, "no progress");

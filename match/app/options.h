@@ -30,7 +30,7 @@ struct Options {
   double max_minutes = 10.0;         // of a match
   double elo0 = 0.0, elo1 = 20.0, alpha = 0.05, beta = 0.05;
   int jobs = 1;
-  std::string record, checkpoint, csv, json;
+  std::string record, checkpoint, csv, json, results;
   bool quiet = false;
 };
 

@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "match/checkpoint.h"
 #include "match/executor.h"
 #include "match/report.h"
 #include "plan.h"
 #include "progress.h"
+#include "result_writer.h"
 
 namespace {
 
@@ -72,6 +74,12 @@ int run(const Options& options, const PlayAll& play_all) {
     for (const auto& line : opened->lines) schedule.know(line.id, line.result);
     checkpoint = std::move(opened->checkpoint);
   }
+  std::optional<ResultWriter> writer;
+  if (!options.results.empty()) {
+    auto opened = ResultWriter::open(options.results);
+    if (!opened) return fail(2, opened.error());
+    writer = std::move(*opened);
+  }
   Progress progress(options.quiet);
   match::ExecutorOptions executor;
   executor.jobs = options.jobs;
@@ -81,8 +89,17 @@ int run(const Options& options, const PlayAll& play_all) {
   executor.progress = [&](const match::Schedule& s, const match::Effort& e) {
     progress.show(s, e);
   };
+  if (writer) {
+    executor.taken = [&](const match::GameDesc& game, match::JobId id, const match::GameResult& r) {
+      writer->add(game, r,
+                  options.record.empty() ? std::string()
+                                         : options.record + "/" + match::journal_name(id, game));
+    };
+  }
   const auto effort = play_all(schedule, executor);
   progress.finish();
+  const std::string unsaved = writer ? writer->finish() : std::string();
+  if (!unsaved.empty()) fail(1, unsaved);
   if (!effort) return fail(1, effort.error());
 
   const Results results = results_of(options, schedule.series());
@@ -95,7 +112,7 @@ int run(const Options& options, const PlayAll& play_all) {
     return fail(1, "the results could not be written to the file");
   }
   if (!schedule.finished()) return fail(1, "stopped before all matches were played");
-  return 0;
+  return unsaved.empty() ? 0 : 1;
 }
 
 }  // namespace app

@@ -134,6 +134,7 @@ class Coordinator {
         problem_ = kept.error();
       }
     }
+    if (options_.taken) options_.taken(schedule_.game(answer->id), answer->id, answer->result);
     schedule_.complete(answer->id, answer->result);
     if (options_.progress) options_.progress(schedule_, effort_);
   }

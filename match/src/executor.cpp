@@ -68,6 +68,7 @@ class Pool {
         return false;
       }
     }
+    if (options_.taken) options_.taken(schedule_.game(id), id, *result);
     schedule_.complete(id, *result);
     if (options_.progress) options_.progress(schedule_, effort_);
     return true;

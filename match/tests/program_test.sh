@@ -1,9 +1,9 @@
 #!/bin/bash
 # The programs as they are run: clear sentences for bad options, recordings that replay, and the same
 # totals from threads, from 1, 2 and 4 ranks, and from a run that was killed and goes on.
-#   program_test.sh SPACE_FOOSBALL_MATCH FOOSBALL_REPLAY [SPACE_FOOSBALL_MATCH_MPI]
+#   program_test.sh SPACE_FOOSBALL_MATCH FOOSBALL_REPLAY SPACE_FOOSBALL_RESULTS [SPACE_FOOSBALL_MATCH_MPI]
 set -euo pipefail
-match=$1 replay=$2 mpi=${3:-}
+match=$1 replay=$2 results=$3 mpi=${4:-}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failures=0
@@ -46,6 +46,30 @@ echo 'gravity = 9.0' >"$folder/light.toml"
 [[ $(grep digest "$folder/light") != "$digest" ]] || fail "--tuning changes nothing"
 [[ ${#recordings[@]} == 8 ]] || fail "${#recordings[@]} recordings of 8 matches"
 "$replay" "${recordings[0]}" | grep -q 'is the match that was played' || fail "a recording does not replay"
+
+# Into a file of results: every match once, with its recording; a file that fails loses none.
+"$match" "${options[@]}" --results "$folder/matches.sqlite" --record "$folder" >"$folder/out"
+grep -qx "$digest" "$folder/out" || fail "--results changes the matches"
+"$results" matches "$folder/matches.sqlite" --format csv >"$folder/rows"
+[[ $(wc -l <"$folder/rows") == 9 ]] || fail "$(wc -l <"$folder/rows") rows of 8 matches and a heading"
+[[ $(grep -c 'computer classic:0.9' "$folder/rows") == 8 ]] || fail "the players are not named"
+while IFS=, read -r _ _ _ _ _ _ _ _ _ recording _; do
+  [[ $recording == recording || -f $recording ]] || fail "no recording $recording"
+done <"$folder/rows"
+refuses 'no database of results' --results "$folder/whole"
+refuses 'cannot be opened' --results "$folder/none/file"
+python3 - "$folder/matches.sqlite" <<'SQL'
+import sqlite3, sys
+sqlite3.connect(sys.argv[1]).executescript(
+    "CREATE TRIGGER full BEFORE INSERT ON match BEGIN SELECT RAISE(ABORT, 'as a disk that fills'); END;")
+SQL
+code=0
+"$match" "${options[@]}" --results "$folder/matches.sqlite" >"$folder/out" 2>"$folder/err" || code=$?
+[[ $code == 1 ]] || fail "a file of results that fails: ended with $code"
+grep -qx "$digest" "$folder/out" || fail "a file of results that fails: no figures"
+grep -q "as a disk that fills; 8 matches are in $folder/matches.sqlite.unsaved.csv" "$folder/err" ||
+  fail "a file of results that fails: said $(cat "$folder/err")"
+[[ $(wc -l <"$folder/matches.sqlite.unsaved.csv") == 9 ]] || fail "unsaved: $(wc -l <"$folder/matches.sqlite.unsaved.csv") rows"
 
 same() {
   cmp -s "$folder/threads.json" "$1" || fail "$2: other figures"

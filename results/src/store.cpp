@@ -264,15 +264,12 @@ std::string Store::error() const {
   return sentence(path_, what_is_wrong(database_.get()));
 }
 
-tl::expected<std::int64_t, std::string> Store::add(const MatchResult& result) {
-  if (const std::string problem = problem_with(result); !problem.empty()) {
-    return tl::unexpected(sentence(path_, problem));
-  }
-  sqlite3* const db = database_.get();
-  Transaction transaction(db);
+namespace {
+
+// Within a transaction. The id that it got; none: the database's error.
+std::optional<std::int64_t> insert(sqlite3* db, const MatchResult& result) {
   const auto& speeds = result.shot_speeds;
-  bool ok = transaction.begun() &&
-            Statement(db,
+  bool ok = Statement(db,
                       "INSERT INTO match (finished_at, layout, goals_to_win, max_goals, seed, "
                       "play_seconds, recording, shot_speed_median, shot_speed_fastest) "
                       "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
@@ -303,8 +300,32 @@ tl::expected<std::int64_t, std::string> Store::add(const MatchResult& result) {
               .run();
     }
   }
+  return ok ? std::optional(id) : std::nullopt;
+}
+
+}  // namespace
+
+tl::expected<std::int64_t, std::string> Store::add(const MatchResult& result) {
+  if (const std::string problem = problem_with(result); !problem.empty()) {
+    return tl::unexpected(sentence(path_, problem));
+  }
+  Transaction transaction(database_.get());
+  const auto id = transaction.begun() ? insert(database_.get(), result) : std::nullopt;
+  if (!id || !transaction.commit()) return tl::unexpected(error());
+  return *id;
+}
+
+tl::expected<void, std::string> Store::add(std::span<const MatchResult> results) {
+  for (const MatchResult& result : results) {
+    if (const std::string problem = problem_with(result); !problem.empty()) {
+      return tl::unexpected(sentence(path_, problem));
+    }
+  }
+  Transaction transaction(database_.get());
+  bool ok = transaction.begun();
+  for (const MatchResult& result : results) ok = ok && insert(database_.get(), result).has_value();
   if (!ok || !transaction.commit()) return tl::unexpected(error());
-  return id;
+  return {};
 }
 
 tl::expected<std::int64_t, std::string> Store::add(const Answers& answers) {

@@ -72,6 +72,24 @@ TEST_F(StoreTest, GivesBackWhatWasAddedInTheOrderOfPlay) {
   EXPECT_EQ(newest[0], added[0]);
 }
 
+TEST_F(StoreTest, AddsABatchWholeOrNotAtAll) {
+  Store store = made();
+  std::vector<MatchResult> batch(40, match_between("Ann", "Bob", 5, 3));
+  ASSERT_TRUE(store.add(batch));
+  batch[39].finished_at = "yesterday";
+  EXPECT_FALSE(store.add(batch));
+  EXPECT_EQ(store.matches({}).value().size(), 40u);
+  execute(
+      "CREATE TRIGGER full BEFORE INSERT ON match WHEN NEW.seed = '7' "
+      "BEGIN SELECT RAISE(ABORT, 'as a disk that fills'); END");
+  batch[39] = batch[0];
+  batch[39].seed = 7;
+  const auto failed = store.add(batch);
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().find("as a disk that fills"), std::string::npos) << failed.error();
+  EXPECT_EQ(store.matches({}).value().size(), 40u) << "nothing of the second";
+}
+
 TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   Store store = made();
   std::vector<MatchResult> bad(7, match_between("Ann", "Bob", 5, 3));

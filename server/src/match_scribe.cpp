@@ -49,7 +49,6 @@ std::array<results::TeamStatistics, foosball::kTeams> statistics_of_teams(const 
   return teams;
 }
 
-// To a bin's width, 0.1 m/s.
 std::optional<results::ShotSpeeds> shot_speeds(const Statistics& before, const Statistics& now) {
   auto speeds = now.shot_speed;
   for (std::size_t i = 0; i < speeds.bins.size(); ++i) speeds.bins[i] -= before.shot_speed.bins[i];

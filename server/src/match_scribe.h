@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "foosball/match.h"
 #include "foosball/statistics.h"
 #include "results/match_result.h"
+#include "server/match_statistics.h"
 
 namespace server {
 
@@ -30,11 +30,5 @@ class MatchScribe {
   foosball::StatisticsObserver statistics_;
   foosball::Statistics before_;  // totals when this match began
 };
-
-// Of one match: what the totals have more than before.
-std::array<results::TeamStatistics, foosball::kTeams> statistics_of_teams(
-    const foosball::Statistics& before, const foosball::Statistics& now);
-std::optional<results::ShotSpeeds> shot_speeds(const foosball::Statistics& before,
-                                               const foosball::Statistics& now);
 
 }  // namespace server

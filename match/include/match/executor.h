@@ -23,8 +23,10 @@ struct Effort {
 
 struct ExecutorOptions {
   int jobs = 1;
-  std::string record_folder;                // a journal of each game; empty: none
-  Checkpoint* checkpoint = nullptr;         // takes each result as it comes
+  std::string record_folder;         // a journal of each game; empty: none
+  Checkpoint* checkpoint = nullptr;  // takes each result as it comes
+  // Each result as it comes, one at a time: for whoever keeps them elsewhere.
+  std::function<void(const GameDesc&, JobId, const GameResult&)> taken;
   const std::atomic<bool>* stop = nullptr;  // true: no new games; those under way are finished
   std::function<void(const Schedule&, const Effort&)> progress;  // after each game, one at a time
 };

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -32,6 +33,8 @@ class Store {
 
   // All of it or nothing. Refused: what problem_with() finds. The id that it got.
   tl::expected<std::int64_t, std::string> add(const MatchResult& result);
+  // Several in one transaction: all of them or none.
+  tl::expected<void, std::string> add(std::span<const MatchResult> results);
   // The same of a player's answers. Refused too: of a match that is not there, of rods that have
   // answered for it already.
   tl::expected<std::int64_t, std::string> add(const Answers& answers);

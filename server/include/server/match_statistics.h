@@ -1,0 +1,18 @@
+// What is kept of a match's statistics: of what an observer has counted, what came since.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "foosball/statistics.h"
+#include "results/match_result.h"
+
+namespace server {
+
+std::array<results::TeamStatistics, foosball::kTeams> statistics_of_teams(
+    const foosball::Statistics& before, const foosball::Statistics& now);
+// None, if nobody shot. To a bin's width, 0.1 m/s.
+std::optional<results::ShotSpeeds> shot_speeds(const foosball::Statistics& before,
+                                               const foosball::Statistics& now);
+
+}  // namespace server
