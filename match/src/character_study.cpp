@@ -56,7 +56,7 @@ double balanced_value(const std::vector<double>& values, const std::vector<doubl
 }
 
 template <class Counts>
-double sum(const Counts& counts) {
+double total_of(const Counts& counts) {
   return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
 }
 
@@ -70,18 +70,19 @@ double minutes(const Statistics& s) {
   return static_cast<double>(s.play_ticks) * foosball::kTick / 60.0;
 }
 constexpr Trait kTraits[] = {
-    {"goals", "a minute", 2, [](const Statistics& s) { return sum(s.goals) / minutes(s); }},
-    {"shots", "a minute", 1, [](const Statistics& s) { return sum(s.shots) / minutes(s); }},
+    {"goals", "a minute", 2, [](const Statistics& s) { return total_of(s.goals) / minutes(s); }},
+    {"shots", "a minute", 1, [](const Statistics& s) { return total_of(s.shots) / minutes(s); }},
     {"shot speed, median", "m/s", 2,
      [](const Statistics& s) { return s.shot_speed.quantile(0.5); }},
     {"90 %", "m/s", 2, [](const Statistics& s) { return s.shot_speed.quantile(0.9); }},
     {"on target", "%", 1,
-     [](const Statistics& s) { return 100.0 * sum(s.shots_on_target) / sum(s.shots); }},
+     [](const Statistics& s) { return 100.0 * total_of(s.shots_on_target) / total_of(s.shots); }},
     {"of these saved", "%", 1,
-     [](const Statistics& s) { return 100.0 * sum(s.saves) / sum(s.shots_on_target); }},
+     [](const Statistics& s) { return 100.0 * total_of(s.saves) / total_of(s.shots_on_target); }},
     {"hop, median", "mm", 0, [](const Statistics& s) { return 1e3 * s.hop_height.quantile(0.5); }},
     {"hop, 90 %", "mm", 0, [](const Statistics& s) { return 1e3 * s.hop_height.quantile(0.9); }},
-    {"touches", "a minute", 0, [](const Statistics& s) { return sum(s.touches) / minutes(s); }},
+    {"touches", "a minute", 0,
+     [](const Statistics& s) { return total_of(s.touches) / minutes(s); }},
 };
 
 const foosball::Character& character_of(const Series& series) {
