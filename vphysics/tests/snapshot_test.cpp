@@ -181,6 +181,12 @@ TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
     const BodyId turned = must(world.create_body(desc));
     desc.motion = Motion::kinematic;
     const BodyId led = must(world.create_body(desc));
+    BodyDesc far_centre = desc;
+    far_centre.motion = Motion::dynamic;
+    far_centre.inertia = Inertia(1.0, Vec3{100, 0, 0}, Sym3{1, 10001, 10001, 0, 0, 0});
+    const BodyId heavy_end = must(world.create_body(far_centre));
+    far_centre.velocity.w = Vec3{0, 1e9, 0};
+    EXPECT_FALSE(world.create_body(far_centre));
     LinkSpec link;
     LinkSpec outer;
     link.joint = RevoluteJoint{};
@@ -199,12 +205,20 @@ TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
       joint.kind = kind;
       (void)must(world.create_joint(body, turned, joint));
     }
-    const Vec3 hard{1e9, -1e9, 1e9}, far{-1e9, 1e9, 1e9};
-    must(world.apply_impulse(body, hard, far));
-    must(world.apply_impulse(gone, hard, far));
-    must(world.apply_impulse(world.link_body(arm, 0), hard, far));
+    // As hard as is allowed, off the centre by so much that it also turns as fast as is allowed.
+    const double off = mass == 1.0 ? 0.5 : 1e-12;
+    const auto hit = [&](BodyId id, double speed) {
+      const Vec3 origin = world.pose(id).position();
+      return world.apply_impulse(id, {mass * speed, -mass * speed, 0}, origin + Vec3{off, 0, off});
+    };
+    for (const BodyId id : {body, gone, world.link_body(arm, 0)}) {
+      EXPECT_FALSE(hit(id, 1e10));
+      EXPECT_FALSE(hit(id, 1e30));
+      must(hit(id, 0.9e9));
+    }
     must(world.set_velocity(turned, {{1e9, 1e9, 1e9}, {1e9, 1e9, 1e9}}));
     must(world.set_velocity(led, {{1e9, 1e9, 1e9}, {1e9, 1e9, 1e9}}));
+    EXPECT_FALSE(world.set_velocity(heavy_end, {{0, 1e9, 0}, {}}));
     must(world.destroy_body(gone));
     const auto restore = [&world] {
       std::vector<std::byte> bytes;

@@ -153,6 +153,7 @@ class World {
   Inertia inertia(BodyId body) const;  // about its origin, 0 if not dynamic; precondition: the same
   Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
+  // Refused: what would make it faster than 1e9 m/s or rad/s.
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
   bool is_asleep(BodyId body) const;  // precondition: contains(body)
   // With all that hangs together with it; nothing if it is awake.

@@ -416,7 +416,7 @@ Articulation::Change Articulation::end_solve() {
   return Change::of_coordinates_too;
 }
 
-void Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& point) {
+bool Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& point) {
   update_factor();
   factor_.force_row(link, point, impulse, rate_.data());
   std::fill(change_.begin(), change_.end(), 0.0);
@@ -425,8 +425,12 @@ void Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& poin
     change_[d] = rate_[k];
   }
   factor_.to_velocities(change_);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!vp::in_range(v[i] + change_[i])) return false;
+  }
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
   refresh();
+  return true;
 }
 
 bool Articulation::in_range() const {

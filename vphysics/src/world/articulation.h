@@ -89,7 +89,8 @@ class Articulation {
   solve::SolverArticulation begin_solve();
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();
-  void apply_impulse(int link, const Vec3& impulse, const Vec3& point);  // world frame
+  // World frame. False, and nothing changes, if a velocity would leave the range.
+  bool apply_impulse(int link, const Vec3& impulse, const Vec3& point);
 
   // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step

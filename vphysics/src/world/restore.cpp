@@ -44,14 +44,14 @@ SE3 read_pose(Reader& in) {
 
 void read(Reader& in, BodyState& state) {
   state.T = read_pose(in);
-  state.w = in.finite_vector();
-  state.v = in.finite_vector();
+  state.w = in.nearly_bounded_vector();
+  state.v = in.nearly_bounded_vector();
   state.prescribed.w = in.vector();
   state.prescribed.v = in.vector();
 }
 
 void read(Reader& in, const JointDof& dof, DofState& state) {
-  state.v = in.number();
+  state.v = in.bounded();
   JointDrive& d = state.drive;
   d.position = in.bounded();
   d.velocity = in.bounded();

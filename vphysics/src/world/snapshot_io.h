@@ -64,10 +64,9 @@ class Reader {
     const double x = bounded(), y = bounded(), z = bounded();
     return {x, y, z};
   }
-  // Of a velocity, which a call may have taken out of range: the next step brings it back; of a
-  // point of what lies at the edge of the range.
-  Vec3 finite_vector() {
+  Vec3 nearly_bounded_vector() {
     const double x = number(), y = number(), z = number();
+    check(nearly_in_range(Vec3{x, y, z}));
     return {x, y, z};
   }
   struct Two {

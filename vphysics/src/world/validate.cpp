@@ -119,7 +119,12 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
     return "damping must be zero or more";
   }
   if (desc.motion != Motion::dynamic) return std::nullopt;
-  return problem_with(desc.inertia);
+  if (auto problem = problem_with(desc.inertia)) return problem;
+  const se3& V = desc.velocity;
+  if (!nearly_in_range(V.v + cross(V.w, desc.inertia.centre_of_mass()))) {
+    return "velocity: the centre of mass would move faster than 1e9 m/s";
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> problem_with(const Inertia& J) {

@@ -286,6 +286,9 @@ Expected<void> World::set_velocity(BodyId id, const se3& V) {
     return refuse("set_velocity: a link is moved by its joint; use set_joint_state");
   if (body->motion == Motion::fixed) return refuse("set_velocity: the body is fixed");
   if (!in_range(V)) return refuse("set_velocity: every entry must be finite and at most 1e9");
+  if (!nearly_in_range(V.v + cross(V.w, body->centre))) {
+    return refuse("set_velocity: the centre of mass would move faster than 1e9 m/s");
+  }
   impl_->give_velocity(id.index - 1, V);
   if (impl_->recorder) impl_->log({calls::SetVelocity{id, V}});
   return {};
@@ -310,17 +313,22 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   if (!in_range(impulse) || !in_range(point)) {
     return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
   }
-  if (impl_->recorder) impl_->log({calls::ApplyImpulse{id, impulse, point}});
+  constexpr const char* kTooMuch =
+      "apply_impulse: the body would move faster than 1e9 m/s or rad/s; apply less";
   if (body->is_link) {
     Articulation& art = impl_->articulations[body->articulation];
-    art.apply_impulse(body->link, impulse, point);
+    if (!art.apply_impulse(body->link, impulse, point)) return refuse(kTooMuch);
     impl_->follow(art);
-    return {};
+  } else {
+    const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
+    const Vec3 v = body->v + (1.0 / body->mass) * impulse;
+    const Vec3 w = body->w + rotated(body->T.rotation(), body->inverse_central) * moment;
+    if (!nearly_in_range(v) || !nearly_in_range(w)) return refuse(kTooMuch);
+    impl_->wake(id.index - 1);
+    body->v = v;
+    body->w = w;
   }
-  impl_->wake(id.index - 1);
-  const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
-  body->v += (1.0 / body->mass) * impulse;
-  body->w += rotated(body->T.rotation(), body->inverse_central) * moment;
+  if (impl_->recorder) impl_->log({calls::ApplyImpulse{id, impulse, point}});
   return {};
 }
 
