@@ -203,14 +203,17 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
 }
 
 // The exit code, as far as the recording and the results that were written have a say in it.
-int judge_record(const server::Server& server, bool asked, const server::Log& log) {
-  int code = server::kExitOk;
-  for (const std::string& problem : {server.journal_problem(), server.results_problem()}) {
-    if (problem.empty()) continue;
+// asked_for: a recording that is made by default may fail.
+int judge_record(const server::Server& server, bool asked_for, const server::Log& log) {
+  const auto judge = [&log](const std::string& problem, int failed) {
+    if (problem.empty()) return server::kExitOk;
     log(server::LogLevel::warning, problem);
-    if (asked || problem != server.journal_problem()) code = server::kExitFailed;
-  }
-  return code;
+    return failed;
+  };
+  const int recording =
+      judge(server.journal_problem(), asked_for ? server::kExitFailed : server::kExitOk);
+  const int results = judge(server.results_problem(), server::kExitFailed);
+  return recording != server::kExitOk ? recording : results;
 }
 
 // The same for a replay. The summary says the verdict too.

@@ -6,25 +6,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "broadcaster.h"
 #include "characters/record.h"
-#include "control_server.h"
-#include "device_watch.h"
-#include "event_repeater.h"
-#include "input_port.h"
-#include "match_scribe.h"
 #include "os/clock.h"
 #include "os/socket_address.h"
-#include "recorder.h"
-#include "results_log.h"
-#include "rod_desk.h"
 #include "server/match_record.h"
+#include "server_impl.h"
 #include "snapshot_builder.h"
-#include "socket.h"
 
 namespace server {
 namespace {
@@ -39,73 +29,6 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
 }
 
 }  // namespace
-
-struct Server::Impl {
-  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, os::FileDescriptor&& wake,
-       std::unique_ptr<Recorder>&& journal);
-
-  void take_control_events();
-  void admit(ControlEvent& event);
-  void change_rods(ControlEvent& event);
-  void take_back(ControlEvent& event);
-  void listen_to(ControlEvent& event);
-  void dismiss(std::uint32_t client);
-  void take_wish(const ControlEvent& event);
-  bool plays(std::uint32_t client) const;
-  bool pause_is_abandoned() const;
-  bool gather(std::int64_t now_us);
-  void gather_live(std::int64_t now_us);
-  void tell_match();
-  void broadcast(std::int64_t now_us, std::int64_t tick_ns);
-  void put_drivers(wire::Snapshot& out) const;
-  void watch_journal();
-  void keep_result();
-  void keep_answers(const ControlEvent& event);
-  void watch_results();
-  void tell_report();
-  MatchScribe::Players players() const;
-  void watch_sending();
-  void watch_tuning();
-  void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
-  ControlOptions control_options() const;
-
-  struct Client {
-    std::uint32_t id;
-    std::uint8_t team;
-    std::array<char, wire::kMaxName + 1> name;
-  };
-  static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
-
-  ServerOptions options;
-  const wire::SealKey group_key;  // of the multicast group
-  const bool everywhere;          // listens at every address of this machine
-  foosball::Match match;
-  std::uint16_t port;
-  os::FileDescriptor udp;
-  InputPort input;
-  Broadcaster broadcaster;
-  RodDesk desk;
-  DeviceWatch device_watch;
-  EventRepeater events;
-  std::unique_ptr<Recorder> recorder;  // or none
-  MatchScribe scribe;
-  std::unique_ptr<ResultsLog> results;  // or none
-  std::uint32_t matches = 0;            // handed to it
-  std::vector<Client> clients;
-  std::uint64_t clients_ever = 0;
-  bool paused_by_watcher = false;  // by a host who only watches
-  std::uint64_t ticks = 0;
-  std::uint64_t sent_seen = 0, errors_seen = 0;
-  bool sending_fails = false;
-  std::optional<foosball::Tuning> tuning_told;
-  bool replay_over = false, journal_told = false, finished = false;
-  bool was_played = false;  // somebody has, and not the computers for show
-
-  wire::JournalTick next;  // the inputs of the tick under way
-  wire::Snapshot snapshot;
-  std::array<std::byte, wire::kMaxDatagram> datagram;
-  ControlServer control;  // last: its thread ends first
-};
 
 Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
                    os::FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
@@ -353,84 +276,6 @@ void Server::Impl::watch_journal() {
   journal_told = true;
   notify(wire::Notice::Level::warning, static_cast<std::uint32_t>(Topic::journal),
          recorder->file().problem());
-}
-
-// Of the last tick. What is shown while nobody plays is nobody's match.
-void Server::Impl::keep_result() {
-  foosball::RodTargets targets;
-  for (int rod = 0; rod < foosball::kRods; ++rod) targets[rod] = from_grid(next.rods[rod]);
-  if (!scribe.observe(match, targets) || match.view().attract) return;
-  results::MatchResult result = scribe.result(match.view(), players());
-  result.finished_at = options.date();
-  result.recording = options.record;
-  if (!results->add(std::move(result), ++matches) || !options.questionnaire) return;
-  RodSet cabinet = 0;
-  for (int rod = 0; rod < foosball::kRods; ++rod) {
-    if (desk.driver(rod) == RodDriver::cabinet) cabinet |= RodSet(1u << rod);
-  }
-  control.ask(matches, cabinet);
-}
-
-void Server::Impl::keep_answers(const ControlEvent& event) {
-  static_assert(wire::kQuestionCount == results::kQuestions);
-  static_assert(wire::kMaxScore == results::kMaxScore);
-  if (!results) return;
-  results::Answers answers{.team = event.team, .rods = event.answers.rods};
-  std::ranges::copy(event.answers.scores, answers.scores.begin());
-  results->answer(answers, event.answers.match);
-}
-
-MatchScribe::Players Server::Impl::players() const {
-  MatchScribe::Players players;
-  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-    const auto client = std::find_if(clients.begin(), clients.end(),
-                                     [&](const Client& c) { return c.team == team; });
-    if (client != clients.end()) {
-      players[team] = {client->name.data(), "person"};
-    } else if (options.computer[team]) {
-      players[team] = {"computer " + to_text(desk.computer_player()), "computer"};
-    } else {
-      players[team] = {desk.devices().empty() ? "nobody" : "cabinet", "person"};
-    }
-    if (players[team].name.empty()) players[team].name = "person";
-  }
-  return players;
-}
-
-void Server::Impl::watch_results() {
-  std::string problem;
-  if (!results || !results->problem_changed(problem)) return;
-  const auto level = problem.empty() ? wire::Notice::Level::cleared : wire::Notice::Level::warning;
-  notify(level, static_cast<std::uint32_t>(Topic::results),
-         problem.empty() ? "results are kept again" : problem);
-}
-
-// Clients show it at the match's end and on the logo.
-void Server::Impl::tell_report() {
-  ResultsLog::Report kept;
-  if (!results || !results->report_changed(kept)) return;
-  wire::Report report;
-  report.match = kept.number;
-  for (std::size_t t = 0; t < report.teams.size(); ++t) {
-    const auto s = kept.match.teams[t].statistics.value_or(results::TeamStatistics{});
-    const auto count = [](std::uint64_t n) {
-      return static_cast<std::uint32_t>(std::min<std::uint64_t>(n, 0xffffffffu));
-    };
-    report.teams[t] = {count(s.shots),
-                       count(s.shots_on_target),
-                       count(s.saves),
-                       count(s.passes),
-                       count(s.own_goals),
-                       static_cast<float>(s.possession_seconds),
-                       static_cast<float>(kept.rating[t]),
-                       static_cast<float>(kept.change[t])};
-  }
-  for (const results::Standing& one : kept.fame) {
-    const auto small = [](std::uint64_t n) { return static_cast<std::uint32_t>(n); };
-    report.fame.push_back(
-        {one.name, static_cast<float>(one.rating), small(one.matches), small(one.wins)});
-  }
-  control.report(report);
 }
 
 // Clients show it, and move their own rods by it.

@@ -281,7 +281,7 @@ HudState App::hud(const Camera& camera) {
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
-  hud.notices.insert(hud.notices.end(), pad_news_.begin(), pad_news_.end());
+  hud.notices.insert(hud.notices.end(), news_.begin(), news_.end());
   const auto message = [this](const char* text) {
     return std::string(text) + " " + connection_->address();
   };

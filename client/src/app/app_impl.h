@@ -71,7 +71,7 @@ class App {
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
   void hear_of_pads();
-  void tell(const std::string& line);
+  void tell(std::vector<std::string> lines);
   void predict(std::int64_t now);
   void draw(float dt);
   std::uint8_t active_rods() const;
@@ -116,8 +116,8 @@ class App {
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
   std::string names_;                  // of people, whose letters the font has
-  std::vector<std::string> pad_news_;
-  double pad_news_until_ = 0.0;  // [s]
+  std::vector<std::string> news_;
+  double news_until_ = 0.0;  // [s]
   ReplayReel reel_;
   std::uint8_t screen_before_ = 0;
   bool replay_ = false;

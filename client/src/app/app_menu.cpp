@@ -124,7 +124,7 @@ void App::watch_recordings() {
   auto program = WatchProgram::start(options);
   if (!program) {
     log_warning(program.error());
-    tell(program.error());
+    tell({program.error()});
     return;
   }
   watching_.emplace(std::move(*program));
@@ -149,13 +149,14 @@ void App::follow_watching() {
   const std::string said = "space-foosball-watch ended with " + std::to_string(*code) +
                            ": what it said is in the terminal, or in the log of ./play";
   log_warning(said);
-  tell(said);
+  tell({said});
 }
 
-// For a while, as of gamepads.
-void App::tell(const std::string& line) {
-  pad_news_ = {line};
-  pad_news_until_ = seconds_ + 8.0;
+// For a while.
+void App::tell(std::vector<std::string> lines) {
+  constexpr double kShown = 8.0;  // [s]
+  news_ = std::move(lines);
+  news_until_ = seconds_ + kShown;
 }
 
 void App::turn_view() {
@@ -173,13 +174,11 @@ void App::tune(std::int64_t now) {
 }
 
 void App::hear_of_pads() {
-  constexpr double kShown = 8.0;  // [s]
   if (auto news = window_->take_news(); !news.empty()) {
     for (const std::string& line : news) log_info(line);
-    pad_news_ = std::move(news);
-    pad_news_until_ = seconds_ + kShown;
+    tell(std::move(news));
   }
-  if (seconds_ > pad_news_until_) pad_news_.clear();
+  if (seconds_ > news_until_) news_.clear();
 }
 
 }  // namespace client

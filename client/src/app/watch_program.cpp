@@ -1,15 +1,18 @@
 #include "app/watch_program.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <thread>
 #include <utility>
+
+#include "os/file_descriptor.h"
 
 namespace client {
 namespace {
@@ -44,11 +47,13 @@ WatchProgram::WatchProgram(WatchProgram&& other) noexcept
 
 WatchProgram::~WatchProgram() {
   if (process_ < 0) return;
+  constexpr int kPatienceMs = 2000;  // it may have a picture to finish
+  // By number: Debian 12's <sys/pidfd.h> declares it without C linkage.
+  const os::FileDescriptor process(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
   ::kill(process_, SIGTERM);
-  constexpr int kLooks = 100;  // 2 s: it may have a picture to finish
-  for (int i = 0; i < kLooks && !ended(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (process_ >= 0) ::kill(process_, SIGKILL);
+  pollfd end{process.get(), POLLIN, 0};
+  if (process) (void)::poll(&end, 1, kPatienceMs);
+  if (!ended()) ::kill(process_, SIGKILL);
 }
 
 std::optional<int> WatchProgram::ended() {

@@ -163,8 +163,7 @@ bool Articulation::stops_are_far(double h) const {
   return true;
 }
 
-// p = push - gain (v + response p). Men of a row that move together and are driven alike have one
-// impulse.
+// p = push - gain (v + response p). Neighbours that move and are driven alike have one impulse.
 bool Articulation::settle_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
   double impulse = 0.0, x_before = 0.0, v_before = 0.0;
@@ -219,7 +218,7 @@ void Articulation::place_on_lines() {
     on.slide += on_line_[static_cast<std::size_t>(node.parent)].slide;
     on.turn += on_line_[static_cast<std::size_t>(node.parent)].turn;
   }
-  // Men of a row turn together: one sine serves them all.
+  // Neighbours often turn together: one sine serves them all.
   const OnLine* last = nullptr;
   for (OnLine& on : on_line_) {
     if (on.turn == 0.0) {

@@ -1,0 +1,93 @@
+// The server's parts and its state. Split over server.cpp (what comes in, what goes out, the face)
+// and server_results.cpp (results, the questionnaire and the report).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadcaster.h"
+#include "control_server.h"
+#include "device_watch.h"
+#include "event_repeater.h"
+#include "input_port.h"
+#include "match_scribe.h"
+#include "recorder.h"
+#include "results_log.h"
+#include "rod_desk.h"
+#include "server/server.h"
+#include "socket.h"
+
+namespace server {
+
+struct Server::Impl {
+  Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, os::FileDescriptor&& wake,
+       std::unique_ptr<Recorder>&& journal);
+
+  void take_control_events();
+  void admit(ControlEvent& event);
+  void change_rods(ControlEvent& event);
+  void take_back(ControlEvent& event);
+  void listen_to(ControlEvent& event);
+  void dismiss(std::uint32_t client);
+  void take_wish(const ControlEvent& event);
+  bool plays(std::uint32_t client) const;
+  bool pause_is_abandoned() const;
+  bool gather(std::int64_t now_us);
+  void gather_live(std::int64_t now_us);
+  void tell_match();
+  void broadcast(std::int64_t now_us, std::int64_t tick_ns);
+  void put_drivers(wire::Snapshot& out) const;
+  void watch_journal();
+  void keep_result();
+  void keep_answers(const ControlEvent& event);
+  void watch_results();
+  void tell_report();
+  MatchScribe::Players players() const;
+  void watch_sending();
+  void watch_tuning();
+  void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
+  ControlOptions control_options() const;
+
+  struct Client {
+    std::uint32_t id;
+    std::uint8_t team;
+    std::array<char, wire::kMaxName + 1> name;
+  };
+  static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
+
+  ServerOptions options;
+  const wire::SealKey group_key;  // of the multicast group
+  const bool everywhere;          // listens at every address of this machine
+  foosball::Match match;
+  std::uint16_t port;
+  os::FileDescriptor udp;
+  InputPort input;
+  Broadcaster broadcaster;
+  RodDesk desk;
+  DeviceWatch device_watch;
+  EventRepeater events;
+  std::unique_ptr<Recorder> recorder;  // or none
+  MatchScribe scribe;
+  std::unique_ptr<ResultsLog> results;  // or none
+  std::uint32_t matches = 0;            // handed to it
+  std::vector<Client> clients;
+  std::uint64_t clients_ever = 0;
+  bool paused_by_watcher = false;  // by a host who only watches
+  std::uint64_t ticks = 0;
+  std::uint64_t sent_seen = 0, errors_seen = 0;
+  bool sending_fails = false;
+  std::optional<foosball::Tuning> tuning_told;
+  bool replay_over = false, journal_told = false, finished = false;
+  bool was_played = false;  // somebody has, and not the computers for show
+
+  wire::JournalTick next;  // the inputs of the tick under way
+  wire::Snapshot snapshot;
+  std::array<std::byte, wire::kMaxDatagram> datagram;
+  ControlServer control;  // last: its thread ends first
+};
+
+}  // namespace server
