@@ -229,8 +229,9 @@ ReplayBarLayout replay_bar_layout(const glm::ivec2& screen) {
   layout.text_y = top + 52.0f * s;
   const float step = room / static_cast<float>(columns);
   for (int i = 0; i < kReplayButtons; ++i) {
-    const glm::vec2 low{kEdge * s + step * static_cast<float>(i % columns),
-                        top + (62.0f + static_cast<float>(i / columns) * (kHigh + kGap)) * s};
+    const int column = i % columns, row = i / columns;
+    const glm::vec2 low{kEdge * s + step * static_cast<float>(column),
+                        top + (62.0f + static_cast<float>(row) * (kHigh + kGap)) * s};
     layout.buttons[static_cast<std::size_t>(i)] = {low,
                                                    low + glm::vec2(step - kGap * s, kHigh * s)};
   }

@@ -116,10 +116,10 @@ float draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int 
       whole.fitting(half, std::max(high + 10.0f, 1.25f * high)).readable(0.75f, half);
   const float top = pen.bottom - high - 4.0f;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const auto column = static_cast<float>(i % columns), row = static_cast<float>(i / columns);
-    const float x =
-        (column - 0.5f * static_cast<float>(columns - 1)) * (2.0f * kPanelHalf + kBetween);
-    draw_panel(pen, *shown[i], x, top + row * (kPanelHeight + kBetween));
+    const std::size_t column = i % columns, row = i / columns;
+    const float beside = static_cast<float>(column) - 0.5f * static_cast<float>(columns - 1);
+    const float below = static_cast<float>(row) * (kPanelHeight + kBetween);
+    draw_panel(pen, *shown[i], beside * (2.0f * kPanelHalf + kBetween), top + below);
   }
   return (high + 4.0f) * pen.scale / whole.scale;
 }
