@@ -16,8 +16,9 @@ const TeamBodies kAverage = built_in(1, 1);
 TEST(Reach, NoBallIsWithinReachOfTwoRods) {
   for (int layout = 0; layout < kLayouts; ++layout) {
     const TableSpec& table = table_spec(static_cast<Layout>(layout));
-    for (double x = -0.6; x <= 0.6; x += 0.003) {
-      for (double y = -0.32; y <= 0.32; y += 0.02) {
+    for (int i = -200; i <= 200; ++i) {
+      for (int k = -16; k <= 16; ++k) {
+        const double x = 0.003 * i, y = 0.02 * k;
         for (const CharacterBody& body : bodies_of_all_kinds()) {
           const auto rods = rods_in_reach(table, {body, body}, {x, y, 0.0173});
           ASSERT_LE(std::popcount(rods), 1) << x << " " << y;

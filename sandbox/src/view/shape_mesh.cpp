@@ -195,12 +195,11 @@ void add_flat(Builder& b, const vp::Vec3& p, const vp::Vec3& q, const vp::Vec3& 
   if (!(size > 0.0)) return;
   const vp::Vec3 n = (1.0 / size) * across;
   const glm::vec3 normal{narrow(n.x), narrow(n.y), narrow(n.z)};
-  std::uint32_t corner[3];
-  int k = 0;
-  for (const vp::Vec3* v : {&p, &q, &r}) {
-    corner[k++] = b.vertex({narrow(v->x), narrow(v->y), narrow(v->z)}, normal);
-  }
-  b.triangle(corner[0], corner[1], corner[2]);
+  const auto corner = [&](const vp::Vec3& v) {
+    return b.vertex({narrow(v.x), narrow(v.y), narrow(v.z)}, normal);
+  };
+  const std::uint32_t first = corner(p), second = corner(q), third = corner(r);
+  b.triangle(first, second, third);
 }
 
 }  // namespace
