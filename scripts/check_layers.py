@@ -65,6 +65,7 @@ LAYERS = {
     'sandbox/': 'sandbox',
     'foosball/include/foosball/assists.h': 'table',
     'foosball/include/foosball/character.h': 'table',
+    'foosball/include/foosball/judgment.h': 'table',
     'foosball/include/foosball/rod_motion.h': 'table',
     'foosball/include/foosball/table.h': 'table',
     'foosball/include/foosball/tuning.h': 'table',

@@ -8,9 +8,6 @@ namespace {
 
 constexpr double kFeetUp = 0.9;  // |swing| from which a rolling ball passes below the sole [rad]
 
-// Probability that men who were seen with their feet up still have them up when the ball comes.
-constexpr double kStaysUp = 0.2;
-
 // Probability that something of this spread [m] stays below the margin [m]; a straight line in
 // place of the normal distribution's.
 double within(double margin, double spread) {
@@ -38,7 +35,7 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
     }
     gap -= view.half_foot[spec.team] + table.ball_radius;
     double free = within(gap, 0.004 + view.slope_error * way);
-    if (up) free += kStaysUp * (1.0 - free);
+    if (up) free += view.feet_stay_up * (1.0 - free);
     const double blocked = passage.free * (1.0 - free);
     // It comes back the faster and the less expected, the nearer that man stands.
     const double near = std::clamp(1.0 - way / 0.5, 0.0, 1.0);
@@ -57,8 +54,7 @@ double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& v
   const double y = y_after(table, now.ball.y, slope, run);
   const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
   const double scores = within(inside, 0.004 + view.slope_error * run);
-  constexpr double kFar = 0.10;  // a ball beside the opponent's goal
-  return men.cost + men.free * (scores + (1.0 - scores) * kFar);
+  return men.cost + men.free * (scores + (1.0 - scores) * view.far_worth);
 }
 
 double foot_offset(double slope, double half_foot, double ahead) {

@@ -12,7 +12,8 @@ struct LaneView {
   int from_rod = 0;                        // index into TableSpec::rods; not in its own way
   std::array<double, kTeams> half_foot{};  // [m]
   double slope_error = 0.05;               // standard deviation of the ball's slope
-  double risk_cost = 1.0;                  // Temperament
+  // As in Judgment.
+  double risk_cost = 1.0, feet_stay_up = 0.2, far_worth = 0.10;
 };
 
 // Past the men in the way of a ball that is sent along dy/dx = slope, as far as run [m].

@@ -25,47 +25,46 @@ constexpr std::array<LevelRow, kLevels> kRows{{
 
 Temperament temperament_of(int level, PlayStyle style) {
   const LevelRow& row = kRows.at(static_cast<std::size_t>(std::clamp(level, 1, kLevels) - 1));
-  Temperament t{.delay = row.delay,
-                .hand_travel = row.hand_travel,
-                .aim_error = row.aim_error,
-                .slide = row.slide,
-                .swing = row.swing,
-                .strike = row.strike,
-                .pause_low = row.pause_low,
-                .pause_high = row.pause_high,
-                .shot_bar = 0.30,
-                .patience = 0.8,
-                .clear_power = 1.0,
-                .risk_cost = 1.5,
-                .feint = 0.04 * level,
-                .pass_value = 0.12,
-                .stays_home = false};
+  return {.delay = row.delay,
+          .hand_travel = row.hand_travel,
+          .aim_error = row.aim_error,
+          .slide = row.slide,
+          .swing = row.swing,
+          .strike = row.strike,
+          .pause_low = row.pause_low,
+          .pause_high = row.pause_high,
+          .stays_home = style == PlayStyle::wall,
+          .judgment = judgment_of(level, style)};
+}
+
+Judgment judgment_of(int level, PlayStyle style) {
+  Judgment j;
+  j.feint = 0.04 * level;
   switch (style) {
     case PlayStyle::wall:
-      t.pass_value = 0.05;
-      t.stays_home = true;
-      t.risk_cost = 3.0;
+      j.pass_value = 0.05;
+      j.risk_cost = 3.0;
       break;
     case PlayStyle::shooter:
-      t.shot_bar = 0.15;
-      t.patience = 0.5;
-      t.feint = 0.0;
-      t.pass_value = 0.02;
+      j.shot_bar = 0.15;
+      j.patience = 0.5;
+      j.feint = 0.0;
+      j.pass_value = 0.02;
       break;
     case PlayStyle::passer:
-      t.clear_power = 0.5;
-      t.pass_value = 0.45;
-      t.shot_bar = 0.35;
+      j.clear_power = 0.5;
+      j.pass_value = 0.45;
+      j.shot_bar = 0.35;
       break;
     case PlayStyle::gambler:
-      t.pass_value = 0.02;
-      t.shot_bar = 0.50;
-      t.patience = 1.3;
-      t.risk_cost = 0.3;
-      t.feint = 0.5;
+      j.pass_value = 0.02;
+      j.shot_bar = 0.50;
+      j.patience = 1.3;
+      j.risk_cost = 0.3;
+      j.feint = 0.5;
       break;
   }
-  return t;
+  return j;
 }
 
 }  // namespace foosball

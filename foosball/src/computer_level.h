@@ -3,6 +3,7 @@
 
 #include "computer_hand.h"
 #include "foosball/computer_player.h"
+#include "foosball/judgment.h"
 
 namespace foosball {
 
@@ -18,13 +19,9 @@ struct Temperament {
   double pause_low, pause_high;  // thought spent with the foot drawn back [s]
 
   // Style.
-  double shot_bar;     // worth of a shot (computer_lanes.h) that is played at once ...
-  double patience;     // ... until the bar has sunk to nothing [s]
-  double clear_power;  // of a ball that is only to be cleared, share of the full strike
-  double risk_cost;    // of a ball that comes back
-  double feint;        // probability of a feint before a shot
-  double pass_value;   // of a ball at the foot of a man further ahead
-  bool stays_home;     // both hands at the goal whenever the ball is the opponent's
+  bool stays_home;  // both hands at the goal whenever the ball is the opponent's
+
+  Judgment judgment;
 };
 
 Temperament temperament_of(int level, PlayStyle style);

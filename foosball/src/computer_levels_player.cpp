@@ -82,7 +82,9 @@ void LevelPlayer::hold_or_adopt(const MatchView& view) {
 }  // namespace
 
 std::unique_ptr<ComputerPlayer::Impl> make_level_player(const ComputerPlayerDesc& desc) {
-  return std::make_unique<LevelPlayer>(desc, temperament_of(desc.player.level, desc.player.style));
+  Temperament t = temperament_of(desc.player.level, desc.player.style);
+  if (desc.judgment) t.judgment = *desc.judgment;
+  return std::make_unique<LevelPlayer>(desc, t);
 }
 
 }  // namespace foosball

@@ -23,10 +23,9 @@ void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
     lanes.half_foot[team] = 0.5 * bodies[team].foot_width;
   }
   model_ = {table_, team_, lanes.half_foot};
-  lanes.risk_cost = t_.risk_cost;
   const auto indices = rods_of_team(*table_, team_);
   for (std::size_t line = 0; line < indices.size(); ++line) {
-    ComputerRod rod(*table_, team_, indices[line], lanes);
+    ComputerRod rod(*table_, team_, indices[line], lanes, t_.judgment);
     if (line < rods_.size()) {
       rod.adopt(rods_[line].slide().position(), rods_[line].swing().position());
       rods_[line] = rod;
@@ -51,10 +50,10 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
     now.slide_rate[static_cast<std::size_t>(rod.index())] = 0.0;
   }
   constexpr double kFurther = 0.02;  // [s] beyond now
-  constexpr double kKeepsOn = 0.6;   // of its way; a hand that moved may have stopped
   for (std::size_t rod = 0; rod < kRods; ++rod) {
     const double limit = table_->rods[rod].slide_limit;
-    const double there = now.slide[rod] + kKeepsOn * (now.age + kFurther) * now.slide_rate[rod];
+    const double there =
+        now.slide[rod] + t_.judgment.men_keep_on * (now.age + kFurther) * now.slide_rate[rod];
     now.slide[rod] = std::clamp(there, -limit, limit);
   }
   guess_ball(now, tuning);
@@ -134,13 +133,15 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
     const ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
     if (rod.expects_pass() && hands_.holds(line)) return {line, kDefence};
   }
-  const double soon = now.ball.x + 0.10 * std::clamp(now.velocity.x, -3.0, 3.0);
-  if (now.velocity.x < -1.2 && now.ball.x < 0.30) return {kDefence, kGoalie};
-  if (soon < -0.45) return {kGoalie, kDefence};
-  if (soon < -0.15) return {kDefence, kGoalie};
-  if (soon < 0.0) return {kMidfield, kGoalie};
-  if (soon < 0.15) return {kDefence, kGoalie};
-  if (soon < 0.30) return {kAttack, kDefence};
+  const Judgment& j = t_.judgment;
+  const double soon = now.ball.x + j.hands_ahead * std::clamp(now.velocity.x, -3.0, 3.0);
+  const bool fast = now.velocity.x < -j.hands_fast && now.ball.x < j.hands_fast_within;
+  if (fast) return {kDefence, kGoalie};
+  if (soon < j.hands_goalie) return {kGoalie, kDefence};
+  if (soon < j.hands_defense) return {kDefence, kGoalie};
+  if (soon < j.hands_midfield) return {kMidfield, kGoalie};
+  if (soon < j.hands_loose) return {kDefence, kGoalie};
+  if (soon < j.hands_attack) return {kAttack, kDefence};
   return t_.stays_home ? Lines{kDefence, kGoalie} : Lines{kAttack, kDefence};
 }
 
@@ -149,7 +150,8 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
 double ComputerMind::guard_y(int line, const Sighting& now) const {
   const double way = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
   const double vx = now.velocity.x;
-  const bool from_front = (vx < -0.4 || (vx < -0.08 && way < 0.15 && line == kGoalie)) && way > 0.0;
+  const bool from_front =
+      (vx < -t_.judgment.guard_path || (vx < -0.08 && way < 0.15 && line == kGoalie)) && way > 0.0;
   if (from_front) return y_after(*table_, now.ball.y, now.velocity.y, way / -vx);
   if (line == kMidfield || line == kAttack || way < 0.0) return now.ball.y;
   return cover_y(line, now);

@@ -18,8 +18,7 @@ PassPlan pass_along(const TableSpec& table, const Sighting& now, const PassView&
   LaneView lanes = view.lanes;
   lanes.slope_error = 0.02 + 1.5 * lanes.slope_error;  // what a soft ball loses on its way
   const LanePassage passage = pass_men(table, now, lanes, slope, run - 0.02);
-  constexpr double kSure = 0.75;  // a ball given away is worse than none played
-  if (passage.free < kSure) return plan;
+  if (passage.free < view.sure) return plan;  // a ball given away is worse than none played
   const double time = run / view.speed;
   constexpr double kReacts = 0.03;  // [s] of that the hand is not on its way yet
   const double reach = view.hand * std::max(0.0, time - kReacts);

@@ -18,6 +18,7 @@ struct PassView {
   int to_rod = -1;     // index into TableSpec::rods, ahead of lanes.from_rod
   double speed = 2.0;  // of the ball [m/s]
   double hand = 1.0;   // speed of the receiver's hand [m/s]
+  double sure = 0.75;  // probability from which nobody in between is thought to reach it
   double value = 0.3;  // of the ball at the receiver's foot
 };
 

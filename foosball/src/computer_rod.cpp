@@ -36,19 +36,10 @@ constexpr double kSoftSpeed = 0.090;  // the same of a soft stroke
 
 constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 
-// Faster balls [m/s] are blocked, not played.
-constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
-// A ball that rolls towards its own goal faster is stopped with the foot down first: a foot that is
-// drawn back lets it roll on beneath.
-constexpr double kStopFirst = 0.25;  // [m/s]
+constexpr double kResting = 0.15;  // [m/s]
 
-// A hand that follows the ball holds still for less than this, and turns round no sooner than that
-// unless it has far to go.
-constexpr double kCalm = 0.9;       // a ball that rolls along the rods faster is not followed [m/s]
-constexpr double kStill = 0.012;    // [m]
-constexpr double kTurnWait = 0.30;  // [s]
-constexpr double kFar = 0.060;      // [m]
-constexpr double kClose = 0.004;    // of a ball that comes soon [m]
+// A hand that follows a ball that comes soon holds still for less than this [m].
+constexpr double kClose = 0.004;
 
 // A ball far ahead is met by a foot already rising, which would lift it off the table: the further
 // ahead [m], the softer.
@@ -72,14 +63,19 @@ double strike_time(const AxisLimits& strike) {
 
 }  // namespace
 
-ComputerRod::ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes)
+ComputerRod::ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes,
+                         const Judgment& judgment)
     : table_(&table),
       team_(team),
       index_(index),
       x_(attack_sign(team) * table.rods[static_cast<std::size_t>(index)].x),
+      judgment_(judgment),
       lanes_(lanes) {
   lanes_.team = team;
   lanes_.from_rod = index;
+  lanes_.risk_cost = judgment.risk_cost;
+  lanes_.feet_stay_up = judgment.feet_stay_up;
+  lanes_.far_worth = judgment.far_worth;
 }
 
 double ComputerRod::level() const {
@@ -147,12 +143,11 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
   // The nearer in time a ball that comes, the closer it is followed.
   const bool comes =
       now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
-  constexpr double kSoon = 0.20;  // [s]
-  const bool soon = comes && ahead(now) < -kSoon * now.velocity.x + 0.03;
+  const bool soon = comes && ahead(now) < -judgment_.soon * now.velocity.x + 0.03;
   const double to = slide_for(guard_y);
   if (soon) {
     if (std::fabs(to - goal_) > kClose) goal_ = to;
-  } else if (std::fabs(now.velocity.y) < kCalm) {
+  } else if (std::fabs(now.velocity.y) < judgment_.calm) {
     follow(to);
   }
   constexpr double kBehind = -0.045;  // [m]
@@ -185,9 +180,9 @@ void ComputerRod::follow(double goal) {
   const double position = slide_.position();
   const double off = goal - position;
   const bool moving = std::fabs(goal_ - position) > 0.001;
-  if (!moving && std::fabs(off) <= kStill) return;
+  if (!moving && std::fabs(off) <= judgment_.still) return;
   const bool turns = off * (goal_ - position) < 0.0 || (!moving && off * slide_.rate() <= 0.0);
-  if (turns && std::fabs(off) <= kFar && turned_ <= kTurnWait) return;
+  if (turns && std::fabs(off) <= judgment_.turn_far && turned_ <= judgment_.turn_wait) return;
   if (turns) turned_ = 0.0;
   goal_ = goal;
 }
@@ -244,18 +239,19 @@ void ComputerRod::step_aside(const Sighting& now) {
 
 // --- playing the ball ----------------------------------------------------------------------------
 
-// The fastest ball from the front [m/s] that is played without being stopped first. Nobody stands
-// behind the goalie; hinged men strike a rolling ball less surely.
+// The fastest ball from the front [m/s] that is played without being stopped first: a foot that is
+// drawn back lets it roll on beneath. Nobody stands behind the goalie; hinged men strike a rolling
+// ball less surely.
 double ComputerRod::approach() const {
   const bool careful =
       spec().line == Line::goalie || (spec().line == Line::defence && hinged_men(table_->layout));
-  return careful ? kStopFirst : kTameApproach;
+  return careful ? judgment_.stop_first : judgment_.tame_approach;
 }
 
 bool ComputerRod::can_control(const Sighting& now) const {
   const double way = ahead(now);
   const double speed = vp::norm(now.velocity);
-  if (now.ball.z > 2.5 * table_->ball_radius || speed > kTame) return false;
+  if (now.ball.z > 2.5 * table_->ball_radius || speed > judgment_.tame_speed) return false;
   if (now.velocity.x < -approach()) return false;
   const double from = speed < kResting ? kScoopFrom : kFrom;
   if (way <= from || way >= kTo) return false;
@@ -270,7 +266,7 @@ void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Rando
   worth_ = -1e9;
   pause_ = random.between(t.pause_low, t.pause_high);
   noise_ = t.aim_error * random.bell();
-  feints_ = random.unit() < t.feint;
+  feints_ = random.unit() < judgment_.feint;
   scoop_side_ = 0.0;
   pass_ = {};
   receives_ = 0;
@@ -280,10 +276,10 @@ void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Rando
 
 bool ComputerRod::lost(const Sighting& now) const {
   const double way = ahead(now);
-  const bool rolls_home = spec().line == Line::goalie && now.velocity.x < -kStopFirst;
+  const bool rolls_home = spec().line == Line::goalie && now.velocity.x < -judgment_.stop_first;
   if (rolls_home && (way < 0.0 || !over_)) return true;
   return !now.ball_in_play || way < kScoopFrom - 0.01 || way > kTo + 0.012 ||
-         vp::norm(now.velocity) > 1.5 * kTame;
+         vp::norm(now.velocity) > 1.5 * judgment_.tame_speed;
 }
 
 // The foot goes back behind the ball; then it waits for a lane, follows the ball and strikes.
@@ -404,7 +400,8 @@ PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed
   view.to_rod = rods_of_team(*table_, team_)[static_cast<std::size_t>(to)];
   view.speed = speed;
   view.hand = t.slide.rate;
-  view.value = t.pass_value;
+  view.sure = judgment_.pass_sure;
+  view.value = judgment_.pass_value;
   return pass_along(*table_, now, view, slope);
 }
 
@@ -429,12 +426,11 @@ void ComputerRod::strike_if_ready(const Sighting& now, const Temperament& t) {
   const double way = ahead(now);
   if (way > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
   const bool aligned = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
-  const double bar = t.shot_bar * (1.0 - (since_ - pause_) / t.patience);
-  constexpr double kLate = 0.5;  // [s] beyond the patience, then strike at what there is
-  if (!(aligned && worth_ >= bar) && since_ <= pause_ + t.patience + kLate) return;
-  constexpr double kShot = 0.25;  // worth from which it is a shot at goal
+  const double bar = judgment_.shot_bar * (1.0 - (since_ - pause_) / judgment_.patience);
+  if (!(aligned && worth_ >= bar) && since_ <= pause_ + judgment_.patience + judgment_.late) return;
   power_ = pass_.rod >= 0 ? stroke_limits(t).rate / t.strike.rate
-                          : power_at(*table_, way) * (worth_ < kShot ? t.clear_power : 1.0);
+                          : power_at(*table_, way) *
+                                (worth_ < judgment_.clear_below ? judgment_.clear_power : 1.0);
   // A soft stroke has no swing left beyond where it is braked: it goes on to the ball.
   constexpr double kFull = 0.08, kBeyond = 0.20, kTouches = 0.027;  // [rad], [rad], [m]
   const double at_ball = std::max(0.0, way - kTouches) / kFoot;
@@ -451,8 +447,7 @@ double ComputerRod::natural_slope(const Sighting& now, double rate) const {
 // Of a ball played with the flat of the foot or with its edge [1].
 double ComputerRod::slope_error(bool flat, const Temperament& t) const {
   constexpr double kFlatError = 0.012, kEdge = 50.0;  // slope for a metre beside where it should be
-  constexpr double kBelieved = 0.0015;                // who aims worse does not know it [m]
-  return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, kBelieved);
+  return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, judgment_.aim_belief);
 }
 
 double ComputerRod::shot_worth(const Sighting& now, double slope, const Temperament& t) const {
@@ -464,7 +459,8 @@ double ComputerRod::shot_worth(const Sighting& now, double slope, const Temperam
 
 // The best shot, or the best pass if that is worth more.
 void ComputerRod::choose_lane(const Sighting& now, double square, const Temperament& t) {
-  constexpr double kStep = 0.05, kKeep = 0.05;
+  constexpr double kStep = 0.05;
+  const double keep = judgment_.keep_lane;
   const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would only rub along
   const bool first = worth_ < -1e8;
   const bool passed = pass_.rod >= 0;
@@ -477,12 +473,12 @@ void ComputerRod::choose_lane(const Sighting& now, double square, const Temperam
   };
   const double natural = natural_slope(now, t.strike.rate);
   double slope = natural, best = shot_worth(now, slope, t);
-  if (!first && !passed && std::fabs(slope_ - natural) < kStep) best += kKeep;
+  if (!first && !passed && std::fabs(slope_ - natural) < kStep) best += keep;
   for (int k = -15; k <= 15; ++k) {
     const double s = kStep * k;
     if (std::fabs(s - natural) < kStep || !reached(s, natural)) continue;
     double worth = shot_worth(now, s, t);
-    if (!first && !passed && std::fabs(s - slope_) < 1e-9) worth += kKeep;
+    if (!first && !passed && std::fabs(s - slope_) < 1e-9) worth += keep;
     if (worth > best) {
       best = worth;
       slope = s;
@@ -495,7 +491,7 @@ void ComputerRod::choose_lane(const Sighting& now, double square, const Temperam
     if (!reached(s, softly)) continue;
     const bool flat = std::fabs(s - softly) < 0.035;
     const PassPlan pass = pass_worth(now, s, kPassSpeed, slope_error(flat, t), t);
-    const double kept = !first && passed && std::fabs(s - slope_) < 1e-9 ? kKeep : 0.0;
+    const double kept = !first && passed && std::fabs(s - slope_) < 1e-9 ? keep : 0.0;
     if (pass.worth + kept <= best) continue;
     best = pass.worth + kept;
     plan = pass;

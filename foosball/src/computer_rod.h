@@ -17,7 +17,8 @@ namespace foosball {
 
 class ComputerRod {
  public:
-  ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes);
+  ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes,
+              const Judgment& judgment);
 
   int index() const { return index_; }
   double x() const { return x_; }  // of the axis [m]
@@ -87,6 +88,7 @@ class ComputerRod {
   const TableSpec* table_;
   int team_, index_;
   double x_;
+  Judgment judgment_;
   LaneView lanes_;
   HandAxis slide_, swing_;
   double goal_ = 0.0;    // where the hand brings the slide [m]

@@ -16,7 +16,7 @@ std::string footer() {
   std::string text = "Players:\n";
   for (const auto& kind : match::player_kinds()) {
     text += "  " + kind.syntax +
-            std::string(std::max<std::size_t>(2, 22 - kind.syntax.size()), ' ') + kind.meaning +
+            std::string(kind.syntax.size() < 20 ? 22 - kind.syntax.size() : 2, ' ') + kind.meaning +
             "\n";
   }
   return text +

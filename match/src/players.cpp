@@ -19,8 +19,13 @@ using Made = tl::expected<std::unique_ptr<Player>, std::string>;
 
 class Computer final : public Player {
  public:
-  Computer(const PlayerDesc& desc, const foosball::PlayerSpec& spec)
-      : player_({.team = desc.team, .seed = desc.seed, .opens_match = false, .player = spec}) {}
+  Computer(const PlayerDesc& desc, const foosball::PlayerSpec& spec,
+           const std::optional<foosball::Judgment>& judgment)
+      : player_({.team = desc.team,
+                 .seed = desc.seed,
+                 .opens_match = false,
+                 .player = spec,
+                 .judgment = judgment}) {}
   void play(const MatchView& view, RodTargets& targets) override { player_.play(view, targets); }
   foosball::PlayedPass passed() const override { return player_.passed(); }
 
@@ -132,9 +137,16 @@ class OneRod final : public Player {
 
 // The whole name counts.
 Made make_computer(const PlayerDesc& desc) {
-  const auto spec = foosball::parse_player(desc.name);
+  const auto at = desc.name.find('@');
+  const auto spec = foosball::parse_player(desc.name.substr(0, at));
   if (!spec) return tl::unexpected(spec.error().message);
-  return std::make_unique<Computer>(desc, *spec);
+  if (at == std::string::npos) return std::make_unique<Computer>(desc, *spec, std::nullopt);
+  if (spec->kind != foosball::PlayerSpec::Kind::level)
+    return tl::unexpected("\"" + desc.name + "\": only a level takes values of judgment");
+  const auto judgment =
+      with_changes(judgment_of(spec->level, spec->style), desc.name.substr(at + 1));
+  if (!judgment) return tl::unexpected(judgment.error().message);
+  return std::make_unique<Computer>(desc, *spec, *judgment);
 }
 
 Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
@@ -187,13 +199,15 @@ tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc&
   for (const Kind& kind : kKinds) {
     if (name == kind.name) return kind.make(desc, argument);
   }
-  if (name.size() == 1 && name[0] >= '0' && name[0] <= '9') return make_computer(desc);
+  const std::string level = name.substr(0, name.find('@'));
+  if (level.size() == 1 && level[0] >= '0' && level[0] <= '9') return make_computer(desc);
   return tl::unexpected("\"" + desc.name + "\" is no player: give one of " + all_syntax());
 }
 
 std::vector<PlayerKind> player_kinds() {
   std::vector<PlayerKind> kinds{
-      {"1..5[:STYLE]", "the computer player of a level; STYLE wall, shooter, passer or gambler"}};
+      {"1..5[:STYLE]", "the computer player of a level; STYLE wall, shooter, passer or gambler"},
+      {"5@NAME=NUMBER,...", "... with values of its judgment (foosball/judgment.h)"}};
   for (const Kind& kind : kKinds) kinds.push_back({kind.syntax, kind.meaning});
   return kinds;
 }

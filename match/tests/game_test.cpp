@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "foosball/computer_player.h"
 #include "match/codec.h"
 #include "match/player.h"
 #include "server/playback.h"
@@ -50,6 +51,21 @@ TEST(Game, OfAnIdleSideMovesNoneOfItsRods) {
   EXPECT_EQ(s.moving_ticks[1][0], s.play_ticks);
 }
 
+TEST(Game, OfALevelIsPlayedWithTheValuesOfJudgmentThatItsNameHas) {
+  GameDesc game = short_game();
+  const auto hash = [&](const std::string& player) {
+    game.players[0] = player;
+    return play_game(game).result.state_hash;
+  };
+  const std::uint64_t usual = hash("5");
+  EXPECT_EQ(hash("5@"), usual);
+  EXPECT_EQ(hash("5:gambler@shot_bar=" +
+                 std::to_string(foosball::judgment_of(5, foosball::PlayStyle::gambler).shot_bar)),
+            usual)
+      << "its own value";
+  EXPECT_NE(hash("5@hands_goalie=0,hands_defense=0.2"), usual);
+}
+
 // Goalie and defence follow by the assist.
 TEST(Player, OneRodHasMidfieldOrAttackInHandNeverBoth) {
   GameDesc game = short_game();
@@ -64,7 +80,8 @@ TEST(Player, OneRodHasMidfieldOrAttackInHandNeverBoth) {
 
 TEST(Player, ThatIsNoneIsNamedWithWhatMayBeGiven) {
   for (const char* name : {"", "clasic", "classic:2", "classic:x", "classic:0.5 ", "classic:nan",
-                           "idle:1", "one-rod:nobody", "spinner:"}) {
+                           "idle:1", "one-rod:nobody", "5@shot_bar=2", "classic@shot_bar=0.3",
+                           "idle@", "one-rod:5@bar=1", "spinner:"}) {
     const auto player = make_player({name, 0, 1});
     if (std::string(name) == "spinner:") {
       EXPECT_TRUE(player.has_value());

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "foosball/judgment.h"
 #include "foosball/match.h"
 #include "foosball/played_pass.h"
 #include "vphysics/error.h"
@@ -45,12 +47,15 @@ struct PlayerSpec {
 vp::Expected<PlayerSpec> parse_player(std::string_view text);
 std::string to_text(const PlayerSpec& spec);
 PlayStyle style_of_level(int level);  // precondition: 1 <= level <= kLevels
+// What a player of this level and style judges by. Levels out of range are clamped.
+Judgment judgment_of(int level, PlayStyle style);
 
 struct ComputerPlayerDesc {
   int team = 1;
   std::uint64_t seed = 1;
-  bool opens_match = true;  // pushes at the logo; false: leaves that to a person
-  PlayerSpec player{};      // out of range: clamped
+  bool opens_match = true;             // pushes at the logo; false: leaves that to a person
+  PlayerSpec player{};                 // out of range: clamped
+  std::optional<Judgment> judgment{};  // of a level; none: judgment_of() its level and style
 };
 
 class ComputerPlayer {

@@ -2,6 +2,7 @@
 // is one row there.
 //
 //   1 to 5, 3:STYLE   the computer player of a level (foosball/computer_player.h)
+//   5@NAME=NUMBER,... such a player with values of its judgment (foosball/judgment.h)
 //   classic:SKILL     the first computer player, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
 //   spinner           every rod spins all the time, a man level with the ball

@@ -1,0 +1,69 @@
+#include "foosball/judgment.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace foosball {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+auto refuse(std::string sentence) {
+  return tl::unexpected(vp::Error{vp::Errc::invalid_argument, std::move(sentence)});
+}
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  return result.append(text.substr(0, 40)).append("\"");
+}
+
+}  // namespace
+
+vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view changes) {
+  Judgment judgment = base;
+  std::array<bool, kJudgmentValues> given{};
+  while (!changes.empty()) {
+    const std::string_view one = changes.substr(0, changes.find(','));
+    changes.remove_prefix(std::min(changes.size(), one.size() + 1));
+    const std::size_t equals = one.find('=');
+    const int index = judgment_index(one.substr(0, equals));
+    if (equals == std::string_view::npos || index < 0) {
+      return refuse(quoted(one) +
+                    " is no value of a computer player's judgment: write NAME=NUMBER,..., the "
+                    "names are in foosball/judgment.h");
+    }
+    const JudgmentField& field = kJudgmentFields[static_cast<std::size_t>(index)];
+    double value = 0.0;
+    const char* begin = one.data() + equals + 1;
+    const char* end = one.data() + one.size();
+    const auto read = std::from_chars(begin, end, value);
+    if (read.ec != std::errc{} || read.ptr != end || !in_range(field, value)) {
+      return refuse(quoted(one) + ": " + field.name + " must be a number from " +
+                    number(field.least) + " to " + number(field.most));
+    }
+    if (given[static_cast<std::size_t>(index)]) {
+      return refuse(std::string(field.name) + " is given twice: give it once");
+    }
+    given[static_cast<std::size_t>(index)] = true;
+    judgment.*field.value = value;
+  }
+  return judgment;
+}
+
+std::string changes_of(const Judgment& base, const Judgment& judgment) {
+  std::string text;
+  for (const JudgmentField& field : kJudgmentFields) {
+    const double value = judgment.*field.value;
+    if (value == base.*field.value) continue;
+    if (!text.empty()) text += ',';
+    text.append(field.name).append("=").append(number(value));
+  }
+  return text;
+}
+
+}  // namespace foosball
