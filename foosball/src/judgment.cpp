@@ -34,8 +34,8 @@ vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view chang
     const int index = judgment_index(one.substr(0, equals));
     if (equals == std::string_view::npos || index < 0) {
       return refuse(quoted(one) +
-                    " is no value of a computer player's judgment: write NAME=NUMBER,..., the "
-                    "names are in foosball/judgment.h");
+                    " is no value of a computer player's judgment: write NAME=NUMBER,...; "
+                    "space-foosball-match --list-judgment 5 shows the names");
     }
     const JudgmentField& field = kJudgmentFields[static_cast<std::size_t>(index)];
     double value = 0.0;

@@ -32,8 +32,8 @@ TEST(Judgment, ChangesWhatIsNamedAlone) {
 
 TEST(Judgment, RefusesWithASentenceWhatIsNoValueOrOutOfRange) {
   const std::pair<const char*, const char*> cases[] = {
-      {"shot", "names are in foosball/judgment.h"},
-      {"bar=1", "names are in foosball/judgment.h"},
+      {"shot", "--list-judgment 5 shows the names"},
+      {"bar=1", "--list-judgment 5 shows the names"},
       {"=1", "is no value"},
       {",", "is no value"},
       {"shot_bar", "is no value"},

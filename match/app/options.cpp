@@ -6,7 +6,9 @@
 #include <thread>
 
 #include "characters/character_file.h"
+#include "foosball/computer_player.h"
 #include "match/player.h"
+#include "profile/judgment_profile.h"
 #include "profile/tuning_profile.h"
 
 namespace app {
@@ -25,15 +27,39 @@ std::string footer() {
          "Exit codes: 0 done; 1 something failed, or stopped before it was done; 2 a bad option.";
 }
 
+// "5@FILE" with the file's values in place of its name.
+tl::expected<std::string, std::string> with_file_read(const std::string& name) {
+  const auto at = name.find('@');
+  if (at == std::string::npos || at + 1 == name.size()) return name;
+  if (name.find('=', at) != std::string::npos) return name;  // values, no file
+  const std::string whose = name.substr(0, at);
+  constexpr std::string_view kInner = "one-rod:";
+  const std::string level = whose.starts_with(kInner) ? whose.substr(kInner.size()) : whose;
+  const auto base = match::judgment_of_player(level);
+  if (!base) return tl::unexpected(base.error());
+  const auto judgment = profile::load_judgment(name.substr(at + 1), *base);
+  if (!judgment) return tl::unexpected(judgment.error());
+  return whose + "@" + changes_of(*base, *judgment);
+}
+
 std::string check_player(const std::string& name) {
-  const auto player = match::make_player({name, 0, 1});
+  const auto read = with_file_read(name);
+  if (!read) return read.error();
+  const auto player = match::make_player({*read, 0, 1});
   return player ? "" : player.error();
+}
+
+// Names that check_player() has accepted.
+void read_files(std::vector<std::string>& names) {
+  for (std::string& name : names) name = with_file_read(name).value_or(name);
 }
 
 struct Raw {
   std::string home = "classic", away = "classic", layout = "tournament", characters, tuning, vary;
   bool report = false, balance = false, study = false, traits = false, passive = false;
+  bool screen = false, train = false, matches_given = false;
   std::vector<std::string> sprt, round_robin;
+  std::string parameters, list_judgment;
 };
 
 void add_options(CLI::App& cli, Options& o, Raw& raw) {
@@ -92,6 +118,42 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
     mode->excludes(away)->excludes(passive);
   }
   vary->excludes(traits);
+  auto* screen = cli.add_flag("--screen", raw.screen,
+                              "what each value of --home's judgment does by itself to the share of "
+                              "goals against --opponents, --matches each, in both layouts");
+  auto* train = cli.add_flag("--train", raw.train,
+                             "search for the judgment with which --home scores most against "
+                             "--opponents, and test it on new seeds (docs/match-runner.md)");
+  for (auto* mode : {screen, train}) {
+    mode->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance)->excludes(study);
+    mode->excludes(vary)->excludes(traits)->excludes(away)->excludes(passive);
+  }
+  screen->excludes(train);
+  match::TrainPlan& t = o.training;
+  cli.add_option("--opponents", t.opponents, "of --screen and --train; else 5 and classic:0.9")
+      ->type_name("PLAYER ...")
+      ->expected(1, 16)
+      ->check(check_player);
+  cli.add_option("--parameters", raw.parameters,
+                 "NAME,NAME,...: the values that --screen or --train may change; else all");
+  cli.add_option("--generations", t.generations, "of --train")
+      ->needs(train)
+      ->check(CLI::Range(1, 100'000));
+  cli.add_option("--population", t.population, "samples of a generation; else 4 + 3 ln n, even")
+      ->needs(train)
+      ->check(CLI::Range(4, 10'000));
+  cli.add_option("--step", t.step, "deviation of the first samples, as a share of each range")
+      ->needs(train)
+      ->check(CLI::Range(0.01, 0.5));
+  cli.add_option("--validate", t.validation,
+                 "matches of the trained player against --home in each layout, on new seeds")
+      ->needs(train)
+      ->check(CLI::Range(0, 100'000'000));
+  cli.add_option("--write", o.write, "file for the trained values, for PLAYER@FILE")->needs(train);
+  cli.add_option("--list-judgment", raw.list_judgment,
+                 "print the values of a level's judgment, with ranges and meanings, as a file")
+      ->type_name("PLAYER")
+      ->check(check_player);
   cli.add_option("--samples", o.samples, "points of a study that fill the space of the values")
       ->needs(study)
       ->check(CLI::Range(0, 100'000));
@@ -113,6 +175,24 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_flag("--quiet", o.quiet, "no progress");
 }
 
+// What --screen and --train need besides.
+std::string translate_training(Options& o, const Raw& raw) {
+  o.mode = raw.train ? Mode::train : Mode::screen;
+  constexpr std::uint64_t kTrained = 4, kScreened = 40;
+  if (!raw.matches_given) o.matches = raw.train ? kTrained : kScreened;
+  const auto judgment = match::judgment_of_player(o.players[0]);
+  if (!judgment) return "--home: " + judgment.error();
+  const auto fields = match::parse_fields(raw.parameters);
+  if (!fields) return "--parameters: " + fields.error();
+  match::TrainPlan& plan = o.training;
+  plan.player = o.players[0];
+  plan.fields = *fields;
+  plan.matches = o.matches + o.matches % 2;
+  plan.validation += plan.validation % 2;
+  read_files(plan.opponents);
+  return {};
+}
+
 std::string translate(Options& o, const Raw& raw) {
   o.layout = raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
   if (!raw.tuning.empty()) {
@@ -131,9 +211,14 @@ std::string translate(Options& o, const Raw& raw) {
   if (!raw.round_robin.empty()) {
     o.mode = Mode::round_robin;
     o.players = raw.round_robin;
+    read_files(o.players);
     if (std::set<std::string>(o.players.begin(), o.players.end()).size() != o.players.size()) {
       return "--round-robin has a player twice: name each once";
     }
+  }
+  read_files(o.players);
+  if (raw.screen || raw.train) {
+    if (auto objection = translate_training(o, raw); !objection.empty()) return objection;
   }
   if (!(o.elo0 < o.elo1)) return "--elo0 must be below --elo1";
   if (std::fabs(o.elo0) > 1000.0 || std::fabs(o.elo1) > 1000.0) {
@@ -156,6 +241,15 @@ std::string translate(Options& o, const Raw& raw) {
   return {};
 }
 
+tl::expected<std::string, std::string> list_judgment(const std::string& name) {
+  const auto player = with_file_read(name);
+  if (!player) return tl::unexpected(player.error());
+  const auto judgment = match::judgment_of_player(*player);
+  const auto base = match::judgment_of_player(player->substr(0, player->find('@')));
+  if (!judgment || !base) return tl::unexpected((judgment ? base : judgment).error());
+  return profile::format_judgment(*judgment, *base);
+}
+
 }  // namespace
 
 tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
@@ -169,11 +263,17 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   std::string objection;
   try {
     cli.parse(argc, argv);
+    raw.matches_given = cli.get_option("--matches")->count() > 0;
     objection = translate(options, raw);
   } catch (const CLI::CallForHelp&) {
     return tl::unexpected(Leave{0, cli.help()});
   } catch (const CLI::ParseError& error) {
     objection = error.what();
+  }
+  if (objection.empty() && !raw.list_judgment.empty()) {
+    const auto listed = list_judgment(raw.list_judgment);
+    if (listed) return tl::unexpected(Leave{0, *listed});
+    objection = "--list-judgment: " + listed.error();
   }
   if (objection.empty()) return options;
   return tl::unexpected(Leave{2, objection + "; --help explains the options"});

@@ -10,10 +10,11 @@
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 #include "match/character_study.h"
+#include "match/training.h"
 
 namespace app {
 
-enum class Mode { matches, report, sprt, round_robin, balance, study, vary, traits };
+enum class Mode { matches, report, sprt, round_robin, balance, study, vary, traits, screen, train };
 
 struct Options {
   Mode mode = Mode::matches;
@@ -27,6 +28,8 @@ struct Options {
   std::uint64_t max_matches = 2000;  // of a sequential test
   std::uint64_t samples = 64;        // of a study
   match::VariedNumber varied{};      // of --vary
+  match::TrainPlan training{};       // of --screen and --train, without base
+  std::string write;                 // file for the trained values
   double max_minutes = 10.0;         // of a match
   double elo0 = 0.0, elo1 = 20.0, alpha = 0.05, beta = 0.05;
   int jobs = 1;

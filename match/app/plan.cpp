@@ -172,6 +172,13 @@ Results of_round_robin(const Options& o, const std::vector<Series>& series) {
 }
 
 // The best points by playability, and all figures for the files.
+// Of all series in order.
+std::string digest_text(const std::vector<Series>& series) {
+  std::uint64_t digest = 0;
+  for (const Series& s : series) digest = match::mix_seed(digest ^ s.digest());
+  return line("\ndigest of all matches %016llx\n", static_cast<unsigned long long>(digest));
+}
+
 Results of_study(const Options& o, const std::vector<Series>& series) {
   Results results;
   results.figures = match::study_figures(study_plan(o), series);
@@ -257,6 +264,12 @@ Results of_balance(const Options& o, const std::vector<Series>& series) {
 
 }  // namespace
 
+match::TrainPlan train_plan(const Options& o) {
+  match::TrainPlan plan = o.training;
+  plan.base = base_of(o);
+  return plan;
+}
+
 std::vector<SeriesDesc> series_of(const Options& o) {
   SeriesDesc desc = base_of(o);
   switch (o.mode) {
@@ -278,6 +291,10 @@ std::vector<SeriesDesc> series_of(const Options& o) {
       return match::varied_series(mirror_of(o), o.varied);
     case Mode::traits:
       return match::trait_series(mirror_of(o));
+    case Mode::screen:
+      return match::screen_series(train_plan(o));
+    case Mode::train:
+      return match::Training(train_plan(o)).round();
   }
   return {};
 }
@@ -308,8 +325,23 @@ Results results_of(const Options& o, const std::vector<Series>& series) {
     }
     case Mode::traits:
       return {match::trait_table(series), match::trait_figures(series)};
+    case Mode::screen: {
+      Results results;
+      results.figures = match::screen_figures(train_plan(o), series);
+      results.text = match::as_table(results.figures) + digest_text(series);
+      return results;
+    }
+    case Mode::train:
+      break;  // in rounds: results_of_training()
   }
   return {};
+}
+
+Results results_of_training(const match::Training& training, const std::vector<Series>& series) {
+  Results results;
+  results.figures = training.figures();
+  results.text = match::as_table(results.figures) + digest_text(series);
+  return results;
 }
 
 }  // namespace app

@@ -9,7 +9,11 @@
 
 namespace app {
 
+// Of --train, the first round.
 std::vector<match::SeriesDesc> series_of(const Options& options);
+
+// Of --screen and --train.
+match::TrainPlan train_plan(const Options& options);
 
 struct Results {
   std::string text;                    // tables for a person
@@ -17,5 +21,9 @@ struct Results {
 };
 // Precondition: the series of these options, in their order.
 Results results_of(const Options& options, const std::vector<match::Series>& series);
+
+// Of all rounds.
+Results results_of_training(const match::Training& training,
+                            const std::vector<match::Series>& series);
 
 }  // namespace app

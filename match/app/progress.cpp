@@ -41,8 +41,10 @@ Progress::Progress(bool quiet)
 
 void Progress::show(const match::Schedule& schedule, const match::Effort& effort) {
   const std::int64_t now = os::monotonic_ns();
-  const std::uint64_t done = schedule.games_taken(), all = schedule.games_at_most();
-  if (effort.games == 1) known_ = done > 0 ? done - 1 : 0;
+  const std::uint64_t done = schedule.games_taken();
+  const std::uint64_t all = std::max(expected_, schedule.games_at_most());
+  if (effort.games == 1 && !begun_) known_ = done > 0 ? done - 1 : 0;
+  begun_ = true;
   const std::int64_t every = terminal_ ? 100'000'000 : 10'000'000'000;
   if (quiet_ || all == 0 || (now - shown_ns_ < every && done < all)) return;
   shown_ns_ = now;
@@ -65,8 +67,15 @@ void Progress::show(const match::Schedule& schedule, const match::Effort& effort
   drawn_ = terminal_;
 }
 
+void Progress::note(const std::string& line) {
+  if (quiet_) return;
+  finish();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
 void Progress::finish() {
   if (drawn_) std::fputs("\r\033[K", stderr);
+  drawn_ = false;
 }
 
 }  // namespace app

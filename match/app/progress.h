@@ -12,13 +12,17 @@ namespace app {
 class Progress {
  public:
   explicit Progress(bool quiet);
+  // So many matches are to be played, though the schedule has not all of them yet.
+  void expect(std::uint64_t matches) { expected_ = matches; }
   void show(const match::Schedule& schedule, const match::Effort& effort);
+  void note(const std::string& line);  // beside the bar
   void finish();
 
  private:
   bool quiet_, terminal_;
-  bool drawn_ = false;
+  bool drawn_ = false, begun_ = false;
   std::int64_t begun_ns_, shown_ns_ = 0;
+  std::uint64_t expected_ = 0;
   std::uint64_t known_ = 0;  // games that an earlier run had finished
 };
 

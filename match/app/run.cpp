@@ -8,11 +8,13 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "match/checkpoint.h"
 #include "match/executor.h"
 #include "match/report.h"
 #include "plan.h"
+#include "profile/judgment_profile.h"
 #include "progress.h"
 #include "result_writer.h"
 
@@ -48,6 +50,32 @@ void print_effort(const match::Effort& effort) {
               effort.games, effort.seconds, effort.core_seconds, effort.real_time_factor());
 }
 
+// Plays what is there, and of a training one round after the other, each as the results before it
+// have it. play: plays the schedule to its end.
+template <class Play>
+tl::expected<match::Effort, std::string> play_rounds(
+    match::Schedule& schedule, std::optional<match::Training>& training,
+    const std::vector<match::Checkpoint::Line>& known, const Play& play) {
+  match::Effort sum;
+  for (std::size_t first = 0; first < schedule.series().size();) {
+    const std::size_t end = schedule.series().size();
+    for (const auto& line : known) {
+      if (line.id.series >= first) schedule.know(line.id, line.result);
+    }
+    const auto effort = play();
+    if (!effort) return effort;
+    sum.games += effort->games;
+    sum.ticks += effort->ticks;
+    sum.core_seconds += effort->core_seconds;
+    sum.seconds += effort->seconds;
+    if (!training || !schedule.finished()) break;
+    training->take(std::span(schedule.series()).subspan(first));
+    schedule.add(training->round());
+    first = end;
+  }
+  return sum;
+}
+
 }  // namespace
 
 namespace app {
@@ -65,14 +93,16 @@ int leave(const Leave& leave) {
 
 int run(const Options& options, const PlayAll& play_all) {
   end_on_signals();
+  std::optional<match::Training> training;
+  if (options.mode == Mode::train) training.emplace(train_plan(options));
   const std::vector<match::SeriesDesc> plan = series_of(options);
   match::Schedule schedule(plan);
-  std::unique_ptr<match::Checkpoint> checkpoint;
+  match::Checkpoint::Opened known;
   if (!options.checkpoint.empty()) {
-    auto opened = match::Checkpoint::open(options.checkpoint, plan);
+    auto opened = match::Checkpoint::open(options.checkpoint, plan,
+                                          training ? train_plan(options).text() : std::string());
     if (!opened) return fail(2, opened.error());
-    for (const auto& line : opened->lines) schedule.know(line.id, line.result);
-    checkpoint = std::move(opened->checkpoint);
+    known = std::move(*opened);
   }
   std::optional<ResultWriter> writer;
   if (!options.results.empty()) {
@@ -84,7 +114,7 @@ int run(const Options& options, const PlayAll& play_all) {
   match::ExecutorOptions executor;
   executor.jobs = options.jobs;
   executor.record_folder = options.record;
-  executor.checkpoint = checkpoint.get();
+  executor.checkpoint = known.checkpoint.get();
   executor.stop = &stop_requested;
   executor.progress = [&](const match::Schedule& s, const match::Effort& e) {
     progress.show(s, e);
@@ -96,13 +126,18 @@ int run(const Options& options, const PlayAll& play_all) {
                                          : options.record + "/" + match::journal_name(id, game));
     };
   }
-  const auto effort = play_all(schedule, executor);
+  if (training) progress.expect(training->games_at_most());
+  const auto effort = play_rounds(schedule, training, known.lines, [&] {
+    if (training && training->generations() > 0) progress.note(training->state());
+    return play_all(schedule, executor);
+  });
   progress.finish();
   const std::string unsaved = writer ? writer->finish() : std::string();
   if (!unsaved.empty()) fail(1, unsaved);
   if (!effort) return fail(1, effort.error());
 
-  const Results results = results_of(options, schedule.series());
+  const Results results = training ? results_of_training(*training, schedule.series())
+                                   : results_of(options, schedule.series());
   if (options.csv != "-" && options.json != "-") {
     std::fputs(results.text.c_str(), stdout);
     print_effort(*effort);
@@ -110,6 +145,10 @@ int run(const Options& options, const PlayAll& play_all) {
   if (!write_text(options.csv, match::as_csv(results.figures)) ||
       !write_text(options.json, match::as_json(results.figures))) {
     return fail(1, "the results could not be written to the file");
+  }
+  if (training && !options.write.empty() &&
+      !write_text(options.write, profile::format_judgment(training->answer(), training->start()))) {
+    return fail(1, "the trained values could not be written to " + options.write);
   }
   if (!schedule.finished()) return fail(1, "stopped before all matches were played");
   return unsaved.empty() ? 0 : 1;

@@ -11,8 +11,11 @@ namespace {
 
 int play_ranks(int rank, int ranks, const app::Options& options) {
   if (ranks == 1) return app::run(options, match::play_all);
-  if (rank == 0) return app::run(options, ranks::coordinate);
-  return ranks::play(match::Schedule(app::series_of(options)), options.record);
+  if (rank != 0) return ranks::play(app::series_of(options), options.record);
+  ranks::Coordinator coordinator;
+  return app::run(options, [&](match::Schedule& schedule, const match::ExecutorOptions& executor) {
+    return coordinator.play_all(schedule, executor);
+  });
 }
 
 }  // namespace

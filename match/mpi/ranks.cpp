@@ -6,6 +6,7 @@
 #include <charconv>
 #include <deque>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "match/checkpoint.h"
@@ -84,22 +85,61 @@ std::optional<Message> receive(std::int64_t patience_ns) {
   return message;
 }
 
-class Coordinator {
- public:
-  Coordinator(match::Schedule& schedule, const match::ExecutorOptions& options)
-      : schedule_(schedule), options_(options) {
-    int ranks = 1;
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    players_ = ranks - 1;
+// A game as text: "series game layout seed", and a line for each player.
+std::string encode(JobId id, const match::SeriesDesc& desc) {
+  std::string text = std::to_string(id.series);
+  for (const std::uint64_t number :
+       {id.game, static_cast<std::uint64_t>(desc.layout == foosball::Layout::paper), desc.seed}) {
+    text += ' ';
+    text += std::to_string(number);
   }
+  return text + '\n' + desc.players[0] + '\n' + desc.players[1];
+}
+
+struct Job {
+  JobId id;
+  match::GameDesc game;
+};
+
+// Of another rank of this program: it is as encode() writes it.
+Job decode(const std::string& text, const std::vector<match::SeriesDesc>& series) {
+  Job job;
+  std::uint64_t paper = 0, seed = 0;
+  std::istringstream in(text);
+  in >> job.id.series >> job.id.game >> paper >> seed;
+  in.ignore();
+  match::SeriesDesc desc = series.at(job.id.series < series.size() ? job.id.series : 0);
+  desc.layout = paper != 0 ? foosball::Layout::paper : foosball::Layout::tournament;
+  desc.seed = seed;
+  std::getline(in, desc.players[0]);
+  std::getline(in, desc.players[1]);
+  job.game = match::Series(desc).game(job.id.game);
+  return job;
+}
+
+// Hands out the games of one call.
+class Round {
+ public:
+  Round(match::Schedule& schedule, const match::ExecutorOptions& options,
+        std::deque<JobId>& under_way, std::vector<int>& waiting)
+      : schedule_(schedule), options_(options), under_way_(under_way), waiting_(waiting) {}
 
   tl::expected<match::Effort, std::string> run() {
     const std::int64_t begun = os::monotonic_ns();
+    std::erase_if(under_way_, [&](JobId id) { return schedule_.series()[id.series].decided(); });
+    std::vector<int> idle;
+    idle.swap(waiting_);
+    for (const int rank : idle) {
+      if (over()) {
+        waiting_.push_back(rank);
+      } else {
+        hand_out(rank);
+      }
+    }
     while (!over()) {
       if (const auto message = receive(100'000'000)) take(*message);
     }
     effort_.seconds = static_cast<double>(os::monotonic_ns() - begun) * 1e-9;
-    dismiss();
     if (!problem_.empty()) return tl::unexpected(problem_);
     return effort_;
   }
@@ -151,50 +191,48 @@ class Coordinator {
       return;
     }
     under_way_.push_back(*id);
-    send(rank, kJob, std::to_string(id->series) + ' ' + std::to_string(id->game));
-  }
-
-  // Tells all ranks that there is no more. Those that still play what is not needed any more are
-  // waited for; one that does not answer is lost, and MPI could not be ended in order with it.
-  void dismiss() {
-    constexpr std::int64_t kPatience = 120'000'000'000;
-    for (const int rank : waiting_) send(rank, kStop);
-    int left = players_ - static_cast<int>(waiting_.size());
-    while (left > 0) {
-      const auto message = receive(kPatience);
-      if (!message) return;
-      send(message->rank, kStop);
-      --left;
-    }
+    send(rank, kJob, encode(*id, schedule_.series()[id->series].desc()));
   }
 
   match::Schedule& schedule_;
   const match::ExecutorOptions& options_;
-  int players_ = 0;
-  std::deque<JobId> under_way_;
-  std::vector<int> waiting_;  // ranks without a game
+  std::deque<JobId>& under_way_;
+  std::vector<int>& waiting_;
   match::Effort effort_;
   std::string problem_;
 };
 
 }  // namespace
 
-tl::expected<match::Effort, std::string> coordinate(match::Schedule& schedule,
-                                                    const match::ExecutorOptions& options) {
-  return Coordinator(schedule, options).run();
+Coordinator::Coordinator() {
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  players_ = ranks - 1;
 }
 
-int play(const match::Schedule& schedule, const std::string& record_folder) {
+Coordinator::~Coordinator() {
+  constexpr std::int64_t kPatience = 120'000'000'000;
+  for (const int rank : waiting_) send(rank, kStop);
+  for (int left = players_ - static_cast<int>(waiting_.size()); left > 0; --left) {
+    const auto message = receive(kPatience);
+    if (!message) return;
+    send(message->rank, kStop);
+  }
+}
+
+tl::expected<match::Effort, std::string> Coordinator::play_all(
+    match::Schedule& schedule, const match::ExecutorOptions& options) {
+  return Round(schedule, options, under_way_, waiting_).run();
+}
+
+int play(const std::vector<match::SeriesDesc>& series, const std::string& record_folder) {
   send(0, kIdle);
   while (true) {
     const auto message = receive(INT64_MAX / 2);
     if (!message || message->tag != kJob) return 0;
-    JobId id;
-    const char* end = message->text.data() + message->text.size();
-    const auto series = std::from_chars(message->text.data(), end, id.series);
-    std::from_chars(series.ptr + 1, end, id.game);
+    const auto [id, game] = decode(message->text, series);
     const std::int64_t before = os::thread_ns();
-    auto result = match::play_job(schedule.game(id), id, record_folder);
+    auto result = match::play_job(game, id, record_folder);
     if (!result) {
       send(0, kFailed, result.error());
       continue;

@@ -7,17 +7,37 @@
 // command goes on from the checkpoint.
 #pragma once
 
+#include <deque>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "match/executor.h"
 
 namespace ranks {
 
 // Rank 0, of two or more.
-tl::expected<match::Effort, std::string> coordinate(match::Schedule& schedule,
+class Coordinator {
+ public:
+  Coordinator();
+  // Tells all ranks that there is no more. Those that still play what is not needed any more are
+  // waited for; one that does not answer is lost, and MPI could not be ended in order with it.
+  ~Coordinator();
+  Coordinator(const Coordinator&) = delete;
+  Coordinator& operator=(const Coordinator&) = delete;
+
+  // Until the schedule is finished. May be called again when more was added to it.
+  tl::expected<match::Effort, std::string> play_all(match::Schedule& schedule,
                                                     const match::ExecutorOptions& options);
-// The others: plays what it is told until there is no more. The exit code.
-int play(const match::Schedule& schedule, const std::string& record_folder);
+
+ private:
+  int players_ = 0;
+  std::vector<int> waiting_;  // ranks without a game
+  std::deque<match::JobId> under_way_;
+};
+
+// The others: plays what it is told until there is no more. series: what rank 0 begins with; a
+// series beyond them differs from the first in players, layout and seed alone. The exit code.
+int play(const std::vector<match::SeriesDesc>& series, const std::string& record_folder);
 
 }  // namespace ranks

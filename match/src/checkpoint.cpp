@@ -14,15 +14,16 @@
 namespace match {
 namespace {
 
-std::string head_of(const std::vector<SeriesDesc>& series) {
+std::string head_of(const std::vector<SeriesDesc>& series, const std::string& plan) {
   std::string head = "space-foosball-match checkpoint 1; game " +
                      std::to_string(game_fingerprint()) + "; " + std::to_string(series.size()) +
                      " series";
   std::uint64_t digest = 0;
-  for (const SeriesDesc& desc : series) {
-    for (const char c : desc.text() + ";")
-      digest = mix_seed(digest ^ static_cast<unsigned char>(c));
-  }
+  const auto add = [&](const std::string& text) {
+    for (const char c : text) digest = mix_seed(digest ^ static_cast<unsigned char>(c));
+  };
+  for (const SeriesDesc& desc : series) add(desc.text() + ";");
+  add(plan);
   return head + " " + std::to_string(digest);
 }
 
@@ -42,8 +43,8 @@ std::optional<Checkpoint::Line> parse(const std::string& line) {
 }  // namespace
 
 tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
-    const std::string& path, const std::vector<SeriesDesc>& series) {
-  const std::string head = head_of(series);
+    const std::string& path, const std::vector<SeriesDesc>& series, const std::string& plan) {
+  const std::string head = head_of(series, plan);
   std::ifstream before(path);
   std::stringstream text;
   if (before) text << before.rdbuf();

@@ -207,7 +207,8 @@ tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc&
 std::vector<PlayerKind> player_kinds() {
   std::vector<PlayerKind> kinds{
       {"1..5[:STYLE]", "the computer player of a level; STYLE wall, shooter, passer or gambler"},
-      {"5@NAME=NUMBER,...", "... with values of its judgment (foosball/judgment.h)"}};
+      {"5@NAME=NUMBER,...",
+       "... with values of its judgment; 5@FILE: those of a file (--list-judgment)"}};
   for (const Kind& kind : kKinds) kinds.push_back({kind.syntax, kind.meaning});
   return kinds;
 }

@@ -4,8 +4,9 @@
 
 namespace match {
 
-Schedule::Schedule(std::vector<SeriesDesc> series) : handed_out_(series.size(), 0) {
+void Schedule::add(std::vector<SeriesDesc> series) {
   for (SeriesDesc& desc : series) series_.emplace_back(std::move(desc));
+  handed_out_.resize(series_.size(), 0);
 }
 
 void Schedule::know(JobId id, const GameResult& result) {

@@ -65,7 +65,10 @@ GameDesc Series::game(std::uint64_t index) const {
 }
 
 void Series::take(const GameResult& result) {
-  const int half_points = result.half_points(static_cast<int>(taken_ % 2));
+  const std::size_t first = taken_ % 2;  // the team of the first player
+  const int half_points = result.half_points(static_cast<int>(first));
+  goals_[0] += static_cast<std::uint64_t>(result.score[first]);
+  goals_[1] += static_cast<std::uint64_t>(result.score[1 - first]);
   ++games_[static_cast<std::size_t>(2 - half_points)];
   statistics_.merge(result.statistics);
   digest_ = mix_seed(digest_ ^ result.state_hash);

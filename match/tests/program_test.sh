@@ -35,6 +35,12 @@ refuses '--nonsense' --nonsense
 printf 'gravity = 9.0\nhop_gain = true\n' >"$folder/garbage.toml"
 refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
 refuses 'cannot be read' --tuning "$folder/none.toml"
+refuses 'has no judgment' --train --home classic
+refuses 'is no value of judgment' --train --home 5 --parameters shot_bar,bar
+refuses 'excludes' --train --home 5 --report
+printf 'shot_bar = 0.4\n\npatience = "long"\n' >"$folder/hasty.toml"
+refuses 'hasty.toml:3: patience must be a number from 0.1 to 3 s' --home "5@$folder/hasty.toml"
+refuses 'cannot be read' --away "one-rod:5@$folder/none.toml"
 
 # A few seconds of play a match; the totals with all distributions are in the JSON.
 options=(--quiet --matches 8 --max-minutes 0.05 --home classic:0.9 --away classic:0.3)
@@ -82,6 +88,27 @@ cp "$folder/cut" "$folder/cut-mpi"
 same "$folder/cut.json" "resumed"
 grep -q '^8 matches played' "$folder/out" && fail "resumed: played all matches again"
 
+# A search, the file of what it found, and the same search again: by three threads, and from a
+# checkpoint that was cut off in its second generation.
+search=(--quiet --train --home 5 --opponents 5 --parameters shot_bar,patience,hands_goalie --population 4
+  --generations 3 --matches 2 --validate 2 --max-minutes 0.1 --seed 3)
+"$match" "${search[@]}" --jobs 1 --json "$folder/search.json" --checkpoint "$folder/search" \
+  --write "$folder/found.toml" >"$folder/found"
+grep -q '^52 matches played' "$folder/found" || fail "a search: $(grep played "$folder/found")"
+"$match" --quiet --home "5@$folder/found.toml" --matches 2 --max-minutes 0.05 >"$folder/out" ||
+  fail "what a search wrote cannot be played with"
+"$match" --list-judgment "5@$folder/found.toml" | diff - "$folder/found.toml" >"$folder/diff" ||
+  fail "what a search wrote is listed otherwise: $(cat "$folder/diff")"
+found() { cmp -s "$folder/search.json" "$folder/again.json" || fail "a search $1: other figures"; }
+"$match" "${search[@]}" --jobs 3 --json "$folder/again.json" >/dev/null
+found "by three threads"
+head -n 27 "$folder/search" | head -c -9 >"$folder/search-cut"
+cp "$folder/search-cut" "$folder/search-mpi"
+"$match" "${search[@]}" --json "$folder/again.json" --checkpoint "$folder/search-cut" >"$folder/out"
+found "that was stopped"
+grep -q '^27 matches played' "$folder/out" || fail "a search that was stopped: $(grep played "$folder/out")"
+refuses 'of other matches' "${search[@]}" --step 0.2 --checkpoint "$folder/search"
+
 # Killed at whatever point it had reached.
 long=(--quiet --matches 12 --max-minutes 0.2 --jobs 1)
 "$match" "${long[@]}" --json "$folder/long.json" >/dev/null
@@ -96,6 +123,12 @@ if [[ -n $mpi ]]; then
     launch $ranks "$mpi" "${options[@]}" --json "$folder/ranks.json" >"$folder/out"
     same "$folder/ranks.json" "$ranks ranks"
   done
+  for ranks in 2 4; do
+    launch $ranks "$mpi" "${search[@]}" --json "$folder/again.json" >/dev/null
+    found "by $ranks ranks"
+  done
+  launch 3 "$mpi" "${search[@]}" --json "$folder/again.json" --checkpoint "$folder/search-mpi" >/dev/null
+  found "that was stopped, by 3 ranks"
   launch 3 "$mpi" "${options[@]}" --json "$folder/ranks.json" --checkpoint "$folder/cut-mpi" >"$folder/out"
   same "$folder/ranks.json" "resumed by 3 ranks"
 

@@ -1,5 +1,6 @@
 // What a computer player judges by, apart from a person's limits (delay, hand speeds, aim): each
-// number with its name, unit, range and meaning, described once.
+// number with its name, unit, range and meaning, described once. `space-foosball-match --train`
+// searches over them.
 //
 // Lengths and speeds are in the team's frame: x from its own goal to the other, 0 in the middle.
 #pragma once

@@ -27,9 +27,11 @@ class Checkpoint {
   };
 
   // Creates the file, or continues it if its head is that of the same series played by the same
-  // game. The error is a sentence.
+  // game. plan: what else the games depend on, if these series are only the first. The error is a
+  // sentence.
   static tl::expected<Opened, std::string> open(const std::string& path,
-                                                const std::vector<SeriesDesc>& series);
+                                                const std::vector<SeriesDesc>& series,
+                                                const std::string& plan = {});
   tl::expected<void, std::string> append(JobId id, const GameResult& result);
 
  private:

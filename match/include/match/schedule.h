@@ -20,7 +20,10 @@ struct JobId {
 
 class Schedule {
  public:
-  explicit Schedule(std::vector<SeriesDesc> series);
+  explicit Schedule(std::vector<SeriesDesc> series) { add(std::move(series)); }
+
+  // More series, after those that are there.
+  void add(std::vector<SeriesDesc> series);
 
   // Results of an earlier run: are taken instead of played. Ignored if they are of no series here.
   void know(JobId id, const GameResult& result);

@@ -52,6 +52,8 @@ class Series {
   // Of the first player. [0] both games lost .. [4] both won, in half points of a pair.
   const PairCounts& pairs() const { return pairs_; }
   std::array<std::uint64_t, 3> wins_draws_losses() const { return games_; }
+  // Of the first player, then of the second.
+  std::array<std::uint64_t, 2> goals() const { return goals_; }
   const foosball::Statistics& statistics() const { return statistics_; }
   // Of all results in order: two runs that agree in it agree in every game.
   std::uint64_t digest() const { return digest_; }
@@ -63,6 +65,7 @@ class Series {
   int first_of_pair_ = 0;
   PairCounts pairs_{};
   std::array<std::uint64_t, 3> games_{};
+  std::array<std::uint64_t, 2> goals_{};
   foosball::Statistics statistics_;
   std::uint64_t digest_ = 0;
 };

@@ -1,0 +1,311 @@
+#include "match/training.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "foosball/computer_player.h"
+#include "match/player.h"
+
+namespace match {
+namespace {
+
+using foosball::Judgment;
+using foosball::JudgmentField;
+using foosball::kJudgmentFields;
+
+constexpr std::array kLayouts{foosball::Layout::tournament, foosball::Layout::paper};
+
+// Seeds of generations, and of the validation, far from one another.
+constexpr std::uint64_t kSeedsApart = 100'000;
+
+double share_of(const JudgmentField& field, double value) {
+  return (value - field.least) / (field.most - field.least);
+}
+
+// Four digits are more than any search tells apart; a sample's name is its whole value.
+double value_at(const JudgmentField& field, double share) {
+  const double value = std::lerp(field.least, field.most, std::clamp(share, 0.0, 1.0));
+  char digits[32];
+  const int size = std::snprintf(digits, sizeof digits, "%.4g", value);
+  double rounded = value;
+  std::from_chars(digits, digits + size, rounded);
+  return std::clamp(rounded, field.least, field.most);
+}
+
+// Of the first player's and the second's goals; half a goal each keeps the share of none defined.
+struct Goals {
+  double own = 0.5, other = 0.5;
+  void add(const Series& series) {
+    own += static_cast<double>(series.goals()[0]);
+    other += static_cast<double>(series.goals()[1]);
+  }
+  double share() const { return own / (own + other); }
+  // As if every goal were a draw of its own.
+  double error() const { return std::sqrt(share() * (1.0 - share()) / (own + other)); }
+};
+
+// Every opponent and layout counts the same, however many goals fall there.
+struct MeanShare {
+  double value = 0.0, error = 0.0;
+};
+MeanShare mean_share(std::span<const Series> series) {
+  MeanShare mean;
+  for (const Series& s : series) {
+    Goals goals;
+    goals.add(s);
+    mean.value += goals.share();
+    mean.error += goals.error() * goals.error();
+  }
+  const double n = static_cast<double>(series.size());
+  return {mean.value / n, std::sqrt(mean.error) / n};
+}
+
+std::vector<SeriesDesc> in_both_layouts(SeriesDesc desc) {
+  std::vector<SeriesDesc> all;
+  for (const auto layout : kLayouts) {
+    desc.layout = layout;
+    all.push_back(desc);
+  }
+  return all;
+}
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+struct Screened {
+  std::string name;
+  Judgment judgment;
+};
+
+std::vector<Screened> screened(const TrainPlan& plan) {
+  constexpr double kFifth = 0.2, kTooNear = 0.02;
+  const Judgment start = *judgment_of_player(plan.player);
+  std::vector<Screened> all{{"as it is", start}};
+  for (const std::size_t index : plan.fields) {
+    const JudgmentField& field = kJudgmentFields[index];
+    const double at = share_of(field, start.*field.value);
+    for (const double side : {-kFifth, kFifth}) {
+      const double share = std::clamp(at + side, 0.0, 1.0);
+      if (std::fabs(share - at) < kTooNear) continue;
+      Screened point{"", start};
+      point.judgment.*field.value = value_at(field, share);
+      point.name = std::string(field.name) + " " + shown(start.*field.value) + " to " +
+                   shown(point.judgment.*field.value);
+      all.push_back(point);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string TrainPlan::text() const {
+  std::string text = "training of " + player + " against";
+  for (const std::string& opponent : opponents) text += " " + opponent;
+  text += ": ";
+  for (const std::size_t field : fields) text += std::string(kJudgmentFields[field].name) + " ";
+  return text + std::to_string(population) + " " + std::to_string(generations) + " " +
+         std::to_string(step) + " " + std::to_string(matches) + " " + std::to_string(validation);
+}
+
+tl::expected<std::vector<std::size_t>, std::string> parse_fields(const std::string& text) {
+  std::vector<std::size_t> fields;
+  if (text.empty()) {
+    for (std::size_t i = 0; i < kJudgmentFields.size(); ++i) fields.push_back(i);
+    return fields;
+  }
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const std::string name = text.substr(at, comma - at);
+    const int index = foosball::judgment_index(name);
+    if (index < 0) {
+      return tl::unexpected("\"" + name +
+                            "\" is no value of judgment: --list-judgment 5 shows their names");
+    }
+    const auto field = static_cast<std::size_t>(index);
+    if (std::ranges::find(fields, field) != fields.end())
+      return tl::unexpected(name + " is named twice: name it once");
+    fields.push_back(field);
+    at = comma + 1;
+  }
+  return fields;
+}
+
+tl::expected<Judgment, std::string> judgment_of_player(const std::string& player) {
+  const auto at = player.find('@');
+  const auto spec = foosball::parse_player(player.substr(0, at));
+  if (!spec || spec->kind != foosball::PlayerSpec::Kind::level) {
+    return tl::unexpected("\"" + player +
+                          "\" has no judgment: give a level 1 to 5, maybe with a style");
+  }
+  const Judgment usual = judgment_of(spec->level, spec->style);
+  if (at == std::string::npos) return usual;
+  const auto changed = with_changes(usual, player.substr(at + 1));
+  if (!changed) return tl::unexpected(changed.error().message);
+  return *changed;
+}
+
+std::string with_judgment(const std::string& player, const Judgment& judgment) {
+  const std::string level = player.substr(0, player.find('@'));
+  const std::string changes = changes_of(*judgment_of_player(level), judgment);
+  return changes.empty() ? level : level + "@" + changes;
+}
+
+std::vector<SeriesDesc> screen_series(const TrainPlan& plan) {
+  std::vector<SeriesDesc> all;
+  for (const Screened& point : screened(plan)) {
+    for (const std::string& opponent : plan.opponents) {
+      SeriesDesc desc = plan.base;
+      desc.players = {with_judgment(plan.player, point.judgment), opponent};
+      desc.max_games = plan.matches;
+      for (SeriesDesc& one : in_both_layouts(desc)) all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
+std::vector<Figure> screen_figures(const TrainPlan& plan, std::span<const Series> series) {
+  std::vector<Figure> figures;
+  const std::size_t each = kLayouts.size() * plan.opponents.size();
+  const MeanShare usual = mean_share(series.first(each));
+  std::size_t first = 0;
+  for (const Screened& point : screened(plan)) {
+    const MeanShare here = mean_share(series.subspan(first, each));
+    const bool own = first == 0;
+    first += each;
+    figures.push_back({"screening of " + plan.player, point.name + (own ? "" : ", goals gained"),
+                       100.0 * (own ? here.value : here.value - usual.value), "% of goals", "",
+                       Figure::Judgment::none,
+                       100.0 * (own ? here.error : std::hypot(here.error, usual.error))});
+  }
+  return figures;
+}
+
+namespace {
+
+Point start_of(const TrainPlan& plan, const Judgment& start) {
+  Point point;
+  for (const std::size_t index : plan.fields) {
+    const JudgmentField& field = kJudgmentFields[index];
+    point.push_back(share_of(field, start.*field.value));
+  }
+  return point;
+}
+
+std::size_t population_of(const TrainPlan& plan) {
+  return plan.population == 0 ? usual_population(plan.fields.size()) : plan.population;
+}
+
+}  // namespace
+
+Training::Training(TrainPlan plan)
+    : plan_(std::move(plan)),
+      start_(*judgment_of_player(plan_.player)),
+      search_(start_of(plan_, start_), plan_.step, population_of(plan_), plan_.base.seed) {}
+
+Judgment Training::at(const Point& point) const {
+  Judgment judgment = start_;
+  for (std::size_t i = 0; i < plan_.fields.size(); ++i) {
+    const JudgmentField& field = kJudgmentFields[plan_.fields[i]];
+    judgment.*field.value = value_at(field, point[i]);
+  }
+  return judgment;
+}
+
+Judgment Training::answer() const {
+  return search_.generation() == 0 ? start_ : at(search_.answer());
+}
+
+std::vector<SeriesDesc> Training::against(const std::string& player, const std::string& opponent,
+                                          std::uint64_t seed, std::uint64_t matches) const {
+  SeriesDesc desc = plan_.base;
+  desc.players = {player, opponent};
+  desc.seed = seed;
+  desc.max_games = matches;
+  return in_both_layouts(desc);
+}
+
+std::vector<SeriesDesc> Training::round() const {
+  std::vector<SeriesDesc> all;
+  const auto add = [&](std::vector<SeriesDesc> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+  };
+  const std::uint64_t seed = plan_.base.seed + kSeedsApart * search_.generation();
+  if (search_.generation() < plan_.generations) {
+    for (const Point& sample : search_.samples()) {
+      const std::string player = with_judgment(plan_.player, at(sample));
+      for (const std::string& opponent : plan_.opponents) {
+        add(against(player, opponent, seed, plan_.matches));
+      }
+    }
+  } else if (!over_ && plan_.validation > 0) {
+    add(against(with_judgment(plan_.player, answer()), plan_.player, seed, plan_.validation));
+  }
+  return all;
+}
+
+void Training::take(std::span<const Series> series) {
+  if (search_.generation() < plan_.generations) {
+    const std::size_t each = kLayouts.size() * plan_.opponents.size();
+    std::vector<double> values;
+    for (std::size_t first = 0; first < series.size(); first += each) {
+      values.push_back(mean_share(series.subspan(first, each)).value);
+    }
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    shares_.push_back(sum / static_cast<double>(values.size()));
+    search_.tell(values);
+    return;
+  }
+  for (const Series& s : series) {
+    const bool paper = s.desc().layout == foosball::Layout::paper;
+    const std::string section = "trained against " + plan_.player +
+                                (paper ? ", paper layout" : ", tournament layout") + ", new seeds";
+    Goals goals;
+    goals.add(s);
+    validation_.push_back({section, "points", 100.0 * mean_score(s.pairs()), "% points", "",
+                           Figure::Judgment::none, 100.0 * score_error(s.pairs())});
+    validation_.push_back({section, "goals", 100.0 * goals.share(), "% of goals", "",
+                           Figure::Judgment::none, 100.0 * goals.error()});
+  }
+  over_ = true;
+}
+
+std::uint64_t Training::games_at_most() const {
+  const std::uint64_t each = plan_.matches * plan_.opponents.size() * kLayouts.size();
+  return plan_.generations * search_.samples().size() * each + plan_.validation * kLayouts.size();
+}
+
+std::string Training::state() const {
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "generation %zu of %llu: %.1f %% of the goals in the mean, step %.3f",
+                search_.generation(), static_cast<unsigned long long>(plan_.generations),
+                shares_.empty() ? 50.0 : 100.0 * shares_.back(), search_.step());
+  return text;
+}
+
+std::vector<Figure> Training::figures() const {
+  std::vector<Figure> figures;
+  for (std::size_t g = 0; g < shares_.size(); ++g) {
+    figures.push_back({"samples of a generation, their mean", "generation " + std::to_string(g + 1),
+                       100.0 * shares_[g], "% of goals", "", Figure::Judgment::none});
+  }
+  const Judgment trained = answer();
+  for (const std::size_t index : plan_.fields) {
+    const JudgmentField& field = kJudgmentFields[index];
+    figures.push_back({"trained values of " + plan_.player, field.name, trained.*field.value,
+                       field.unit, "before: " + shown(start_.*field.value),
+                       Figure::Judgment::none});
+  }
+  figures.insert(figures.end(), validation_.begin(), validation_.end());
+  return figures;
+}
+
+}  // namespace match

@@ -1,0 +1,234 @@
+// The evolution strategy on functions whose maximum is known, and a search over a player's
+// judgment.
+#include "match/training.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "foosball/computer_player.h"
+#include "match/evolution.h"
+#include "match/game.h"
+
+namespace match {
+namespace {
+
+const Point kBest{0.3, 0.7, 0.5, 0.2, 0.85, 0.6};
+
+double distance(const Point& a, const Point& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+// A bell about kBest, narrow in one direction and wide in another, with the noise of a few matches.
+class NoisyBell {
+ public:
+  explicit NoisyBell(double noise) : noise_(noise) {}
+  double operator()(const Point& x) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double scale = i == 0 ? 0.15 : i == 1 ? 0.6 : 0.3;
+      sum += std::pow((x[i] - kBest[i]) / scale, 2);
+    }
+    // Twelve uniform numbers: nearly normal, of deviation 1.
+    double bell = -6.0;
+    for (int k = 0; k < 12; ++k) {
+      random_ = mix_seed(random_);
+      bell += static_cast<double>(random_ >> 11) * 0x1p-53;
+    }
+    return std::exp(-0.5 * sum) + noise_ * bell;
+  }
+
+ private:
+  double noise_;
+  std::uint64_t random_ = 7;
+};
+
+Point found(double noise, int generations, std::uint64_t seed) {
+  EvolutionStrategy search(Point(kBest.size(), 0.5), 0.15, 10, seed);
+  NoisyBell bell(noise);
+  for (int g = 0; g < generations; ++g) {
+    std::vector<double> values;
+    for (const Point& x : search.samples()) values.push_back(bell(x));
+    search.tell(values);
+  }
+  return search.answer();
+}
+
+TEST(EvolutionStrategy, FindsTheMaximumWithoutNoise) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_LT(distance(found(0.0, 200, seed), kBest), 1e-4) << seed;  // measured: 4e-6
+  }
+}
+
+// From 0.56 away. Noise of 0.05 is that of 100 goals.
+TEST(EvolutionStrategy, FindsTheMaximumOfANoisyFunction) {
+  const double begin = distance(Point(kBest.size(), 0.5), kBest);
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double left = distance(found(0.05, 60, seed), kBest);
+    EXPECT_LT(left, 0.5 * begin) << seed;
+    sum += left;
+  }
+  EXPECT_LT(sum / 20.0, 0.25 * begin);  // measured: 0.13
+}
+
+TEST(EvolutionStrategy, StaysInTheCubeAndIsTheSameForTheSameSeed) {
+  EvolutionStrategy a({0.0, 1.0, 0.5}, 0.5, 8, 1), b({0.0, 1.0, 0.5}, 0.5, 8, 1);
+  EvolutionStrategy other({0.0, 1.0, 0.5}, 0.5, 8, 2);
+  EXPECT_NE(a.samples(), other.samples());
+  for (int g = 0; g < 50; ++g) {
+    ASSERT_EQ(a.samples(), b.samples());
+    std::vector<double> values;
+    for (const Point& x : a.samples()) {
+      for (const double coordinate : x) {
+        ASSERT_GE(coordinate, 0.0);
+        ASSERT_LE(coordinate, 1.0);
+      }
+      values.push_back(x[0] - x[1]);  // its maximum lies in a corner
+    }
+    a.tell(values);
+    b.tell(values);
+  }
+  EXPECT_LT(distance({a.answer()[0], a.answer()[1]}, {1.0, 0.0}), 0.1);
+}
+
+TEST(EvolutionStrategy, OfNoiseAloneKeepsItsStepWithinBounds) {
+  NoisyBell noise(1.0);
+  EvolutionStrategy search(Point(8, 0.5), 0.12, 10, 3);
+  for (int g = 0; g < 100; ++g) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < search.samples().size(); ++k)
+      values.push_back(noise(Point(6, 9.0)));
+    search.tell(values);
+    ASSERT_GE(search.step(), 0.01);
+    ASSERT_LE(search.step(), 0.5);
+  }
+}
+
+TrainPlan small_plan() {
+  TrainPlan plan;
+  plan.fields = parse_fields("shot_bar,hands_goalie").value();
+  plan.population = 4;
+  plan.generations = 2;
+  plan.matches = 2;
+  plan.validation = 4;
+  plan.base.seed = 10;
+  plan.base.max_ticks = 1000;
+  return plan;
+}
+
+// As if team 0 had scored so many goals more, the nearer the player's shot_bar is to 0.7.
+GameResult result_of(const GameDesc& game) {
+  GameResult result;
+  for (int team = 0; team < 2; ++team) {
+    const auto judgment = judgment_of_player(game.players[team]);
+    const double off = judgment ? judgment->shot_bar - 0.7 : 0.4;
+    result.score[team] = static_cast<int>(std::lround(1000.0 - 1000.0 * off * off));
+  }
+  result.winner = result.score[0] > result.score[1] ? 0 : 1;
+  return result;
+}
+
+std::vector<Series> played(const std::vector<SeriesDesc>& round) {
+  std::vector<Series> all;
+  for (const SeriesDesc& desc : round) {
+    Series& series = all.emplace_back(desc);
+    while (!series.decided()) series.take(result_of(series.game(series.taken())));
+  }
+  return all;
+}
+
+TEST(Training, PlaysAllSamplesOfAGenerationOnTheSameSeedsAndTheNextOnOthers) {
+  Training training(small_plan());
+  std::set<std::uint64_t> seeds;
+  std::set<std::string> samples;
+  for (int g = 0; g < 2; ++g) {
+    const auto round = training.round();
+    ASSERT_EQ(round.size(), 4u * 2u * 2u) << "samples, opponents, layouts";
+    for (const SeriesDesc& desc : round) {
+      EXPECT_EQ(desc.seed, round[0].seed);
+      EXPECT_EQ(desc.max_games, 2u);
+      samples.insert(desc.players[0]);
+      EXPECT_TRUE(desc.players[1] == "5" || desc.players[1] == "classic:0.9");
+    }
+    seeds.insert(round[0].seed);
+    training.take(played(round));
+  }
+  EXPECT_EQ(samples.size(), 8u);
+  const auto last = training.round();
+  ASSERT_EQ(last.size(), 2u) << "validation in both layouts";
+  EXPECT_EQ(last[0].players[0], with_judgment("5", training.answer()));
+  EXPECT_EQ(last[0].players[1], "5");
+  EXPECT_EQ(last[0].max_games, 4u);
+  seeds.insert(last[0].seed);
+  EXPECT_EQ(seeds.size(), 3u);
+  training.take(played(last));
+  EXPECT_TRUE(training.round().empty());
+}
+
+TEST(Training, FindsTheValueThatScoresMostAndLeavesOthersAlone) {
+  TrainPlan plan = small_plan();
+  plan.generations = 60;
+  plan.population = 8;
+  Training training(plan);
+  std::uint64_t games = 0;
+  for (auto round = training.round(); !round.empty(); round = training.round()) {
+    for (const SeriesDesc& desc : round) games += desc.max_games;
+    training.take(played(round));
+  }
+  EXPECT_EQ(games, training.games_at_most());
+  foosball::Judgment answer = training.answer();
+  EXPECT_NEAR(answer.shot_bar, 0.7, 0.03);
+  const foosball::Judgment start = training.start();
+  answer.shot_bar = start.shot_bar;
+  answer.hands_goalie = start.hands_goalie;
+  EXPECT_EQ(answer, start);
+  EXPECT_GT(training.figures().back().value, 50.0) << "% of goals against the start";
+}
+
+TEST(Training, BeginsWithThePlayersOwnJudgment) {
+  TrainPlan plan = small_plan();
+  plan.player = "3:wall@shot_bar=0.25";
+  const Training training(plan);
+  foosball::Judgment expected = judgment_of(3, foosball::PlayStyle::wall);
+  expected.shot_bar = 0.25;
+  EXPECT_EQ(training.start(), expected);
+  EXPECT_EQ(training.answer(), expected);
+  EXPECT_EQ(with_judgment(plan.player, expected), "3:wall@shot_bar=0.25");
+  EXPECT_EQ(with_judgment(plan.player, judgment_of(3, foosball::PlayStyle::wall)), "3:wall");
+}
+
+TEST(Screening, ChangesOneValueAtATimeWithinItsRange) {
+  const TrainPlan plan = small_plan();
+  const auto series = screen_series(plan);
+  // As it is; shot_bar and hands_goalie lower and higher; two opponents, two layouts.
+  ASSERT_EQ(series.size(), 5u * 4u);
+  EXPECT_EQ(series[0].players[0], "5");
+  const foosball::Judgment start = judgment_of_player("5").value();
+  for (std::size_t i = 4; i < series.size(); ++i) {
+    const auto judgment = judgment_of_player(series[i].players[0]);
+    ASSERT_TRUE(judgment.has_value()) << judgment.error();
+    int changed = 0;
+    for (const auto& field : foosball::kJudgmentFields) {
+      changed += (*judgment).*field.value != start.*field.value;
+    }
+    EXPECT_EQ(changed, 1);
+  }
+  const auto figures = screen_figures(plan, played(series));
+  ASSERT_EQ(figures.size(), 5u);
+  EXPECT_LT(figures[1].value, 0.0) << "a lower shot_bar is further from 0.7";
+  EXPECT_GT(figures[2].value, 0.0);
+}
+
+TEST(Parameters, AreReadByTheirNames) {
+  EXPECT_EQ(parse_fields("").value().size(), foosball::kJudgmentFields.size());
+  for (const char* bad : {"bar", "shot_bar,", ",", "shot_bar,shot_bar", "shot_bar patience"}) {
+    EXPECT_FALSE(parse_fields(bad).has_value()) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace match
