@@ -12,13 +12,14 @@ struct LevelRow {
   double delay, hand_travel, aim_error;
   AxisLimits slide, swing, strike;
   double pause_low, pause_high;
+  int forecast_ticks;
 };
 constexpr std::array<LevelRow, kLevels> kRows{{
-    {0.30, 0.36, 0.0070, {0.6, 9}, {10, 220}, {45, 1700}, 0.15, 0.45},
-    {0.21, 0.27, 0.0040, {1.0, 17}, {15, 420}, {65, 3500}, 0.10, 0.30},
-    {0.16, 0.22, 0.0025, {1.4, 26}, {20, 600}, {80, 5500}, 0.06, 0.20},
-    {0.12, 0.18, 0.0014, {2.0, 42}, {26, 850}, {95, 8000}, 0.05, 0.18},
-    {0.08, 0.12, 0.0006, {2.8, 65}, {34, 1250}, {112, 10000}, 0.02, 0.08},
+    {0.30, 0.36, 0.0070, {0.6, 9}, {10, 220}, {45, 1700}, 0.15, 0.45, 0},
+    {0.21, 0.27, 0.0040, {1.0, 17}, {15, 420}, {65, 3500}, 0.10, 0.30, 0},
+    {0.16, 0.22, 0.0025, {1.4, 26}, {20, 600}, {80, 5500}, 0.06, 0.20, 0},
+    {0.12, 0.18, 0.0014, {2.0, 42}, {26, 850}, {95, 8000}, 0.05, 0.18, 0},
+    {0.08, 0.12, 0.0006, {2.8, 65}, {34, 1250}, {112, 10000}, 0.02, 0.08, 20},
 }};
 
 }  // namespace
@@ -33,6 +34,7 @@ Temperament temperament_of(int level, PlayStyle style) {
           .strike = row.strike,
           .pause_low = row.pause_low,
           .pause_high = row.pause_high,
+          .forecast_ticks = row.forecast_ticks,
           .stays_home = style == PlayStyle::wall,
           .judgment = judgment_of(level, style)};
 }

@@ -18,6 +18,10 @@ struct Temperament {
   // Thought.
   double pause_low, pause_high;  // thought spent with the foot drawn back [s]
 
+  // World ticks for each tick of play that go into a forecast of the ball (computer_forecast.h);
+  // 0: a coarse model's guess instead.
+  int forecast_ticks;
+
   // Style.
   bool stays_home;  // both hands at the goal whenever the ball is the opponent's
 

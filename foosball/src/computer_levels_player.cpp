@@ -1,6 +1,8 @@
 // The computer player of levels and styles: sight, screens and mind, put together.
 #include <cmath>
+#include <optional>
 
+#include "computer_forecast.h"
 #include "computer_impl.h"
 #include "computer_mind.h"
 #include "computer_screens.h"
@@ -15,7 +17,11 @@ class LevelPlayer final : public ComputerPlayer::Impl {
         random_(d.seed),
         screens_(team_, d.opens_match),
         sight_(team_, static_cast<int>(std::lround(t.delay / kTick))),
-        mind_(team_, t, d.seed) {}
+        mind_(team_, t, d.seed) {
+    if (t.forecast_ticks > 0) {
+      forecast_.emplace(team_, static_cast<int>(std::lround(t.delay / kTick)), t.forecast_ticks);
+    }
+  }
 
   void play(const MatchView& view, RodTargets& targets) override;
   PlayedPass passed() const override { return mind_.passed(); }
@@ -29,6 +35,7 @@ class LevelPlayer final : public ComputerPlayer::Impl {
   ComputerScreens screens_;
   ComputerSight sight_;
   ComputerMind mind_;
+  std::optional<BallForecast> forecast_;
   bool awake_ = false;
   Screen screen_ = Screen::logo;
 };
@@ -44,7 +51,13 @@ void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
     if (at_screen) {
       mind_.rest();
     } else {
-      mind_.play(sight_.seen(), view.tuning, view.next_server == team_);
+      std::optional<BallGuess> ball;
+      if (forecast_) {
+        forecast_->set_table(view.layout, view.bodies, view.tuning);
+        forecast_->see(sight_.seen());
+        ball = forecast_->ball();
+      }
+      mind_.play(sight_.seen(), view.tuning, view.next_server == team_, ball);
     }
   }
   for (int line = 0; line < 4; ++line) {
@@ -55,6 +68,9 @@ void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
               at_screen ? line == ComputerScreens::kRod : mind_.holds(line)};
     if (view.paused) target.slide_rate = target.angle_rate = 0.0;
   }
+  if (!forecast_) return;
+  if (view.paused || at_screen) forecast_->forget();
+  forecast_->act(targets);
 }
 
 // A new screen; with play, new characters.

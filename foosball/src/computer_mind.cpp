@@ -41,7 +41,8 @@ void ComputerMind::rest() {
   for (ComputerRod& rod : rods_) rod.give_up();
 }
 
-void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_serve) {
+void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_serve,
+                        const std::optional<BallGuess>& forecast) {
   own_serve_ = own_serve;
   Sighting now = seen;
   for (ComputerRod& rod : rods_) {  // of its own hands it knows more than it sees
@@ -56,7 +57,7 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
         now.slide[rod] + t_.judgment.men_keep_on * (now.age + kFurther) * now.slide_rate[rod];
     now.slide[rod] = std::clamp(there, -limit, limit);
   }
-  guess_ball(now, tuning);
+  guess_ball(now, tuning, forecast);
   if (now.ball_in_play && !was_in_play_) side_ = random_.unit() < 0.5 ? -1.0 : 1.0;
   was_in_play_ = now.ball_in_play;
   hands_.pass_time();
@@ -76,7 +77,8 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
 }
 
 // The ball as it is expected to be now. What a stroke does to it is known before it is seen.
-void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
+void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning,
+                              const std::optional<BallGuess>& forecast) {
   BallGuess ball{now.ball, now.velocity};
   double age = now.age;
   if (sent_ticks_ >= 0) {
@@ -89,7 +91,7 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning) {
       sent_ticks_ = -1;
     }
   }
-  ball = advance(model_, tuning, now, ball, age);
+  ball = forecast ? *forecast : advance(model_, tuning, now, ball, age);
   now.ball = ball.position;
   now.velocity = ball.velocity;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "computer_guess.h"
@@ -23,7 +24,9 @@ class ComputerMind {
   void set_table(Layout layout, const TeamBodies& bodies);
   // One tick of play: moves the axes of the rods that the hands hold.
   // own_serve: the next serve, or the last, is the own team's.
-  void play(const Sighting& seen, const Tuning& tuning, bool own_serve);
+  // forecast: of the ball now, if there is one better than the mind's own guess.
+  void play(const Sighting& seen, const Tuning& tuning, bool own_serve,
+            const std::optional<BallGuess>& forecast = {});
   // The hands leave the rods as they are: another screen.
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
@@ -35,7 +38,7 @@ class ComputerMind {
   using Lines = std::array<int, 2>;  // the more urgent first
 
   void note_strokes(const Sighting& now);
-  void guess_ball(Sighting& now, const Tuning& tuning);
+  void guess_ball(Sighting& now, const Tuning& tuning, const std::optional<BallGuess>& forecast);
   Lines wanted_lines(const Sighting& now) const;
   double guard_y(int line, const Sighting& now) const;
   double cover_y(int line, const Sighting& now) const;

@@ -31,10 +31,12 @@ Sighting ComputerSight::in_team_frame(const MatchView& view) const {
   seen.ball_in_play = view.ball_in_play;
   seen.ball = {s * view.ball_position.x, s * view.ball_position.y, view.ball_position.z};
   seen.velocity = {s * view.ball_velocity.x, s * view.ball_velocity.y, view.ball_velocity.z};
+  seen.spin = {s * view.ball_spin.x, s * view.ball_spin.y, view.ball_spin.z};
   for (int rod = 0; rod < kRods; ++rod) {
     seen.slide[rod] = team_slide(team_, view.rods[rod].slide);
     seen.swing[rod] = team_swing(team_, view.rods[rod].angle);
     seen.slide_rate[rod] = team_slide(team_, view.rods[rod].slide_rate);
+    seen.swing_rate[rod] = team_swing(team_, view.rods[rod].angle_rate);
   }
   return seen;
 }

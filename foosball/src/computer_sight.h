@@ -15,10 +15,10 @@ namespace foosball {
 
 struct Sighting {
   bool ball_in_play = false;
-  vp::Vec3 ball, velocity;
+  vp::Vec3 ball, velocity, spin;  // [m], [m/s], [rad/s]
   std::array<double, kRods> slide{}, swing{};
-  std::array<double, kRods> slide_rate{};  // [m/s]
-  double age = 0.0;                        // of what was seen of the rods [s]
+  std::array<double, kRods> slide_rate{}, swing_rate{};  // [m/s], [rad/s]
+  double age = 0.0;                                      // of what was seen of the rods [s]
 };
 
 // Coordinates of a rod between the table's frame and a team's.

@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(All, ComputerPlayers,
 // By its targets, which is what its hands do: a rod that moves, or has moved within the time that a
 // hand of the best level needs to another rod, has a hand on it.
 TEST_P(ComputerPlayers, HaveTwoHandsEachAndTurnThemRoundTwiceASecondAtMost) {
-  constexpr int kSeconds = 25;
+  constexpr int kSeconds = 90;
   constexpr int kWay = 110;  // ticks; the quickest hand needs 120
   Match match = *Match::create({.layout = GetParam().layout, .seed = 3, .rules = {}});
   ComputerPlayer home({.team = 0, .seed = 6, .player = *parse_player(GetParam().home)});

@@ -1,0 +1,72 @@
+// Where the ball is now, by the real simulation: a forward model that makes up for the player's
+// reaction delay. The player remembers what its own hands have done since what it sees now
+// happened; a table world of its own carries the ball on from there. While the ball does what was
+// expected, that world runs one tick ahead for each tick of play. When the ball is seen elsewhere,
+// a second world starts from what was seen and catches up, a bounded number of ticks for each tick
+// of play; until then there is no forecast.
+//
+// Knows no more than the player has seen: ball and rods with its delay, and its own targets. What
+// the opponent has done since then it does not know; his men stay where they are expected.
+//
+// Team frame: see computer_sight.h.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "computer_guess.h"
+#include "computer_sight.h"
+#include "foosball/match.h"
+#include "foosball/tuning.h"
+
+namespace foosball {
+
+class TableWorld;
+
+class BallForecast {
+ public:
+  // Of the player's team. delay: of its sight. ticks: of both worlds together, the most for one
+  // tick of play; at least 3.
+  BallForecast(int team, int delay_ticks, int ticks);
+  ~BallForecast();
+  BallForecast(BallForecast&&) noexcept;
+  BallForecast& operator=(BallForecast&&) noexcept;
+
+  // Builds the worlds anew if they differ; allocates then.
+  void set_table(Layout layout, const TeamBodies& bodies, const Tuning& tuning);
+  // Before the player acts. Precondition: set_table().
+  void see(const Sighting& seen);
+  // The ball now; nothing while it does what was not expected.
+  std::optional<BallGuess> ball() const;
+  // After the player has acted: its targets of this tick, in the table's frame.
+  void act(const RodTargets& targets);
+  // What went before says nothing of what comes: play was interrupted.
+  void forget();
+
+  // World ticks since the last see() began, and the most of any tick of play.
+  int ticks_spent() const { return spent_; }
+
+ private:
+  struct Run;
+
+  void start(Run& run, const Sighting& seen);
+  void step(Run& run);
+  bool as_expected(const Run& run, const Sighting& seen, double metres, double speed) const;
+  std::size_t slot(long tick) const;
+  long seen_tick(const Sighting& seen) const;
+
+  int team_, ticks_;
+  std::size_t memory_;  // ticks
+  Layout layout_ = Layout::tournament;
+  TeamBodies bodies_;
+  Tuning tuning_;
+  std::unique_ptr<Run> now_, catching_up_;
+  std::vector<RodTargets> targets_;  // by tick, a ring
+  Sighting seen_;
+  long tick_ = 0;
+  int spent_ = 0;
+};
+
+}  // namespace foosball
