@@ -22,6 +22,8 @@ class RemoteSource final : public cabinet::InputSource {
   void set_rods(std::uint8_t rods);
   // The client connects anew: its rods stay where they are, its count begins anew.
   void resume() { heard_ = false; }
+  // Since its last datagram; 0: none was heard since it connected.
+  std::int64_t silent_us(std::int64_t now_us) const { return heard_ ? now_us - heard_us_ : 0; }
   // Rods of others are not looked at. False for a datagram no newer than one accepted.
   bool accept(const wire::InputDatagram& input, std::int64_t now_us);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace server {
 namespace {
@@ -120,10 +121,73 @@ RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods) {
   }
   if (place == places_.end()) return nullptr;
   place->client = rods != 0 ? client : 0;
+  if (rods == 0) place->lost_since_us = -1;
+  vacated_ &= static_cast<std::uint8_t>(~rods);
   place->rods = rods;
   place->remote->set_rods(rods);
   assign_all();
   return rods != 0 ? place->remote.get() : nullptr;
+}
+
+void RodDesk::lost(std::uint32_t client, std::int64_t now_us) {
+  const auto place = std::ranges::find(places_, client, &Place::client);
+  if (client != 0 && place != places_.end()) place->lost_since_us = now_us;
+}
+
+void RodDesk::back(std::uint32_t client) {
+  const auto place = std::ranges::find(places_, client, &Place::client);
+  if (client != 0 && place != places_.end()) place->lost_since_us = -1;
+}
+
+bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods) const {
+  std::array<bool, foosball::kTeams> wanted{};
+  for (int rod = 0; rod < foosball::kRods; ++rod)
+    if ((rods >> rod & 1) != 0) wanted[table_.rods[rod].team] = true;
+  return std::ranges::any_of(places_, [&](const Place& place) {
+    if (place.client == client || place.lost_since_us >= 0) return false;
+    for (int rod = 0; rod < foosball::kRods; ++rod)
+      if ((place.rods >> rod & 1) != 0 && wanted[table_.rods[rod].team]) return true;
+    return false;
+  });
+}
+
+void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
+  const auto place = std::ranges::find(places_, client, &Place::client);
+  if (client == 0 || place == places_.end()) return;
+  const std::uint8_t rods = place->rods;
+  // Whose rods the computer plays already is not offered: the game would stop for it.
+  const bool offer = (rods & stand_ins_) == 0 && has_team_mate(client, rods);
+  seat(client, 0);
+  vacated_ |= rods;
+  for (int rod = 0; rod < foosball::kRods; ++rod)
+    if ((rods >> rod & 1) != 0) offered_until_us_[rod] = offer ? now_us + kOfferUs : now_us;
+}
+
+bool RodDesk::absent(const Place& place, std::int64_t now_us) const {
+  const bool gone = place.lost_since_us >= 0 && now_us - place.lost_since_us >= kStandInAfterUs;
+  return gone || place.remote->silent_us(now_us) >= kStandInAfterUs;
+}
+
+bool RodDesk::watch_absences(bool in_match, std::int64_t now_us) {
+  std::uint8_t stand_ins = 0, offered = 0;
+  bool somebody = !devices_.empty();
+  for (const Place& place : places_) {
+    if (place.rods == 0) continue;
+    const bool away = absent(place, now_us);
+    if (away) stand_ins |= place.rods;
+    somebody = somebody || !away;
+  }
+  if (!in_match) stand_ins = vacated_ = 0;
+  // Nobody keeps up a match that all have left: it ends by the rule for idle ones.
+  for (int rod = 0; somebody && rod < foosball::kRods; ++rod) {
+    const auto bit = static_cast<std::uint8_t>(1u << rod);
+    if ((vacated_ & bit) == 0) continue;
+    (now_us >= offered_until_us_[rod] ? stand_ins : offered) |= bit;
+  }
+  if (stand_ins == stand_ins_ && offered == offered_) return false;
+  offered_ = offered;
+  if (std::exchange(stand_ins_, stand_ins) != stand_ins) assign_all();
+  return true;
 }
 
 void RodDesk::assign_all() {
@@ -142,6 +206,10 @@ void RodDesk::assign_all() {
     order_.back() = person[rod];
     const bool unclaimed = person[rod] == cabinet::SourceMux::kNobody;
     if (unclaimed && computer_allowed_[team] && (!has_person[team] || computer_fills_)) {
+      order_.back() = computer_index_[team];
+      computes[team] = true;
+    }
+    if ((stand_ins_ >> rod & 1) != 0) {
       order_.back() = computer_index_[team];
       computes[team] = true;
     }

@@ -1,7 +1,8 @@
 // Who drives which rod: the cabinet's sensors first, then the client that has the rod. The computer
 // has the rods of a team without a person; where people have only some of a team's rods, it has the
-// others if the options say so. Built on cabinet::SourceMux, which keeps rods from jumping when
-// the driver changes.
+// others if the options say so. In a match it also stands in for a person who is lost, silent or
+// has left, until the person is back or somebody takes the rods. Built on cabinet::SourceMux, which
+// keeps rods from jumping when the driver changes.
 #pragma once
 
 #include <array>
@@ -34,6 +35,22 @@ class RodDesk {
   // Preconditions: no rod is another client's. Returns where its inputs go; null: it has no rod.
   RemoteSource* seat(std::uint32_t client, std::uint8_t rods);
   RemoteSource* remote(std::uint32_t client);  // null: it has no rod
+  // The client's connection is lost, and expected back; it is back.
+  void lost(std::uint32_t client, std::int64_t now_us);
+  void back(std::uint32_t client);
+  // The client has left for good. Its rods are offered to its team mates first, if it has any.
+  void leave(std::uint32_t client, std::int64_t now_us);
+  // Each tick: whom the computer stands in for. True: it changed. in_match: there is a match to
+  // keep going; what was vacated in another is forgotten.
+  bool watch_absences(bool in_match, std::int64_t now_us);
+  std::uint8_t stand_ins() const { return stand_ins_; }  // rods that the computer plays so
+  std::uint8_t offered() const { return offered_; }      // to team mates, by watch_absences()
+
+  // How long a person may be lost or silent until the computer stands in: more than a gap in a
+  // line, less than it takes to concede.
+  static constexpr std::int64_t kStandInAfterUs = 3'000'000;
+  // How long team mates are offered the rods of one who left.
+  static constexpr std::int64_t kOfferUs = 10'000'000;
 
   // Computers play both teams, whoever has them: a match is shown while nobody plays.
   void show_match(bool shown);
@@ -49,19 +66,23 @@ class RodDesk {
   RodDriver driver(int rod) const;
 
  private:
-  int add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver kind);
-  void assign_all();
-  foosball::ComputerPlayerDesc computer_desc(int team) const;
-  const cabinet::RodInput& hand(std::size_t source, int rod) const;
-
-  const foosball::TableSpec& table_;
-  std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
   struct Place {
     std::uint32_t client = 0;  // 0: nobody
     std::uint8_t rods = 0;
     int index = cabinet::SourceMux::kNobody;  // the mux's
     std::unique_ptr<RemoteSource> remote;
+    std::int64_t lost_since_us = -1;  // negative: it is there
   };
+
+  int add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver kind);
+  void assign_all();
+  foosball::ComputerPlayerDesc computer_desc(int team) const;
+  bool absent(const Place& place, std::int64_t now_us) const;
+  bool has_team_mate(std::uint32_t client, std::uint8_t rods) const;
+  const cabinet::RodInput& hand(std::size_t source, int rod) const;
+
+  const foosball::TableSpec& table_;
+  std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
   std::array<Place, foosball::kRods> places_;  // one for each client that has a rod
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
   bool computer_fills_;
@@ -71,6 +92,9 @@ class RodDesk {
   std::uint64_t seed_ = 0;
   int rung_ = -1;  // not on the ladder
   bool shown_ = false;
+  std::uint8_t vacated_ = 0;  // by who left in this match; nobody has taken them since
+  std::array<std::int64_t, foosball::kRods> offered_until_us_{};
+  std::uint8_t stand_ins_ = 0, offered_ = 0;
   std::vector<cabinet::RodInputs> hands_;  // where each device and client had the rods then
   cabinet::SourceMux mux_;
   std::vector<RodDriver> kinds_;                         // by the mux's index

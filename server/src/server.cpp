@@ -92,6 +92,8 @@ void Server::Impl::take_control_events() {
         admit(event);
         break;
       case ControlEvent::Kind::away:
+        remember_name(event.client);
+        desk.lost(event.client, tick_us);
         input.remove(event.client);
         broadcaster.remove(event.client);
         break;
@@ -112,34 +114,6 @@ void Server::Impl::take_control_events() {
         break;
     }
   }
-}
-
-void Server::Impl::admit(ControlEvent& event) {
-  clients.push_back({event.client, event.team, event.name});
-  ++clients_ever;
-  desk.seat(event.client, event.rods);
-  listen_to(event);
-}
-
-void Server::Impl::change_rods(ControlEvent& event) {
-  const auto client = std::ranges::find(clients, event.client, &Client::id);
-  if (client == clients.end()) return;
-  const std::uint8_t before = client->team;
-  client->team = event.team;
-  RemoteSource* source = desk.seat(event.client, event.rods);
-  if (!input.redirect(event.client, source) && source != nullptr && event.socket)
-    input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
-  if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&
-      pause_is_abandoned()) {
-    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
-  }
-}
-
-void Server::Impl::take_back(ControlEvent& event) {
-  input.remove(event.client);
-  broadcaster.remove(event.client);
-  if (RemoteSource* source = desk.remote(event.client)) source->resume();
-  listen_to(event);
 }
 
 // Hears the client's inputs, and sends it snapshots.
@@ -165,40 +139,12 @@ wire::SealKey Server::Impl::random_key(const std::function<std::uint64_t()>& ran
   return key;
 }
 
-void Server::Impl::dismiss(std::uint32_t client) {
-  const auto leaver =
-      std::find_if(clients.begin(), clients.end(), [&](const Client& c) { return c.id == client; });
-  if (leaver == clients.end()) return;
-  const bool played = leaver->team < foosball::kTeams;
-  clients.erase(leaver);
-  desk.seat(client, 0);
-  input.remove(client);
-  broadcaster.remove(client);
-  if (!options.replay && (played || clients.empty()) && pause_is_abandoned()) {
-    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
-  }
-}
-
 void Server::Impl::take_wish(const ControlEvent& event) {
   if (options.replay) return;
   if (event.wish.kind == foosball::Command::Kind::pause && event.wish.value != 0) {
     paused_by_watcher = event.client != 0 && !plays(event.client);
   }
   next.commands.push_back(to_record(event.wish));
-}
-
-bool Server::Impl::plays(std::uint32_t client) const {
-  return std::any_of(clients.begin(), clients.end(), [client](const Client& c) {
-    return c.id == client && c.team < foosball::kTeams;
-  });
-}
-
-// The players' pause ends with the last of them; a host's who watches, with the last who is there.
-bool Server::Impl::pause_is_abandoned() const {
-  if (clients.empty()) return true;
-  return !paused_by_watcher && std::none_of(clients.begin(), clients.end(), [](const Client& c) {
-    return c.team < foosball::kTeams;
-  });
 }
 
 // False when there is no tick to step: a client is awaited, or a recording is over.
@@ -223,6 +169,7 @@ bool Server::Impl::gather(std::int64_t now_us) {
 void Server::Impl::gather_live(std::int64_t now_us) {
   desk.show_match(match.view().attract);
   desk.set_rung(match.view().rung);
+  watch_absences();
   desk.poll(now_us);
   tell_match();
   next.tick = ticks;
@@ -230,24 +177,6 @@ void Server::Impl::gather_live(std::int64_t now_us) {
   device_watch.look(desk.devices(), now_us, [this](auto level, auto index, const auto& text) {
     notify(level, static_cast<std::uint32_t>(Topic::devices) + index, text);
   });
-}
-
-// Which teams computers play, so that the match knows whose absence counts; and the hand that ends
-// a match that is shown.
-void Server::Impl::tell_match() {
-  const foosball::MatchView& view = match.view();
-  if (view.attract) {
-    if (desk.hand_moved()) next.commands.push_back(to_record({foosball::Command::Kind::touch}));
-    return;
-  }
-  for (int team = 0; team < foosball::kTeams; ++team) {
-    const int rod = foosball::rods_of_team(foosball::table_spec(view.layout), team)[0];
-    const bool computer = desk.driver(rod) == RodDriver::computer;
-    if (computer == view.computer[team]) continue;
-    next.commands.push_back(
-        to_record({foosball::Command::Kind::seat, static_cast<std::uint8_t>(team),
-                   static_cast<std::uint8_t>(computer)}));
-  }
 }
 
 // --- what goes out
@@ -366,6 +295,7 @@ void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
 void Server::tick(std::int64_t now_us) {
   Impl& s = *impl_;
   const std::int64_t began_ns = os::monotonic_ns();  // measures, decides nothing
+  s.tick_us = now_us;
   s.take_control_events();
   s.broadcaster.expect();
   if (s.gather(now_us)) {

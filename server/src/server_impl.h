@@ -1,5 +1,6 @@
-// The server's parts and its state. Split over server.cpp (what comes in, what goes out, the face)
-// and server_results.cpp (results, the questionnaire and the report).
+// The server's parts and its state. Split over server.cpp (what comes in, what goes out, the face),
+// server_seats.cpp (who plays which rods) and server_results.cpp (results, the questionnaire and
+// the report).
 #pragma once
 
 #include <array>
@@ -33,6 +34,8 @@ struct Server::Impl {
   void take_back(ControlEvent& event);
   void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client);
+  void watch_absences();
+  void remember_name(std::uint32_t client);
   void take_wish(const ControlEvent& event);
   bool plays(std::uint32_t client) const;
   bool pause_is_abandoned() const;
@@ -52,10 +55,12 @@ struct Server::Impl {
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
   ControlOptions control_options() const;
 
+  using Name = std::array<char, wire::kMaxName + 1>;
   struct Client {
     std::uint32_t id;
     std::uint8_t team;
-    std::array<char, wire::kMaxName + 1> name;
+    RodSet rods;
+    Name name;
   };
   static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
 
@@ -76,7 +81,10 @@ struct Server::Impl {
   std::uint32_t matches = 0;            // handed to it
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
-  bool paused_by_watcher = false;  // by a host who only watches
+  std::int64_t tick_us = 0;                         // the clock at the tick under way
+  std::array<Name, foosball::kRods> had_rod{};      // who was lost, or left, with the rod
+  bool stand_ins_told = false, offer_told = false;  // notices that stand
+  bool paused_by_watcher = false;                   // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;

@@ -39,7 +39,7 @@ MatchScribe::Players Server::Impl::players() const {
                                      [&](const Client& c) { return c.team == team; });
     if (client != clients.end()) {
       players[team] = {client->name.data(), "person"};
-    } else if (options.computer[team]) {
+    } else if (options.computer[team] || match.view().computer[team]) {
       players[team] = {"computer " + to_text(desk.computer_player()), "computer"};
     } else {
       players[team] = {desk.devices().empty() ? "nobody" : "cabinet", "person"};

@@ -15,6 +15,7 @@
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
 #include "process.h"
+#include "server/exit_code.h"
 #include "server/match_record.h"
 
 namespace server {
@@ -53,6 +54,39 @@ class RunningServer {
   Process process_;
   std::uint16_t port_ = 0;
 };
+
+// A server whose files cannot grow: the disk is full for it.
+std::vector<std::string> on_a_full_disk(std::vector<std::string> options) {
+  options = serve(std::move(options));
+  options.insert(options.begin(),
+                 {"/bin/bash", "-c", "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\""});
+  return options;
+}
+
+TEST(ServerProgram, PlaysOnWithoutItsFileOfResultsAndEndsWithOneAndTheReason) {
+  const std::string made = temp_path("made.sqlite"), fresh = temp_path("fresh.sqlite");
+  {
+    RunningServer server({"--results", made});
+    server->kill(SIGTERM);
+    ASSERT_EQ(server->wait(), 0) << server->output();
+  }
+  for (const std::string& results : {made, fresh}) {
+    Process server(on_a_full_disk({"--port", "0", "--results", results, "--team0", "computer",
+                                   "--team1", "computer", "--seconds", "1"}));
+    EXPECT_EQ(server.wait(), kExitFailed) << server.output();
+    EXPECT_NE(server.output().find(results), std::string::npos) << server.output();
+    EXPECT_NE(server.output().find("ticks      1000"), std::string::npos) << server.output();
+  }
+}
+
+TEST(ServerProgram, EndsWithOneWhenItsFileOfResultsIsNoDatabase) {
+  const std::string results = temp_path("text.sqlite");
+  std::ofstream(results) << std::string(4096, 'x');
+  Process server(serve({"--port", "0", "--results", results, "--seconds", "1"}));
+  EXPECT_EQ(server.wait(), kExitFailed) << server.output();
+  EXPECT_NE(server.output().find(results), std::string::npos) << server.output();
+  EXPECT_EQ(text_of(results), std::string(4096, 'x')) << "a file of somebody else is left alone";
+}
 
 TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
   const std::vector<std::vector<std::string>> bad = {

@@ -78,6 +78,8 @@ class Server {
     replay = 3,
     results = 4,
     sending = 5,
+    stand_in = 6,
+    offer = 7,
     devices = 100
   };
   void warn(Topic topic, const std::string& text);

@@ -1,0 +1,144 @@
+// Who comes and goes, and who plays which rods meanwhile.
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "server/match_record.h"
+#include "server_impl.h"
+
+namespace server {
+namespace {
+
+// "rods 1 and 2 for Ann; rods 3 for Bob"
+std::string rods_by_name(RodSet rods, const auto& names) {
+  std::string text;
+  while (rods != 0) {
+    const auto& name = names[std::countr_zero(rods)];
+    RodSet same = 0;
+    for (int rod = 0; rod < foosball::kRods; ++rod)
+      if ((rods >> rod & 1) != 0 && names[rod] == name) same |= RodSet(1u << rod);
+    rods &= static_cast<RodSet>(~same);
+    if (!text.empty()) text += "; ";
+    text += "rods " + to_text(same) + " for " + (name[0] != 0 ? name.data() : "a player");
+  }
+  return text;
+}
+
+}  // namespace
+
+void Server::Impl::admit(ControlEvent& event) {
+  clients.push_back({event.client, event.team, event.rods, event.name});
+  ++clients_ever;
+  desk.seat(event.client, event.rods);
+  listen_to(event);
+}
+
+void Server::Impl::change_rods(ControlEvent& event) {
+  const auto client = std::ranges::find(clients, event.client, &Client::id);
+  if (client == clients.end()) return;
+  const std::uint8_t before = client->team;
+  client->team = event.team;
+  client->rods = event.rods;
+  RemoteSource* source = desk.seat(event.client, event.rods);
+  if (!input.redirect(event.client, source) && source != nullptr && event.socket)
+    input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
+  if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&
+      pause_is_abandoned()) {
+    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
+  }
+}
+
+void Server::Impl::take_back(ControlEvent& event) {
+  input.remove(event.client);
+  broadcaster.remove(event.client);
+  if (RemoteSource* source = desk.remote(event.client)) source->resume();
+  desk.back(event.client);
+  listen_to(event);
+}
+
+void Server::Impl::dismiss(std::uint32_t client) {
+  const auto leaver =
+      std::find_if(clients.begin(), clients.end(), [&](const Client& c) { return c.id == client; });
+  if (leaver == clients.end()) return;
+  const bool played = leaver->team < foosball::kTeams;
+  remember_name(client);
+  clients.erase(leaver);
+  desk.leave(client, tick_us);
+  input.remove(client);
+  broadcaster.remove(client);
+  if (!options.replay && (played || clients.empty()) && pause_is_abandoned()) {
+    next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
+  }
+}
+
+void Server::Impl::remember_name(std::uint32_t client) {
+  const auto who = std::ranges::find(clients, client, &Client::id);
+  if (who == clients.end()) return;
+  for (int rod = 0; rod < foosball::kRods; ++rod)
+    if ((who->rods >> rod & 1) != 0) had_rod[rod] = who->name;
+}
+
+// A team keeps its match when one of it is away: all are told who plays.
+void Server::Impl::watch_absences() {
+  const foosball::MatchView& view = match.view();
+  const bool in_match = view.screen != foosball::Screen::logo &&
+                        view.screen != foosball::Screen::end && !view.attract &&
+                        options.match.mode != foosball::Mode::training;
+  for (const Client& client : clients) {  // silent, though its connection stands
+    const RemoteSource* source = desk.remote(client.id);
+    if (source != nullptr && source->silent_us(tick_us) >= RodDesk::kStandInAfterUs)
+      remember_name(client.id);
+  }
+  if (!desk.watch_absences(in_match, tick_us)) return;
+  const auto tell = [&](Topic topic, bool& told, const std::string& text, const char* over) {
+    if (text.empty() && !told) return;
+    told = !text.empty();
+    using Level = wire::Notice::Level;
+    notify(told ? Level::warning : Level::cleared, static_cast<std::uint32_t>(topic),
+           told ? text : over);
+  };
+  const RodSet plays = desk.stand_ins(), offered = desk.offered();
+  tell(Topic::stand_in, stand_ins_told,
+       plays == 0 ? "" : "the computer plays " + rods_by_name(plays, had_rod),
+       "the computer stands in for nobody any more");
+  tell(Topic::offer, offer_told,
+       offered == 0
+           ? ""
+           : "free to the team for 10 s, then the computer's: " + rods_by_name(offered, had_rod),
+       "no rods are offered any more");
+}
+
+bool Server::Impl::plays(std::uint32_t client) const {
+  return std::any_of(clients.begin(), clients.end(), [client](const Client& c) {
+    return c.id == client && c.team < foosball::kTeams;
+  });
+}
+
+// The players' pause ends with the last of them; a host's who watches, with the last who is there.
+bool Server::Impl::pause_is_abandoned() const {
+  if (clients.empty()) return true;
+  return !paused_by_watcher && std::none_of(clients.begin(), clients.end(), [](const Client& c) {
+    return c.team < foosball::kTeams;
+  });
+}
+
+// Which teams computers play, so that the match knows whose absence counts; and the hand that ends
+// a match that is shown.
+void Server::Impl::tell_match() {
+  const foosball::MatchView& view = match.view();
+  if (view.attract) {
+    if (desk.hand_moved()) next.commands.push_back(to_record({foosball::Command::Kind::touch}));
+    return;
+  }
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    const auto rods = foosball::rods_of_team(foosball::table_spec(view.layout), team);
+    const bool computer =
+        std::ranges::all_of(rods, [&](int rod) { return desk.driver(rod) == RodDriver::computer; });
+    if (computer == view.computer[team]) continue;
+    next.commands.push_back(
+        to_record({foosball::Command::Kind::seat, static_cast<std::uint8_t>(team),
+                   static_cast<std::uint8_t>(computer)}));
+  }
+}
+
+}  // namespace server

@@ -1,0 +1,161 @@
+// The computer stands in for a player who is lost, silent or has left, so that a team keeps its
+// match. Sockets are real, the clock is the test's.
+#include <bit>
+
+#include "control_fixture.h"
+#include "rod_desk.h"
+#include "seats.h"
+
+namespace server {
+namespace {
+
+class StandIn : public testing::Test {
+ protected:
+  static void options(ServerOptions& o) {
+    o.limits.seat_kept_us = 30'000'000;
+    o.match.rules.idle_seconds = 0.0;
+  }
+  StandIn() : table(options) {}
+
+  std::optional<wire::Welcome> sit(ProbeClient& client, const std::string& name, std::uint8_t team,
+                                   RodSet rods = 0) {
+    wire::Hello hello = client.hello(team);
+    hello.name = name;
+    hello.rods = rods;
+    return client.join(hello);
+  }
+  void begin_match(ProbeClient& pusher, std::uint8_t team = 1) {
+    pusher.say(wire::Wish{number(wire::WishKind::push), team, 0});
+    ASSERT_TRUE(table.tick_until(
+        [&] { return table->match().view().screen == foosball::Screen::selection; }, 5000));
+  }
+  // Fake time: that of the ticks.
+  void pass(std::int64_t us) { table.tick(static_cast<int>(us / 1000)); }
+  std::uint8_t source(ProbeClient& at, int rod) {
+    while (wait_readable(at.udp(), 0)) at.snapshot(0);  // a full buffer takes no newer ones
+    table.tick();
+    std::optional<wire::Snapshot> newest;
+    while (wait_readable(at.udp(), 0)) newest = at.snapshot(0);
+    return newest ? newest->rods[rod].source : 255;
+  }
+  bool logged(const std::string& text) {
+    return table.tick_until([&] { return table.log().find(text) != std::string::npos; }, 5000);
+  }
+
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
+  const int goalie = std::countr_zero(one);
+  static constexpr auto kClient = number(wire::RodSource::client),
+                        kComputer = number(wire::RodSource::computer),
+                        kNone = number(wire::RodSource::none);
+  Lockstep table;
+};
+
+TEST_F(StandIn, PlaysForALostPlayerAfterAGapAndGivesTheRodsBackToTheTicket) {
+  ProbeClient ann(table.port()), bob(table.port()), again(table.port());
+  const auto seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(seat && sit(bob, "Bob", 1));
+  begin_match(bob);
+  ann.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  table.tick(5);
+  pass(RodDesk::kStandInAfterUs / 2);
+  EXPECT_NE(source(bob, goalie), kComputer) << "a short gap is none";
+  pass(RodDesk::kStandInAfterUs);
+  EXPECT_EQ(source(bob, goalie), kComputer);
+  EXPECT_TRUE(logged("the computer plays rods " + to_text(all0) + " for Ann"));
+  ProbeClient rival(table.port());
+  EXPECT_FALSE(rival.join(0)) << "the seat is kept all the same";
+  const auto back = again.resume(*seat);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->rods, all0);
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.resumed == 1; }));
+  table.tick(3);
+  EXPECT_NE(source(bob, goalie), kComputer);
+  EXPECT_TRUE(logged("the computer stands in for nobody any more"));
+}
+
+TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
+  ASSERT_TRUE(sit(ann, "Ann", 0, one) && sit(bob, "Bob", 0, rest) && sit(carl, "Carl", 1));
+  begin_match(carl);
+  ann.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
+  EXPECT_TRUE(logged("free to the team for 10 s, then the computer's: rods 1 for Ann"));
+  EXPECT_EQ(source(carl, goalie), kNone);
+  bob.say(wire::Claim{all0});
+  bob.say(wire::Ping{1});
+  ASSERT_TRUE(bob.hear_a<wire::Pong>());
+  table.tick(2);
+  EXPECT_TRUE(logged("no rods are offered any more"));
+  pass(RodDesk::kOfferUs + 1'000'000);
+  EXPECT_NE(source(carl, goalie), kComputer) << "the team mate has them";
+}
+
+TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes) {
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port()), dora(table.port());
+  ASSERT_TRUE(sit(ann, "Ann", 0, one) && sit(bob, "Bob", 0, rest) && sit(carl, "Carl", 1));
+  begin_match(carl);
+  ann.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
+  pass(RodDesk::kOfferUs + 1'000'000);
+  EXPECT_EQ(source(carl, goalie), kComputer);
+  EXPECT_NE(source(carl, std::countr_zero(rest)), kComputer) << "Bob plays his own";
+  EXPECT_FALSE(table->match().view().computer[0]) << "a team with a person is a person's";
+  const auto joined = sit(dora, "Dora", 0);
+  ASSERT_TRUE(joined);
+  EXPECT_EQ(joined->rods, one);
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 3; }));
+  EXPECT_NE(source(carl, goalie), kComputer);
+}
+
+TEST_F(StandIn, PlaysAtOnceForTheLastOfATeam) {
+  ProbeClient ann(table.port()), bob(table.port());
+  ASSERT_TRUE(sit(ann, "Ann", 0) && sit(bob, "Bob", 1));
+  begin_match(bob);
+  ann.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  table.tick(3);
+  EXPECT_EQ(source(bob, goalie), kComputer);
+  EXPECT_TRUE(table.tick_until([&] { return table->match().view().computer[0]; }));
+}
+
+TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
+  ProbeClient ann(table.port()), watcher(table.port());
+  ASSERT_TRUE(sit(ann, "Ann", 0) && watcher.join());
+  begin_match(ann, 0);
+  ann.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  pass(RodDesk::kOfferUs);
+  EXPECT_EQ(source(watcher, goalie), kNone);
+}
+
+TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(seat && sit(bob, "Bob", 1));
+  begin_match(bob);
+  wire::InputDatagram input{.session = seat->session, .token = seat->token, .sequence = 1};
+  for (wire::InputRod& rod : input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
+  ASSERT_TRUE(ann.send_input(input));
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().input.accepted == 1; }));
+  EXPECT_EQ(source(bob, goalie), kClient);
+  pass(RodDesk::kStandInAfterUs + 10'000);
+  EXPECT_EQ(source(bob, goalie), kComputer);
+  ++input.sequence;
+  ASSERT_TRUE(ann.send_input(input));
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().input.accepted == 2; }));
+  EXPECT_EQ(source(bob, goalie), kClient) << "heard again, it has its rods in that tick";
+}
+
+TEST_F(StandIn, IsNoneBeforeAMatch) {
+  ProbeClient ann(table.port()), bob(table.port());
+  ASSERT_TRUE(sit(ann, "Ann", 0) && sit(bob, "Bob", 1));
+  ann.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  EXPECT_NE(source(bob, goalie), kComputer);
+}
+
+}  // namespace
+}  // namespace server
