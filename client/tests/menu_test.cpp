@@ -213,6 +213,20 @@ TEST(SeatsMenu, VotesAreStartedAndAnswered) {
   EXPECT_EQ(asked.wishes[0].value, 1);
 }
 
+TEST(SeatsMenu, APlayerIsPutOutWhenItIsAskedForTwiceAndNeverAHostOrOneself) {
+  SeatsPage page;
+  EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick) << "once is a mistake";
+  EXPECT_EQ(page.at("Ann", {.confirm = true}).kick.value_or(wire::Kick{}).client, 2u);
+  EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick) << "and it begins anew";
+  page.at("Time-out", {});
+  EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick) << "another row disarms";
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(page.at("me", {.confirm = true}).kick);
+  page.view.roster.seats[1].role = number(wire::Role::host);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(page.at("Ann ◆", {.confirm = true}).kick);
+  page.view.roster.seats[1] = {2, "Ann", wire::kWatchOnly, 0, 0, false};
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick) << "watches";
+}
+
 TEST(SeatsMenu, NamesStandAtTheRodsOnceMoreThanOnePlays) {
   SeatsPage page;
   EXPECT_EQ(names_at_rods(page.view, page.crew)[7].text, "Ann");

@@ -56,6 +56,34 @@ TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
   }
 }
 
+TEST(PlayerInput, NumberKeysReachEachCharacterOfTheSelection) {
+  wire::Snapshot scene = scripted_play(0);
+  scene.screen = number(wire::Screen::selection);
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  foosball::Characters twelve = foosball::built_in_characters();
+  const int built_in = static_cast<int>(twelve.size());
+  ASSERT_EQ(built_in, 6);
+  const auto chosen = [&](int key, int now) {
+    InputEvents events;
+    events.number = key;
+    scene.character[0] = static_cast<std::uint8_t>(now);
+    player.update(events, &scene, kFrame);
+    return player.wishes().size() == 1 ? static_cast<int>(player.wishes()[0].value) : -1;
+  };
+  for (int i = 0; i < built_in; ++i) EXPECT_EQ(chosen(i + 1, i == 0 ? 1 : 0), i);
+  EXPECT_EQ(chosen(7, 0), -1) << "there is none";
+  while (twelve.size() < 12) twelve.push_back(twelve.front());
+  player.set_characters(twelve);
+  EXPECT_EQ(chosen(9, 0), 8);
+  EXPECT_EQ(chosen(10, 0), 9) << "0 is the tenth";
+  InputEvents beyond;
+  beyond.wheel = 1;
+  scene.character[0] = 0;
+  player.update(beyond, &scene, kFrame);
+  ASSERT_EQ(player.wishes().size(), 1u);
+  EXPECT_EQ(player.wishes()[0].value, 11) << "and the wheel goes on past the tenth";
+}
+
 TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
   PlayerInput player(kSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);

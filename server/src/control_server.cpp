@@ -86,7 +86,8 @@ ControlCounters ControlServer::counters() const {
           .wishes = value(Count::wishes),
           .wishes_dropped = value(Count::wishes_dropped),
           .answers = value(Count::answers),
-          .answers_refused = value(Count::answers_refused)};
+          .answers_refused = value(Count::answers_refused),
+          .kicked = value(Count::kicked)};
 }
 
 // --- the thread
@@ -96,6 +97,7 @@ void ControlServer::run() {
   os::drop_capabilities(false);  // strangers' bytes are read here
   while (!stopping_.load(std::memory_order_acquire)) {
     wait();
+    watch_kicks(os::monotonic_us());
     publish_notices();
     publish_tuning();
     publish_questionnaires();
@@ -124,7 +126,8 @@ void ControlServer::wait() {
   std::int64_t until = accepting ? now + 60'000'000 : accept_after_us_;
   if (!untold_.empty()) until = std::min(until, now + 10'000);
   constexpr std::int64_t kLookAtSeatsUs = 100'000;
-  const bool waiting = votes_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
+  const bool waiting =
+      votes_.any() || kicks_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
   if (waiting) until = std::min(until, now + kLookAtSeatsUs);
   polled_.clear();
   polled_.push_back({wake_.get(), POLLIN, 0});
@@ -236,6 +239,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     take_wish(connection, *wish);
   } else if (const auto* answers = std::get_if<wire::Answers>(&message); answers && joined) {
     take_answers(connection, *answers);
+  } else if (const auto* kick = std::get_if<wire::Kick>(&message); kick && joined) {
+    take_kick(connection, *kick);
   } else if (std::holds_alternative<wire::Bye>(message)) {
     release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {

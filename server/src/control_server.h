@@ -25,6 +25,7 @@
 #include "control_connection.h"
 #include "door.h"
 #include "foosball/match.h"
+#include "kick_votes.h"
 #include "os/file_descriptor.h"
 #include "seats.h"
 #include "server/counters.h"
@@ -95,6 +96,8 @@ class ControlServer {
   void ask(std::uint32_t match, RodSet cabinet_rods);
   // The same for a report; left out if 8 are waiting.
   void report(const wire::Report& report);
+  // The match is over: who was put out of it may play again.
+  void match_is_over();
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const std::string& reason);
 
@@ -119,6 +122,7 @@ class ControlServer {
     resumed,
     answers,
     answers_refused,
+    kicked,
     kCount
   };
 
@@ -164,6 +168,14 @@ class ControlServer {
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
+  // control_kicks.cpp
+  void take_kick(ControlConnection& connection, const wire::Kick& kick);
+  std::string why_not_kick(const Seat& voter, const Seat* target) const;
+  void put_out(const Seat& seat, const std::string& by);
+  std::string why_out(const os::SocketAddress& peer, wire::Role role) const;
+  void watch_kicks(std::int64_t now_us);
+  void carry_vote_over(const Seat& newcomer);
+
   bool put_to_vote(const Seat& seat, const foosball::Command& wish);
   bool hand_on(std::uint32_t client, const foosball::Command& wish);
   void lose_seat(std::uint32_t client);
@@ -180,6 +192,9 @@ class ControlServer {
   Connections connections_;
   Seats seats_;
   Votes votes_;
+  KickVotes kicks_;
+  std::atomic<std::uint32_t> matches_over_{0};
+  std::uint32_t matches_over_seen_ = 0;
   PasswordTries password_tries_;
   std::map<std::uint32_t, wire::Notice> notices_;  // standing, by topic
   std::deque<ControlEvent> untold_;                // the tick has not been told yet

@@ -161,6 +161,10 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
     return false;
   }
   if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
+  if (const std::string why = why_out(peer, connection.role); !why.empty()) {
+    refuse(connection, wire::Refusal::Code::not_allowed, why);
+    return false;
+  }
   auto grant = seats_.grant(hello.team, hello.rods, 0, connection.role == wire::Role::host);
   rods = grant.rods;
   switch (grant.kind) {
@@ -206,6 +210,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
     return;
   }
   count(Count::joined);
+  if (rods != 0) carry_vote_over(*seats_.find(client));
   say(LogLevel::info,
       seat.name + " at " + os::to_text(connection.peer()) +
           (rods == 0 ? " watches"
@@ -296,6 +301,8 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   };
   if (!options_.teams_open) return answer("a recording plays here");
   if (connection.role == wire::Role::watcher) return answer("you joined to watch");
+  const std::string out = why_out(connection.peer(), connection.role);
+  if (!out.empty() && (claim.rods & ~seat->rods) != 0) return answer(out);
   const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
   auto grant = Seats::Grant{Seats::Grant::Kind::granted, 0, {}};
   if (claim.rods != 0)

@@ -305,6 +305,8 @@ void Server::tick(std::int64_t now_us) {
     s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
     if (s.recorder) s.recorder->add(s.next, s.match);
     const foosball::MatchView& view = s.match.view();
+    const bool logo = view.screen == foosball::Screen::logo;
+    if (std::exchange(s.at_logo, logo) != logo && logo) s.control.match_is_over();
     if (view.screen == foosball::Screen::play && !view.attract) s.was_played = true;
     if (s.results) s.keep_result();
   } else {

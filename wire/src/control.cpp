@@ -40,6 +40,9 @@ auto build(Builder& b, const Hello& m) {
 auto build(Builder& b, const Claim& m) {
   return fb::CreateClaim(b, m.rods, m.team);
 }
+auto build(Builder& b, const Kick& m) {
+  return fb::CreateKick(b, m.client);
+}
 auto build(Builder& b, const Tuning& m) {
   return fb::CreateTuning(b, b.CreateVector(m.values.data(), m.values.size()));
 }
@@ -144,6 +147,10 @@ bool take(const fb::Claim& t, Claim& m) {
   m.rods = t.rods();
   m.team = t.team();
   return is_team(m.team);
+}
+bool take(const fb::Kick& t, Kick& m) {
+  m.client = t.client();
+  return m.client != 0;
 }
 bool take(const fb::Tuning& t, Tuning& m) {
   if (t.values()->size() != m.values.size()) return false;
@@ -302,6 +309,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Answers>(control.message_as_Answers(), message);
     case fb::Message::Report:
       return take_as<Report>(control.message_as_Report(), message);
+    case fb::Message::Kick:
+      return take_as<Kick>(control.message_as_Kick(), message);
     case fb::Message::NONE:
       break;
   }

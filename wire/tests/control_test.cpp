@@ -189,6 +189,8 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount - 1, 1.0))) << "too few";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount + 1, 1.0))) << "too many";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount, std::nan("")))) << "no number";
+  EXPECT_FALSE(refused(fb::Message::Kick, fb::CreateKick(b, 1)));
+  EXPECT_TRUE(refused(fb::Message::Kick, fb::CreateKick(b, 0))) << "nobody";
   const auto answers = [&](std::uint8_t rods, std::size_t count, std::uint8_t score) {
     const std::vector<std::uint8_t> scores(count, score);
     return fb::CreateAnswersDirect(b, 1, rods, &scores);

@@ -52,6 +52,9 @@ auto tied(const Challenge& m) {
 auto tied(const Claim& m) {
   return std::tie(m.rods, m.team);
 }
+auto tied(const Kick& m) {
+  return std::tie(m.client);
+}
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }

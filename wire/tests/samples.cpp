@@ -214,6 +214,7 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
       {"knock", Knock{2, 1, octets<16>(1), octets<32>(65)}},
       {"challenge", Challenge{octets<32>(17)}},
       {"claim", Claim{0x2A}},
+      {"kick", Kick{7}},
       {"change_of_team", Claim{0xF0, 1}},
       {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
       {"tuning", tuning()},

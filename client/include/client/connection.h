@@ -89,6 +89,8 @@ class Connection {
   // Wants these rods, by bit, of this team, in place of the ones it has; none: to watch. roster()
   // shows when it has them.
   void claim(std::uint64_t session, const wire::Claim& claim);
+  // This player is to be put out of the match: the host's word, else a vote.
+  void kick(std::uint64_t session, const wire::Kick& kick);
   // What a player answered, with the match of questionnaire().
   void answer(std::uint64_t session, const wire::Answers& answers);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated

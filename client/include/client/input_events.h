@@ -12,6 +12,7 @@ struct InputEvents {
   double mouse_right = 0.0;    // [px], only while the pointer is captured
   double mouse_forward = 0.0;  // [px], away from the person
   int choose_line = -1;        // 0..3: a key for that line was pressed
+  int number = 0;              // 1..10: this number key was pressed, 0 as the tenth
   int wheel = 0;               // steps, outwards positive
   double key_slide = 0.0;      // -1, 0, 1: away from the person positive, as held
   double key_spin = 0.0;       // -1, 0, 1: to the right positive, as held

@@ -29,6 +29,7 @@ struct SeatsView {
 struct SeatsAsked {
   std::optional<wire::Claim> claim;
   std::vector<wire::Wish> wishes;
+  std::optional<wire::Kick> kick;
 };
 
 class SeatsMenu {
@@ -39,8 +40,11 @@ class SeatsMenu {
   SeatsAsked step(const SeatsView& view, int row, const MenuSteps& steps, Crew& crew);
 
  private:
+  const wire::Seat* person_at(const SeatsView& view, int row) const;
   std::optional<wire::Claim> change_rod(const SeatsView& view, int rod, int way, Crew& crew);
   std::optional<wire::Claim> claim_of(std::uint8_t rods, int team, const Crew& crew) const;
+
+  std::uint32_t armed_ = 0;  // who is put out if it is asked for once more; 0: nobody
 };
 
 // Of each rod, by index: who plays it. Empty where nobody does, and everywhere while one person

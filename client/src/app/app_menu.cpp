@@ -112,6 +112,7 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   if (outcome.watch_recordings) watch_recordings();
   if (!crew_) return;
   if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
+  if (outcome.asked.kick) connection_->kick(crew_->session(), *outcome.asked.kick);
   for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
 }
 

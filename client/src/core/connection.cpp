@@ -71,6 +71,9 @@ wire::Roster Connection::roster() const {
 void Connection::claim(std::uint64_t session, const wire::Claim& claim) {
   impl_->link.claim(session, claim);
 }
+void Connection::kick(std::uint64_t session, const wire::Kick& kick) {
+  impl_->link.kick(session, kick);
+}
 void Connection::answer(std::uint64_t session, const wire::Answers& answers) {
   impl_->link.answer(session, answers);
 }

@@ -68,6 +68,10 @@ void ControlLink::claim(std::uint64_t session, const wire::Claim& claim) {
   ask(claim, session);
 }
 
+void ControlLink::kick(std::uint64_t session, const wire::Kick& kick) {
+  ask(kick, session);
+}
+
 void ControlLink::answer(std::uint64_t session, const wire::Answers& answers) {
   ask(answers, session);
 }

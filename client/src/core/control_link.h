@@ -32,6 +32,7 @@ class ControlLink {
   std::optional<wire::Report> report() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
+  void kick(std::uint64_t session, const wire::Kick& kick);
   void answer(std::uint64_t session, const wire::Answers& answers);
 
  private:

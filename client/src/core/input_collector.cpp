@@ -27,6 +27,7 @@ void InputCollector::set_keys(const KeyBindings& keys) {
 
 void InputCollector::key(int key, bool down) {
   if (down) any_key_ = key;
+  if (down && key >= '0' && key <= '9') number_ = key == '0' ? 10 : key - '0';
   for (std::size_t action = 0; action < bindings_.size(); ++action) {
     for (std::size_t half = 0; half < halves_.size(); ++half) {
       if (bindings_[action][half] != key) continue;
@@ -145,6 +146,7 @@ InputEvents InputCollector::take(DeviceSet devices) const {
   }
   events.back = back_;
   events.any_key = any_key_;
+  if ((devices & bit_of(Device::keys_1)) != 0) events.number = number_;
   return events;
 }
 
@@ -157,7 +159,7 @@ void InputCollector::clear() {
   mouse_right_ = mouse_forward_ = 0.0;
   wheel_ -= std::trunc(wheel_);
   clicked_ = back_ = false;
-  any_key_ = 0;
+  any_key_ = number_ = 0;
 }
 
 }  // namespace client

@@ -64,7 +64,7 @@ class InputCollector {
   std::array<Pad, kPads> pads_;
   double mouse_right_ = 0.0, mouse_forward_ = 0.0, wheel_ = 0.0;
   bool clicked_ = false, back_ = false;
-  int any_key_ = 0;
+  int any_key_ = 0, number_ = 0;
 };
 
 }  // namespace client

@@ -172,6 +172,7 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
   int wanted = now;
   const int count = static_cast<int>(characters_.size());
   if (events.choose_line >= 0 && events.choose_line < count) wanted = events.choose_line;
+  if (events.number >= 1 && events.number <= count) wanted = events.number - 1;
   int steps =
       -events.wheel + events.spin_taps - events.slide_taps - events.pad_up + events.pad_right;
   if (!key_was_held_) steps += static_cast<int>(std::lround(events.key_spin - events.key_slide));

@@ -105,7 +105,14 @@ std::string rods_text(std::uint8_t rods) {
   return text;
 }
 
-MenuRow person_row(const wire::Seat& seat, bool self) {
+// Players other than hosts may be put out: by the host, or by a vote of those who play.
+bool may_kick(const SeatsView& view, const Crew& crew, const wire::Seat& seat) {
+  const bool entitled = view.role == number(wire::Role::host) || crew.plays();
+  return entitled && seat.client != view.client && seat.rods != 0 &&
+         seat.role != number(wire::Role::host);
+}
+
+MenuRow person_row(const wire::Seat& seat, bool self, bool fixed) {
   MenuRow row{.label = seat.name.empty() ? "?" : seat.name,
               .value = seat.away        ? N_("away")
                        : seat.rods == 0 ? N_("watches")
@@ -113,7 +120,7 @@ MenuRow person_row(const wire::Seat& seat, bool self) {
               .translate_value = seat.away || seat.rods == 0,
               .prefix = self ? "→" : "",
               .translate_label = false,
-              .fixed = true};
+              .fixed = fixed};
   if (seat.role == number(wire::Role::host)) row.label += " ◆";
   return row;
 }
@@ -165,7 +172,7 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
                                                                        : N_("Play on")});
   }
   for (const wire::Seat& seat : view.roster.seats)
-    page.rows.push_back(person_row(seat, seat.client == view.client));
+    page.rows.push_back(person_row(seat, seat.client == view.client, !may_kick(view, crew, seat)));
   const auto votes = votes_of(view);
   const int vote = chosen - first_vote;
   if (vote >= 0 && vote < static_cast<int>(votes.size()))
@@ -175,10 +182,28 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
                     ? N_("Another client plays this rod: it is free when it is given up there.")
                     : N_("Left and right give the rod to all devices, the mouse, keys, a gamepad, "
                          "or nobody.");
+  } else if (const wire::Seat* person = person_at(view, chosen);
+             person != nullptr && may_kick(view, crew, *person)) {
+    page.note =
+        armed_ == person->client
+            ? N_("Once more puts this player out of the match.")
+            : N_("Enter puts this player out of the match: the host's word, or a vote of more "
+                 "than half of the other players, at least two.");
+    for (const wire::Notice& notice : view.notices)
+      if (notice.topic == wire::kKickTopics + person->client) page.detail = notice.text;
   } else if (chosen == row_restart || chosen == row_pause) {
     page.note = N_("The host decides; else more than half of the players.");
   }
   return page;
+}
+
+// null: the row is nobody's.
+const wire::Seat* SeatsMenu::person_at(const SeatsView& view, int row) const {
+  const int index = row - first_vote - static_cast<int>(votes_of(view).size());
+  const auto& seats = view.roster.seats;
+  return index >= 0 && index < static_cast<int>(seats.size())
+             ? &seats[static_cast<std::size_t>(index)]
+             : nullptr;
 }
 
 std::optional<wire::Claim> SeatsMenu::claim_of(std::uint8_t rods, int team,
@@ -207,6 +232,8 @@ std::optional<wire::Claim> SeatsMenu::change_rod(const SeatsView& view, int rod,
 
 SeatsAsked SeatsMenu::step(const SeatsView& view, int row, const MenuSteps& steps, Crew& crew) {
   SeatsAsked asked;
+  const wire::Seat* person = person_at(view, row);
+  if (person == nullptr || person->client != armed_) armed_ = 0;
   const int way = steps.right != 0 ? steps.right : steps.confirm ? 1 : 0;
   if (way == 0) return asked;
   const auto team = static_cast<std::uint8_t>(crew.team());
@@ -234,6 +261,9 @@ SeatsAsked SeatsMenu::step(const SeatsView& view, int row, const MenuSteps& step
   } else if (vote >= 0 && vote < static_cast<int>(votes.size())) {
     const auto [kind, value] = wire::vote_of(votes[static_cast<std::size_t>(vote)].topic);
     wish(kind, value);
+  } else if (person != nullptr && may_kick(view, crew, *person)) {
+    if (armed_ == person->client) asked.kick = wire::Kick{person->client};
+    armed_ = armed_ == 0 ? person->client : 0;
   }
   return asked;
 }

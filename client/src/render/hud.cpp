@@ -117,7 +117,8 @@ float draw_help(const HudPen& pen, const HudState& hud) {
   const auto screen =
       hud.state != nullptr ? static_cast<ScreenKind>(hud.state->screen) : ScreenKind::logo;
   const bool plays = hud.viewer_team >= 0;
-  if (hud.show_help || (plays && screen == ScreenKind::logo)) return draw_all_keys(pen);
+  if (hud.show_help) return draw_all_keys(pen, pen.bottom);
+  if (plays && screen == ScreenKind::logo) return draw_all_keys(pen, pen.bottom - logo_height(pen));
   if (plays && screen == ScreenKind::selection) return draw_keys_of_selection(pen);
   if (plays && screen == ScreenKind::play && hud.state->paused) return draw_keys_of_pause(pen);
   return 0.0f;

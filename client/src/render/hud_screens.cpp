@@ -37,10 +37,12 @@ constexpr std::array<KeyHelp, 14> kAllKeys{
      {"T", N_("time-out")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};
-constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 2 3 4", N_("or")},
+constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 - 9 0", N_("or")},
                                                  {N_("wheel, arrows"), N_("choose")},
                                                  {N_("Space, click"), N_("confirm")},
                                                  {"F1", N_("all keys")}}};
+constexpr std::array<KeyHelp, 2> kLogoKeys{
+    {{N_("Space, click"), N_("push: begin, confirm")}, {"F1", N_("all keys")}}};
 constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
                                              {"F1", N_("all keys")},
                                              {"F2", N_("settings")},
@@ -121,10 +123,13 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
   const float tall = size.y - 8.0f, wide = 0.8f * tall;
   pen.picture(character, team, low + 4.0f, low + 4.0f + glm::vec2(wide, tall));
   if (chosen) pen.panel(low, high, 12.0f, colour, 2.0f);
+  if (character < 10)  // its number key
+    pen.text(std::to_string((character + 1) % 10), {Face::bold, 14.0f, 0.0f, Align::right},
+             {high.x - 9.0f, low.y + 18.0f}, chosen ? kInk : kFaint);
   const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
   const float room = size.x - wide - 20.0f;
   pen.text(capitalised(tr(shown.name.c_str())), {Face::bold, 18.0f, 0.0f, Align::left},
-           text + glm::vec2(0.0f, 0.28f * size.y), chosen ? kInk : kFaint, 0.55f, room);
+           text + glm::vec2(0.0f, 0.28f * size.y), chosen ? kInk : kFaint, 0.55f, room - 12.0f);
   const Traits traits = traits_of(characters, shown);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
   const float bars = std::max(room - 60.0f, 10.0f);
@@ -160,7 +165,7 @@ std::string line_name(int layout, int rod) {
 }
 
 // In two columns where there is room, else in one; smaller where even that is too wide.
-float draw_all_keys(const HudPen& whole) {
+float draw_all_keys(const HudPen& whole, float room) {
   const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
   const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
   float keys = 0.0f, meaning = 0.0f;
@@ -173,8 +178,11 @@ float draw_all_keys(const HudPen& whole) {
   const std::size_t columns = two ? 2 : 1, rows = (kAllKeys.size() + columns - 1) / columns;
   const float half = 0.5f * (two ? 2.0f * column + between : column) + 24.0f;
   const float height = 26.0f * static_cast<float>(rows) + 26.0f;
-  const HudPen pen = whole.fitting(half + 4.0f, height + 40.0f);
-  const float top = pen.bottom - 18.0f - height;
+  const float taken = height + 18.0f, fits = std::min(whole.bottom, room) / whole.bottom;
+  const HudPen pen = whole.fitting(half + 4.0f, (fits < 1.0f ? taken : height + 40.0f) / fits);
+  constexpr float kSmallest = 8.5f;  // [px] that letters are read at
+  if (fits < 1.0f && regular.size * pen.scale < kSmallest) return draw_key_line(whole, kLogoKeys);
+  const float top = pen.bottom - taken;
   pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
     const float x = -half + 24.0f + (i % columns == 0 ? 0.0f : column + between);
@@ -192,6 +200,11 @@ float draw_keys_of_selection(const HudPen& pen) {
 
 float draw_keys_of_pause(const HudPen& pen) {
   return draw_key_line(pen, kPauseKeys);
+}
+
+float logo_height(const HudPen& whole) {
+  const HudPen pen = whole.fitting(400.0f, 250.0f);
+  return 250.0f * pen.scale / whole.scale;
 }
 
 void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, bool still) {

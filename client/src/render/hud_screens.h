@@ -62,6 +62,7 @@ class HudPen {
   HudRegion region_;
 };
 
+float logo_height(const HudPen& pen);
 void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, bool still);
 // Six at a time of each team's characters, about the one that is chosen.
 void draw_selection(const HudPen& pen, const wire::Snapshot& state,
@@ -81,7 +82,8 @@ void draw_paused(const HudPen& pen);
 std::string line_name(int layout, int rod);
 
 // What the keys do, at the bottom of the screen; how high it stands.
-float draw_all_keys(const HudPen& pen);
+// room: from the bottom up; where it is too small to read all of them, a line says what they are.
+float draw_all_keys(const HudPen& pen, float room);
 float draw_keys_of_selection(const HudPen& pen);
 float draw_keys_of_pause(const HudPen& pen);
 

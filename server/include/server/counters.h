@@ -27,6 +27,7 @@ struct ControlCounters {
   std::uint64_t wishes_dropped = 0;   // not allowed, or too many
   std::uint64_t answers = 0;          // to the questionnaire, handed on to the results
   std::uint64_t answers_refused = 0;  // from who was not asked, or had answered
+  std::uint64_t kicked = 0;           // players put out of a match
 };
 
 // Datagrams on the input port.

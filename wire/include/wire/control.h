@@ -19,7 +19,7 @@
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 4;
+inline constexpr std::uint16_t kControlVersion = 5;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
@@ -76,6 +76,12 @@ struct Welcome {
 struct Claim {
   std::uint8_t rods = 0;           // bit 0 at -x; 0: gives up those it has, and watches
   std::uint8_t team = kWatchOnly;  // plays for it from now on; kWatchOnly: for the one it has
+};
+
+// Client to server: this player is to be put out of the match. A host's word is done; of players it
+// is a vote, begun or agreed to. A Notice of kKickAnswerTopic says why it is neither.
+struct Kick {
+  std::uint32_t client = 0;  // of the Roster; never 0
 };
 
 // Server to client: the tuning values of the match, on joining and after each change.
@@ -174,7 +180,7 @@ struct Report {
 
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report>;
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

@@ -43,6 +43,10 @@ inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 // Notice::topic of answers that are not kept.
 inline constexpr std::uint32_t kAnswersTopic = 301;
 
+// Notice::topic of a Kick that is not done; of a vote against a client: + its number.
+inline constexpr std::uint32_t kKickAnswerTopic = 302;
+inline constexpr std::uint32_t kKickTopics = 2'000'000;
+
 // Notice::topic of a vote says what it is about, so that a client can offer to agree: a wish of
 // that kind and value.
 inline constexpr std::uint32_t kVoteTopics = 200;

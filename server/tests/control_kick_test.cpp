@@ -1,0 +1,171 @@
+// Players are put out of a match, on real sockets: beyond this machine, for which other loopback
+// addresses stand where loopback is not trusted.
+#include "control_fixture.h"
+#include "seats.h"
+
+namespace server {
+namespace {
+
+class Kicks : public testing::Test {
+ protected:
+  Kicks()
+      : table([](ServerOptions& o) {
+          o.access.trust_this_machine = false;
+          o.access.password = "open sesame";
+          o.access.host_password = "mine";
+          o.limits.seat_kept_us = 30'000'000;
+        }) {}
+
+  struct Guest {
+    ProbeClient probe;
+    std::optional<wire::Welcome> welcome;
+    std::uint32_t client() const { return welcome ? welcome->client : 0; }
+  };
+  Guest guest(const std::string& from, int rod, wire::Role role = wire::Role::player) {
+    Guest g{ProbeClient(table.port(), from), std::nullopt};
+    if (!g.probe.prove(role == wire::Role::host ? "mine" : "open sesame", role)) return g;
+    wire::Hello hello = g.probe.hello(rod < 0 ? wire::kWatchOnly : team_of(rod));
+    hello.name = from;
+    hello.rods = rod < 0 ? RodSet{0} : RodSet(1u << rod);
+    g.welcome = g.probe.join(hello);
+    return g;
+  }
+  static std::uint8_t team_of(int rod) {
+    return (rods_of_team(foosball::MatchDesc{}.layout, 0) >> rod & 1) != 0 ? 0 : 1;
+  }
+  void vote(Guest& voter, std::uint32_t against) {
+    voter.probe.say(wire::Kick{against});
+    voter.probe.say(wire::Ping{1});
+    voter.probe.hear_a<wire::Pong>();
+  }
+  std::uint64_t kicked() { return table->counters().control.kicked; }
+
+  Lockstep table;
+};
+
+TEST_F(Kicks, MoreThanHalfOfTheOthersPutAPlayerOutWhoMayWatchAndPlaysTheNextMatch) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 2),
+        bad = guest("127.0.0.5", 3);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
+  vote(a, bad.client());
+  EXPECT_EQ(kicked(), 0u);
+  vote(b, bad.client());
+  EXPECT_EQ(kicked(), 1u);
+  const auto refusal = bad.probe.hear_a<wire::Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->code, Code::not_allowed);
+  Guest again{ProbeClient(table.port(), "127.0.0.5"), std::nullopt};
+  ASSERT_TRUE(again.probe.prove("open sesame"));
+  EXPECT_FALSE(again.probe.resume(*bad.welcome)) << "the ticket is worth nothing";
+  EXPECT_FALSE(guest("127.0.0.5", 3).welcome) << "nor does a new seat help";
+  Guest watcher = guest("127.0.0.5", -1);
+  ASSERT_TRUE(watcher.welcome);
+  watcher.probe.say(wire::Claim{RodSet(1u << 3), team_of(3)});
+  watcher.probe.say(wire::Ping{1});
+  EXPECT_TRUE(watcher.probe.hear_a<wire::Pong>());
+  for (const wire::Seat& seat : watcher.probe.roster().seats)
+    EXPECT_TRUE(seat.client != watcher.client() || seat.rods == 0);
+  EXPECT_TRUE(guest("127.0.0.6", 3).welcome) << "somebody else may have the rod";
+}
+
+TEST_F(Kicks, OnePersonAtOneAddressDecidesNothingHoweverManyClientsItOpens) {
+  Guest a = guest("127.0.0.2", 0), second = guest("127.0.0.2", 1), third = guest("127.0.0.2", 2),
+        victim = guest("127.0.0.5", 3);
+  ASSERT_TRUE(a.welcome && second.welcome && third.welcome && victim.welcome);
+  for (Guest* one : {&a, &second, &third}) vote(*one, victim.client());
+  EXPECT_EQ(kicked(), 0u) << "alone against one: that is for the host";
+  Guest other = guest("127.0.0.3", 4);
+  ASSERT_TRUE(other.welcome);
+  for (Guest* one : {&a, &second, &third}) vote(*one, victim.client());
+  EXPECT_EQ(kicked(), 0u) << "one machine, one vote";
+}
+
+TEST_F(Kicks, TheHostDoesItAloneAndIsNotPutOut) {
+  Guest host = guest("127.0.0.2", 0, wire::Role::host), a = guest("127.0.0.3", 1),
+        b = guest("127.0.0.4", 2);
+  ASSERT_TRUE(host.welcome && a.welcome && b.welcome);
+  vote(a, host.client());
+  vote(b, host.client());
+  EXPECT_EQ(kicked(), 0u);
+  vote(host, a.client());
+  EXPECT_EQ(kicked(), 1u);
+  EXPECT_TRUE(a.probe.hear_a<wire::Refusal>());
+}
+
+TEST_F(Kicks, WatchersHaveNoVoteAndAreNotPutOut) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), victim = guest("127.0.0.4", 2),
+        watcher = guest("127.0.0.5", -1), other = guest("127.0.0.6", -1);
+  ASSERT_TRUE(a.welcome && b.welcome && victim.welcome && watcher.welcome && other.welcome);
+  vote(watcher, victim.client());
+  vote(other, victim.client());
+  EXPECT_EQ(kicked(), 0u);
+  vote(a, watcher.client());
+  vote(b, watcher.client());
+  EXPECT_EQ(kicked(), 0u);
+}
+
+TEST_F(Kicks, AVoteAgainstWhoHasJustLeftOrNeverWasDoesNothing) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome);
+  vote(a, c.client());
+  c.probe.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  vote(b, c.client());
+  vote(b, 999'999);
+  EXPECT_EQ(kicked(), 0u);
+  EXPECT_TRUE(guest("127.0.0.4", 2).welcome) << "nothing was decided: it may come back";
+}
+
+TEST_F(Kicks, AVoteOutlastsAReconnectionWithTheTicketAndANewSeat) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 3),
+        bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
+  vote(a, bad.client());
+  bad.probe.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  Guest again{ProbeClient(table.port(), "127.0.0.5"), std::nullopt};
+  ASSERT_TRUE(again.probe.prove("open sesame"));
+  again.welcome = again.probe.resume(*bad.welcome);
+  ASSERT_TRUE(again.welcome);
+  again.probe.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  Guest anew = guest("127.0.0.5", 2);
+  ASSERT_TRUE(anew.welcome);
+  ASSERT_NE(anew.client(), bad.client());
+  vote(b, anew.client());
+  EXPECT_EQ(kicked(), 1u) << "the first vote still counts";
+}
+
+TEST_F(Kicks, WhoIsAwayIsPutOutTooAndTheSeatIsFree) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
+  bad.probe.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  vote(a, bad.client());
+  vote(b, bad.client());
+  EXPECT_EQ(kicked(), 1u);
+  Guest again{ProbeClient(table.port(), "127.0.0.5"), std::nullopt};
+  ASSERT_TRUE(again.probe.prove("open sesame"));
+  EXPECT_FALSE(again.probe.resume(*bad.welcome));
+  EXPECT_TRUE(guest("127.0.0.6", 2).welcome);
+}
+
+TEST_F(Kicks, AFloodOfVotesIsOneVoteAndTheTableHearsLittleOfIt) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 2),
+        d = guest("127.0.0.5", 3);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome && d.welcome);
+  for (int i = 0; i < 500; ++i) a.probe.say(wire::Kick{i % 2 == 0 ? d.client() : c.client()});
+  a.probe.say(wire::Ping{1});
+  ASSERT_TRUE(a.probe.hear_a<wire::Pong>());
+  EXPECT_EQ(kicked(), 0u);
+  b.probe.say(wire::Ping{2});
+  int notices = 0;
+  while (const auto message = b.probe.hear()) {
+    if (std::holds_alternative<wire::Pong>(*message)) break;
+    notices += std::holds_alternative<wire::Notice>(*message) ? 1 : 0;
+  }
+  EXPECT_LT(notices, 64);
+}
+
+}  // namespace
+}  // namespace server
