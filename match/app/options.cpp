@@ -119,8 +119,9 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   }
   vary->excludes(traits);
   auto* screen = cli.add_flag("--screen", raw.screen,
-                              "what each value of --home's judgment does by itself to the share of "
-                              "goals against --opponents, --matches each, in both layouts");
+                              "what each value of --home's judgment does to the share of goals "
+                              "against --opponents, --matches at each point of a design, in both "
+                              "layouts");
   auto* train = cli.add_flag("--train", raw.train,
                              "search for the judgment with which --home scores most against "
                              "--opponents, and test it on new seeds (docs/match-runner.md)");
@@ -142,8 +143,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--population", t.population, "samples of a generation; else 4 + 3 ln n, even")
       ->needs(train)
       ->check(CLI::Range(4, 10'000));
-  cli.add_option("--step", t.step, "deviation of the first samples, as a share of each range")
-      ->needs(train)
+  cli.add_option("--step", t.step,
+                 "as a share of each range: of --screen; of --train, the first samples' deviation")
       ->check(CLI::Range(0.01, 0.5));
   cli.add_option("--validate", t.validation,
                  "matches of the trained player against --home in each layout, on new seeds")
@@ -178,7 +179,7 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
 // What --screen and --train need besides.
 std::string translate_training(Options& o, const Raw& raw) {
   o.mode = raw.train ? Mode::train : Mode::screen;
-  constexpr std::uint64_t kTrained = 4, kScreened = 40;
+  constexpr std::uint64_t kTrained = 4, kScreened = 8;
   if (!raw.matches_given) o.matches = raw.train ? kTrained : kScreened;
   const auto judgment = match::judgment_of_player(o.players[0]);
   if (!judgment) return "--home: " + judgment.error();

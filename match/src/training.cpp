@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -51,15 +52,13 @@ struct Goals {
 struct MeanShare {
   double value = 0.0, error = 0.0;
 };
-MeanShare mean_share(std::span<const Series> series) {
+MeanShare mean_share(const std::vector<Goals>& kinds) {
   MeanShare mean;
-  for (const Series& s : series) {
-    Goals goals;
-    goals.add(s);
+  for (const Goals& goals : kinds) {
     mean.value += goals.share();
     mean.error += goals.error() * goals.error();
   }
-  const double n = static_cast<double>(series.size());
+  const double n = static_cast<double>(kinds.size());
   return {mean.value / n, std::sqrt(mean.error) / n};
 }
 
@@ -78,29 +77,23 @@ std::string shown(double value) {
   return text;
 }
 
-struct Screened {
-  std::string name;
-  Judgment judgment;
-};
+// The two values of a field that a screening compares.
+std::array<double, 2> low_and_high(const TrainPlan& plan, std::size_t index,
+                                   const Judgment& start) {
+  const JudgmentField& field = kJudgmentFields[index];
+  const double at = share_of(field, start.*field.value);
+  return {value_at(field, at - plan.step), value_at(field, at + plan.step)};
+}
 
-std::vector<Screened> screened(const TrainPlan& plan) {
-  constexpr double kFifth = 0.2, kTooNear = 0.02;
-  const Judgment start = *judgment_of_player(plan.player);
-  std::vector<Screened> all{{"as it is", start}};
-  for (const std::size_t index : plan.fields) {
-    const JudgmentField& field = kJudgmentFields[index];
-    const double at = share_of(field, start.*field.value);
-    for (const double side : {-kFifth, kFifth}) {
-      const double share = std::clamp(at + side, 0.0, 1.0);
-      if (std::fabs(share - at) < kTooNear) continue;
-      Screened point{"", start};
-      point.judgment.*field.value = value_at(field, share);
-      point.name = std::string(field.name) + " " + shown(start.*field.value) + " to " +
-                   shown(point.judgment.*field.value);
-      all.push_back(point);
-    }
-  }
-  return all;
+// Points of the design: rows of the Hadamard matrix of the smallest power of 2 beyond the number of
+// fields, then the same rows with the signs exchanged.
+std::size_t design_points(const TrainPlan& plan) {
+  return 2 * std::bit_ceil(plan.fields.size() + 1);
+}
+bool is_high(const TrainPlan& plan, std::size_t point, std::size_t field) {
+  const std::size_t rows = design_points(plan) / 2;
+  const bool odd = std::popcount((point % rows) & (field + 1)) % 2 == 1;
+  return odd != (point >= rows);
 }
 
 }  // namespace
@@ -158,11 +151,17 @@ std::string with_judgment(const std::string& player, const Judgment& judgment) {
 }
 
 std::vector<SeriesDesc> screen_series(const TrainPlan& plan) {
+  const Judgment start = *judgment_of_player(plan.player);
   std::vector<SeriesDesc> all;
-  for (const Screened& point : screened(plan)) {
+  for (std::size_t point = 0; point < design_points(plan); ++point) {
+    Judgment judgment = start;
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+      judgment.*kJudgmentFields[plan.fields[i]].value =
+          low_and_high(plan, plan.fields[i], start)[is_high(plan, point, i) ? 1 : 0];
+    }
     for (const std::string& opponent : plan.opponents) {
       SeriesDesc desc = plan.base;
-      desc.players = {with_judgment(plan.player, point.judgment), opponent};
+      desc.players = {with_judgment(plan.player, judgment), opponent};
       desc.max_games = plan.matches;
       for (SeriesDesc& one : in_both_layouts(desc)) all.push_back(std::move(one));
     }
@@ -171,18 +170,25 @@ std::vector<SeriesDesc> screen_series(const TrainPlan& plan) {
 }
 
 std::vector<Figure> screen_figures(const TrainPlan& plan, std::span<const Series> series) {
-  std::vector<Figure> figures;
-  const std::size_t each = kLayouts.size() * plan.opponents.size();
-  const MeanShare usual = mean_share(series.first(each));
-  std::size_t first = 0;
-  for (const Screened& point : screened(plan)) {
-    const MeanShare here = mean_share(series.subspan(first, each));
-    const bool own = first == 0;
-    first += each;
-    figures.push_back({"screening of " + plan.player, point.name + (own ? "" : ", goals gained"),
-                       100.0 * (own ? here.value : here.value - usual.value), "% of goals", "",
-                       Figure::Judgment::none,
-                       100.0 * (own ? here.error : std::hypot(here.error, usual.error))});
+  const std::string section = "screening of " + plan.player;
+  const Judgment start = *judgment_of_player(plan.player);
+  const std::size_t kinds = kLayouts.size() * plan.opponents.size();
+  std::vector<Goals> all(kinds);
+  for (std::size_t k = 0; k < series.size(); ++k) all[k % kinds].add(series[k]);
+  std::vector<Figure> figures{{section, "all points", 100.0 * mean_share(all).value, "% of goals",
+                               "", Figure::Judgment::none, 100.0 * mean_share(all).error}};
+  for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+    std::array<std::vector<Goals>, 2> sides{std::vector<Goals>(kinds), std::vector<Goals>(kinds)};
+    for (std::size_t k = 0; k < series.size(); ++k) {
+      sides[is_high(plan, k / kinds, i) ? 1 : 0][k % kinds].add(series[k]);
+    }
+    const MeanShare low = mean_share(sides[0]), high = mean_share(sides[1]);
+    const auto [from, to] = low_and_high(plan, plan.fields[i], start);
+    figures.push_back(
+        {section,
+         std::string(kJudgmentFields[plan.fields[i]].name) + " " + shown(from) + " to " + shown(to),
+         100.0 * (high.value - low.value), "% of goals", "", Figure::Judgment::none,
+         100.0 * std::hypot(high.error, low.error)});
   }
   return figures;
 }
@@ -255,7 +261,9 @@ void Training::take(std::span<const Series> series) {
     const std::size_t each = kLayouts.size() * plan_.opponents.size();
     std::vector<double> values;
     for (std::size_t first = 0; first < series.size(); first += each) {
-      values.push_back(mean_share(series.subspan(first, each)).value);
+      std::vector<Goals> kinds(each);
+      for (std::size_t k = 0; k < each; ++k) kinds[k].add(series[first + k]);
+      values.push_back(mean_share(kinds).value);
     }
     double sum = 0.0;
     for (const double value : values) sum += value;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -201,26 +202,54 @@ TEST(Training, BeginsWithThePlayersOwnJudgment) {
   EXPECT_EQ(with_judgment(plan.player, judgment_of(3, foosball::PlayStyle::wall)), "3:wall");
 }
 
-TEST(Screening, ChangesOneValueAtATimeWithinItsRange) {
-  const TrainPlan plan = small_plan();
+TEST(Screening, HasEachValueHighInHalfOfThePointsAndWithEachOtherInAQuarter) {
+  TrainPlan plan = small_plan();
+  plan.fields = parse_fields("").value();
   const auto series = screen_series(plan);
-  // As it is; shot_bar and hands_goalie lower and higher; two opponents, two layouts.
-  ASSERT_EQ(series.size(), 5u * 4u);
-  EXPECT_EQ(series[0].players[0], "5");
+  constexpr std::size_t kPoints = 64, kKinds = 4;
+  ASSERT_EQ(series.size(), kPoints * kKinds);
   const foosball::Judgment start = judgment_of_player("5").value();
-  for (std::size_t i = 4; i < series.size(); ++i) {
-    const auto judgment = judgment_of_player(series[i].players[0]);
+  std::vector<std::vector<bool>> high(plan.fields.size());
+  for (std::size_t point = 0; point < kPoints; ++point) {
+    const auto judgment = judgment_of_player(series[kKinds * point].players[0]);
     ASSERT_TRUE(judgment.has_value()) << judgment.error();
-    int changed = 0;
-    for (const auto& field : foosball::kJudgmentFields) {
-      changed += (*judgment).*field.value != start.*field.value;
+    for (std::size_t i = 0; i < high.size(); ++i) {
+      const auto value = foosball::kJudgmentFields[i].value;
+      high[i].push_back((*judgment).*value > start.*value);
     }
-    EXPECT_EQ(changed, 1);
+    for (std::size_t k = 0; k < kKinds; ++k) {
+      EXPECT_EQ(series[kKinds * point + k].players[0], series[kKinds * point].players[0]);
+      EXPECT_EQ(series[kKinds * point + k].seed, plan.base.seed);
+    }
   }
-  const auto figures = screen_figures(plan, played(series));
+  const auto clear_power = static_cast<std::size_t>(foosball::judgment_index("clear_power"));
+  for (std::size_t i = 0; i < high.size(); ++i) {
+    if (i == clear_power) continue;  // at the end of its range
+    EXPECT_EQ(std::count(high[i].begin(), high[i].end(), true), 32);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (k == clear_power) continue;
+      int both = 0;
+      for (std::size_t point = 0; point < kPoints; ++point)
+        both += high[i][point] && high[k][point];
+      EXPECT_EQ(both, 16) << i << " " << k;
+    }
+  }
+}
+
+TEST(Screening, FindsTheValueThatMattersAndNoOther) {
+  TrainPlan plan = small_plan();
+  plan.fields = parse_fields("patience,shot_bar,risk_cost,hands_goalie").value();
+  plan.opponents = {"5"};
+  const auto figures = screen_figures(plan, played(screen_series(plan)));
   ASSERT_EQ(figures.size(), 5u);
-  EXPECT_LT(figures[1].value, 0.0) << "a lower shot_bar is further from 0.7";
-  EXPECT_GT(figures[2].value, 0.0);
+  EXPECT_EQ(figures[2].name, "shot_bar 0.41 to 0.59");
+  for (std::size_t i = 1; i < figures.size(); ++i) {
+    if (i == 2) {
+      EXPECT_GT(figures[i].value, 1.0);
+    } else {
+      EXPECT_NEAR(figures[i].value, 0.0, 1e-9) << figures[i].name;
+    }
+  }
 }
 
 TEST(Parameters, AreReadByTheirNames) {

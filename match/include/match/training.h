@@ -1,5 +1,5 @@
 // Which values of a computer player's judgment (foosball/judgment.h) score most against other
-// players: a screening of each value by itself, and a search over those that matter by an evolution
+// players: a screening of all of them, and a search over those that matter by an evolution
 // strategy (match/evolution.h).
 #pragma once
 
@@ -25,7 +25,7 @@ struct TrainPlan {
   std::uint64_t matches = 4;        // of each sample against each opponent in each layout; even
   std::size_t population = 0;       // 0: usual_population()
   std::uint64_t generations = 20;
-  double step = 0.12;              // of the first generation, as a share of each range
+  double step = 0.10;              // of the first generation, as a share of each range
   std::uint64_t validation = 100;  // matches of the answer against the start in each layout; even
   std::string text() const;        // what the series do not say
 };
@@ -38,11 +38,14 @@ tl::expected<foosball::Judgment, std::string> judgment_of_player(const std::stri
 // player's level and style with this judgment. Precondition: judgment_of_player() accepts player.
 std::string with_judgment(const std::string& player, const foosball::Judgment& judgment);
 
-// Each value by itself a fifth of its range lower and higher than the player's (as far as the range
-// goes), against each opponent in each layout. Before them: as the player has it.
+// A design of two levels: each value lower or higher than the player's by `step` of its range (as
+// far as that goes), all values at a time, by the rows of a Hadamard matrix and the same rows with
+// high and low exchanged. Every game then tells of every value, no value's effect is mixed with
+// that of another, nor with what two others do together. Plackett and Burman 1946 (plackett1946),
+// Box and Hunter 1961 (box1961), docs/references.bib.
 std::vector<SeriesDesc> screen_series(const TrainPlan& plan);
-// The share of goals at each, and its difference from the player's own. Precondition: the series of
-// that plan, in their order.
+// The share of goals of all points, and of each value how much larger it is where that is high than
+// where it is low. Precondition: the series of that plan, in their order.
 std::vector<Figure> screen_figures(const TrainPlan& plan, std::span<const Series> series);
 
 // A search: rounds of series. All samples of a generation play the same serves and characters; the
