@@ -113,8 +113,12 @@ void build_snapshot(const foosball::MatchView& view, wire::Snapshot& snapshot) {
 
 void put_replay_drivers(const wire::JournalTick& tick, wire::Snapshot& snapshot) {
   for (int rod = 0; rod < foosball::kRods; ++rod) {
-    const auto status = tick.rods[rod].live ? wire::RodStatus::live : wire::RodStatus::held;
-    snapshot.rods[rod].status = wire::number(status);
+    std::uint8_t& status = snapshot.rods[rod].status;
+    if (tick.rods[rod].live) {
+      status = wire::number(wire::RodStatus::live);
+    } else if (status != wire::number(wire::RodStatus::absent)) {
+      status = wire::number(wire::RodStatus::held);
+    }
     snapshot.rods[rod].source = wire::number(wire::RodSource::replay);
   }
 }

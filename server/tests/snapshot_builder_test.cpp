@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "wire/enums.h"
+
 #include <cmath>
 
 namespace server {
@@ -93,6 +95,21 @@ TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
         vp::Vec3{v[0], v[1], v[2]} + vp::cross(vp::Vec3{w[0], w[1], w[2]}, before.rotate(foot));
     EXPECT_LT(vp::norm(moved - said), 1e-3);  // measured 1.4e-5
   }
+}
+
+// As in the match: nobody's rod is no warning, one that a hand let go is.
+TEST(ReplayDrivers, ARodIsHeldOnceAHandThatHadItIsGone) {
+  wire::JournalTick tick;
+  wire::Snapshot snapshot;
+  put_replay_drivers(tick, snapshot);
+  EXPECT_EQ(snapshot.rods[3].status, wire::number(wire::RodStatus::absent));
+  tick.rods[3].live = true;
+  put_replay_drivers(tick, snapshot);
+  EXPECT_EQ(snapshot.rods[3].status, wire::number(wire::RodStatus::live));
+  EXPECT_EQ(snapshot.rods[4].status, wire::number(wire::RodStatus::absent));
+  tick.rods[3].live = false;
+  put_replay_drivers(tick, snapshot);
+  EXPECT_EQ(snapshot.rods[3].status, wire::number(wire::RodStatus::held));
 }
 
 }  // namespace

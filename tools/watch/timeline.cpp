@@ -1,12 +1,16 @@
 #include "timeline.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <utility>
 
+#include "os/file_descriptor.h"
 #include "server/recordings.h"
 #include "wire/enums.h"
 #include "wire/read_file.h"
@@ -16,6 +20,22 @@ namespace {
 
 constexpr std::uint64_t kStepTicks = 20;  // how finely the reader follows what a person is told
 constexpr std::chrono::milliseconds kLookAgain{500};
+// Of what was read before, read again: a file that was written anew is none that has grown.
+constexpr std::size_t kOverlap = 4'096;
+
+// So many bytes from there on; fewer at the file's end.
+std::vector<std::byte> read_part(int file, std::size_t from, std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  std::size_t got = 0;
+  while (got < size) {
+    const auto n = ::pread(file, bytes.data() + got, size - got, static_cast<off_t>(from + got));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    got += static_cast<std::size_t>(n);
+  }
+  bytes.resize(got);
+  return bytes;
+}
 
 }  // namespace
 
@@ -101,17 +121,23 @@ bool Timeline::await_growth() {
 bool Timeline::grow() {
   const auto& had = *reader_.playback().bytes();
   struct stat about {};
-  if (::stat(path_.c_str(), &about) != 0 || !S_ISREG(about.st_mode) ||
+  const os::FileDescriptor file(
+      ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!file || ::fstat(file.get(), &about) != 0 || !S_ISREG(about.st_mode) ||
       about.st_dev != file_.device || about.st_ino != file_.node ||
       static_cast<std::uint64_t>(about.st_size) <= had.size()) {
     return false;
   }
-  auto bytes = wire::read_file(path_, wire::kMaxJournalFile);
-  if (!bytes || bytes->size() <= had.size() ||
-      std::memcmp(bytes->data(), had.data(), had.size()) != 0) {
-    return false;
-  }
-  auto longer = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
+  const std::size_t end = std::min(static_cast<std::size_t>(about.st_size), wire::kMaxJournalFile);
+  const std::size_t again = std::min(had.size(), kOverlap), from = had.size() - again;
+  if (end <= had.size()) return false;
+  const std::vector<std::byte> part = read_part(file.get(), from, end - from);
+  if (part.size() <= again || std::memcmp(part.data(), had.data() + from, again) != 0) return false;
+  std::vector<std::byte> bytes;
+  bytes.reserve(from + part.size());
+  bytes.insert(bytes.end(), had.begin(), had.begin() + static_cast<std::ptrdiff_t>(from));
+  bytes.insert(bytes.end(), part.begin(), part.end());
+  auto longer = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
   reader_.extend(longer);
   const std::lock_guard guard(mutex_);
   grown_ = std::move(longer);

@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <sys/file.h>
 
+#include <fstream>
+
 #include "os/file_descriptor.h"
 #include "recorded_match.h"
 #include "share.h"
@@ -88,6 +90,29 @@ TEST_F(TimelineTest, FollowsAFileThatGrowsToItsEndToTheBit) {
   EXPECT_EQ(findings.total, kTicks);
   EXPECT_EQ(findings.verdict, server::Playback::Verdict::same) << findings.sentence;
   EXPECT_FALSE(findings.being_made);
+}
+
+// What the process has read so far, as the kernel counts it.
+std::uint64_t bytes_read() {
+  std::ifstream file("/proc/self/io");
+  std::string name;
+  std::uint64_t bytes = 0;
+  file >> name >> bytes;
+  EXPECT_EQ(name, "rchar:");
+  return bytes;
+}
+
+TEST_F(TimelineTest, OfAFileThatGrowsOnlyWhatIsNewIsRead) {
+  const std::size_t half = bytes_.size() / 2;
+  ASSERT_GT(half, 40'000u);
+  write("growing.sfr", half);
+  const os::FileDescriptor writer(::open(path("growing.sfr").c_str(), O_WRONLY | O_APPEND));
+  const auto timeline = open("growing.sfr");
+  timeline->wait_until_read();
+  const std::uint64_t before = bytes_read(), total = timeline->findings().total;
+  ASSERT_EQ(::write(writer.get(), bytes_.data() + half, 8'000), 8'000);
+  while (timeline->findings().total == total) timeline->look_again();
+  EXPECT_LT(bytes_read() - before, 20'000u) << "8000 are new, of " << half + 8'000;
 }
 
 TEST_F(TimelineTest, AnotherFileOfTheSameNameIsNotTakenForMoreOfIt) {

@@ -95,9 +95,7 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const auto r = static_cast<std::size_t>(rod);
     const auto& driven = hud.state->rods[r];
-    // In a recording a hand that was elsewhere is no warning to anybody.
     if (driven.status != number(wire::RodStatus::held)) continue;
-    if (driven.source == number(wire::RodSource::replay)) continue;
     const float y = hud.state->rods[r].slide + 0.9f * handle_offset(table, rod);
     const glm::vec3 p = hud.camera.project(
         {static_cast<float>(table.rods[r].x), y, static_cast<float>(table.rod_height)}, screen);
