@@ -6,6 +6,7 @@
 
 #include "foosball/table.h"
 #include "render/hud_screens.h"
+#include "render/sentences.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
 
@@ -148,7 +149,7 @@ void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   float y = pen.bottom - 22.0f - room_below;
   const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
   for (std::size_t i = 0; i < shown; ++i) {
-    const std::string& text = hud.notices[hud.notices.size() - 1 - i];
+    const std::string text = tr_sentence(hud.notices[hud.notices.size() - 1 - i]);
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
     const float half = std::min(0.5f * pen.width(text, style) + 16.0f, pen.half_width - 4.0f);
     pen.panel({-half, y - 20.0f}, {half, y + 8.0f}, 9.0f, {0.20f, 0.13f, 0.02f, 0.86f});
@@ -160,14 +161,15 @@ void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
 void draw_connection(const HudPen& whole, const HudState& hud) {
   const TextStyle style{Face::bold, 25.0f, 0.0f, Align::centre};
   const TextStyle small{Face::regular, 16.0f, 0.0f, Align::centre};
+  const std::string detail = tr_sentence(hud.connection_detail);
   const float half = std::max({280.0f, 0.5f * whole.width(hud.connection_message, style) + 34.0f,
-                               0.5f * whole.width(hud.connection_detail, small) + 24.0f});
+                               0.5f * whole.width(detail, small) + 24.0f});
   const HudPen pen = whole.fitting(half + 6.0f, 200.0f);
   const float y = 0.42f * pen.bottom;
   pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.03f, 0.04f, 0.07f, 0.90f});
   pen.panel({-half, y - 50.0f}, {half, y + 52.0f}, 16.0f, {0.95f, 0.65f, 0.20f, 0.75f}, 1.5f);
   pen.text(hud.connection_message, style, {0.0f, y}, kWarning);
-  pen.text(hud.connection_detail, small, {0.0f, y + 30.0f}, kInk);
+  pen.text(detail, small, {0.0f, y + 30.0f}, kInk);
 }
 
 void draw_corner_texts(const HudPen& pen, const HudState& hud) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "render/hud_screens.h"
+#include "render/sentences.h"
 #include "render/translate.h"
 
 namespace client {
@@ -102,7 +103,7 @@ void draw_message(const Pen& pen, const std::string& message, bool warning, floa
                   const glm::ivec2& screen) {
   if (message.empty()) return;
   const float room = static_cast<float>(screen.x) - 40.0f * pen.scale, line = 21.0f * pen.scale;
-  const auto lines = wrapped(pen, message, 15.0f, room);
+  const auto lines = wrapped(pen, tr_sentence(message), 15.0f, room);
   float wide = 0.0f;
   for (const std::string& text : lines) wide = std::max(wide, pen.width(text, 15.0f));
   const float middle = 0.5f * static_cast<float>(screen.x);

@@ -5,6 +5,7 @@
 #include "foosball/table.h"
 #include "render/hud.h"
 #include "render/hud_screens.h"
+#include "render/sentences.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
 
@@ -76,7 +77,7 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
   const HudPen pen = whole.fitting(kHalf + 10.0f, 420.0f).readable(0.62f, kHalf + 10.0f);
   std::vector<std::string> notes;
   if (!page.note.empty()) notes = wrapped(pen, tr(page.note.c_str()), 2.0f * kHalf - 50.0f);
-  if (!page.detail.empty()) notes.push_back(page.detail);
+  if (!page.detail.empty()) notes.push_back(tr_sentence(page.detail));
   const std::size_t problem_from = notes.size();
   if (!page.problem.empty()) {
     for (std::string& line : wrapped(pen, page.problem, 2.0f * kHalf - 50.0f))

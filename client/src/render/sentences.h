@@ -1,0 +1,14 @@
+// Sentences that other programs and libraries say in English (the server's notices and refusals,
+// what is wrong with a recording), in the person's language where they are known. Logs stay
+// English.
+#pragma once
+
+#include <string>
+
+namespace client {
+
+// The sentence in the language in use; one that is not known as it is. A stranger's words may be
+// part of it: they are kept as they are.
+std::string tr_sentence(const std::string& english);
+
+}  // namespace client
