@@ -180,8 +180,9 @@ float draw_all_keys(const HudPen& whole, float room) {
   const float height = 26.0f * static_cast<float>(rows) + 26.0f;
   const float taken = height + 18.0f, fits = std::min(whole.bottom, room) / whole.bottom;
   const HudPen pen = whole.fitting(half + 4.0f, (fits < 1.0f ? taken : height + 40.0f) / fits);
-  constexpr float kSmallest = 8.5f;  // [px] that letters are read at
-  if (fits < 1.0f && regular.size * pen.scale < kSmallest) return draw_key_line(whole, kLogoKeys);
+  const HudPen alone = whole.fitting(half + 4.0f, height + 40.0f);
+  constexpr float kSmallest = 0.85f;  // of its size without such a bound; below, it is hard to read
+  if (pen.scale < kSmallest * alone.scale) return draw_key_line(whole, kLogoKeys);
   const float top = pen.bottom - taken;
   pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
