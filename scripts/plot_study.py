@@ -3,7 +3,8 @@
 
   scripts/plot_study.py STUDY.csv FOLDER   FOLDER/tuning-one.svg, one value at a time;
                                            FOLDER/tuning-trade.svg, all points: goals beside hops
-  scripts/plot_study.py --table STUDY.csv  for each value and figure, the slope over its studied range
+  scripts/plot_study.py --table STUDY.csv  the change of each figure over a value's studied
+                                           range: least squares over all points, with its standard error
   scripts/plot_study.py --self-test        checks what is drawn, not how: without matplotlib
 """
 import argparse
@@ -18,7 +19,8 @@ FIGURES = (
     ('goals a minute of play', 'goals/min', (3.0, None)),
     ('hop, median', 'hop median [mm]', (20.0, 45.0)),
     ('hop, 90th percentile', 'hop 90 % [mm]', (80.0, 160.0)),
-    ('nobody can reach the ball', 'out of reach [%]', (None, 8.0)),
+    ('nobody can reach the ball', 'out of reach [%]', (None, 10.0)),
+    ('ball still', 'ball still [%]', (None, 5.0)),
     ('playability', 'playability', (None, None)),
 )
 
@@ -54,25 +56,51 @@ def one_at_a_time(points, figure):
     return lines
 
 
-def slope(line):
-    """Least squares: change of the figure from one end of the studied range to the other."""
-    n = len(line)
-    mean_x, mean_y = sum(x for x, _ in line) / n, sum(y for _, y in line) / n
-    spread = sum((x - mean_x) ** 2 for x, _ in line)
-    if spread == 0.0:
-        return 0.0
-    return sum((x - mean_x) * (y - mean_y) for x, y in line) / spread * (line[-1][0] - line[0][0])
+def solve(matrix, columns):
+    """The columns of matrix^-1 columns, by elimination with pivots; both are lists of rows."""
+    n = len(matrix)
+    rows = [list(matrix[i]) + list(columns[i]) for i in range(n)]
+    for i in range(n):
+        pivot = max(range(i, n), key=lambda r: abs(rows[r][i]))
+        if abs(rows[pivot][i]) < 1e-12:
+            return None
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [x / rows[i][i] for x in rows[i]]
+        for r in range(n):
+            if r != i:
+                rows[r] = [x - rows[r][i] * y for x, y in zip(rows[r], rows[i])]
+    return [row[n:] for row in rows]
+
+
+def fit(points, layout, figure):
+    """Least squares over all points of a layout, a plane about the defaults: {value: (change of the
+    figure from one end of the studied range to the other, its standard error)}."""
+    defaults = next((v for l, k, v, _ in points if l == layout and k == 'defaults'), {})
+    chosen = [({**defaults, **v}, r[figure]) for l, _, v, r in points if l == layout and figure in r]
+    names = [n for n in defaults if len({v[n] for v, _ in chosen}) > 1]
+    ranges = [max(v[n] for v, _ in chosen) - min(v[n] for v, _ in chosen) for n in names]
+    rows = [[1.0] + [(v[n] - defaults[n]) / r for n, r in zip(names, ranges)] for v, _ in chosen]
+    results = [y for _, y in chosen]
+    size = len(names) + 1
+    if len(rows) <= size:
+        return {}
+    normal = [[sum(row[i] * row[j] for row in rows) for j in range(size)] for i in range(size)]
+    right = [sum(row[i] * y for row, y in zip(rows, results)) for i in range(size)]
+    unit = [[1.0 if i == j else 0.0 for j in range(size)] for i in range(size)]
+    solved = solve(normal, [[y] + u for y, u in zip(right, unit)])
+    if solved is None:
+        return {}
+    best = [row[0] for row in solved]
+    left = sum((y - sum(b * x for b, x in zip(best, row))) ** 2 for row, y in zip(rows, results))
+    variance = left / (len(rows) - size)
+    errors = [(variance * solved[i][1 + i]) ** 0.5 for i in range(size)]
+    return {name: (best[1 + i], errors[1 + i]) for i, name in enumerate(names)}
 
 
 def table(points):
-    rows = []
-    for figure, label, _ in FIGURES:
-        lines = one_at_a_time(points, figure)
-        for name in lines:
-            for layout in LAYOUTS:
-                if lines[name][layout]:
-                    rows.append((name, layout, label, slope(lines[name][layout])))
-    return rows
+    return [(name, layout, label, change, error)
+            for figure, label, _ in FIGURES for layout in LAYOUTS
+            for name, (change, error) in fit(points, layout, figure).items()]
 
 
 def draw(points, folder):
@@ -81,7 +109,7 @@ def draw(points, folder):
     matplotlib.rcParams['svg.hashsalt'] = 'study'
     import matplotlib.pyplot as plt
     names = list(one_at_a_time(points, FIGURES[0][0]))
-    picture, axes = plt.subplots(len(FIGURES), len(names), figsize=(2.1 * len(names), 9), sharey='row',
+    picture, axes = plt.subplots(len(FIGURES), len(names), figsize=(2.1 * len(names), 1.8 * len(FIGURES)), sharey='row',
                                  sharex='col', squeeze=False)
     for row, (figure, label, (low, high)) in enumerate(FIGURES):
         lines = one_at_a_time(points, figure)
@@ -116,18 +144,28 @@ def draw(points, folder):
 
 def self_test():
     text = ('section,figure,value,standard error,unit,goal,judgment\n'
-            '"tournament; defaults","goals a minute of play",2.5,,,,\n'
+            '"tournament; defaults gravity=14 hop_gain=2","goals a minute of play",2.5,,,,\n'
             '"tournament; one gravity=20","goals a minute of play",4,,,,\n'
             '"tournament; one gravity=10","goals a minute of play",2,,,,\n'
             '"paper; one gravity=10","goals a minute of play",,,,,\n'
             '"paper; fill gravity=10 hop_gain=2","  of the slide",1,,,,\n')
     points = read(text)
-    assert [p[:3] for p in points][0] == ('tournament', 'defaults', {})
+    assert points[0][:3] == ('tournament', 'defaults', {'gravity': 14.0, 'hop_gain': 2.0})
     assert points[4] == ('paper', 'fill', {'gravity': 10.0, 'hop_gain': 2.0}, {'of the slide': 1.0})
     line = one_at_a_time(points, 'goals a minute of play')['gravity']['tournament']
     assert line == [(10.0, 2.0), (20.0, 4.0)], line
-    assert slope(line) == 2.0 and slope([(1.0, 5.0)]) == 0.0
-    assert table(points) == [('gravity', 'tournament', 'goals/min', 2.0)]
+    # A plane, 3 + 2 per range of a and -1 per range of b about the defaults (0.5, 0), off by
+    # +-0.1 in a way that is no part of a plane.
+    points = [('paper', 'defaults', {'a': 0.5, 'b': 0.0}, {'f': 3.0})]
+    for i, a in enumerate((0.0, 1.0)):
+        for j, b in enumerate((0.0, 10.0)):
+            off = 0.1 if i == j else -0.1
+            points.append(('paper', 'fill', {'a': a, 'b': b}, {'f': 3.0 + 2.0 * (a - 0.5) - 0.1 * b + off}))
+    found = fit(points, 'paper', 'f')
+    assert abs(found['a'][0] - 2.0) < 1e-9 and abs(found['b'][0] + 1.0) < 1e-9, found
+    # Residuals of square sum 0.04 with two degrees of freedom: by hand, sqrt(0.02 / 1) of a.
+    assert abs(found['a'][1] - 0.02 ** 0.5) < 1e-9, found
+    assert fit(points, 'tournament', 'f') == {}
     print('plot_study: ok')
 
 
@@ -145,8 +183,8 @@ def main():
     with open(options.study, encoding='utf-8') as file:
         points = read(file.read())
     if options.table:
-        for name, layout, label, change in table(points):
-            print(f'{name:20} {layout:12} {label:18} {change:+8.2f}')
+        for name, layout, label, change, error in table(points):
+            print(f'{name:20} {layout:12} {label:18} {change:+8.2f} +- {error:.2f}')
     else:
         draw(points, options.folder)
     return None

@@ -184,8 +184,8 @@ TEST_P(Symmetry, TheMirroredMatchIsTheSameMatch) {
   int goals = 0;
   for (std::uint64_t players = 1; players <= 3; ++players) {
     const char* player = players == 1 ? "3" : players == 2 ? "5" : "classic:0.9";
-    Game one(GetParam(), lots[0], 0, 2 * players, player);
-    Game other(GetParam(), lots[1], 1, 2 * players, player);
+    Game one(GetParam(), lots[0], 0, 7 * players, player);
+    Game other(GetParam(), lots[1], 1, 7 * players, player);
     for (int tick = 0; tick < 60'000; ++tick) {
       one.step();
       other.step();

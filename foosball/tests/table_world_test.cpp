@@ -77,6 +77,7 @@ TEST_P(TableWorldTest, ARodKeepsWithAMovingHandWithinAMillimetreAndTwoDegrees) {
   };
   for (int tick = 0; tick < 2000; ++tick) {
     for (int rod = 0; rod < kRods; ++rod) world.drive(rod, hand_at(tick * kTick));
+    world.park_ball();  // nothing is in the men's way
     world.step();
     const RodTarget now = hand_at((tick + 1) * kTick);
     for (int rod = 0; rod < kRods && tick > 100; ++rod) {

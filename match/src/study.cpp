@@ -50,6 +50,9 @@ const std::vector<StudiedValue>& studied_values() {
 std::vector<StudyPoint> study_points(std::uint64_t samples) {
   std::vector<StudyPoint> points{{"defaults", {}}};
   for (const StudiedValue& studied : studied_values()) {
+    points[0].name += setting(studied, value_of(points[0].tuning, studied));
+  }
+  for (const StudiedValue& studied : studied_values()) {
     for (int level = 0; level < kLevels; ++level) {
       const double value = between(studied, static_cast<double>(level) / (kLevels - 1));
       StudyPoint point{"one" + setting(studied, value), {}};

@@ -90,7 +90,7 @@ grep -q '^8 matches played' "$folder/out" && fail "resumed: played all matches a
 
 # A search, the file of what it found, and the same search again: by three threads, and from a
 # checkpoint that was cut off in its second generation.
-search=(--quiet --train --home 5 --opponents 5 --parameters shot_bar,patience,hands_goalie --population 4
+search=(--quiet --train --home 5 --opponents 5 --parameters "shot_bar,patience,hands_goalie" --population 4
   --generations 3 --matches 2 --validate 2 --max-minutes 0.1 --seed 3)
 "$match" "${search[@]}" --jobs 1 --json "$folder/search.json" --checkpoint "$folder/search" \
   --write "$folder/found.toml" >"$folder/found"

@@ -125,7 +125,7 @@ TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
   ASSERT_TRUE(sit(ann, "Ann", 0) && watcher.join());
   begin_match(ann, 0);
   ann.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
   pass(RodDesk::kOfferUs);
   EXPECT_EQ(source(watcher, goalie), kNone);
 }

@@ -10,25 +10,25 @@
 namespace foosball {
 
 struct Tuning {
-  double gravity = 14.0;
+  double gravity = 12.0;
   double ball_mass = 0.0263;
   double ball_friction = 0.50;
   double field_friction = 0.30;
-  double field_restitution = 0.70;
-  double rolling_resistance = 0.00015;
+  double field_restitution = 0.76;
+  double rolling_resistance = 0.00008;
   double wall_friction = 0.20;
   double wall_restitution = 0.75;
   double man_friction = 1.0;
   double man_restitution = 1.0;
   double still_speed = 0.25;
   double hop_from = 0.95;
-  double hop_gain = 2.6;
+  double hop_gain = 3.3;
   double bounce_gain = 0.40;
   double bounce_from = 2.0;
   double bounce_most = 1.9;
   double hop_ceiling = 0.120;
-  double sag_from = 0.055;
-  double sag_acceleration = 0.45;
+  double sag_from = 0.045;
+  double sag_acceleration = 0.70;
   double hand_mass = 0.40;
   double hand_inertia = 5.0e-4;
   double hand_frequency = 250.0;

@@ -30,7 +30,8 @@ struct StudiedValue {
 const std::vector<StudiedValue>& studied_values();
 
 struct StudyPoint {
-  std::string name;  // "defaults", "one gravity=9.8", "fill gravity=12.1 hop_gain=1.7 ..."
+  std::string
+      name;  // "defaults gravity=12 ...", "one gravity=9.8", "fill gravity=12.1 hop_gain=1.7 ..."
   foosball::Tuning tuning;
 };
 // The defaults; each value alone at the levels 0, 1/4, 1/2, 3/4 and 1 between its ends; and samples
