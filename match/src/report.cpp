@@ -13,7 +13,6 @@ namespace {
 
 using foosball::kTeams;
 using foosball::Statistics;
-using Judgment = Figure::Judgment;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,13 +47,14 @@ class List {
  public:
   explicit List(std::string section) : section_(std::move(section)) {}
   void add(const char* name, double value, const char* unit) {
-    figures.push_back({section_, name, value, unit, "", Judgment::none});
+    figures.push_back({section_, name, value, unit, "", Figure::Judgment::none});
   }
   void add(const char* name, double value, const char* unit, const Goal& goal) {
-    const Judgment judgment = goal.text.empty()                         ? Judgment::none
-                              : std::isnan(value)                       ? Judgment::unknown
-                              : value >= goal.low && value <= goal.high ? Judgment::pass
-                                                                        : Judgment::falls_short;
+    const Figure::Judgment judgment = goal.text.empty()   ? Figure::Judgment::none
+                                      : std::isnan(value) ? Figure::Judgment::unknown
+                                      : value >= goal.low && value <= goal.high
+                                          ? Figure::Judgment::pass
+                                          : Figure::Judgment::falls_short;
     figures.push_back({section_, name, value, unit, goal.text, judgment});
   }
   // Of a share of n, each by itself [%]. One more of either kind is counted for the error, so that
@@ -164,15 +164,15 @@ void add_play(List& list, const Statistics& s) {
   list.add("  from chance", z, "z", {-2.0, 2.0, "-2 to 2"});
 }
 
-const char* word(Judgment judgment) {
+const char* word(Figure::Judgment judgment) {
   switch (judgment) {
-    case Judgment::none:
+    case Figure::Judgment::none:
       return "";
-    case Judgment::pass:
+    case Figure::Judgment::pass:
       return "pass";
-    case Judgment::falls_short:
+    case Figure::Judgment::falls_short:
       return "short";
-    case Judgment::unknown:
+    case Figure::Judgment::unknown:
       return "no data";
   }
   return "";
