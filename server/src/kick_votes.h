@@ -41,8 +41,11 @@ class KickVotes {
 
   void put_out(const std::string& machine) { out_.insert(machine); }
   bool is_out(const std::string& machine) const { return out_.contains(machine); }
-  // The match is over, and with it all votes and what they decided.
-  void begin_anew() { out_.clear(); }
+  // The match is over, and with it all votes, which expire() names now, and what they decided.
+  void begin_anew() {
+    out_.clear();
+    for (Vote& vote : open_) vote.until_us = 0;
+  }
 
  private:
   struct Vote {

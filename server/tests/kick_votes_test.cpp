@@ -60,5 +60,14 @@ TEST(KickVotes, WhatWasDecidedHoldsUntilTheMatchIsOver) {
   EXPECT_FALSE(votes.is_out("x"));
 }
 
+TEST(KickVotes, AVoteOfOneMatchIsOverInTheNext) {
+  KickVotes votes;
+  votes.cast("a", kTarget, "x", kThree, 0);
+  EXPECT_EQ(votes.expire(1), 0u);
+  votes.begin_anew();
+  EXPECT_EQ(votes.expire(1), kTarget);
+  EXPECT_EQ(votes.cast("b", kTarget, "x", kThree, 2).votes, 1) << "a's vote was of the other match";
+}
+
 }  // namespace
 }  // namespace server
