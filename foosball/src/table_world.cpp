@@ -293,7 +293,9 @@ void TableWorld::read_rods() {
 }
 
 void TableWorld::set_rod(int rod, const RodState& state) {
-  must(world_.set_joint_state(rods_[rod], kSlide, 0, state.slide, state.slide_rate));
+  const double limit = table_.rods[rod].slide_limit;
+  const double slide = std::clamp(state.slide, -limit, limit);
+  must(world_.set_joint_state(rods_[rod], kSlide, 0, slide, state.slide_rate));
   must(world_.set_joint_state(rods_[rod], kTurn, 0, state.angle, state.angle_rate));
   for (int man = 0; man < table_.rods[rod].men; ++man) {
     set_man(rod, man, {state.angle, state.angle_rate});

@@ -59,7 +59,7 @@ class TableWorld {
   void drive(int rod, const RodTarget& target);
   const RodState& rod(int rod) const { return rod_states_[rod]; }
   const ManStates& men() const { return man_states_; }
-  // With all its men.
+  // With all its men; at its stop a rod that was pressed a little past it.
   void set_rod(int rod, const RodState& state);
   void set_man(int rod, int man, const ManState& state);  // one alone, if he is hinged
 

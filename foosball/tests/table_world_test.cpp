@@ -67,6 +67,17 @@ TEST_P(TableWorldTest, ARodFollowsAStepOf40MillimetresAnd90Degrees) {
   }
 }
 
+TEST_P(TableWorldTest, ARodThatIsSetPastItsStopIsAtTheStop) {
+  for (const double side : {-1.0, 1.0}) {
+    for (int rod = 0; rod < kRods; ++rod) {
+      const double limit = table.rods[rod].slide_limit;
+      world.set_rod(rod, {side * (limit + 1e-6), 0.3, 0.0, 0.0});
+      EXPECT_EQ(world.rod(rod).slide, side * limit);
+      EXPECT_EQ(world.rod(rod).angle, 0.3);
+    }
+  }
+}
+
 TEST_P(TableWorldTest, ARodKeepsWithAMovingHandWithinAMillimetreAndTwoDegrees) {
   // 60 mm and half a revolution to either side, one and a half times a second: brisk play.
   double worst_slide = 0.0, worst_angle = 0.0;
