@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <locale>
+#include <sstream>
 #include <utility>
 
 namespace foosball {
@@ -22,6 +24,14 @@ std::string quoted(std::string_view text) {
   return result.append(text.substr(0, 40)).append("\"");
 }
 
+// Whatever the program's locale; libc++ has no std::from_chars of a double.
+bool read_number(std::string_view text, double& value) {
+  std::istringstream stream{std::string(text)};
+  stream.imbue(std::locale::classic());
+  return (stream >> std::noskipws >> value) &&
+         stream.peek() == std::istringstream::traits_type::eof();
+}
+
 }  // namespace
 
 vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view changes) {
@@ -39,10 +49,7 @@ vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view chang
     }
     const JudgmentField& field = kJudgmentFields[static_cast<std::size_t>(index)];
     double value = 0.0;
-    const char* begin = one.data() + equals + 1;
-    const char* end = one.data() + one.size();
-    const auto read = std::from_chars(begin, end, value);
-    if (read.ec != std::errc{} || read.ptr != end || !in_range(field, value)) {
+    if (!read_number(one.substr(equals + 1), value) || !in_range(field, value)) {
       return refuse(quoted(one) + ": " + field.name + " must be a number from " +
                     number(field.least) + " to " + number(field.most));
     }
