@@ -19,11 +19,12 @@ class ClassicPlayer final : public ComputerPlayer::Impl {
         screens_(team_, d.opens_match),
         sight_(team_, static_cast<int>(temper_.delay / kTick)) {}
 
-  void play(const MatchView& view, RodTargets& targets) override;
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override;
 
  private:
   void come_to(const MatchView& view);
   void hold_or_adopt(const MatchView& view);
+  bool is_own(std::size_t line) const { return (lines_ >> line & 1) != 0; }
 
   int team_;
   Temper temper_;
@@ -32,20 +33,30 @@ class ClassicPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   std::vector<RodTactics> rods_;  // from its own goal outwards
   Layout layout_ = Layout::tournament;
+  std::uint8_t lines_ = 0, before_ = 0;  // its own, now and in the tick before, by bit of Line
 };
 
-void ClassicPlayer::play(const MatchView& view, RodTargets& targets) {
+void ClassicPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t rods) {
+  lines_ = lines_of(view.layout, team_, rods);
+  if (lines_ == 0) {
+    sight_.forget();
+    before_ = 0;
+    return;
+  }
   come_to(view);
   sight_.look(view);
   const TableSpec& table = table_spec(view.layout);
-  if (!view.paused) {
+  if (!view.paused && ComputerScreens::worked_at(view.screen)) {
     RodTactics& own = rods_[ComputerScreens::kRod];
-    if (!screens_.work(view, own.slide(), own.swing())) {
-      for (RodTactics& rod : rods_) rod.play(table, sight_.now(), temper_, random_);
+    if (lines_ == kAllLines) screens_.work(view, own.slide(), own.swing());
+  } else if (!view.paused) {
+    for (std::size_t line = 0; line < rods_.size(); ++line) {
+      if (is_own(line)) rods_[line].play(table, sight_.now(), temper_, random_);
     }
   }
   const auto indices = rods_of_team(table, team_);
   for (std::size_t line = 0; line < rods_.size(); ++line) {
+    if (!is_own(line)) continue;
     const HandAxis& slide = rods_[line].slide();
     const HandAxis& swing = rods_[line].swing();
     RodTarget& target = targets[indices[line]];
@@ -60,13 +71,16 @@ void ClassicPlayer::come_to(const MatchView& view) {
   if (rods_.empty() || layout_ != view.layout) {
     layout_ = view.layout;
     rods_.clear();
+    before_ = 0;
     for (const int rod : rods_of_team(table_spec(layout_), team_)) rods_.emplace_back(team_, rod);
   }
   screens_.see(view, rods_[ComputerScreens::kRod].swing().position(), random_);
   hold_or_adopt(view);
+  before_ = lines_;
 }
 
-// Takes each rod over where it is: at first, and when something else has moved it far off.
+// Takes each rod over where it is: when it becomes its own, and when something else has moved it
+// far off.
 void ClassicPlayer::hold_or_adopt(const MatchView& view) {
   const auto indices = rods_of_team(table_spec(layout_), team_);
   for (std::size_t line = 0; line < rods_.size(); ++line) {
@@ -76,7 +90,7 @@ void ClassicPlayer::hold_or_adopt(const MatchView& view) {
     const double swing = team_swing(team_, state.angle);
     const bool far = std::fabs(slide - rod.slide().position()) > 0.15 ||
                      std::fabs(swing - rod.swing().position()) > vp::kPi;
-    if (!rod.adopted() || far) rod.adopt(slide, swing);
+    if ((before_ >> line & 1) == 0 || far) rod.adopt(slide, swing);
   }
 }
 

@@ -62,7 +62,6 @@ void RodTactics::adopt(double slide, double swing) {
   slide_.adopt(slide);
   swing_.adopt(swing);
   stance_ = Stance::watch;
-  adopted_ = true;
 }
 
 double RodTactics::level() const {

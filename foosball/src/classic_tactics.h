@@ -24,7 +24,6 @@ class RodTactics {
   void play(const TableSpec& table, const Sighting& now, const Temper& temper, Random& random);
   // The hand takes the rod where it is, whoever moved it there.
   void adopt(double slide, double swing);
-  bool adopted() const { return adopted_; }
 
   HandAxis& slide() { return slide_; }
   HandAxis& swing() { return swing_; }
@@ -50,7 +49,6 @@ class RodTactics {
   double level() const;  // the full turn nearest to the swing, where the feet hang down
 
   int team_, rod_;
-  bool adopted_ = false;
   HandAxis slide_, swing_;
   Stance stance_ = Stance::watch;
   double since_ = 0.0;  // in this stance [s]

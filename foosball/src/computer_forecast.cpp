@@ -14,7 +14,7 @@ namespace {
 constexpr double kDrifts = 0.001, kDriftsBy = 0.03;  // [m], [m/s]
 constexpr double kSurprise = 0.008, kSurpriseBy = 0.4;
 
-constexpr double kKeepsOn = 0.6;  // of an opponent's way; a hand that moved may have stopped
+constexpr double kKeepsOn = 0.6;  // of another player's way; a hand that moved may have stopped
 
 }  // namespace
 
@@ -93,10 +93,12 @@ std::optional<BallGuess> BallForecast::ball() const {
   return now_->expected[slot(tick_)];
 }
 
-void BallForecast::act(const RodTargets& targets) {
-  RodTargets& own = targets_[slot(tick_)];
-  own = targets;
-  for (RodTarget& target : own) target.live = true;  // without a hand it stays where it was left
+void BallForecast::act(const RodTargets& targets, std::uint8_t own) {
+  RodTargets& acted = targets_[slot(tick_)];
+  for (const int rod : rods_of_team(table_spec(layout_), team_)) {
+    acted[rod] = targets[rod];
+    acted[rod].live = (own >> rod & 1) != 0;  // without a hand it stays where it was left
+  }
   if (now_ && now_->runs) step(*now_);
   ++tick_;
 }
@@ -121,8 +123,9 @@ void BallForecast::step(Run& run) {
   const TableSpec& table = run.world.table();
   const double further = kKeepsOn * static_cast<double>(run.tick - seen_tick(seen_)) * kTick;
   for (int rod = 0; rod < kRods; ++rod) {
-    if (table.rods[rod].team == team_) {
-      run.world.drive(rod, targets_[slot(run.tick)][rod]);
+    const RodTarget& own = targets_[slot(run.tick)][rod];
+    if (own.live) {
+      run.world.drive(rod, own);
       continue;
     }
     const double limit = table.rods[rod].slide_limit;

@@ -6,12 +6,14 @@
 // of play; until then there is no forecast.
 //
 // Knows no more than the player has seen: ball and rods with its delay, and its own targets. What
-// the opponent has done since then it does not know; his men stay where they are expected.
+// others, opponents and team mates, have done since then it does not know; their men stay where
+// they are expected.
 //
 // Team frame: see computer_sight.h.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,8 +42,9 @@ class BallForecast {
   void see(const Sighting& seen);
   // The ball now; nothing while it does what was not expected.
   std::optional<BallGuess> ball() const;
-  // After the player has acted: its targets of this tick, in the table's frame.
-  void act(const RodTargets& targets);
+  // After the player has acted: its targets of this tick, in the table's frame, of the rods that
+  // are its own, by bit; those of others are not read.
+  void act(const RodTargets& targets, std::uint8_t own);
   // What went before says nothing of what comes: play was interrupted.
   void forget();
 
@@ -63,7 +66,7 @@ class BallForecast {
   TeamBodies bodies_;
   Tuning tuning_;
   std::unique_ptr<Run> now_, catching_up_;
-  std::vector<RodTargets> targets_;  // by tick, a ring
+  std::vector<RodTargets> targets_;  // by tick, a ring; live: of a rod that was its own
   Sighting seen_;
   long tick_ = 0;
   int spent_ = 0;

@@ -18,6 +18,12 @@ bool ComputerHands::holds(int line) const {
   return false;
 }
 
+void ComputerHands::leave(int line) {
+  for (Hand& hand : hands_) {
+    if (hand.line == line) hand = {};
+  }
+}
+
 void ComputerHands::let_go() {
   hands_ = {};
 }

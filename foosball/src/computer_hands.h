@@ -19,7 +19,8 @@ class ComputerHands {
   // One tick.
   void pass_time();
   bool holds(int line) const;
-  void let_go();  // both hands at rest, nowhere
+  void leave(int line);  // whoever held it or was on the way to it is nowhere
+  void let_go();         // both hands at rest, nowhere
 
  private:
   struct Hand {

@@ -1,15 +1,20 @@
 // The kinds of computer players behind ComputerPlayer.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "foosball/computer_player.h"
 
 namespace foosball {
 
+inline constexpr std::uint8_t kAllLines = 0xF;
+// The team's lines among the rods, by bit.
+std::uint8_t lines_of(Layout layout, int team, std::uint8_t rods);
+
 struct ComputerPlayer::Impl {
   virtual ~Impl() = default;
-  virtual void play(const MatchView& view, RodTargets& targets) = 0;
+  virtual void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) = 0;
   virtual PlayedPass passed() const { return {}; }
 };
 

@@ -23,12 +23,16 @@ class LevelPlayer final : public ComputerPlayer::Impl {
     }
   }
 
-  void play(const MatchView& view, RodTargets& targets) override;
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override;
   PlayedPass passed() const override { return mind_.passed(); }
 
  private:
   void come_to(const MatchView& view);
   void hold_or_adopt(const MatchView& view);
+  bool whole_team() const { return lines_ == kAllLines; }
+  void think(const MatchView& view);
+  void act(const MatchView& view, bool at_screen, RodTargets& targets);
+  void let_go();
 
   int team_;
   Random random_;
@@ -36,62 +40,83 @@ class LevelPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   ComputerMind mind_;
   std::optional<BallForecast> forecast_;
-  bool awake_ = false;
+  std::uint8_t lines_ = 0, before_ = 0;  // its own, now and in the tick before, by bit of Line
   Screen screen_ = Screen::logo;
 };
 
-void LevelPlayer::play(const MatchView& view, RodTargets& targets) {
+void LevelPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t rods) {
+  lines_ = lines_of(view.layout, team_, rods);
+  if (lines_ == 0) return let_go();
+  mind_.keep_to(lines_);
   come_to(view);
   sight_.look(view);
-  auto& rods = mind_.rods();
-  bool at_screen = false;
-  if (!view.paused) {
-    ComputerRod& own = rods[ComputerScreens::kRod];
-    at_screen = screens_.work(view, own.slide(), own.swing());
-    if (at_screen) {
-      mind_.rest();
-    } else {
-      std::optional<BallGuess> ball;
-      if (forecast_) {
-        forecast_->set_table(view.layout, view.bodies, view.tuning);
-        forecast_->see(sight_.seen());
-        ball = forecast_->ball();
-      }
-      mind_.play(sight_.seen(), view.tuning, view.next_server == team_, ball);
-    }
+  const bool at_screen = !view.paused && ComputerScreens::worked_at(view.screen);
+  if (at_screen) {
+    ComputerRod& own = mind_.rods()[ComputerScreens::kRod];
+    if (whole_team()) screens_.work(view, own.slide(), own.swing());
+    mind_.rest();
+  } else if (!view.paused) {
+    think(view);
   }
+  act(view, at_screen, targets);
+  if (!forecast_) return;
+  if (view.paused || at_screen) forecast_->forget();
+  forecast_->act(targets, rods);
+}
+
+void LevelPlayer::think(const MatchView& view) {
+  std::optional<BallGuess> ball;
+  if (forecast_) {
+    forecast_->set_table(view.layout, view.bodies, view.tuning);
+    forecast_->see(sight_.seen());
+    ball = forecast_->ball();
+  }
+  mind_.play(sight_.seen(), view.tuning, view.next_server == team_, ball);
+}
+
+void LevelPlayer::act(const MatchView& view, bool at_screen, RodTargets& targets) {
   for (int line = 0; line < 4; ++line) {
-    ComputerRod& rod = rods[line];
+    if (!mind_.may_hold(line)) continue;
+    ComputerRod& rod = mind_.rods()[line];
+    const bool screen_rod = whole_team() && line == ComputerScreens::kRod;
     RodTarget& target = targets[rod.index()];
     target = {team_slide(team_, rod.slide().position()), team_swing(team_, rod.swing().position()),
               team_slide(team_, rod.slide().rate()), team_swing(team_, rod.swing().rate()),
-              at_screen ? line == ComputerScreens::kRod : mind_.holds(line)};
+              at_screen ? screen_rod : mind_.holds(line)};
     if (view.paused) target.slide_rate = target.angle_rate = 0.0;
   }
-  if (!forecast_) return;
-  if (view.paused || at_screen) forecast_->forget();
-  forecast_->act(targets);
+}
+
+// What it knew is no longer true when it has rods again.
+void LevelPlayer::let_go() {
+  if (before_ == 0) return;
+  before_ = 0;
+  sight_.forget();
+  mind_.rest();
+  if (forecast_) forecast_->forget();
 }
 
 // A new screen; with play, new characters.
 void LevelPlayer::come_to(const MatchView& view) {
   const bool play_begins = screen_ != view.screen && view.screen == Screen::play;
-  if (!awake_ || play_begins) mind_.set_table(view.layout, view.bodies);
+  if (before_ == 0 || play_begins) mind_.set_table(view.layout, view.bodies);
   screen_ = view.screen;
   screens_.see(view, mind_.rods()[ComputerScreens::kRod].swing().position(), random_);
   hold_or_adopt(view);
-  awake_ = true;
+  before_ = lines_;
 }
 
-// Takes each rod over where it is: at first, and when something else has moved it far off.
+// Takes each rod over where it is: when it becomes its own, and when something else has moved it
+// far off.
 void LevelPlayer::hold_or_adopt(const MatchView& view) {
-  for (ComputerRod& rod : mind_.rods()) {
+  for (int line = 0; line < 4; ++line) {
+    ComputerRod& rod = mind_.rods()[line];
     const RodState& state = view.rods[rod.index()];
     const double slide = team_slide(team_, state.slide);
     const double swing = team_swing(team_, state.angle);
     const bool far = std::fabs(slide - rod.slide().position()) > 0.15 ||
                      std::fabs(swing - rod.swing().position()) > vp::kPi;
-    if (!awake_ || far) rod.adopt(slide, swing);
+    if ((before_ >> line & 1) == 0 || far) rod.adopt(slide, swing);
   }
 }
 

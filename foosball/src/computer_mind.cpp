@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace foosball {
 namespace {
@@ -14,7 +15,9 @@ ComputerMind::ComputerMind(int team, const Temperament& t, std::uint64_t seed)
     : team_(team),
       t_(t),
       random_(seed),
-      hands_(2, static_cast<int>(std::lround(t.hand_travel / kTick))) {}
+      hands_(2, static_cast<int>(std::lround(t.hand_travel / kTick))) {
+  rods_.reserve(4);
+}
 
 void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
   table_ = &table_spec(layout);
@@ -35,6 +38,13 @@ void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
   }
 }
 
+void ComputerMind::keep_to(std::uint8_t lines) {
+  lines_ = lines;
+  for (int line = 0; line < 4; ++line) {
+    if (!may_hold(line)) hands_.leave(line);
+  }
+}
+
 void ComputerMind::rest() {
   passed_ = {};
   hands_.let_go();
@@ -45,7 +55,9 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
                         const std::optional<BallGuess>& forecast) {
   own_serve_ = own_serve;
   Sighting now = seen;
-  for (ComputerRod& rod : rods_) {  // of its own hands it knows more than it sees
+  for (int line = 0; line < 4; ++line) {  // of its own hands it knows more than it sees
+    if (!may_hold(line)) continue;
+    ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
     now.slide[static_cast<std::size_t>(rod.index())] = rod.slide().position();
     now.swing[static_cast<std::size_t>(rod.index())] = rod.swing().position();
     now.slide_rate[static_cast<std::size_t>(rod.index())] = 0.0;
@@ -63,7 +75,7 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
   hands_.pass_time();
   std::array<bool, 4> busy{};
   for (int line = 0; line < 4; ++line) busy[static_cast<std::size_t>(line)] = rods_[line].busy();
-  const Lines lines = wanted_lines(now);
+  const Lines lines = own_lines(wanted_lines(now));
   hands_.want(lines[0], lines[1], busy);
   for (int line = 0; line < 4; ++line) {
     ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
@@ -147,6 +159,27 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
   return t_.stays_home ? Lines{kDefence, kGoalie} : Lines{kAttack, kDefence};
 }
 
+// Those of the wanted lines that it may hold; in place of a team mate's the nearest to it.
+ComputerMind::Lines ComputerMind::own_lines(const Lines& wanted) const {
+  Lines own{ComputerHands::kNone, ComputerHands::kNone};
+  std::size_t count = 0;
+  for (const int line : wanted) {
+    if (may_hold(line)) own[count++] = line;
+  }
+  for (const int missing : wanted) {
+    if (may_hold(missing)) continue;
+    int nearest = ComputerHands::kNone;
+    for (int line = 0; line < 4; ++line) {
+      if (!may_hold(line) || line == own[0]) continue;
+      const bool nearer =
+          nearest == ComputerHands::kNone || std::abs(line - missing) < std::abs(nearest - missing);
+      if (nearer) nearest = line;
+    }
+    if (count < own.size()) own[count++] = nearest;
+  }
+  return own;
+}
+
 // Where a man should stand: in the path of a ball that comes, else where he covers the goal
 // (goalie, defence) or level with the ball.
 double ComputerMind::guard_y(int line, const Sighting& now) const {
@@ -159,15 +192,43 @@ double ComputerMind::guard_y(int line, const Sighting& now) const {
   return cover_y(line, now);
 }
 
+// Of the way from the ball to the goal line, how much lies before the line's rod [1].
+double ComputerMind::to_goal(int line, const Sighting& now) const {
+  const double run = now.ball.x + 0.5 * table_->length;
+  return (now.ball.x - rods_[static_cast<std::size_t>(line)].x()) / run;
+}
+
+// Of what the team mate's man, goalie or defence, leaves open of the mouth, the middle of the
+// larger part.
+double ComputerMind::beside_mate(int line, const Sighting& now) const {
+  const ComputerRod& mate = rods_[static_cast<std::size_t>(line == kDefence ? kGoalie : kDefence)];
+  const double mouth = 0.5 * table_->goal_width - table_->ball_radius;
+  const double share = to_goal(mate.spec().line == Line::goalie ? kGoalie : kDefence, now);
+  double target = 0.0;
+  if (share > 0.02) {
+    double shadow = 1e9;  // on the goal line, of the man who hides most [m]
+    for (int man = 0; man < mate.spec().men; ++man) {
+      const double y =
+          man_offset(mate.spec(), man) + now.slide[static_cast<std::size_t>(mate.index())];
+      const double at = now.ball.y + (y - now.ball.y) / share;
+      if (std::fabs(at) < std::fabs(shadow)) shadow = at;
+    }
+    const double half =
+        (model_.half_foot[static_cast<std::size_t>(team_)] + 0.9 * table_->ball_radius) / share;
+    const double right = std::clamp(shadow - half, -mouth, mouth) + mouth;
+    const double left = mouth - std::clamp(shadow + half, -mouth, mouth);
+    if (right > left) target = -mouth + 0.5 * right;
+    if (left > right) target = mouth - 0.5 * left;
+  }
+  return now.ball.y + (target - now.ball.y) * to_goal(line, now);
+}
+
 // Defence and goalie each cover a part of the mouth as the ball sees it: side by side from one post
 // if that is enough, else about its middle.
 double ComputerMind::cover_y(int line, const Sighting& now) const {
-  const double goal_line = 0.5 * table_->length;
+  if (!may_hold(kDefence) || !may_hold(kGoalie)) return beside_mate(line, now);
   const double mouth = 0.5 * table_->goal_width - table_->ball_radius;
-  const double run = now.ball.x + goal_line;
-  const auto share = [&](int l) {  // of the way from the ball to the goal line
-    return (now.ball.x - rods_[static_cast<std::size_t>(l)].x()) / run;
-  };
+  const auto share = [&](int l) { return to_goal(l, now); };
   // Half of what a man hides of the mouth.
   const double half_foot = model_.half_foot[static_cast<std::size_t>(team_)];
   const auto hides = [&](int l) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,10 @@ class ComputerMind {
   // forecast: of the ball now, if there is one better than the mind's own guess.
   void play(const Sighting& seen, const Tuning& tuning, bool own_serve,
             const std::optional<BallGuess>& forecast = {});
+  // The lines that its hands may hold, by bit, from now on; at first all. Rods of the others are a
+  // team mate's: it knows no more of them than it sees.
+  void keep_to(std::uint8_t lines);
+  bool may_hold(int line) const { return (lines_ >> line & 1) != 0; }
   // The hands leave the rods as they are: another screen.
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
@@ -40,13 +45,17 @@ class ComputerMind {
   void note_strokes(const Sighting& now);
   void guess_ball(Sighting& now, const Tuning& tuning, const std::optional<BallGuess>& forecast);
   Lines wanted_lines(const Sighting& now) const;
+  Lines own_lines(const Lines& wanted) const;
   double guard_y(int line, const Sighting& now) const;
   double cover_y(int line, const Sighting& now) const;
+  double beside_mate(int line, const Sighting& now) const;
+  double to_goal(int line, const Sighting& now) const;
 
   int team_;
   Temperament t_;
   Random random_;
   ComputerHands hands_;
+  std::uint8_t lines_ = 0xF;
   const TableSpec* table_ = nullptr;
   GuessModel model_;
   BallGuess sent_;       // the ball as a stroke has just sent it off, not yet seen

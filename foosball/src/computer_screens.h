@@ -17,7 +17,11 @@ class ComputerScreens {
 
   // Call once a tick before work(): draws a character when the selection comes up.
   void see(const MatchView& view, double swing, Random& random);
-  // Moves the rod on the logo and the selection. False on the other screens: play.
+  // Screens that are worked with a rod; the others are play, or go on by themselves.
+  static bool worked_at(Screen screen) {
+    return screen == Screen::logo || screen == Screen::selection;
+  }
+  // Moves the rod on the logo and the selection. False on the other screens.
   bool work(const MatchView& view, HandAxis& slide, HandAxis& swing);
 
  private:

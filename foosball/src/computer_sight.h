@@ -34,6 +34,7 @@ class ComputerSight {
   ComputerSight(int team, int delay_ticks);
 
   void look(const MatchView& view);
+  void forget() { count_ = 0; }  // what was seen before an interruption
   // The rods as seen, and the ball carried on to now from where and how fast it was seen.
   const Sighting& now() const { return now_; }
   // As it was seen, now().age ago.

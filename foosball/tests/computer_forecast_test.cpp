@@ -40,7 +40,7 @@ struct Watched {
   void play() {
     home.play(match.view(), input.rods);
     away.play(match.view(), input.rods);
-    forecast.act(input.rods);
+    forecast.act(input.rods, kAllRods);
     match.step(input);
   }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "foosball/computer_player.h"
 #include "match/player.h"
 #include "server/match_record.h"
 #include "server/record_schedule.h"
@@ -74,7 +75,7 @@ class Game {
     const foosball::MatchView& view = match_.view();
     open_or_go_on(number, view);
     foosball::RodTargets hands{};
-    for (auto& player : players_) player->play(view, hands);
+    for (auto& player : players_) player->play(view, hands, foosball::kAllRods);
     foosball::TickInput input;
     for (int rod = 0; rod < kRods; ++rod) {
       tick_.rods[rod] = server::to_grid(hands[rod]);

@@ -26,7 +26,9 @@ class Computer final : public Player {
                  .opens_match = false,
                  .player = spec,
                  .judgment = judgment}) {}
-  void play(const MatchView& view, RodTargets& targets) override { player_.play(view, targets); }
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override {
+    player_.play(view, targets, rods);
+  }
   foosball::PlayedPass passed() const override { return player_.passed(); }
 
  private:
@@ -35,7 +37,7 @@ class Computer final : public Player {
 
 class Idle final : public Player {
  public:
-  void play(const MatchView&, RodTargets&) override {}
+  void play(const MatchView&, RodTargets&, std::uint8_t) override {}
 };
 
 // All rods of the team spin forward without end, each with a man kept level with the ball: what
@@ -43,7 +45,7 @@ class Idle final : public Player {
 class Spinner final : public Player {
  public:
   explicit Spinner(int team) : team_(team) {}
-  void play(const MatchView& view, RodTargets& targets) override {
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override {
     constexpr double kRate = 60.0;  // a hard flick of the wrist [rad/s]
     constexpr double kSpeed = 1.5;  // of the slide [m/s]
     const bool turns = view.screen == foosball::Screen::play && !view.paused;
@@ -51,6 +53,7 @@ class Spinner final : public Player {
     angle_ += rate * foosball::kTick;
     const auto& table = foosball::table_spec(view.layout);
     for (const int rod : rods_of_team(table, team_)) {
+      if ((rods >> rod & 1) == 0) continue;
       const double way = goal_of(table.rods[rod], view.ball_position.y, slide_[rod]) - slide_[rod];
       const double step = std::clamp(way, -kSpeed * foosball::kTick, kSpeed * foosball::kTick);
       slide_[rod] += step;
@@ -79,57 +82,63 @@ class Spinner final : public Player {
   std::array<double, kRods> slide_{};
 };
 
-// A person with one hand, as with a mouse: of another player only the rod that this person would
-// take is let through. Which one, and what the others do, is up to the assists
-// (foosball/assists.h).
+// A person with one hand, as with a mouse: another player that has only the rod that this person
+// would take. Which one, and what the others do, is up to the assists (foosball/assists.h).
 class OneRod final : public Player {
  public:
   OneRod(int team, std::unique_ptr<Player> inner) : team_(team), inner_(std::move(inner)) {}
 
-  void play(const MatchView& view, RodTargets& targets) override {
-    inner_->play(view, targets);
-    if (!assists_ || layout_ != view.layout) begin(view.layout);
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override {
+    if (!assists_ || layout_ != view.layout || rods_ != rods) begin(view.layout, rods);
     const foosball::AssistView seen{.ball_in_play = view.ball_in_play,
                                     .ball = view.ball_position,
                                     .velocity = view.ball_velocity,
                                     .rods = view.rods,
                                     .bodies = view.bodies};
-    foosball::AssistHand hand{.targets = targets};
-    const int rod = assists_->rod_to_take(seen, hand, rod_);
+    take_a_rod(seen);
+    const auto held = static_cast<std::uint8_t>(rod_ < 0 ? 0U : 1U << static_cast<unsigned>(rod_));
+    for (const int own : own_rods()) {
+      if ((rods_ >> own & 1) != 0) targets[static_cast<std::size_t>(own)].live = false;
+    }
+    inner_->play(view, targets, held);
+    foosball::AssistHand hand{.targets = targets, .held = held};
+    constexpr double kStrikes = 8.0;  // [rad/s]
+    hand.strikes =
+        rod_ >= 0 && std::fabs(targets[static_cast<std::size_t>(rod_)].angle_rate) > kStrikes;
+    const auto helped = assists_->steer(seen, hand, 1);
+    for (const int own : own_rods()) {
+      const auto i = static_cast<std::size_t>(own);
+      if ((rods_ >> own & 1) != 0) targets[i] = helped[i];
+    }
+  }
+  foosball::PlayedPass passed() const override { return inner_->passed(); }
+
+ private:
+  std::array<int, 4> own_rods() const { return rods_of_team(foosball::table_spec(layout_), team_); }
+
+  void take_a_rod(const foosball::AssistView& seen) {
+    const int rod = assists_->rod_to_take(seen, {}, rod_);
     constexpr int kSettle = 100;  // ticks: a hand that has just changed stays for a while
     if (++since_ >= kSettle && rod != rod_) {
       rod_ = rod;
       since_ = 0;
     }
     if (rod_ < 0) rod_ = rod;
-    if (rod_ >= 0) {
-      hand.held = static_cast<std::uint8_t>(1U << static_cast<unsigned>(rod_));
-      constexpr double kStrikes = 8.0;  // [rad/s]
-      hand.strikes = std::fabs(targets[static_cast<std::size_t>(rod_)].angle_rate) > kStrikes;
-    }
-    for (const int own : rods_of_team(foosball::table_spec(layout_), team_)) {
-      const auto i = static_cast<std::size_t>(own);
-      if (own != rod_) hand.targets[i].live = false;
-    }
-    const auto helped = assists_->steer(seen, hand, 1);
-    for (const int own : rods_of_team(foosball::table_spec(layout_), team_)) {
-      targets[static_cast<std::size_t>(own)] = helped[static_cast<std::size_t>(own)];
-    }
   }
 
- private:
-  void begin(foosball::Layout layout) {
+  void begin(foosball::Layout layout, std::uint8_t rods) {
     layout_ = layout;
-    std::uint8_t rods = 0;
-    for (const int own : rods_of_team(foosball::table_spec(layout), team_)) {
-      rods = static_cast<std::uint8_t>(rods | 1U << static_cast<unsigned>(own));
-    }
+    rods_ = rods;
+    unsigned own = 0;
+    for (const int rod : own_rods()) own |= 1U << static_cast<unsigned>(rod);
+    if ((rods >> std::max(0, rod_) & 1) == 0) rod_ = -1;
     assists_.emplace(
-        team_, layout, rods,
+        team_, layout, static_cast<std::uint8_t>(own & rods),
         foosball::AssistChoice{.automatic_rod = true, .goalie_follows = true, .aim = true});
   }
 
   int team_, rod_ = -1, since_ = 0;
+  std::uint8_t rods_ = 0;
   foosball::Layout layout_{};
   std::optional<foosball::Assists> assists_;
   std::unique_ptr<Player> inner_;

@@ -14,18 +14,15 @@ void ComputerSource::replace(const foosball::ComputerPlayerDesc& desc) {
   team_ = desc.team;
 }
 
-void ComputerSource::set_playing(bool playing) {
-  playing_ = playing;
-  if (!playing) rods_ = {};
-}
-
 void ComputerSource::poll(std::int64_t now_us) {
-  if (!playing_) return;
   targets_ = {};
-  player_.play(view_, targets_);
+  player_.play(view_, targets_, mine_);
+  rods_ = {};
+  if (mine_ == 0) return;
   ++counters_.frames;
   // A rod that its hands have let go is still the computer's: it stays where it was left.
   for (const int rod : rods_of_team(foosball::table_spec(view_.layout), team_)) {
+    if ((mine_ >> rod & 1) == 0) continue;
     const foosball::RodTarget& target = targets_[rod];
     rods_[rod] = {target.slide,      target.angle, target.slide_rate,
                   target.angle_rate, now_us,       cabinet::RodStatus::live};

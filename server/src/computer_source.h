@@ -13,8 +13,9 @@ class ComputerSource final : public cabinet::InputSource {
 
   // Another player takes its place, from the next poll on.
   void replace(const foosball::ComputerPlayerDesc& desc);
-  // While it does not play, its rods are absent and nothing is computed.
-  void set_playing(bool playing);
+  // The rods that it plays from the next poll on, by bit, of its team's. The others are absent;
+  // none: nothing is computed.
+  void set_rods(std::uint8_t rods) { mine_ = rods; }
 
   void poll(std::int64_t now_us) override;
   const cabinet::RodInputs& rods() const override { return rods_; }
@@ -29,7 +30,7 @@ class ComputerSource final : public cabinet::InputSource {
   cabinet::RodInputs rods_{};
   cabinet::SourceCounters counters_;
   std::string name_;
-  bool playing_ = false;
+  std::uint8_t mine_ = 0;
 };
 
 }  // namespace server

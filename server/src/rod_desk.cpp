@@ -193,7 +193,8 @@ bool RodDesk::watch_absences(bool in_match, std::int64_t now_us) {
 void RodDesk::assign_all() {
   std::array<int, foosball::kRods> person;
   person.fill(cabinet::SourceMux::kNobody);
-  std::array<bool, foosball::kTeams> has_person{}, computes{};
+  std::array<bool, foosball::kTeams> has_person{};
+  unsigned computed = 0;
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     for (const Place& place : places_) {
       if ((place.rods >> rod & 1) == 0) continue;
@@ -207,11 +208,11 @@ void RodDesk::assign_all() {
     const bool unclaimed = person[rod] == cabinet::SourceMux::kNobody;
     if (unclaimed && computer_allowed_[team] && (!has_person[team] || computer_fills_)) {
       order_.back() = computer_index_[team];
-      computes[team] = true;
+      computed |= 1U << rod;
     }
     if ((stand_ins_ >> rod & 1) != 0) {
       order_.back() = computer_index_[team];
-      computes[team] = true;
+      computed |= 1U << rod;
     }
     if (shown_) {
       mux_.assign(rod, std::span(&computer_index_[team], 1));
@@ -219,9 +220,21 @@ void RodDesk::assign_all() {
       mux_.assign(rod, order_);
     }
   }
-  for (int team = 0; team < foosball::kTeams; ++team) {
-    computers_[team]->set_playing(shown_ || computes[team]);
+  computed_ = shown_ ? foosball::kAllRods : static_cast<std::uint8_t>(computed);
+}
+
+// A computer plays with the rods in mind that are really its own: a device may have one of those
+// that it would have.
+void RodDesk::poll(std::int64_t now_us) {
+  unsigned rods = computed_;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const int source = mux_.source_of(rod);
+    const bool device =
+        source != cabinet::SourceMux::kNobody && kinds_[source] == RodDriver::cabinet;
+    if (device && !shown_) rods &= ~(1U << rod);
   }
+  for (const auto& computer : computers_) computer->set_rods(static_cast<std::uint8_t>(rods));
+  mux_.poll(now_us);
 }
 
 RodDriver RodDesk::driver(int rod) const {

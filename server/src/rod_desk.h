@@ -61,7 +61,7 @@ class RodDesk {
   // Who plays where a computer does.
   foosball::PlayerSpec computer_player() const;
 
-  void poll(std::int64_t now_us) { mux_.poll(now_us); }
+  void poll(std::int64_t now_us);
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
   RodDriver driver(int rod) const;
 
@@ -85,6 +85,7 @@ class RodDesk {
   std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
   std::array<Place, foosball::kRods> places_;  // one for each client that has a rod
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
+  std::uint8_t computed_ = 0;  // rods that a computer plays unless a device has them, by bit
   bool computer_fills_;
   foosball::PlayerSpec player_;
   std::array<bool, foosball::kTeams>

@@ -2,10 +2,17 @@
 #include "seats.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <bit>
+#include <utility>
+
+#include "computer_source.h"
 #include "door.h"
 #include "rod_desk.h"
 #include "votes.h"
+#include "wire/device_frame.h"
 
 namespace server {
 namespace {
@@ -220,6 +227,7 @@ struct DeskTest : testing::Test {
     ASSERT_NE(source, nullptr);
     ASSERT_TRUE(source->accept(in, now));
   }
+  void expect_no_choice_by_the_computer();
   foosball::Match match;
   RodDesk desk;
   std::int64_t now = 0;
@@ -259,6 +267,69 @@ TEST_F(FillingDesk, TheComputerFillsATeamIfTheHostSaysSo) {
   const std::string who = drivers();
   for (std::size_t rod = 0; rod < 8; ++rod) {
     EXPECT_EQ(who[rod], (one >> rod & 1) ? 'c' : (all0 >> rod & 1) ? 'C' : '-');
+  }
+}
+
+// Steps the match by the desk's rods; a computer that had the whole team would have confirmed.
+void DeskTest::expect_no_choice_by_the_computer() {
+  const std::vector<foosball::Command> push{{foosball::Command::Kind::push, 0, 0}};
+  match.step({{}, push});
+  ASSERT_EQ(match.view().screen, foosball::Screen::selection);
+  const int midfield = foosball::rods_of_team(foosball::table_spec(match.view().layout), 0)[2];
+  for (int tick = 0; tick < 5000; ++tick) {
+    ASSERT_EQ(drivers()[static_cast<std::size_t>(midfield)], 'C');
+    foosball::TickInput input;
+    for (int rod = 0; rod < foosball::kRods; ++rod) {
+      const cabinet::RodInput& in = desk.rods()[rod];
+      input.rods[rod] = {in.slide, in.angle, in.slide_rate, in.angle_rate,
+                         in.status == cabinet::RodStatus::live};
+    }
+    match.step(input);
+    ASSERT_FALSE(match.view().confirmed[0]) << "tick " << tick;
+  }
+}
+
+TEST_F(FillingDesk, TheComputerThatFillsLeavesTheChoiceOfACharacterToThePerson) {
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  hear(1, RodSet(all0 & -all0));
+  drivers();
+  expect_no_choice_by_the_computer();
+}
+
+TEST_F(DeskTest, TheComputerLeavesRodsAndChoiceToACabinetThatHasSomeOfThem) {
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  std::array<int, 2> ends{-1, -1};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+  cabinet::DeviceOptions options;
+  options.framing = cabinet::DeviceFraming::report;
+  desk.add_device(std::make_unique<cabinet::DeviceSource>(
+      options, [fd = ends[1]]() mutable { return std::exchange(fd, -1); }));
+  wire::DeviceFrame frame{};
+  frame.present = RodSet(all0 & -all0);
+  drivers();  // opens the device
+  for (int report = 0; report < 3; ++report) {
+    ++frame.sequence;
+    frame.time_us += 1000;
+    std::array<std::uint8_t, wire::kDeviceReportBytes> bytes{};
+    wire::encode_device_frame(frame, bytes.data());
+    ASSERT_EQ(::send(ends[0], bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t{bytes.size()});
+    drivers();
+  }
+  EXPECT_EQ(drivers()[static_cast<std::size_t>(std::countr_zero(all0))], 'k');
+  expect_no_choice_by_the_computer();
+  ::close(ends[0]);
+}
+
+TEST(ComputerSource, HasOnlyTheRodsThatItPlays) {
+  foosball::Match match = *foosball::Match::create({});
+  ComputerSource source({.team = 1}, match.view());
+  for (const RodSet mine : std::initializer_list<RodSet>{0x00, 0xFF, 0xA0, 0x00}) {
+    const RodSet team = RodSet(rods_of_team(match.view().layout, 1) & mine);
+    source.set_rods(mine);
+    source.poll(1000);
+    for (int rod = 0; rod < foosball::kRods; ++rod) {
+      EXPECT_EQ(source.rods()[rod].status == cabinet::RodStatus::live, (team >> rod & 1) != 0);
+    }
   }
 }
 

@@ -1,6 +1,6 @@
-// A computer player: sees what a person sees, moves the rods of one team with a person's limits
-// (reaction delay, motor noise, hand speed, two hands). Deterministic: its state follows from its
-// seed and the views that it was handed, one a tick.
+// A computer player: sees what a person sees, moves the rods of one team, or some of them, with a
+// person's limits (reaction delay, motor noise, hand speed, two hands). Deterministic: its state
+// follows from its seed and from the views and rods that it was handed, one a tick.
 #pragma once
 
 #include <array>
@@ -58,6 +58,8 @@ struct ComputerPlayerDesc {
   std::optional<Judgment> judgment{};  // of a level; none: judgment_of() its level and style
 };
 
+inline constexpr std::uint8_t kAllRods = 0xFF;  // by bit, of TableSpec::rods
+
 class ComputerPlayer {
  public:
   explicit ComputerPlayer(const ComputerPlayerDesc& desc);
@@ -65,9 +67,13 @@ class ComputerPlayer {
   ComputerPlayer(ComputerPlayer&&) noexcept;
   ComputerPlayer& operator=(ComputerPlayer&&) noexcept;
 
-  // Targets for the rods of its team; the others are left as they are. Works the screens too:
-  // pushes at the logo, chooses and confirms a character.
-  void play(const MatchView& view, RodTargets& targets);
+  // Targets for its rods: those of its team among `rods`; all other targets are left as they are,
+  // and not read. Rods of its team that are not its own are a team mate's: it sees where they are,
+  // as it sees the opponent's. They may change from tick to tick; none: it lets go and looks anew
+  // when it has some again.
+  // With its whole team it works the screens too: pushes at the logo, chooses and confirms a
+  // character. With a part of it, that is left to the team mate.
+  void play(const MatchView& view, RodTargets& targets, std::uint8_t rods = kAllRods);
   // The pass that a foot sent off in the last play(), if one did.
   PlayedPass passed() const;
 

@@ -27,8 +27,10 @@ namespace match {
 class Player {
  public:
   virtual ~Player() = default;
-  // Targets for the rods of its team; the others are left as they are. One call a tick.
-  virtual void play(const foosball::MatchView& view, foosball::RodTargets& targets) = 0;
+  // Targets for those of its team's rods that are in the set, by bit; the others are left as they
+  // are. One call a tick.
+  virtual void play(const foosball::MatchView& view, foosball::RodTargets& targets,
+                    std::uint8_t rods) = 0;
   // The pass that a foot sent off in the last play(), if one did and the player says so.
   virtual foosball::PlayedPass passed() const { return {}; }
 };
