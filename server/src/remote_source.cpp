@@ -12,10 +12,11 @@ void let_go(cabinet::RodInput& rod) {
 
 }  // namespace
 
-void RemoteSource::reset() {
+void RemoteSource::reset(std::int64_t now_us) {
   rods_ = {};
   own_ = {};
   heard_ = false;
+  heard_us_ = now_us;
 }
 
 void RemoteSource::set_rods(std::uint8_t rods) {

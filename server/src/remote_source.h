@@ -16,14 +16,15 @@ class RemoteSource final : public cabinet::InputSource {
 
   explicit RemoteSource(const std::string& name) : name_(name) {}
 
-  // Another client, or none, is heard here: forgets all.
-  void reset();
+  // Another client, or none, is to be heard here from now on: forgets all.
+  void reset(std::int64_t now_us);
   // The client has these rods, by bit, from now on; of those that it gives up nothing is kept.
   void set_rods(std::uint8_t rods);
-  // The client connects anew: its rods stay where they are, its count begins anew.
+  // The client connects anew: its rods stay where they are, its count begins anew. Its silence goes
+  // on: a connection moves no rod.
   void resume() { heard_ = false; }
-  // Since its last datagram; 0: none was heard since it connected.
-  std::int64_t silent_us(std::int64_t now_us) const { return heard_ ? now_us - heard_us_ : 0; }
+  // Since its last datagram; of a client that has sent none, since it came.
+  std::int64_t silent_us(std::int64_t now_us) const { return now_us - heard_us_; }
   // Rods of others are not looked at. False for a datagram no newer than one accepted.
   bool accept(const wire::InputDatagram& input, std::int64_t now_us);
 

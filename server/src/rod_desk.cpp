@@ -113,15 +113,15 @@ RemoteSource* RodDesk::remote(std::uint32_t client) {
   return client != 0 && place != places_.end() ? place->remote.get() : nullptr;
 }
 
-RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods) {
+RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) {
   auto place = std::ranges::find(places_, client, &Place::client);
   if (place == places_.end() && rods != 0) {
     place = std::ranges::find(places_, 0u, &Place::client);
-    if (place != places_.end()) place->remote->reset();
+    if (place != places_.end()) place->remote->reset(now_us);
   }
   if (place == places_.end()) return nullptr;
   place->client = rods != 0 ? client : 0;
-  if (rods == 0) place->lost_since_us = -1;
+  if (rods == 0) place->lost = false;
   vacated_ &= static_cast<std::uint8_t>(~rods);
   place->rods = rods;
   place->remote->set_rods(rods);
@@ -129,22 +129,23 @@ RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods) {
   return rods != 0 ? place->remote.get() : nullptr;
 }
 
-void RodDesk::lost(std::uint32_t client, std::int64_t now_us) {
+void RodDesk::lost(std::uint32_t client) {
   const auto place = std::ranges::find(places_, client, &Place::client);
-  if (client != 0 && place != places_.end()) place->lost_since_us = now_us;
+  if (client != 0 && place != places_.end()) place->lost = true;
 }
 
 void RodDesk::back(std::uint32_t client) {
   const auto place = std::ranges::find(places_, client, &Place::client);
-  if (client != 0 && place != places_.end()) place->lost_since_us = -1;
+  if (client != 0 && place != places_.end()) place->lost = false;
 }
 
-bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods) const {
+// One who is there to take rods.
+bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const {
   std::array<bool, foosball::kTeams> wanted{};
   for (int rod = 0; rod < foosball::kRods; ++rod)
     if ((rods >> rod & 1) != 0) wanted[table_.rods[rod].team] = true;
   return std::ranges::any_of(places_, [&](const Place& place) {
-    if (place.client == client || place.lost_since_us >= 0) return false;
+    if (place.client == client || place.lost || absent(place, now_us)) return false;
     for (int rod = 0; rod < foosball::kRods; ++rod)
       if ((place.rods >> rod & 1) != 0 && wanted[table_.rods[rod].team]) return true;
     return false;
@@ -156,16 +157,15 @@ void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
   if (client == 0 || place == places_.end()) return;
   const std::uint8_t rods = place->rods;
   // Whose rods the computer plays already is not offered: the game would stop for it.
-  const bool offer = (rods & stand_ins_) == 0 && has_team_mate(client, rods);
-  seat(client, 0);
+  const bool offer = (rods & stand_ins_) == 0 && has_team_mate(client, rods, now_us);
+  seat(client, 0, now_us);
   vacated_ |= rods;
   for (int rod = 0; rod < foosball::kRods; ++rod)
     if ((rods >> rod & 1) != 0) offered_until_us_[rod] = offer ? now_us + kOfferUs : now_us;
 }
 
 bool RodDesk::absent(const Place& place, std::int64_t now_us) const {
-  const bool gone = place.lost_since_us >= 0 && now_us - place.lost_since_us >= kStandInAfterUs;
-  return gone || place.remote->silent_us(now_us) >= kStandInAfterUs;
+  return place.remote->silent_us(now_us) >= kStandInAfterUs;
 }
 
 bool RodDesk::watch_absences(bool in_match, std::int64_t now_us) {
@@ -177,8 +177,9 @@ bool RodDesk::watch_absences(bool in_match, std::int64_t now_us) {
     if (away) stand_ins |= place.rods;
     somebody = somebody || !away;
   }
-  if (!in_match) stand_ins = vacated_ = 0;
+  if (!in_match) vacated_ = 0;
   // Nobody keeps up a match that all have left: it ends by the rule for idle ones.
+  if (!in_match || !somebody) stand_ins = 0;
   for (int rod = 0; somebody && rod < foosball::kRods; ++rod) {
     const auto bit = static_cast<std::uint8_t>(1u << rod);
     if ((vacated_ & bit) == 0) continue;

@@ -33,21 +33,22 @@ class RodDesk {
 
   // The client has these rods, by bit, from now on, and no others; 0: none. Takes no memory.
   // Preconditions: no rod is another client's. Returns where its inputs go; null: it has no rod.
-  RemoteSource* seat(std::uint32_t client, std::uint8_t rods);
+  RemoteSource* seat(std::uint32_t client, std::uint8_t rods, std::int64_t now_us);
   RemoteSource* remote(std::uint32_t client);  // null: it has no rod
   // The client's connection is lost, and expected back; it is back.
-  void lost(std::uint32_t client, std::int64_t now_us);
+  void lost(std::uint32_t client);
   void back(std::uint32_t client);
   // The client has left for good. Its rods are offered to its team mates first, if it has any.
   void leave(std::uint32_t client, std::int64_t now_us);
-  // Each tick: whom the computer stands in for. True: it changed. in_match: there is a match to
-  // keep going; what was vacated in another is forgotten.
+  // Each tick: whom the computer stands in for, where somebody else is there to play with or
+  // against. True: it changed. in_match: there is a match to keep going; what was vacated in
+  // another is forgotten.
   bool watch_absences(bool in_match, std::int64_t now_us);
   std::uint8_t stand_ins() const { return stand_ins_; }  // rods that the computer plays so
   std::uint8_t offered() const { return offered_; }      // to team mates, by watch_absences()
 
-  // How long a person may be lost or silent until the computer stands in: more than a gap in a
-  // line, less than it takes to concede.
+  // How long nothing may be heard of a person's hand until the computer stands in: more than a gap
+  // in a line, less than it takes to concede.
   static constexpr std::int64_t kStandInAfterUs = 3'000'000;
   // How long team mates are offered the rods of one who left.
   static constexpr std::int64_t kOfferUs = 10'000'000;
@@ -71,14 +72,14 @@ class RodDesk {
     std::uint8_t rods = 0;
     int index = cabinet::SourceMux::kNobody;  // the mux's
     std::unique_ptr<RemoteSource> remote;
-    std::int64_t lost_since_us = -1;  // negative: it is there
+    bool lost = false;  // its connection; expected back
   };
 
   int add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver kind);
   void assign_all();
   foosball::ComputerPlayerDesc computer_desc(int team) const;
   bool absent(const Place& place, std::int64_t now_us) const;
-  bool has_team_mate(std::uint32_t client, std::uint8_t rods) const;
+  bool has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const;
   const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
   const foosball::TableSpec& table_;

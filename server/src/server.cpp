@@ -93,7 +93,7 @@ void Server::Impl::take_control_events() {
         break;
       case ControlEvent::Kind::away:
         remember_name(event.client);
-        desk.lost(event.client, tick_us);
+        desk.lost(event.client);
         input.remove(event.client);
         broadcaster.remove(event.client);
         break;

@@ -29,7 +29,7 @@ std::string rods_by_name(RodSet rods, const auto& names) {
 void Server::Impl::admit(ControlEvent& event) {
   clients.push_back({event.client, event.team, event.rods, event.name});
   ++clients_ever;
-  desk.seat(event.client, event.rods);
+  desk.seat(event.client, event.rods, tick_us);
   listen_to(event);
 }
 
@@ -39,7 +39,7 @@ void Server::Impl::change_rods(ControlEvent& event) {
   const std::uint8_t before = client->team;
   client->team = event.team;
   client->rods = event.rods;
-  RemoteSource* source = desk.seat(event.client, event.rods);
+  RemoteSource* source = desk.seat(event.client, event.rods, tick_us);
   if (!input.redirect(event.client, source) && source != nullptr && event.socket)
     input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
   if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&

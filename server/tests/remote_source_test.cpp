@@ -75,10 +75,22 @@ TEST_F(RemoteSourceTest, HoldsARodThatIsNoLongerDrivenAndLeavesAloneOneThatNever
 
 TEST_F(RemoteSourceTest, TakesANewClientsSequenceFromItsStart) {
   ASSERT_TRUE(source.accept(input(500, 0.03f), 1000));
-  source.reset();
+  source.reset(1500);
   source.set_rods(kMine);
   EXPECT_EQ(source.rods()[0].status, RodStatus::absent);
   EXPECT_TRUE(source.accept(input(1, 0.01f), 2000));
+}
+
+TEST_F(RemoteSourceTest, IsSilentFromItsComingOnAndNoReturnEndsThat) {
+  source.reset(1000);
+  source.set_rods(kMine);
+  EXPECT_EQ(source.silent_us(5000), 4000);
+  ASSERT_TRUE(source.accept(input(1, 0.03f), 6000));
+  EXPECT_EQ(source.silent_us(9000), 3000);
+  source.resume();
+  EXPECT_EQ(source.silent_us(9000), 3000);
+  ASSERT_TRUE(source.accept(input(1, 0.03f), 10'000));
+  EXPECT_EQ(source.silent_us(10'000), 0);
 }
 
 TEST_F(RemoteSourceTest, GivesUpARodWithoutLettingGoOfTheOthers) {

@@ -223,7 +223,7 @@ struct DeskTest : testing::Test {
     wire::InputDatagram in;
     in.sequence = ++sequence;
     for (auto& rod : in.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
-    RemoteSource* source = desk.seat(client, rods);
+    RemoteSource* source = desk.seat(client, rods, 0);
     ASSERT_NE(source, nullptr);
     ASSERT_TRUE(source->accept(in, now));
   }
@@ -253,9 +253,9 @@ TEST_F(DeskTest, TheComputerHasATeamUntilAPersonHasARodOfIt) {
   EXPECT_EQ(drivers(), of(one, 'c')) << "the others of the team stand";
   hear(2, rest);
   EXPECT_EQ(drivers(), of(all0, 'c'));
-  desk.seat(1, 0);
+  desk.seat(1, 0, 0);
   EXPECT_EQ(drivers(), of(rest, 'c'));
-  desk.seat(2, 0);
+  desk.seat(2, 0, 0);
   EXPECT_EQ(drivers(), of(all0, 'C'));
 }
 
@@ -336,7 +336,7 @@ TEST(ComputerSource, HasOnlyTheRodsThatItPlays) {
 TEST_F(DeskTest, EightClientsMayHaveARodEach) {
   for (std::uint32_t client = 1; client <= 8; ++client) hear(client, RodSet(1u << (client - 1)));
   EXPECT_EQ(drivers(), "cccccccc");
-  EXPECT_EQ(desk.seat(9, 0), nullptr);
+  EXPECT_EQ(desk.seat(9, 0, 0), nullptr);
   EXPECT_EQ(desk.remote(9), nullptr);
 }
 

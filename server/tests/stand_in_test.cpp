@@ -29,8 +29,36 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(table.tick_until(
         [&] { return table->match().view().screen == foosball::Screen::selection; }, 5000));
   }
+  // Somebody whose hand is at the rods: heard every 100 ms of fake time.
+  struct Hand {
+    ProbeClient* client;
+    wire::InputDatagram input;
+  };
+  void plays(ProbeClient& client, const wire::Welcome& seat) {
+    Hand hand{&client, {.session = seat.session, .token = seat.token, .sequence = 0}};
+    for (wire::InputRod& rod : hand.input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
+    hands.push_back(hand);
+    hear_hands();
+  }
+  void lets_go(const ProbeClient& client) {
+    std::erase_if(hands, [&](const Hand& hand) { return hand.client == &client; });
+  }
+  void hear_hands() {
+    const std::uint64_t heard = table->counters().input.accepted;
+    for (Hand& hand : hands) {
+      ++hand.input.sequence;
+      ASSERT_TRUE(hand.client->send_input(hand.input));
+    }
+    ASSERT_TRUE(
+        table.tick_until([&] { return table->counters().input.accepted == heard + hands.size(); }));
+  }
   // Fake time: that of the ticks.
-  void pass(std::int64_t us) { table.tick(static_cast<int>(us / 1000)); }
+  void pass(std::int64_t us) {
+    for (constexpr std::int64_t kEveryUs = 100'000; us > 0; us -= kEveryUs) {
+      table.tick(static_cast<int>(std::min(us, kEveryUs) / 1000));
+      hear_hands();
+    }
+  }
   std::uint8_t source(ProbeClient& at, int rod) {
     while (wait_readable(at.udp(), 0)) at.snapshot(0);  // a full buffer takes no newer ones
     table.tick();
@@ -42,6 +70,7 @@ class StandIn : public testing::Test {
     return table.tick_until([&] { return table.log().find(text) != std::string::npos; }, 5000);
   }
 
+  std::vector<Hand> hands;
   const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
   const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
   const int goalie = std::countr_zero(one);
@@ -51,14 +80,16 @@ class StandIn : public testing::Test {
   Lockstep table;
 };
 
-TEST_F(StandIn, PlaysForALostPlayerAfterAGapAndGivesTheRodsBackToTheTicket) {
+TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   ProbeClient ann(table.port()), bob(table.port()), again(table.port());
-  const auto seat = sit(ann, "Ann", 0);
-  ASSERT_TRUE(seat && sit(bob, "Bob", 1));
+  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(seat && opponent);
+  plays(ann, *seat);
+  plays(bob, *opponent);
   begin_match(bob);
+  lets_go(ann);
   ann.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
-  table.tick(5);
   pass(RodDesk::kStandInAfterUs / 2);
   EXPECT_NE(source(bob, goalie), kComputer) << "a short gap is none";
   pass(RodDesk::kStandInAfterUs);
@@ -70,14 +101,48 @@ TEST_F(StandIn, PlaysForALostPlayerAfterAGapAndGivesTheRodsBackToTheTicket) {
   ASSERT_TRUE(back);
   EXPECT_EQ(back->rods, all0);
   ASSERT_TRUE(table.tick_until([&] { return table->counters().control.resumed == 1; }));
-  table.tick(3);
-  EXPECT_NE(source(bob, goalie), kComputer);
+  pass(RodDesk::kStandInAfterUs / 2);
+  EXPECT_EQ(source(bob, goalie), kComputer) << "the connection alone moves no rod";
+  plays(again, *back);
+  EXPECT_EQ(source(bob, goalie), kClient);
   EXPECT_TRUE(logged("the computer stands in for nobody any more"));
+}
+
+TEST_F(StandIn, PlaysForOneWhoHasNeverSentAnything) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(seat && opponent);
+  plays(bob, *opponent);
+  begin_match(bob);
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  EXPECT_EQ(source(bob, goalie), kComputer) << "the way of the datagrams is dead";
+  plays(ann, *seat);
+  EXPECT_EQ(source(bob, goalie), kClient);
+}
+
+TEST_F(StandIn, PlaysForNobodyWhereAllAreSilent) {
+  ProbeClient ann(table.port()), bob(table.port()), watcher(table.port());
+  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(seat && opponent && watcher.join());
+  plays(ann, *seat);
+  plays(bob, *opponent);
+  begin_match(bob);
+  lets_go(ann);
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  EXPECT_EQ(source(watcher, goalie), kComputer) << "Bob is there to play against";
+  lets_go(bob);
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  EXPECT_EQ(source(watcher, goalie), kClient);
+  EXPECT_FALSE(table->match().view().computer[0] || table->match().view().computer[1])
+      << "else the rule for idle ones would not end it";
 }
 
 TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
   ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
-  ASSERT_TRUE(sit(ann, "Ann", 0, one) && sit(bob, "Bob", 0, rest) && sit(carl, "Carl", 1));
+  const auto mate = sit(bob, "Bob", 0, rest), opponent = sit(carl, "Carl", 1);
+  ASSERT_TRUE(mate && opponent && sit(ann, "Ann", 0, one));
+  plays(bob, *mate);
+  plays(carl, *opponent);
   begin_match(carl);
   ann.say_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
@@ -92,9 +157,28 @@ TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
   EXPECT_NE(source(carl, goalie), kComputer) << "the team mate has them";
 }
 
+TEST_F(StandIn, OffersNothingToATeamMateWhoIsNotHeard) {
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
+  const auto first = sit(ann, "Ann", 0, one), opponent = sit(carl, "Carl", 1);
+  ASSERT_TRUE(first && opponent && sit(bob, "Bob", 0, rest));
+  plays(ann, *first);
+  plays(carl, *opponent);
+  begin_match(carl);
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  EXPECT_EQ(source(carl, std::countr_zero(rest)), kComputer) << "for Bob";
+  lets_go(ann);
+  ann.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
+  table.tick(3);
+  EXPECT_EQ(source(carl, goalie), kComputer) << "at once: Bob takes nothing";
+}
+
 TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes) {
   ProbeClient ann(table.port()), bob(table.port()), carl(table.port()), dora(table.port());
-  ASSERT_TRUE(sit(ann, "Ann", 0, one) && sit(bob, "Bob", 0, rest) && sit(carl, "Carl", 1));
+  const auto mate = sit(bob, "Bob", 0, rest), opponent = sit(carl, "Carl", 1);
+  ASSERT_TRUE(mate && opponent && sit(ann, "Ann", 0, one));
+  plays(bob, *mate);
+  plays(carl, *opponent);
   begin_match(carl);
   ann.say_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
@@ -111,7 +195,9 @@ TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes)
 
 TEST_F(StandIn, PlaysAtOnceForTheLastOfATeam) {
   ProbeClient ann(table.port()), bob(table.port());
-  ASSERT_TRUE(sit(ann, "Ann", 0) && sit(bob, "Bob", 1));
+  const auto opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(opponent && sit(ann, "Ann", 0));
+  plays(bob, *opponent);
   begin_match(bob);
   ann.say_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
@@ -132,19 +218,18 @@ TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
 
 TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
   ProbeClient ann(table.port()), bob(table.port());
-  const auto seat = sit(ann, "Ann", 0);
-  ASSERT_TRUE(seat && sit(bob, "Bob", 1));
+  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(seat && opponent);
+  plays(ann, *seat);
+  plays(bob, *opponent);
   begin_match(bob);
-  wire::InputDatagram input{.session = seat->session, .token = seat->token, .sequence = 1};
-  for (wire::InputRod& rod : input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
-  ASSERT_TRUE(ann.send_input(input));
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().input.accepted == 1; }));
   EXPECT_EQ(source(bob, goalie), kClient);
+  const Hand hand = hands.front();
+  lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 10'000);
   EXPECT_EQ(source(bob, goalie), kComputer);
-  ++input.sequence;
-  ASSERT_TRUE(ann.send_input(input));
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().input.accepted == 2; }));
+  hands.push_back(hand);
+  hear_hands();
   EXPECT_EQ(source(bob, goalie), kClient) << "heard again, it has its rods in that tick";
 }
 
