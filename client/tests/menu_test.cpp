@@ -225,6 +225,10 @@ TEST(SeatsMenu, APlayerIsPutOutWhenItIsAskedForTwiceAndNeverAHostOrOneself) {
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(page.at("Ann ◆", {.confirm = true}).kick);
   page.view.roster.seats[1] = {2, "Ann", wire::kWatchOnly, 0, 0, false};
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick) << "watches";
+  page.view.notices.push_back({wire::Notice::Level::info, wire::kKickTopics + 2, "1 of 2 votes"});
+  EXPECT_FALSE(page.at("Ann", {.confirm = true}).kick);
+  EXPECT_EQ(page.at("Ann", {.confirm = true}).kick.value_or(wire::Kick{}).client, 2u)
+      << "gave up the rods while the vote was open";
 }
 
 TEST(SeatsMenu, NamesStandAtTheRodsOnceMoreThanOnePlays) {

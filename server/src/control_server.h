@@ -96,7 +96,7 @@ class ControlServer {
   void ask(std::uint32_t match, RodSet cabinet_rods);
   // The same for a report; left out if 8 are waiting.
   void report(const wire::Report& report);
-  // The match is over: who was put out of it may play again.
+  // A match that was played is over: who was put out may play again.
   void match_is_over();
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const std::string& reason);
@@ -172,7 +172,8 @@ class ControlServer {
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
   std::string why_not_kick(const Seat& voter, const Seat* target) const;
   void put_out(const Seat& seat, const std::string& by);
-  std::string why_out(const os::SocketAddress& peer, wire::Role role) const;
+  std::string why_out(const os::SocketAddress& peer, wire::Role role, std::uint32_t client) const;
+  KickVotes::Here here() const;
   void watch_kicks(std::int64_t now_us);
   void carry_vote_over(const Seat& newcomer);
 

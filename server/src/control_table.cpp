@@ -123,6 +123,7 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
     other->close_softly(0);
   }
   seat->peer = connection.peer();
+  kicks_.moved(seat->client, seat->owner());
   const bool was_away = seat->away();
   if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) {
     if (!was_away) lose_seat(seat->client);  // its old connection is gone: the time of grace begins
@@ -161,7 +162,7 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
     return false;
   }
   if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
-  if (const std::string why = why_out(peer, connection.role); !why.empty()) {
+  if (const std::string why = why_out(peer, connection.role, 0); !why.empty()) {
     refuse(connection, wire::Refusal::Code::not_allowed, why);
     return false;
   }
@@ -210,7 +211,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
     return;
   }
   count(Count::joined);
-  if (rods != 0) carry_vote_over(*seats_.find(client));
+  carry_vote_over(*seats_.find(client));
   say(LogLevel::info,
       seat.name + " at " + os::to_text(connection.peer()) +
           (rods == 0 ? " watches"
@@ -301,7 +302,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   };
   if (!options_.teams_open) return answer("a recording plays here");
   if (connection.role == wire::Role::watcher) return answer("you joined to watch");
-  const std::string out = why_out(connection.peer(), connection.role);
+  const std::string out = why_out(connection.peer(), connection.role, seat->client);
   if (!out.empty() && (claim.rods & ~seat->rods) != 0) return answer(out);
   const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
   auto grant = Seats::Grant{Seats::Grant::Kind::granted, 0, {}};
@@ -480,11 +481,11 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish)
 bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
-    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.peer.machine());
+    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.owner());
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
-  const auto votes = votes_.cast(seat.peer.machine(), wish, voters, os::monotonic_us());
+  const auto votes = votes_.cast(seat.owner(), wish, voters, os::monotonic_us());
   if (votes.passed()) {
     tell({wire::Notice::Level::cleared, vote_topic(wish), "agreed"});
     return hand_on(kEverybody, wish);

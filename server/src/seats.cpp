@@ -1,6 +1,7 @@
 #include "seats.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace server {
 
@@ -25,9 +26,13 @@ std::string to_text(RodSet rods) {
   return text;
 }
 
-Seat* Seats::find(std::uint32_t client) {
+const Seat* Seats::find(std::uint32_t client) const {
   const auto it = std::ranges::find(seats_, client, &Seat::client);
   return client != 0 && it != seats_.end() ? &*it : nullptr;
+}
+
+Seat* Seats::find(std::uint32_t client) {
+  return const_cast<Seat*>(std::as_const(*this).find(client));
 }
 
 Seat* Seats::find_ticket(std::uint64_t ticket) {

@@ -37,6 +37,10 @@ struct Seat {
 
   bool away() const { return away_since_us >= 0; }
   bool plays() const { return rods != 0; }
+  // Whose vote it is, and who is put out: a machine has one, and so has an owner of an IPv6 network
+  // with its 2^64 addresses. Behind one IPv4 address, or in one such network, several people share
+  // it.
+  std::string owner() const { return peer.network(); }
 };
 
 class Seats {
@@ -46,6 +50,7 @@ class Seats {
 
   const std::vector<Seat>& all() const { return seats_; }
   Seat* find(std::uint32_t client);
+  const Seat* find(std::uint32_t client) const;
   Seat* find_ticket(std::uint64_t ticket);
   Seat& add(Seat seat) { return seats_.emplace_back(std::move(seat)); }
   void remove(std::uint32_t client);

@@ -305,9 +305,10 @@ void Server::tick(std::int64_t now_us) {
     s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
     if (s.recorder) s.recorder->add(s.next, s.match);
     const foosball::MatchView& view = s.match.view();
-    const bool logo = view.screen == foosball::Screen::logo;
-    if (std::exchange(s.at_logo, logo) != logo && logo) s.control.match_is_over();
-    if (view.screen == foosball::Screen::play && !view.attract) s.was_played = true;
+    if (view.screen == foosball::Screen::play && !view.attract) s.was_played = s.playing = true;
+    // What is shown at the logo while nobody plays ends no match, nor does a choice of characters.
+    if (view.screen == foosball::Screen::logo && std::exchange(s.playing, false))
+      s.control.match_is_over();
     if (s.results) s.keep_result();
   } else {
     s.broadcast(now_us, began_ns);

@@ -83,7 +83,7 @@ struct Server::Impl {
   std::uint64_t clients_ever = 0;
   std::int64_t tick_us = 0;                     // the clock at the tick under way
   std::array<Name, foosball::kRods> had_rod{};  // who was lost, or left, with the rod
-  bool at_logo = true;
+  bool playing = false;                         // people have played since the logo was last seen
   bool stand_ins_told = false, offer_told = false;  // notices that stand
   bool paused_by_watcher = false;                   // by a host who only watches
   std::uint64_t ticks = 0;

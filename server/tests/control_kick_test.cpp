@@ -14,6 +14,7 @@ class Kicks : public testing::Test {
           o.access.password = "open sesame";
           o.access.host_password = "mine";
           o.limits.seat_kept_us = 30'000'000;
+          o.match.rules.attract_seconds = 1.0;
         }) {}
 
   struct Guest {
@@ -21,6 +22,7 @@ class Kicks : public testing::Test {
     std::optional<wire::Welcome> welcome;
     std::uint32_t client() const { return welcome ? welcome->client : 0; }
   };
+  // rod < 0: to watch.
   Guest guest(const std::string& from, int rod, wire::Role role = wire::Role::player) {
     Guest g{ProbeClient(table.port(), from), std::nullopt};
     if (!g.probe.prove(role == wire::Role::host ? "mine" : "open sesame", role)) return g;
@@ -38,6 +40,25 @@ class Kicks : public testing::Test {
     voter.probe.say(wire::Ping{1});
     voter.probe.hear_a<wire::Pong>();
   }
+  void claim(Guest& who, RodSet rods, int team) {
+    who.probe.say(wire::Claim{rods, static_cast<std::uint8_t>(team)});
+    who.probe.say(wire::Ping{1});
+    who.probe.hear_a<wire::Pong>();
+  }
+  RodSet rods_of(Guest& who) {
+    who.probe.say(wire::Ping{1});
+    who.probe.hear_a<wire::Pong>();
+    for (const wire::Seat& seat : who.probe.roster().seats)
+      if (seat.client == who.client()) return seat.rods;
+    return 0;
+  }
+  void push(Guest& who, int rod) {
+    const std::uint64_t wishes = table->counters().control.wishes;
+    who.probe.say(wire::Wish{number(wire::WishKind::push), team_of(rod), 0});
+    ASSERT_TRUE(table.tick_until([&] { return table->counters().control.wishes > wishes; }));
+    table.tick(5);
+  }
+  foosball::Screen screen() { return table->match().view().screen; }
   std::uint64_t kicked() { return table->counters().control.kicked; }
 
   Lockstep table;
@@ -134,6 +155,102 @@ TEST_F(Kicks, AVoteOutlastsAReconnectionWithTheTicketAndANewSeat) {
   ASSERT_NE(anew.client(), bad.client());
   vote(b, anew.client());
   EXPECT_EQ(kicked(), 1u) << "the first vote still counts";
+}
+
+TEST_F(Kicks, AVoteIsNotEscapedByComingBackToWatchAndTakingRodsThen) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 3),
+        bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
+  vote(a, bad.client());
+  bad.probe.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  Guest anew = guest("127.0.0.5", -1);
+  ASSERT_TRUE(anew.welcome);
+  claim(anew, RodSet(1u << 2), team_of(2));
+  EXPECT_EQ(rods_of(anew), RodSet(1u << 2));
+  vote(b, anew.client());
+  EXPECT_EQ(kicked(), 1u) << "the first vote still counts";
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
+}
+
+TEST_F(Kicks, AVoteIsNotEscapedByGivingUpTheRods) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
+  vote(a, bad.client());
+  claim(bad, 0, team_of(2));
+  vote(b, bad.client());
+  EXPECT_EQ(kicked(), 1u);
+  EXPECT_TRUE(bad.probe.hear_a<wire::Refusal>());
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
+}
+
+TEST_F(Kicks, AVoteIsNotEscapedByASecondSeatOfTheMachine) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2),
+        second = guest("127.0.0.5", -1);
+  ASSERT_TRUE(a.welcome && b.welcome && bad.welcome && second.welcome);
+  vote(a, bad.client());
+  claim(bad, 0, team_of(2));
+  claim(second, RodSet(1u << 2), team_of(2));
+  EXPECT_EQ(rods_of(second), 0) << "the rods would be where the vote is not";
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
+  Guest innocent = guest("127.0.0.6", 2);
+  EXPECT_TRUE(innocent.welcome);
+  vote(b, bad.client());
+  vote(innocent, bad.client());
+  EXPECT_EQ(kicked(), 1u);
+}
+
+TEST_F(Kicks, AVoteIsNotEscapedByAnotherAddress) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
+  vote(a, bad.client());
+  Guest moved{ProbeClient(table.port(), "127.0.0.6"), std::nullopt};
+  ASSERT_TRUE(moved.probe.prove("open sesame"));
+  moved.welcome = moved.probe.resume(*bad.welcome);
+  ASSERT_TRUE(moved.welcome);
+  vote(b, moved.client());
+  EXPECT_EQ(kicked(), 1u);
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
+  EXPECT_FALSE(guest("127.0.0.6", 2).welcome);
+}
+
+TEST_F(Kicks, ANewcomerFromTheAddressIsNotToldToBeTheOneWhoLeft) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
+  vote(a, bad.client());
+  bad.probe.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(guest("127.0.0.5", 2).welcome);
+  std::string said;
+  while (said.find("127.0.0.5 comes from the address of 127.0.0.5, who has left") ==
+         std::string::npos) {
+    const auto notice = b.probe.hear_a<wire::Notice>();
+    ASSERT_TRUE(notice) << said;
+    said = notice->text;
+  }
+}
+
+TEST_F(Kicks, DecidedOnTheLogoItOutlastsAnExhibitionAndEndsWithTheNextMatch) {
+  Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 7),
+        bad = guest("127.0.0.5", 2);
+  ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
+  ASSERT_NE(team_of(0), team_of(7));
+  vote(a, bad.client());
+  vote(b, bad.client());
+  ASSERT_EQ(kicked(), 1u);
+  ASSERT_TRUE(table.tick_until([&] { return table->match().view().attract; }));
+  push(a, 0);
+  ASSERT_EQ(screen(), foosball::Screen::logo);
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome) << "nobody played";
+  push(a, 0);
+  ASSERT_EQ(screen(), foosball::Screen::selection);
+  push(a, 0);
+  push(c, 7);
+  ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::play; }));
+  EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
+  for (Guest* one : {&a, &b}) one->probe.say(wire::Wish{number(wire::WishKind::restart), 0, 0});
+  ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::logo; }));
+  EXPECT_TRUE(guest("127.0.0.5", 2).welcome);
 }
 
 TEST_F(Kicks, WhoIsAwayIsPutOutTooAndTheSeatIsFree) {

@@ -340,5 +340,18 @@ TEST_F(DeskTest, EightClientsMayHaveARodEach) {
   EXPECT_EQ(desk.remote(9), nullptr);
 }
 
+TEST(Seat, HasTheVoteOfItsMachineOrOfItsNetworkWhereOneOwnerHasManyAddresses) {
+  const auto owner = [](const char* address) {
+    Seat seat;
+    seat.peer = os::parse_address(address, 4242).value_or(os::SocketAddress());
+    return seat.owner();
+  };
+  EXPECT_EQ(owner("2001:db8:1:2::1"), owner("2001:db8:1:2:ffff:ffff:ffff:ffff"));
+  EXPECT_NE(owner("2001:db8:1:2::1"), owner("2001:db8:1:3::1"));
+  EXPECT_NE(owner("192.0.2.1"), owner("192.0.2.2"));
+  EXPECT_EQ(owner("192.0.2.1"), owner("::ffff:192.0.2.1")) << "heard at ::";
+  EXPECT_NE(owner("fe80::1"), owner("fe80::2")) << "these 64 bits are every LAN's";
+}
+
 }  // namespace
 }  // namespace server

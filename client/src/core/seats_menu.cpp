@@ -105,10 +105,14 @@ std::string rods_text(std::uint8_t rods) {
   return text;
 }
 
-// Players other than hosts may be put out: by the host, or by a vote of those who play.
+// Players other than hosts may be put out: by the host, or by a vote of those who play. Who has
+// given up the rods meanwhile may be voted out all the same.
 bool may_kick(const SeatsView& view, const Crew& crew, const wire::Seat& seat) {
   const bool entitled = view.role == number(wire::Role::host) || crew.plays();
-  return entitled && seat.client != view.client && seat.rods != 0 &&
+  const bool voted_on = std::ranges::any_of(view.notices, [&](const wire::Notice& notice) {
+    return notice.topic == wire::kKickTopics + seat.client;
+  });
+  return entitled && seat.client != view.client && (seat.rods != 0 || voted_on) &&
          seat.role != number(wire::Role::host);
 }
 
