@@ -48,6 +48,9 @@ std::string problem_with(const MatchResult& result) {
       if (player.name.empty() || !is_text(player.name) || !is_text(player.kind)) {
         return "a player's name is empty or too long";
       }
+      if (!is_amount(player.share) || player.share > 1.0) {
+        return "a player's share of the match is no number from 0 to 1";
+      }
     }
     if (team.statistics && !is_amount(team.statistics->possession_seconds)) {
       return "a team's possession is no number of seconds";

@@ -10,17 +10,24 @@ namespace {
 
 using Players = std::map<std::string, Standing>;
 
-double rating_of(const Team& team, Players& players) {
-  double sum = 0.0;
-  for (const Player& player : team.players) sum += players[player.name].rating;
-  return sum / static_cast<double>(team.players.size());
+double weighted_rating(const Team& team, Players& players) {
+  double sum = 0.0, weights = 0.0;
+  for (const Player& player : team.players) {
+    const double weight = std::max(player.share, 1e-6);  // one who played nothing is no team
+    sum += weight * players[player.name].rating;
+    weights += weight;
+  }
+  return sum / weights;
 }
 
+// The same computer may have stood in on both sides: that is no match of its own.
 bool meets_himself(const MatchResult& match) {
   std::set<std::string> names;
-  for (const Player& player : match.teams[0].players) names.insert(player.name);
-  return std::any_of(match.teams[1].players.begin(), match.teams[1].players.end(),
-                     [&](const Player& player) { return names.count(player.name) > 0; });
+  for (const Player& player : match.teams[0].players)
+    if (counts_for(player)) names.insert(player.name);
+  return std::any_of(
+      match.teams[1].players.begin(), match.teams[1].players.end(),
+      [&](const Player& player) { return counts_for(player) && names.count(player.name) > 0; });
 }
 
 void count(const MatchResult& match, int side, Players& players) {
@@ -31,6 +38,10 @@ void count(const MatchResult& match, int side, Players& players) {
     Standing& standing = players[player.name];
     standing.name = player.name;
     standing.kind = player.kind;
+    if (!counts_for(player)) {
+      ++standing.not_counted;
+      continue;
+    }
     ++standing.matches;
     if (winner) ++(*winner == side ? standing.wins : standing.losses);
     standing.goals_for += own.goals;
@@ -47,8 +58,8 @@ std::vector<Standing> standings(std::span<const MatchResult> matches) {
   Players players;
   for (const MatchResult& match : matches) {
     if (match.teams[0].players.empty() || match.teams[1].players.empty()) continue;
-    const double ratings[] = {rating_of(match.teams[0], players),
-                              rating_of(match.teams[1], players)};
+    const double ratings[] = {weighted_rating(match.teams[0], players),
+                              weighted_rating(match.teams[1], players)};
     for (const int side : {0, 1}) count(match, side, players);
     if (!match.winner() || meets_himself(match)) continue;
     for (const int side : {0, 1}) {
@@ -56,7 +67,7 @@ std::vector<Standing> standings(std::span<const MatchResult> matches) {
           1.0 / (1.0 + std::pow(10.0, (ratings[1 - side] - ratings[side]) / 400.0));
       const double gain = kRatingGain * ((*match.winner() == side ? 1.0 : 0.0) - expected);
       for (const Player& player : match.teams[static_cast<std::size_t>(side)].players) {
-        players[player.name].rating += gain;
+        if (counts_for(player)) players[player.name].rating += gain;
       }
     }
   }
@@ -65,6 +76,18 @@ std::vector<Standing> standings(std::span<const MatchResult> matches) {
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Standing& a, const Standing& b) { return a.rating > b.rating; });
   return sorted;
+}
+
+double rating_of(const Team& team, std::span<const Standing> standings) {
+  double sum = 0.0, count = 0.0;
+  const bool all = std::ranges::none_of(team.players, counts_for);
+  for (const Player& player : team.players) {
+    if (!all && !counts_for(player)) continue;
+    const auto own = std::ranges::find(standings, player.name, &Standing::name);
+    sum += own != standings.end() ? own->rating : kFirstRating;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : kFirstRating;
 }
 
 }  // namespace results

@@ -18,6 +18,27 @@ std::string names(const Team& team, const char* between) {
   return text;
 }
 
+// "Ann (62%), computer 2 (38%)": of who has played all of it the name alone.
+std::string names_and_shares(const Team& team) {
+  std::string text;
+  for (const Player& player : team.players) {
+    if (!text.empty()) text += ", ";
+    text += player.name;
+    const auto percent = std::lround(100.0 * player.share);
+    if (percent < 100) text += fmt::format(" ({}%)", percent);
+  }
+  return text;
+}
+
+std::string shares(const Team& team) {
+  std::string text;
+  for (const Player& player : team.players) {
+    if (!text.empty()) text += "; ";
+    text += fmt::format("{:.3g}", player.share);
+  }
+  return text;
+}
+
 // Names come from players: no control characters reach a terminal.
 std::string shown(std::string text, std::size_t width) {
   std::replace_if(
@@ -42,7 +63,8 @@ nlohmann::ordered_json json_of(const Team& team) {
   nlohmann::ordered_json out;
   out["players"] = nlohmann::ordered_json::array();
   for (const Player& player : team.players) {
-    out["players"].push_back({{"name", player.name}, {"kind", player.kind}});
+    out["players"].push_back(
+        {{"name", player.name}, {"kind", player.kind}, {"share", player.share}});
   }
   out["goals"] = team.goals;
   if (const auto& s = team.statistics) {
@@ -69,8 +91,8 @@ std::string matches_table(std::span<const MatchResult> matches) {
                                  "finished", "team 0", "score", "team 1", "length", "recording");
   for (const MatchResult& m : matches) {
     text += fmt::format("{:>5}  {:<20}  {:<24} {:>3}:{:<3} {:<24}  {:>6}  {}\n", m.id,
-                        shown(m.finished_at, 20), shown(names(m.teams[0], ", "), 24),
-                        m.teams[0].goals, m.teams[1].goals, shown(names(m.teams[1], ", "), 24),
+                        shown(m.finished_at, 20), shown(names_and_shares(m.teams[0]), 24),
+                        m.teams[0].goals, m.teams[1].goals, shown(names_and_shares(m.teams[1]), 24),
                         duration(m.play_seconds), shown(m.recording, kMaxText));
   }
   return text;
@@ -82,7 +104,7 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       "shot_speed_fastest,recording";
   for (int t = 0; t < kTeams; ++t) {
     for (const char* column : {"players", "goals", "shots", "shots_on_target", "saves", "passes",
-                               "touches", "own_goals", "possession_s"}) {
+                               "touches", "own_goals", "possession_s", "shares"}) {
       text += fmt::format(",team{}_{}", t, column);
     }
   }
@@ -102,6 +124,8 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       } else {
         text += ",,,,,,,";
       }
+      text += ',';
+      text += csv_cell(shares(team));
     }
     text += "\r\n";
   }
@@ -132,25 +156,26 @@ std::string matches_json(std::span<const MatchResult> matches) {
 
 std::string standings_table(std::span<const Standing> standings) {
   std::string text =
-      fmt::format("{:>4}  {:<24} {:>6} {:>7} {:>5} {:>6} {:>9}  {:>12}\n", "", "player", "rating",
-                  "matches", "wins", "losses", "goals", "fastest m/s");
+      fmt::format("{:>4}  {:<24} {:>6} {:>7} {:>5} {:>6} {:>9}  {:>12} {:>11}\n", "", "player",
+                  "rating", "matches", "wins", "losses", "goals", "fastest m/s", "not counted");
   int place = 0;
   for (const Standing& s : standings) {
-    text += fmt::format("{:>4}  {:<24} {:>6.0f} {:>7} {:>5} {:>6} {:>4}:{:<4}  {:>12}\n", ++place,
-                        shown(s.name, 24), s.rating, s.matches, s.wins, s.losses, s.goals_for,
-                        s.goals_against,
-                        s.fastest_shot > 0.0 ? fmt::format("{:.1f}", s.fastest_shot) : "");
+    text += fmt::format("{:>4}  {:<24} {:>6.0f} {:>7} {:>5} {:>6} {:>4}:{:<4}  {:>12} {:>11}\n",
+                        ++place, shown(s.name, 24), s.rating, s.matches, s.wins, s.losses,
+                        s.goals_for, s.goals_against,
+                        s.fastest_shot > 0.0 ? fmt::format("{:.1f}", s.fastest_shot) : "",
+                        s.not_counted > 0 ? std::to_string(s.not_counted) : "");
   }
   return text;
 }
 
 std::string standings_csv(std::span<const Standing> standings) {
   std::string text =
-      "player,kind,rating,matches,wins,losses,goals_for,goals_against,fastest_shot\r\n";
+      "player,kind,rating,matches,wins,losses,goals_for,goals_against,fastest_shot,not_counted\r\n";
   for (const Standing& s : standings) {
-    text += fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g}\r\n", csv_cell(s.name),
+    text += fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g},{}\r\n", csv_cell(s.name),
                         csv_cell(s.kind), s.rating, s.matches, s.wins, s.losses, s.goals_for,
-                        s.goals_against, s.fastest_shot);
+                        s.goals_against, s.fastest_shot, s.not_counted);
   }
   return text;
 }
@@ -166,7 +191,8 @@ std::string standings_json(std::span<const Standing> standings) {
                    {"losses", s.losses},
                    {"goals_for", s.goals_for},
                    {"goals_against", s.goals_against},
-                   {"fastest_shot", s.fastest_shot}});
+                   {"fastest_shot", s.fastest_shot},
+                   {"not_counted", s.not_counted}});
   }
   return dump(all);
 }

@@ -47,6 +47,43 @@ TEST(Rating, ATeamIsRatedByTheMeanOfItsPlayersAndAllOfThemGain) {
   EXPECT_DOUBLE_EQ(rating(all, "Bob"), 1484.0);
 }
 
+TEST(Rating, CountsAMatchOnlyForWhoPlayedAlmostAllOfIt) {
+  MatchResult match = match_between("Ann", "Bob", 5, 3);
+  match.teams[0].players = {{"Ann", "person", 0.6}, {"computer 2", "computer", 0.4}};
+  const auto all = standings(std::vector{match});
+  EXPECT_DOUBLE_EQ(rating(all, "Ann"), kFirstRating) << "the computer won it for her";
+  EXPECT_DOUBLE_EQ(rating(all, "computer 2"), kFirstRating);
+  EXPECT_DOUBLE_EQ(rating(all, "Bob"), 1484.0) << "he played all of it";
+  for (const Standing& s : all) {
+    EXPECT_EQ(s.matches, s.name == "Bob" ? 1u : 0u) << s.name;
+    EXPECT_EQ(s.not_counted, s.name == "Bob" ? 0u : 1u) << s.name;
+  }
+  EXPECT_DOUBLE_EQ(rating_of(match.teams[0], all), kFirstRating);
+  match.teams[0].players = {{"Ann", "person", 1.0 - kLargestAbsence}, {"Cleo", "person", 0.89}};
+  const auto more = standings(std::vector{match});
+  EXPECT_DOUBLE_EQ(rating(more, "Ann"), 1516.0) << "a moment's absence";
+  EXPECT_DOUBLE_EQ(rating(more, "Cleo"), kFirstRating);
+  EXPECT_DOUBLE_EQ(rating_of(match.teams[0], more), 1516.0);
+}
+
+// By hand: 0.75 of 1516 and 0.25 of 1484 are 1508; E of 1484 against it is 0.465516
+TEST(Rating, WeighsATeamByWhoPlayedHowMuchOfTheMatch) {
+  MatchResult second = match_between("Ann", "Bob", 2, 5, 2);
+  second.teams[0].players = {{"Ann", "person", 0.75}, {"Bob's double", "person", 0.25}};
+  MatchResult third = match_between("Bob's double", "Cleo", 3, 5, 1);
+  const std::vector<MatchResult> matches{match_between("Ann", "Bob", 5, 3), third, second};
+  EXPECT_NEAR(rating(standings(matches), "Bob"), 1484.0 + 32.0 * (1.0 - 0.465516), 1e-4);
+}
+
+TEST(Rating, IsMovedThoughTheSameComputerStoodInOnBothSides) {
+  MatchResult match = match_between("Ann", "Bob", 5, 3);
+  for (Team& team : match.teams) {
+    team.players[0].share = 0.95;
+    team.players.push_back({"computer 2", "computer", 0.05});
+  }
+  EXPECT_GT(rating(standings(std::vector{match}), "Ann"), kFirstRating);
+}
+
 TEST(Rating, IsMovedByNoDrawAndByNobodyAgainstHimself) {
   const std::vector<MatchResult> matches{match_between("Ann", "Bob", 4, 4, 1),
                                          match_between("Ann", "Ann", 5, 1, 2)};

@@ -92,7 +92,7 @@ TEST_F(StoreTest, AddsABatchWholeOrNotAtAll) {
 
 TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   Store store = made();
-  std::vector<MatchResult> bad(7, match_between("Ann", "Bob", 5, 3));
+  std::vector<MatchResult> bad(9, match_between("Ann", "Bob", 5, 3));
   bad[0].finished_at = "yesterday";
   bad[1].finished_at = "2026-13-22T20:00:00Z";
   bad[2].teams[0].players.clear();
@@ -100,6 +100,8 @@ TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   bad[4].play_seconds = std::numeric_limits<double>::quiet_NaN();
   bad[5].teams[0].players.resize(9, {"Ann", "person"});
   bad[6].recording.resize(5000, 'x');
+  bad[7].teams[0].players[0].share = 1.01;
+  bad[8].teams[0].players[0].share = std::numeric_limits<double>::quiet_NaN();
   for (const MatchResult& match : bad) EXPECT_FALSE(store.add(match));
   EXPECT_TRUE(store.matches({}).value().empty());
 }
@@ -132,7 +134,7 @@ TEST_F(StoreTest, ReadsAndMigratesTheFirstVersion) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].seed, 42u);
     EXPECT_EQ(found[0].teams[0].goals, 5u);
-    EXPECT_EQ(found[0].teams[1].players[0].name, "Bob");
+    EXPECT_EQ(found[0].teams[1].players[0], (Player{"Bob", "computer", 1.0}));
     EXPECT_FALSE(found[0].teams[0].statistics || found[0].shot_speeds);
   };
   check(Store::open(path_, Access::read_only).value());
@@ -141,6 +143,15 @@ TEST_F(StoreTest, ReadsAndMigratesTheFirstVersion) {
   ASSERT_TRUE(store.add(match_between("Ann", "Bob", 5, 3)));
   EXPECT_TRUE(store.matches({.player = "", .newest = 1}).value()[0].teams[0].statistics);
   EXPECT_TRUE(store.add(answers_of(7, 0, 1))) << "of a match from before there were answers";
+}
+
+TEST_F(StoreTest, KeepsHowMuchOfAMatchEachHasPlayed) {
+  MatchResult match = match_between("Ann", "Bob", 5, 3);
+  match.teams[0].players = {{"Ann", "person", 0.625}, {"computer 2", "computer", 0.375}};
+  ASSERT_TRUE(made().add(match));
+  const auto found = Store::open(path_, Access::read_only).value().matches({}).value();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].teams, match.teams);
 }
 
 TEST_F(StoreTest, KeepsAnswersWithTheMatchThatTheyFollow) {
@@ -178,7 +189,9 @@ TEST_F(StoreTest, RefusesAnswersOfNobodyOfNoMatchAndGivenTwice) {
 // As the release before the questionnaire made it.
 TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
-  execute("DROP TABLE answer; DROP TABLE sheet; PRAGMA user_version = 2");
+  execute(
+      "DROP TABLE answer; DROP TABLE sheet; ALTER TABLE player DROP COLUMN share; "
+      "PRAGMA user_version = 2");
   {
     const Store old = Store::open(path_, Access::read_only).value();
     EXPECT_EQ(old.matches({}).value().size(), 1u);
@@ -190,6 +203,17 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   EXPECT_TRUE(matches[0].teams[0].statistics);
   ASSERT_TRUE(store.add(answers_of(matches[0].id, 1, 0xF0)));
   EXPECT_EQ(store.answers().value().size(), 1u);
+}
+
+// As the release before shares made it.
+TEST_F(StoreTest, ReadsAndMigratesTheThirdVersion) {
+  { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
+  execute("ALTER TABLE player DROP COLUMN share; PRAGMA user_version = 3");
+  const auto share = [](const Store& store) {
+    return store.matches({}).value().at(0).teams[0].players.at(0).share;
+  };
+  EXPECT_EQ(share(Store::open(path_, Access::read_only).value()), 1.0);
+  EXPECT_EQ(share(made()), 1.0) << "whoever played then played all of it";
 }
 
 TEST_F(StoreTest, SaysWhichVersionItNeeds) {

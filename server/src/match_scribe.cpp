@@ -16,11 +16,11 @@ const char* name_of(foosball::Layout layout) {
 bool MatchScribe::observe(const foosball::Match& match, const foosball::RodTargets& targets) {
   const auto& events = match.events();
   // A new one begins where the characters are chosen.
-  const bool begins = std::any_of(events.begin(), events.end(), [&](const foosball::Event& event) {
+  begins_ = std::any_of(events.begin(), events.end(), [&](const foosball::Event& event) {
     return event.kind == foosball::EventKind::screen &&
            match.view().screen == foosball::Screen::selection;
   });
-  if (begins) {
+  if (begins_) {
     statistics_.abandon();
     before_ = statistics_.totals();
   }
@@ -66,7 +66,7 @@ results::MatchResult MatchScribe::result(const foosball::MatchView& view,
   result.play_seconds = view.play_seconds;
   const auto statistics = statistics_of_teams(before_, statistics_.totals());
   for (std::size_t t = 0; t < result.teams.size(); ++t) {
-    result.teams[t] = {{players[t]}, static_cast<std::uint32_t>(view.score[t]), statistics[t]};
+    result.teams[t] = {players[t], static_cast<std::uint32_t>(view.score[t]), statistics[t]};
   }
   result.shot_speeds = shot_speeds(before_, statistics_.totals());
   return result;

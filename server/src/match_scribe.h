@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <vector>
 
 #include "foosball/match.h"
 #include "foosball/statistics.h"
@@ -14,19 +14,21 @@ namespace server {
 
 class MatchScribe {
  public:
-  // Who plays a team; asked at the end of a match.
-  using Players = std::array<results::Player, foosball::kTeams>;
+  // Who has played a team; asked at the end of a match.
+  using Players = std::array<std::vector<results::Player>, foosball::kTeams>;
 
   explicit MatchScribe(const foosball::MatchDesc& match) : match_(match) {}
 
   // After each tick, with the targets that it was stepped with. True: the match is over, won or
   // drawn, and result() tells it. Takes no memory.
   bool observe(const foosball::Match& match, const foosball::RodTargets& targets);
+  bool begins() const { return begins_; }  // a match did in that tick
   // Of the match that is just over; the date and the recording are the caller's to add.
   results::MatchResult result(const foosball::MatchView& view, const Players& players) const;
 
  private:
   foosball::MatchDesc match_;
+  bool begins_ = false;
   foosball::StatisticsObserver statistics_;
   foosball::Statistics before_;  // totals when this match began
 };

@@ -146,18 +146,11 @@ void ResultsLog::Keeper::report(std::uint32_t number) {
   report.match = matches->back();
   report.fame = results::standings(*matches);
   const auto before = results::standings(std::span(*matches).first(matches->size() - 1));
-  const auto mean = [](const std::vector<results::Standing>& all, const results::Team& team) {
-    double sum = 0.0;
-    for (const results::Player& player : team.players) {
-      const auto own = std::ranges::find(all, player.name, &results::Standing::name);
-      sum += own != all.end() ? own->rating : results::kFirstRating;
-    }
-    return sum / static_cast<double>(team.players.size());
-  };
   for (std::size_t t = 0; t < report.rating.size(); ++t) {
-    report.rating[t] = mean(report.fame, report.match.teams[t]);
-    report.change[t] = report.rating[t] - mean(before, report.match.teams[t]);
+    report.rating[t] = results::rating_of(report.match.teams[t], report.fame);
+    report.change[t] = report.rating[t] - results::rating_of(report.match.teams[t], before);
   }
+  std::erase_if(report.fame, [](const results::Standing& one) { return one.matches == 0; });
   if (report.fame.size() > kFame) report.fame.resize(kFame);
   const std::lock_guard guard(mutex_);
   report_ = std::move(report);

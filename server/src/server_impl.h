@@ -15,6 +15,7 @@
 #include "device_watch.h"
 #include "event_repeater.h"
 #include "input_port.h"
+#include "lineup.h"
 #include "match_scribe.h"
 #include "recorder.h"
 #include "results_log.h"
@@ -49,7 +50,10 @@ struct Server::Impl {
   void keep_answers(const ControlEvent& event);
   void watch_results();
   void tell_report();
+  void begin_lineup();
+  void count_players();
   MatchScribe::Players players() const;
+  void tell_not_counted(const results::MatchResult& result);
   void watch_sending();
   void watch_tuning();
   void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
@@ -77,6 +81,8 @@ struct Server::Impl {
   EventRepeater events;
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;
+  Lineup lineup;
+  bool not_counted_told = false;        // a notice that stands
   std::unique_ptr<ResultsLog> results;  // or none
   std::uint32_t matches = 0;            // handed to it
   std::vector<Client> clients;

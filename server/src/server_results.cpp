@@ -1,18 +1,48 @@
 // What is kept of finished matches, what players answer about them, and what clients are told.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "results/rating.h"
 #include "server/match_record.h"
 #include "server_impl.h"
 
 namespace server {
 
+// Who plays in this tick. A person has the rods of his seat, unless the computer stands in.
+void Server::Impl::count_players() {
+  const foosball::MatchView& view = match.view();
+  if (view.screen != foosball::Screen::play || view.paused || view.attract) return;
+  lineup.begin_tick();
+  const RodSet stand_ins = desk.stand_ins();
+  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
+    const RodSet own = rods_of_team(view.layout, team);
+    bool person = false, cabinet = false, computer = view.computer[team];
+    for (const Client& client : clients) {
+      const RodSet rods = client.rods & own;
+      person = person || rods != 0;
+      if ((rods & ~stand_ins) != 0) lineup.add(team, Lineup::Kind::person, client.name.data());
+    }
+    for (int rod = 0; rod < foosball::kRods; ++rod) {
+      if ((own >> rod & 1) == 0) continue;
+      cabinet = cabinet || desk.driver(rod) == RodDriver::cabinet;
+      computer = computer || (stand_ins >> rod & 1) != 0;
+    }
+    if (cabinet && !person) lineup.add(team, Lineup::Kind::person, "cabinet");
+    if (computer) lineup.add(team, Lineup::Kind::computer, "computer");
+  }
+}
+
 // Of the last tick. What is shown while nobody plays is nobody's match.
 void Server::Impl::keep_result() {
   foosball::RodTargets targets;
   for (int rod = 0; rod < foosball::kRods; ++rod) targets[rod] = from_grid(next.rods[rod]);
-  if (!scribe.observe(match, targets) || match.view().attract) return;
+  const bool over = scribe.observe(match, targets);
+  if (scribe.begins()) begin_lineup();
+  count_players();
+  if (!over || match.view().attract) return;
   results::MatchResult result = scribe.result(match.view(), players());
+  tell_not_counted(result);
   result.finished_at = options.date();
   result.recording = options.record;
   if (!results->add(std::move(result), ++matches) || !options.questionnaire) return;
@@ -32,21 +62,38 @@ void Server::Impl::keep_answers(const ControlEvent& event) {
   results->answer(answers, event.answers.match);
 }
 
+void Server::Impl::begin_lineup() {
+  lineup.begin();
+  if (std::exchange(not_counted_told, false))
+    notify(wire::Notice::Level::cleared, static_cast<std::uint32_t>(Topic::not_counted),
+           "another match begins");
+}
+
 MatchScribe::Players Server::Impl::players() const {
   MatchScribe::Players players;
-  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-    const auto client = std::find_if(clients.begin(), clients.end(),
-                                     [&](const Client& c) { return c.team == team; });
-    if (client != clients.end()) {
-      players[team] = {client->name.data(), "person"};
-    } else if (options.computer[team] || match.view().computer[team]) {
-      players[team] = {"computer " + to_text(desk.computer_player()), "computer"};
-    } else {
-      players[team] = {desk.devices().empty() ? "nobody" : "cabinet", "person"};
-    }
-    if (players[team].name.empty()) players[team].name = "person";
+  for (int team = 0; team < foosball::kTeams; ++team) {
+    players[team] = lineup.players(team);
+    for (results::Player& player : players[team])
+      if (player.kind == "computer") player.name = "computer " + to_text(desk.computer_player());
+    if (players[team].empty()) players[team] = {{"nobody", "person"}};
   }
   return players;
+}
+
+// Those for whose rating the match does not count are told why.
+void Server::Impl::tell_not_counted(const results::MatchResult& result) {
+  std::string who;
+  for (const results::Team& team : result.teams) {
+    for (const results::Player& player : team.players) {
+      if (player.kind != "person" || results::counts_for(player)) continue;
+      const auto percent = std::lround(100.0 * player.share);
+      who += (who.empty() ? "" : ", ") + player.name + " (" + std::to_string(percent) + "%)";
+    }
+  }
+  if (who.empty()) return;
+  not_counted_told = true;
+  notify(wire::Notice::Level::info, static_cast<std::uint32_t>(Topic::not_counted),
+         "the match does not count for the rating of who played too little of it: " + who);
 }
 
 void Server::Impl::watch_results() {

@@ -3,6 +3,8 @@
 #include <bit>
 
 #include "control_fixture.h"
+#include "results/rating.h"
+#include "results/store.h"
 #include "rod_desk.h"
 #include "seats.h"
 
@@ -15,7 +17,7 @@ class StandIn : public testing::Test {
     o.limits.seat_kept_us = 30'000'000;
     o.match.rules.idle_seconds = 0.0;
   }
-  StandIn() : table(options) {}
+  explicit StandIn(const std::function<void(ServerOptions&)>& change = options) : table(change) {}
 
   std::optional<wire::Welcome> sit(ProbeClient& client, const std::string& name, std::uint8_t team,
                                    RodSet rods = 0) {
@@ -231,6 +233,58 @@ TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
   hands.push_back(hand);
   hear_hands();
   EXPECT_EQ(source(bob, goalie), kClient) << "heard again, it has its rods in that tick";
+}
+
+class StandInResults : public StandIn {
+ protected:
+  static std::string path() { return temp_path("results.sqlite"); }
+  static void rated(ServerOptions& o) {
+    options(o);
+    o.match.rules.match_seconds = 8.0;
+    o.match.rules.golden_goal = false;
+    o.results = path();
+    o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
+  }
+  StandInResults() : StandIn(rated) {}
+};
+
+TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
+  const auto first = sit(ann, "Ann", 0, one), mate = sit(bob, "Bob", 0, rest),
+             opponent = sit(carl, "Carl", 1);
+  ASSERT_TRUE(first && mate && opponent);
+  plays(ann, *first);
+  plays(bob, *mate);
+  plays(carl, *opponent);
+  begin_match(carl);
+  for (ProbeClient* one_of : {&bob, &carl}) {
+    const auto team = static_cast<std::uint8_t>(one_of == &bob ? 0 : 1);
+    one_of->say(wire::Wish{number(wire::WishKind::push), team, 0});
+  }
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+  pass(1'000'000);
+  lets_go(ann);
+  const auto over = [&] { return table->match().view().screen == foosball::Screen::end; };
+  for (int i = 0; i < 300 && !over(); ++i) pass(100'000);
+  ASSERT_TRUE(over());
+  EXPECT_TRUE(
+      logged("the match does not count for the rating of who played too little of it: "
+             "Ann ("));
+  table->finish("done");
+  const auto store = results::Store::open(path(), results::Access::read_only);
+  ASSERT_TRUE(store) << store.error();
+  const auto matches = store->matches({}).value();
+  ASSERT_EQ(matches.size(), 1u);
+  const auto& team = matches[0].teams[0].players;
+  ASSERT_EQ(team.size(), 3u);
+  EXPECT_EQ(team[0], (results::Player{"Bob", "person", 1.0})) << "not of the first seat alone";
+  for (const results::Player& player : {team[1], team[2]}) {
+    EXPECT_TRUE(player.name == "Ann" || player.name == "computer 2") << player.name;
+    EXPECT_FALSE(results::counts_for(player));
+  }
+  EXPECT_NEAR(team[1].share + team[2].share, 1.0, 1e-9);
+  EXPECT_EQ(matches[0].teams[1].players, (std::vector{results::Player{"Carl", "person", 1.0}}));
 }
 
 TEST_F(StandIn, IsNoneBeforeAMatch) {

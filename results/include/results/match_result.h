@@ -17,6 +17,8 @@ inline constexpr std::size_t kMaxPlayersOfTeam = 8;  // as many as a table has r
 struct Player {
   std::string name;  // 1 to kMaxText bytes of UTF-8 without a zero
   std::string kind;  // as "person", "computer"
+  // Of the match's time, what this player played: less for who came late, left, or was replaced.
+  double share = 1.0;  // 0 .. 1
   bool operator==(const Player&) const = default;
 };
 

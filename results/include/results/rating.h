@@ -3,7 +3,8 @@
 //
 // Source: A. Elo, The Rating of Chessplayers (1978). A team is rated by the mean of its players;
 // its expected score against another is E = 1 / (1 + 10^((R_other - R_own) / 400)), and each of its
-// players gains K (S - E), S = 1 for a win, 0 for a defeat.
+// players gains K (S - E), S = 1 for a win, 0 for a defeat. The mean is weighted by how much of the
+// match each has played.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,19 @@ namespace results {
 
 inline constexpr double kFirstRating = 1500.0;
 inline constexpr double kRatingGain = 32.0;  // K: half of it goes over where equals meet
+// A match counts for who has played all of it but so much: what the computer did for somebody who
+// was away is not that person's.
+inline constexpr double kLargestAbsence = 0.1;
+inline bool counts_for(const Player& player) {
+  return player.share >= 1.0 - kLargestAbsence;
+}
 
 struct Standing {
   std::string name, kind;  // kind: as in the last match
   double rating = kFirstRating;
-  std::uint64_t matches = 0, wins = 0, losses = 0;
-  std::uint64_t goals_for = 0, goals_against = 0;  // of his team
+  std::uint64_t matches = 0, wins = 0, losses = 0;  // that count for him
+  std::uint64_t not_counted = 0;                    // others: he played too little of them
+  std::uint64_t goals_for = 0, goals_against = 0;   // of his team
   double fastest_shot = 0.0;  // in a match of his, of either team [m/s]; 0: not known
   bool operator==(const Standing&) const = default;
 };
@@ -30,5 +38,8 @@ struct Standing {
 // Of all players, best first; equals by name. Matches in the order in which they were played; one
 // that nobody has won counts, but moves no rating, and so does one in which a player met himself.
 std::vector<Standing> standings(std::span<const MatchResult> matches);
+
+// Of those of the team for whom the match counts, or of all if it counts for none: their mean.
+double rating_of(const Team& team, std::span<const Standing> standings);
 
 }  // namespace results

@@ -80,6 +80,7 @@ class Server {
     sending = 5,
     stand_in = 6,
     offer = 7,
+    not_counted = 8,
     devices = 100
   };
   void warn(Topic topic, const std::string& text);
