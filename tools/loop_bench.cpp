@@ -94,7 +94,7 @@ int measure(const Options& options) {
   const server::RunOptions run_options{
       .ticks = static_cast<std::uint64_t>(options.seconds / foosball::kTick)};
   server::run(**server, loop, run_options, stop);
-  (*server)->finish("the measurement is over");
+  (*server)->finish(wire::Sentence::untranslated("the measurement is over"));
   const auto heard = listeners.totals();
   if (!heard || !heard->complete) return fail("the listeners ended before they were told to");
 

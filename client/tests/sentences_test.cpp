@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/translate.h"
+#include "wire/sentence.h"
 
 namespace client {
 namespace {
@@ -28,18 +29,65 @@ TEST(Sentences, KeepTheWordsOfOthersInATranslation) {
 TEST(Sentences, MayHaveTheirWordsInAnotherOrder) {
   const Language korean("ko");
   EXPECT_EQ(tr_sentence("the computer plays rods 3 for Ann"),
-            "컴퓨터가 Ann 님 대신 3번 봉을 맡습니다");
+            "컴퓨터가 대신 맡습니다: Ann 님의 3번 봉");
 }
 
 TEST(Sentences, ThatAreNotKnownStayAsTheyAreWhateverIsInThem) {
   const Language german("de");
   for (const char* text :
        {"", "%1", "%", "%9 was lost", "no snapshot for ", "no snapshot for 5 msec",
-        " was lost: rods", "the computer plays rods ", "watchers have no vote, they say"})
+        " was lost: rods", "the computer plays", "watchers have no vote, they say"})
     EXPECT_EQ(tr_sentence(text), text);
   EXPECT_EQ(tr_sentence("%3%1 was lost: rods %2 are kept for 30 s"),
             "%3%1 ist weg: Stangen %2 bleiben 30 s lang reserviert")
       << "a name is no form";
+}
+
+// The server can say nothing else: a Sentence is made from these forms.
+TEST(Sentences, OfTheServerAreAllKnownInEachLanguage) {
+  for (const char* code : {"de", "ko"}) {
+    const Language language(code);
+    for (const std::string_view form : wire::kSentences) {
+      std::string said(form);
+      for (char place = '1'; place <= '9'; ++place) {
+        const std::size_t at = said.find(std::string("%") + place);
+        if (at != std::string::npos) said.replace(at, 2, std::string("<") + place + ">");
+      }
+      const std::string shown = tr_sentence(said);
+      EXPECT_NE(shown, said) << code;
+      for (char place = '1'; place <= '0' + wire::places_of(form); ++place)
+        EXPECT_NE(shown.find(std::string("<") + place + ">"), std::string::npos) << shown;
+      EXPECT_EQ(shown.find('%'), std::string::npos) << shown;
+    }
+  }
+}
+
+TEST(Sentences, WithinASentenceAreTranslatedToo) {
+  using wire::Said, wire::say;
+  const Language german("de");
+  const std::string rods = say<Said::rods_for>("1 and 2", "Ann").text() + "; " +
+                           say<Said::rods_for>("3", say<Said::a_player>()).text();
+  EXPECT_EQ(tr_sentence(say<Said::computer_plays>(rods).text()),
+            "der Computer spielt: Stangen 1, 2 für Ann; Stangen 3 für jemanden");
+  EXPECT_EQ(tr_sentence(say<Said::rods_offered>(10, rods).text()),
+            "10 s lang frei für die Mannschaft, dann spielt der Computer: Stangen 1, 2 für Ann; "
+            "Stangen 3 für jemanden");
+  EXPECT_EQ(
+      tr_sentence(say<Said::results_not_kept>(
+                      say<Said::results_problem>("/tmp/a.sqlite", say<Said::results_locked>()))
+                      .text()),
+      "Ergebnisse in /tmp/a.sqlite: ein anderes Programm hält sie gesperrt; beende es und "
+      "versuche es noch einmal; das Spiel geht weiter");
+  EXPECT_EQ(tr_sentence(say<Said::not_rated>("Ann (62%), Bob; (9%)").text()),
+            "das Spiel zählt nicht für die Wertung derer, die zu wenig davon gespielt haben: "
+            "Ann (62%), Bob; (9%)");
+}
+
+TEST(Sentences, OfARecordingAreNotTakenForTheShorterOnesTheyBeginLike) {
+  const Language german("de");
+  EXPECT_EQ(tr_sentence(wire::say<wire::Said::disk_too_slow>("a.sfr").text()),
+            "die Aufzeichnung in a.sfr endete vorzeitig: die Platte ist zu langsam; das Spiel geht "
+            "weiter");
 }
 
 TEST(Sentences, AreEnglishInEnglish) {

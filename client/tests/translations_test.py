@@ -13,6 +13,12 @@ for source in [*(client / 'src').rglob('*.cpp'), *(client.parent / 'tools/watch'
     # Adjacent string literals are one sentence.
     for call in re.findall(r'\b(?:tr|N_)\(((?:\s*"(?:[^"\\]|\\.)*")+)\s*\)', source.read_text(encoding='utf-8')):
         sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', call)))
+# What the server says to people.
+said = (client.parent / 'wire/include/wire/sentence.h').read_text(encoding='utf-8')
+server = re.findall(r'^  X\(\w+, "((?:[^"\\]|\\.)*)"\)', said, re.M)
+if len(server) != said.count('  X('):
+    sys.exit('wire/sentence.h is written otherwise than this test reads it')
+sentences.update(server)
 # The panel shows what each tuning value means.
 tuning = (client.parent / 'foosball/include/foosball/tuning.h').read_text(encoding='utf-8')
 for meaning in re.findall(r'&Tuning::\w+, [^"]*?((?:"(?:[^"\\]|\\.)*"\s*)+)\}', tuning):
@@ -39,6 +45,9 @@ for catalogue in catalogues:
     for sentence in sorted(sentences):
         if not pairs.get(sentence):
             print(f'{catalogue.name}: no translation of "{sentence}"')
+            bad += 1
+        elif sorted(re.findall(r'%\d', sentence)) != sorted(re.findall(r'%\d', pairs[sentence])):
+            print(f'{catalogue.name}: other places in the translation of "{sentence}"')
             bad += 1
 print(f'{len(sentences)} sentences, {bad} missing')
 sys.exit(bad != 0)

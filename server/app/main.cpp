@@ -250,15 +250,15 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   }
   server::TickLoop loop(options.loop, log);
   const server::RunEnd end = server::run(server, loop, options.run, stop_requested);
-  server.finish(server::to_text(end));
+  server.finish(server::to_sentence(end));
 
   // Never both: a replay is not recorded.
   int code = options.replay.empty() ? judge_record(server, options.recordings.empty(), log)
                                     : judge_replay(server, options.quiet, log);
   if (code == server::kExitOk) code = judge_sending(server, log);
   if (!options.quiet) {
-    outputs.out.write(
-        fmt::format("{}:\n{}", server::to_text(end), server::summary(server, loop.stats())));
+    outputs.out.write(fmt::format("{}:\n{}", server::to_sentence(end).text(),
+                                  server::summary(server, loop.stats())));
   }
   if (options.stats_file.empty()) return code;
   const auto written = server::write_stats(server, loop.stats(), options.stats_file);

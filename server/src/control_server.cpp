@@ -15,6 +15,8 @@ namespace server {
 namespace {
 
 using State = ControlConnection::State;
+using wire::Said;
+using wire::say;
 
 constexpr std::int64_t kClosingUs = 1'000'000;  // a peer told to go may take so long to read why
 constexpr std::int64_t kGoodbyeUs = 200'000;    // at our own end
@@ -38,11 +40,16 @@ ControlServer::ControlServer(ControlOptions options, os::FileDescriptor listener
       thread_([this] { run(); }) {}
 
 ControlServer::~ControlServer() {
-  stop("the server ends");
+  stop(say<Said::server_ends>());
 }
 
-void ControlServer::notify(wire::Notice notice) {
-  if (outbound_.push(std::move(notice))) ::eventfd_write(wake_.get(), 1);
+void ControlServer::notify(wire::Notice::Level level, std::uint32_t topic,
+                           const wire::Sentence& text) {
+  if (outbound_.push({level, topic, text.text()})) ::eventfd_write(wake_.get(), 1);
+}
+
+void ControlServer::clear(std::uint32_t topic, const std::string& text) {
+  if (outbound_.push({wire::Notice::Level::cleared, topic, text})) ::eventfd_write(wake_.get(), 1);
 }
 
 bool ControlServer::tell_tuning(const wire::Tuning& tuning) {
@@ -59,9 +66,9 @@ void ControlServer::report(const wire::Report& report) {
   if (reports_.push(report)) ::eventfd_write(wake_.get(), 1);
 }
 
-void ControlServer::stop(const std::string& reason) {
+void ControlServer::stop(const wire::Sentence& reason) {
   if (!thread_.joinable()) return;
-  bye_reason_ = reason;
+  bye_reason_ = reason.text();
   stopping_.store(true, std::memory_order_release);
   ::eventfd_write(wake_.get(), 1);
   thread_.join();
@@ -204,7 +211,7 @@ void ControlServer::serve(ControlConnection& connection) {
   if (!connection.receive()) {
     if (connection.wrong_password()) {
       count(Count::wrong_passwords);
-      say(LogLevel::warning, os::to_text(connection.peer()) + " gave a wrong password");
+      log(LogLevel::warning, os::to_text(connection.peer()) + " gave a wrong password");
     } else if (connection.broke_off()) {
       count(Count::bad_messages);
     }
@@ -217,7 +224,7 @@ void ControlServer::serve(ControlConnection& connection) {
     const auto status = connection.next(message);
     if (status == wire::ControlReader::Status::need_more) return;
     if (status == wire::ControlReader::Status::broken) {
-      reject(connection, "your message could not be read: is this a Space Foosball client?");
+      reject(connection, say<Said::unreadable>());
       return;
     }
     handle(connection, message);
@@ -244,7 +251,7 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
   } else if (std::holds_alternative<wire::Bye>(message)) {
     release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {
-    reject(connection, "a message out of its place: say Hello first and once");
+    reject(connection, say<Said::out_of_place>());
   }
 }
 
@@ -270,16 +277,16 @@ void ControlServer::drop_those_who_do_not_read() {
 // ---------------------------------------------------------------------
 
 void ControlServer::refuse(ControlConnection& connection, wire::Refusal::Code code,
-                           const std::string& reason) {
+                           const wire::Sentence& reason) {
   count(code == wire::Refusal::Code::bad_message ? Count::bad_messages : Count::refused);
-  say(LogLevel::warning, "refused " + os::to_text(connection.peer()) + ": " + reason);
-  send(connection, wire::Refusal{code, reason});
+  log(LogLevel::warning, "refused " + os::to_text(connection.peer()) + ": " + reason.text());
+  send(connection, wire::Refusal{code, reason.text()});
   if (connection.client != 0) release(connection, Going::left);
   connection.close_softly(os::monotonic_us() + kClosingUs);
 }
 
 // A line that a stranger caused: the log is spared a crowd's.
-void ControlServer::say(LogLevel level, const std::string& text) {
+void ControlServer::log(LogLevel level, const std::string& text) {
   if (!log_limit_.take(os::monotonic_us())) {
     ++unsaid_;
     return;
@@ -290,13 +297,13 @@ void ControlServer::say(LogLevel level, const std::string& text) {
                                         " lines like this were left out before it)");
 }
 
-void ControlServer::reject(ControlConnection& connection, const std::string& reason) {
+void ControlServer::reject(ControlConnection& connection, const wire::Sentence& reason) {
   refuse(connection, wire::Refusal::Code::bad_message, reason);
 }
 
 void ControlServer::drop(ControlConnection& connection, const std::string& why) {
   const Seat* seat = seats_.find(connection.client);
-  say(LogLevel::warning, (seat != nullptr ? seat->name + " at " : std::string()) +
+  log(LogLevel::warning, (seat != nullptr ? seat->name + " at " : std::string()) +
                              os::to_text(connection.peer()) + " is dropped: it " + why);
   release(connection, Going::left);
 }
@@ -327,7 +334,7 @@ void ControlServer::publish_notices() {
   while (outbound_.pop(notice)) {
     const bool cleared = notice.level == wire::Notice::Level::cleared;
     options_.log(cleared ? LogLevel::info : LogLevel::warning, notice.text);
-    tell(notice);
+    publish(notice);
   }
 }
 
@@ -354,8 +361,23 @@ void ControlServer::publish_report() {
   }
 }
 
+void ControlServer::tell(wire::Notice::Level level, std::uint32_t topic,
+                         const wire::Sentence& text) {
+  publish({level, topic, text.text()});
+}
+
+// why: for who reads the messages; clients show nothing.
+void ControlServer::clear_notice(std::uint32_t topic, const std::string& why) {
+  publish({wire::Notice::Level::cleared, topic, why});
+}
+
+void ControlServer::answer(ControlConnection& connection, std::uint32_t topic,
+                           const wire::Sentence& text) {
+  send(connection, wire::Notice{wire::Notice::Level::info, topic, text.text()});
+}
+
 // To all, and until it is cleared to each who joins.
-void ControlServer::tell(const wire::Notice& notice) {
+void ControlServer::publish(const wire::Notice& notice) {
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, notice);
   }

@@ -35,6 +35,7 @@
 #include "votes.h"
 #include "wire/control.h"
 #include "wire/seal.h"
+#include "wire/sentence.h"
 
 namespace server {
 
@@ -88,7 +89,8 @@ class ControlServer {
   // Tick thread.
   bool next_event(ControlEvent& event) { return events_.pop(event); }
   // Sent to all and, until cleared, to each who joins. Dropped and counted if 64 are waiting.
-  void notify(wire::Notice notice);
+  void notify(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
+  void clear(std::uint32_t topic, const std::string& text);  // text: for the log
   // Sent to all, and to each who joins until another is. False: try again in the next tick.
   bool tell_tuning(const wire::Tuning& tuning);
   // A match was won that is kept: who has rods may answer. cabinet_rods: those that its own hands
@@ -99,7 +101,7 @@ class ControlServer {
   // A match that was played is over: who was put out may play again.
   void match_is_over();
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
-  void stop(const std::string& reason);
+  void stop(const wire::Sentence& reason);
 
   ControlCounters counters() const;  // any thread
 
@@ -139,8 +141,9 @@ class ControlServer {
   void serve(ControlConnection& connection);
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
   void send(ControlConnection& connection, const wire::ControlMessage& message);
-  void refuse(ControlConnection& connection, wire::Refusal::Code code, const std::string& reason);
-  void reject(ControlConnection& connection, const std::string& reason);
+  void refuse(ControlConnection& connection, wire::Refusal::Code code,
+              const wire::Sentence& reason);
+  void reject(ControlConnection& connection, const wire::Sentence& reason);
   void drop(ControlConnection& connection, const std::string& why);
   void drop_those_who_do_not_read();
   void release(ControlConnection& connection, Going going);
@@ -149,9 +152,12 @@ class ControlServer {
   void publish_tuning();
   void publish_questionnaires();
   void publish_report();
-  void tell(const wire::Notice& notice);
+  void tell(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
+  void clear_notice(std::uint32_t topic, const std::string& why);
+  void publish(const wire::Notice& notice);
+  void answer(ControlConnection& connection, std::uint32_t topic, const wire::Sentence& text);
   void tell_tick();
-  void say(LogLevel level, const std::string& text);
+  void log(LogLevel level, const std::string& text);
   void say_goodbye();
 
   // control_table.cpp: who sits where, and who may what
@@ -170,9 +176,10 @@ class ControlServer {
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
   // control_kicks.cpp
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
-  std::string why_not_kick(const Seat& voter, const Seat* target) const;
-  void put_out(const Seat& seat, const std::string& by);
-  std::string why_out(const os::SocketAddress& peer, wire::Role role, std::uint32_t client) const;
+  wire::Sentence why_not_kick(const Seat& voter, const Seat* target) const;
+  void put_out(const Seat& seat, bool by_host);
+  wire::Sentence why_out(const os::SocketAddress& peer, wire::Role role,
+                         std::uint32_t client) const;
   KickVotes::Here here() const;
   void watch_kicks(std::int64_t now_us);
   void carry_vote_over(const Seat& newcomer);

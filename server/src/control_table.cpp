@@ -14,6 +14,8 @@ namespace server {
 namespace {
 
 using State = ControlConnection::State;
+using wire::Said;
+using wire::say;
 
 // Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
 constexpr std::size_t kMostUntold = 256;
@@ -38,9 +40,12 @@ std::uint32_t vote_topic(const foosball::Command& wish) {
   return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
 }
 
-const char* what_for(const foosball::Command& wish) {
-  if (wish.kind == foosball::Command::Kind::restart) return "a restart";
-  return wish.value != 0 ? "a pause" : "the game to go on";
+wire::Sentence asks_for(const foosball::Command& wish, const std::string& name, int votes,
+                        int needed) {
+  if (wish.kind == foosball::Command::Kind::restart)
+    return say<Said::asks_for_restart>(name, votes, needed);
+  return wish.value != 0 ? say<Said::asks_for_pause>(name, votes, needed)
+                         : say<Said::asks_to_go_on>(name, votes, needed);
 }
 
 }  // namespace
@@ -54,21 +59,17 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
       role == wire::Role::host ? options_.access.host_password : options_.access.password;
   if (knock.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
-           "this server speaks control version " + std::to_string(wire::kControlVersion) +
-               ", you speak " + std::to_string(knock.version) + ": use the same release of both");
+           say<Said::other_version>(wire::kControlVersion, knock.version));
     return;
   }
   if (!password) {
-    refuse(connection, wire::Refusal::Code::not_allowed,
-           role == wire::Role::host
-               ? "nobody is host from another machine here: start the server with "
-                 "--host-password-file"
-               : "nobody joins from another machine here: start the server with --password-file");
+    refuse(
+        connection, wire::Refusal::Code::not_allowed,
+        role == wire::Role::host ? say<Said::no_hosts_from_afar>() : say<Said::nobody_from_afar>());
     return;
   }
   if (!password_tries_.charge(connection.peer(), os::monotonic_us())) {
-    refuse(connection, wire::Refusal::Code::password,
-           "too many wrong passwords from your network: wait a minute");
+    refuse(connection, wire::Refusal::Code::password, say<Said::wrong_passwords>());
     return;
   }
   connection.try_charged = true;
@@ -76,7 +77,7 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
                                         wire::exchange_channel(role == wire::Role::host),
                                         knock.sid);
   const auto secret = exchange.secret(knock.share);
-  if (!secret) return reject(connection, "a share that is none: use the same release of both");
+  if (!secret) return reject(connection, say<Said::other_password_share>());
   send(connection, wire::Challenge{exchange.share()});
   connection.seal(wire::stream_keys(*secret));
   connection.role = role;
@@ -95,16 +96,13 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
   if (!connection.sealed() && trusted(connection)) connection.role = wire::Role::host;
   if (hello.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
-           "this server speaks control version " + std::to_string(wire::kControlVersion) +
-               ", you speak " + std::to_string(hello.version) + ": use the same release of both");
+           say<Said::other_version>(wire::kControlVersion, hello.version));
   } else if (hello.snapshot_layout != wire::snapshot_layout_hash()) {
-    refuse(connection, wire::Refusal::Code::layout,
-           "your snapshots are laid out otherwise: use the same release of both");
+    refuse(connection, wire::Refusal::Code::layout, say<Said::other_snapshots>());
   } else if (!connection.sealed() && !trusted(connection)) {
-    refuse(connection, wire::Refusal::Code::password,
-           "from another machine a password is wanted: give --password-file");
+    refuse(connection, wire::Refusal::Code::password, say<Said::password_wanted>());
   } else if (untold_.size() > kMostUntold) {
-    refuse(connection, wire::Refusal::Code::full, "the server is overloaded: try again");
+    refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
   } else if (!resume(connection, hello)) {
     RodSet rods = 0;
     if (admit_to_table(connection, hello, rods)) join(connection, hello, rods);
@@ -132,9 +130,9 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
   seat->away_since_us = -1;
   count(Count::resumed);
   if (was_away) {
-    tell({wire::Notice::Level::cleared, kAwayTopic + seat->client, seat->name + " is back"});
+    clear_notice(kAwayTopic + seat->client, seat->name + " is back");
   }
-  say(LogLevel::info, seat->name + " at " + os::to_text(connection.peer()) + " is back");
+  log(LogLevel::info, seat->name + " at " + os::to_text(connection.peer()) + " is back");
   return true;
 }
 
@@ -143,26 +141,24 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
                                    RodSet& rods) {
   const auto& limits = options_.limits;
   if (hello.team != wire::kWatchOnly && !options_.teams_open) {
-    refuse(connection, wire::Refusal::Code::team_taken, "a recording plays here: join to watch");
+    refuse(connection, wire::Refusal::Code::team_taken, say<Said::recording_plays_join>());
     return false;
   }
   hear_out_leavers(hello.rods != 0 ? hello.rods : rods_of_team(options_.layout, hello.team));
   const auto most = std::min(static_cast<std::size_t>(limits.connections), kMostSeats);
   if (seats_.all().size() >= most) {
-    refuse(connection, wire::Refusal::Code::full,
-           "the server is full: try again when somebody has left");
+    refuse(connection, wire::Refusal::Code::full, say<Said::server_full>());
     return false;
   }
   const auto& peer = connection.peer();
   const bool here = peer.is_loopback();
   if (seats_.of_machine(peer) >= (here ? limits.per_local_address : limits.per_address) ||
       (!here && seats_.of_network(peer) >= limits.per_network)) {
-    refuse(connection, wire::Refusal::Code::full,
-           "too many connections from your address: close one first");
+    refuse(connection, wire::Refusal::Code::full, say<Said::too_many_connections>());
     return false;
   }
   if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
-  if (const std::string why = why_out(peer, connection.role, 0); !why.empty()) {
+  if (const wire::Sentence why = why_out(peer, connection.role, 0); !why.empty()) {
     refuse(connection, wire::Refusal::Code::not_allowed, why);
     return false;
   }
@@ -212,7 +208,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
   }
   count(Count::joined);
   carry_vote_over(*seats_.find(client));
-  say(LogLevel::info,
+  log(LogLevel::info,
       seat.name + " at " + os::to_text(connection.peer()) +
           (rods == 0 ? " watches"
                      : " plays team " + std::to_string(seat.team) + ", rods " + to_text(rods)));
@@ -257,8 +253,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   if (seat.plays()) {
     event.socket = client_socket(connection, event.listener);
     if (!event.socket) {
-      refuse(connection, wire::Refusal::Code::full,
-             "the server has no socket left for you: try again");
+      refuse(connection, wire::Refusal::Code::full, say<Said::no_socket_left>());
       return false;
     }
   }
@@ -297,25 +292,25 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
 void ControlServer::take_claim(ControlConnection& connection, const wire::Claim& claim) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) return;
-  const auto answer = [&](const std::string& why_not) {
-    send(connection, wire::Notice{wire::Notice::Level::info, kClaimTopic, why_not});
+  const auto refuse_it = [&](const wire::Sentence& why_not) {
+    answer(connection, kClaimTopic, why_not);
   };
-  if (!options_.teams_open) return answer("a recording plays here");
-  if (connection.role == wire::Role::watcher) return answer("you joined to watch");
-  const std::string out = why_out(connection.peer(), connection.role, seat->client);
-  if (!out.empty() && (claim.rods & ~seat->rods) != 0) return answer(out);
+  if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
+  if (connection.role == wire::Role::watcher) return refuse_it(say<Said::joined_to_watch>());
+  const wire::Sentence out = why_out(connection.peer(), connection.role, seat->client);
+  if (!out.empty() && (claim.rods & ~seat->rods) != 0) return refuse_it(out);
   const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
   auto grant = Seats::Grant{Seats::Grant::Kind::granted, 0, {}};
   if (claim.rods != 0)
     grant = seats_.grant(team, claim.rods, seat->client, seat->role == wire::Role::host);
-  if (grant.kind != Seats::Grant::Kind::granted) return answer(grant.sentence);
+  if (grant.kind != Seats::Grant::Kind::granted) return refuse_it(grant.sentence);
   ControlEvent event;
   event.kind = ControlEvent::Kind::rods;
   if (!seat->has_socket && grant.rods != 0) {
     auto listener = connection.peer();
     listener.set_port(seat->udp_port);
     event.socket = client_socket(connection, listener);
-    if (!event.socket) return answer("the server has no socket left for you: try again");
+    if (!event.socket) return refuse_it(say<Said::no_socket_left>());
     seat->has_socket = true;
   }
   seat->rods = grant.rods;
@@ -342,9 +337,9 @@ void ControlServer::lose_seat(std::uint32_t client) {
   untold_.push_back(std::move(event));
   tell_tick();
   const auto seconds = std::to_string(options_.limits.seat_kept_us / 1'000'000);
-  tell({wire::Notice::Level::warning, kAwayTopic + client,
-        seat.name + " was lost: rods " + to_text(seat.rods) + " are kept for " + seconds + " s"});
-  say(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
+  tell(wire::Notice::Level::warning, kAwayTopic + client,
+       say<Said::player_lost>(seat.name, to_text(seat.rods), seconds));
+  log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
                              " was lost: its rods are kept for " + seconds + " s");
   roster_changed_ = true;
 }
@@ -353,9 +348,9 @@ void ControlServer::give_up_seat(std::uint32_t client) {
   const Seat* seat = seats_.find(client);
   if (seat == nullptr) return;
   if (seat->away()) {
-    tell({wire::Notice::Level::cleared, kAwayTopic + client, seat->name + " has left"});
+    clear_notice(kAwayTopic + client, seat->name + " has left");
   }
-  say(LogLevel::info, seat->name + " at " + os::to_text(seat->peer) + " left");
+  log(LogLevel::info, seat->name + " at " + os::to_text(seat->peer) + " left");
   seats_.remove(client);
   count(Count::left);
   ControlEvent event;
@@ -377,7 +372,7 @@ void ControlServer::watch_seats() {
   }
   foosball::Command wish{};
   while (votes_.expire(now, wish)) {
-    tell({wire::Notice::Level::cleared, vote_topic(wish), "too few wanted it"});
+    clear_notice(vote_topic(wish), "too few wanted it");
   }
 }
 
@@ -393,7 +388,7 @@ void ControlServer::send_roster() {
 
 void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& asked) {
   if (!well_formed(asked)) {
-    reject(connection, "a wish that does not exist: use the same release of client and server");
+    reject(connection, say<Said::no_such_wish>());
     return;
   }
   const Seat* seat = seats_.find(connection.client);
@@ -438,22 +433,21 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
     count(Count::answers_refused);
     return;
   }
-  const auto refuse_them = [&](const char* why) {
+  const auto refuse_them = [&](const wire::Sentence& why) {
     count(Count::answers_refused);
-    send(connection, wire::Notice{wire::Notice::Level::info, wire::kAnswersTopic, why});
+    answer(connection, wire::kAnswersTopic, why);
   };
   if (answers.match == 0 || answers.match != seat->asked_match)
-    return refuse_them("your answers are not kept: the match is not the one you were asked about");
+    return refuse_them(say<Said::answers_of_other_match>());
   if ((answers.rods & ~seat->asked_rods) != 0)
-    return refuse_them("your answers are not kept: they were given already, or are of others");
+    return refuse_them(say<Said::answers_given_already>());
   std::uint8_t team = 0;
   while (team < foosball::kTeams && (answers.rods & ~rods_of_team(options_.layout, team)) != 0)
     ++team;
-  if (team == foosball::kTeams)
-    return refuse_them("your answers are not kept: one player has rods of one team");
+  if (team == foosball::kTeams) return refuse_them(say<Said::answers_of_both_teams>());
   if (std::ranges::all_of(answers.scores, [](std::uint8_t score) { return score == 0; }))
-    return refuse_them("your answers are not kept: there are none");
-  if (untold_.size() > kMostUntold) return refuse_them("the server is overloaded: try again");
+    return refuse_them(say<Said::answers_empty>());
+  if (untold_.size() > kMostUntold) return refuse_them(say<Said::server_overloaded>());
   seat->asked_rods &= static_cast<RodSet>(~answers.rods);
   count(Count::answers);
   ControlEvent event;
@@ -487,12 +481,11 @@ bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish)
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
   const auto votes = votes_.cast(seat.owner(), wish, voters, os::monotonic_us());
   if (votes.passed()) {
-    tell({wire::Notice::Level::cleared, vote_topic(wish), "agreed"});
+    clear_notice(vote_topic(wish), "agreed");
     return hand_on(kEverybody, wish);
   }
-  tell({wire::Notice::Level::info, vote_topic(wish),
-        seat.name + " asks for " + what_for(wish) + ": " + std::to_string(votes.votes) + " of " +
-            std::to_string(votes.needed) + " votes. Ask for it too to agree"});
+  tell(wire::Notice::Level::info, vote_topic(wish),
+       asks_for(wish, seat.name, votes.votes, votes.needed));
   return true;
 }
 

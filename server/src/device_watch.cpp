@@ -7,39 +7,40 @@ namespace server {
 namespace {
 
 using cabinet::DeviceState;
+using wire::Said;
+using wire::say;
+using wire::Sentence;
 
-std::string refusal(const std::string& name, int error) {
-  const std::string what = name + " cannot be opened: " + std::strerror(error);
+Sentence refusal(const std::string& name, int error) {
+  const std::string why = std::strerror(error);
   switch (error) {
     case EACCES:
     case EPERM:
-      return what + "; install cabinet/70-space-foosball.rules or join the device's group";
+      return say<Said::device_not_allowed>(name, why);
     case EBUSY:
-      return what + "; end the other program that uses it";
+      return say<Said::device_busy>(name, why);
     default:
-      return what + "; plug it in anew, or give another address";
+      return say<Said::device_refused>(name, why);
   }
 }
 
-std::string sentence(const cabinet::DeviceSource& device, DeviceState state, bool ever_live) {
+Sentence sentence(const cabinet::DeviceSource& device, DeviceState state, bool ever_live) {
   const std::string& name = device.name();
   switch (state) {
     case DeviceState::refused:
       return refusal(name, device.open_error());
     case DeviceState::missing:
-      return ever_live ? name + " unplugged: its rods hold; plug it in again"
-                       : name + " is not there: plug it in, or give its right address";
+      return ever_live ? say<Said::device_unplugged>(name) : say<Said::device_missing>(name);
     case DeviceState::silent:
-      return name + " is there but sends nothing: plug it in anew, and check its firmware";
+      return say<Said::device_silent>(name);
     case DeviceState::garbled:
-      return name + " sends what is no frame: is it the right device, with our firmware?";
+      return say<Said::device_garbled>(name);
     case DeviceState::over:
-      return ever_live ? name + " is over: its rods hold"
-                       : name + " holds no frame: give a recording of a controller";
+      return ever_live ? say<Said::device_over>(name) : say<Said::device_without_frames>(name);
     case DeviceState::live:
-      return name + " is back";
+      break;
   }
-  return name;
+  return {};
 }
 
 }  // namespace
@@ -52,7 +53,6 @@ bool DeviceWatch::due(const Watched& watched, std::int64_t now_us) {
 
 void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices,
                        std::int64_t now_us, const Tell& tell) {
-  using Level = wire::Notice::Level;
   while (watched_.size() < devices.size()) watched_.push_back({DeviceState::missing, now_us, {}});
   for (std::uint32_t i = 0; i < devices.size(); ++i) {
     Watched& watched = watched_[i];
@@ -62,10 +62,8 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>
     watched.state = state;
     if (!due(watched, now_us)) continue;
     const bool live = state == DeviceState::live;
-    if (!live || watched.told) {
-      tell(live ? Level::cleared : Level::warning, i,
-           sentence(*devices[i], state, watched.ever_live));
-    }
+    if (!live || watched.told)
+      tell(i, sentence(*devices[i], state, watched.ever_live), devices[i]->name() + " is back");
     watched.ever_live = watched.ever_live || live;
     watched.told = state;
   }

@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "cabinet/device_source.h"
-#include "wire/control.h"
+#include "wire/sentence.h"
 
 namespace server {
 
 class DeviceWatch {
  public:
-  using Tell = std::function<void(wire::Notice::Level, std::uint32_t device, const std::string&)>;
+  // fault: empty where all is well again; then is_well is for the log.
+  using Tell = std::function<void(std::uint32_t device, const wire::Sentence& fault,
+                                  const std::string& is_well)>;
 
   // At once when a device that was live no longer is, or is again; else what has lasted a while.
   void look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices, std::int64_t now_us,

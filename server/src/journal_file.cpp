@@ -96,7 +96,7 @@ class JournalFile::Writer {
     failure_.compare_exchange_strong(none, failure, std::memory_order_acq_rel);
   }
   bool failed() const { return failure_.load(std::memory_order_acquire) != Failure::none; }
-  std::string problem() const;
+  wire::Sentence problem() const;
   std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
 
   // The journal's thread.
@@ -120,20 +120,21 @@ class JournalFile::Writer {
   Clock::time_point synced_ = Clock::now();
 };
 
-std::string JournalFile::Writer::problem() const {
-  const std::string begin = "recording to " + options_.path + " ended early: ";
+wire::Sentence JournalFile::Writer::problem() const {
+  using wire::Said, wire::say;
+  const std::string& path = options_.path;
   switch (failure_.load(std::memory_order_acquire)) {
     case Failure::none:
       return {};
     case Failure::ring_full:
-      return begin + "the disk is too slow; play goes on";
+      return say<Said::disk_too_slow>(path);
     case Failure::write_failed:
-      return begin + errno_text(error_number_.load(std::memory_order_relaxed)) + "; play goes on";
+      return say<Said::recording_failed>(path,
+                                         errno_text(error_number_.load(std::memory_order_relaxed)));
     case Failure::too_large:
-      return begin + "it has reached its " + std::to_string(options_.max_bytes >> 20) +
-             " MiB; play goes on";
+      return say<Said::recording_too_large>(path, options_.max_bytes >> 20);
     case Failure::stalled:
-      return begin + "the disk, or the pipe's reader, did not take the rest in time";
+      return say<Said::recording_stalled>(path);
   }
   return {};
 }
@@ -289,7 +290,7 @@ void JournalFile::close() {
   }
 }
 
-std::string JournalFile::problem() const {
+wire::Sentence JournalFile::problem() const {
   return writer_->problem();
 }
 bool JournalFile::failed() const {

@@ -19,6 +19,7 @@
 
 #include "wire/journal.h"
 #include "wire/read_file.h"
+#include "wire/sentence.h"
 
 namespace server {
 
@@ -50,7 +51,7 @@ class JournalFile {
   void close();
 
   // Any thread. Empty, or the sentence that says why the journal ended early.
-  std::string problem() const;
+  wire::Sentence problem() const;
   bool failed() const;
   std::uint64_t bytes_written() const;
   std::uint64_t entries_dropped() const { return dropped_; }  // tick thread

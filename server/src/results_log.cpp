@@ -38,7 +38,7 @@ class ResultsLog::Keeper {
     wake_.release();
   }
 
-  bool problem_changed(std::string& problem) {
+  bool problem_changed(wire::Sentence& problem) {
     const std::unique_lock guard(mutex_, std::try_to_lock);
     if (!guard || problem_ == told_) return false;
     told_ = problem = problem_;
@@ -46,15 +46,16 @@ class ResultsLog::Keeper {
   }
 
   // Any thread.
-  void tell(const std::string& problem) {
+  void tell(const wire::Sentence& problem) {
     const std::lock_guard guard(mutex_);
     problem_ = problem;
   }
   std::string problem() const {
     const std::lock_guard guard(mutex_);
     const auto lost = lost_.load(std::memory_order_relaxed);
-    if (lost == 0) return problem_;
-    return problem_ + (problem_.empty() ? "" : "; ") + std::to_string(lost) + " results are lost";
+    const std::string& said = problem_.text();
+    if (lost == 0) return said;
+    return said + (said.empty() ? "" : "; ") + std::to_string(lost) + " results are lost";
   }
   bool report_changed(Report& report) {
     if (!reported_.load(std::memory_order_acquire)) return false;
@@ -95,8 +96,8 @@ class ResultsLog::Keeper {
   std::atomic<std::uint64_t> kept_{0}, answers_{0}, lost_{0};
   std::atomic<bool> reported_{false};
   mutable std::mutex mutex_;
-  Report report_;               // not taken by the tick yet
-  std::string problem_, told_;  // told_: to the tick
+  Report report_;                  // not taken by the tick yet
+  wire::Sentence problem_, told_;  // told_: to the tick
   // The thread's own.
   std::optional<results::Store> store_;
   std::deque<Entry> waiting_;
@@ -165,7 +166,7 @@ void ResultsLog::Keeper::keep() {
       store_ = std::move(*opened);
       if (matches_.empty()) report(0);
     } else {
-      tell(opened.error() + "; play goes on");
+      tell(wire::say<wire::Said::results_not_kept>(opened.error()));
     }
   }
   Entry entry;
@@ -173,13 +174,13 @@ void ResultsLog::Keeper::keep() {
   while (store_ && !waiting_.empty()) {
     const auto id = keep(waiting_.front());
     if (!id) {
-      tell(id.error() + "; play goes on");
+      tell(wire::say<wire::Said::results_not_kept>(id.error()));
       store_.reset();
       return;
     }
     waiting_.pop_front();
   }
-  if (store_) tell({});
+  if (store_) tell(wire::Sentence());
 }
 
 ResultsLog::ResultsLog(const ResultsLogOptions& options)
@@ -212,7 +213,8 @@ void ResultsLog::close() {
   if (ended_.wait_for(close_patience_) == std::future_status::ready) {
     thread_.join();
   } else {
-    keeper_->tell("results in " + path_ + ": the file did not answer in time; some may be missing");
+    keeper_->tell(wire::say<wire::Said::results_problem>(
+        path_, "the file did not answer in time; some may be missing"));
     thread_.detach();
   }
 }
@@ -220,7 +222,7 @@ void ResultsLog::close() {
 bool ResultsLog::report_changed(Report& report) {
   return keeper_->report_changed(report);
 }
-bool ResultsLog::problem_changed(std::string& problem) {
+bool ResultsLog::problem_changed(wire::Sentence& problem) {
   return keeper_->problem_changed(problem);
 }
 std::string ResultsLog::problem() const {

@@ -15,6 +15,7 @@
 #include "results/match_result.h"
 #include "results/questionnaire.h"
 #include "results/rating.h"
+#include "wire/sentence.h"
 
 namespace server {
 
@@ -46,7 +47,7 @@ class ResultsLog {
   // Any thread. Empty, or the sentence that says why results are not kept now.
   std::string problem() const;
   // Tick thread: it is another one than at the last call. False too while the thread is writing it.
-  bool problem_changed(std::string& problem);
+  bool problem_changed(wire::Sentence& problem);
   // What is kept now: the last match of this run, and who plays best in all of them.
   struct Report {
     std::uint32_t number = 0;  // add()'s; 0: none yet

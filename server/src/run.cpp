@@ -8,8 +8,7 @@ namespace {
 void tell(Server& server, OverloadWatch::News news) {
   switch (news) {
     case OverloadWatch::News::overloaded:
-      server.warn(Server::Topic::overload,
-                  "the physics server cannot keep up: end other programs on its machine");
+      server.warn(Server::Topic::overload, wire::say<wire::Said::cannot_keep_up>());
       break;
     case OverloadWatch::News::keeps_up_again:
       server.clear(Server::Topic::overload, "the physics server keeps up again");
@@ -32,18 +31,19 @@ std::optional<RunEnd> reason_to_end(const Server& server, const RunOptions& opti
 
 }  // namespace
 
-const char* to_text(RunEnd end) {
+wire::Sentence to_sentence(RunEnd end) {
+  using wire::Said, wire::say;
   switch (end) {
     case RunEnd::stopped:
-      return "the server was stopped";
+      return say<Said::server_stopped>();
     case RunEnd::time_over:
-      return "the time is over";
+      return say<Said::time_is_over>();
     case RunEnd::empty:
-      return "everybody has left";
+      return say<Said::everybody_left>();
     case RunEnd::replay_over:
-      return "the recording is over";
+      return say<Said::recording_over>();
   }
-  return "";
+  return {};
 }
 
 RunEnd run(Server& server, TickLoop& loop, const RunOptions& options,

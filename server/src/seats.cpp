@@ -5,6 +5,9 @@
 
 namespace server {
 
+using wire::Said;
+using wire::say;
+
 RodSet rods_of_team(foosball::Layout layout, std::uint8_t team) {
   RodSet rods = 0;
   for (int rod = 0; rod < foosball::kRods; ++rod) {
@@ -65,23 +68,19 @@ RodSet Seats::taken_from(std::uint32_t client) const {
 Seats::Grant Seats::grant(std::uint8_t team, RodSet wanted, std::uint32_t client,
                           bool trusted) const {
   const RodSet own = rods_of_team(layout_, team);
-  if (own == 0) return {Grant::Kind::none, 0, "choose a team to have rods of: 0 or 1"};
+  if (own == 0) return {Grant::Kind::none, 0, say<Said::which_team>()};
   const RodSet taken = taken_from(client), left = RodSet(own & ~taken);
-  const std::string free =
-      left != 0 ? "free are rods " + to_text(left) : "ask for the other one, or join to watch";
   if (wanted == 0) {
     if (left != 0) return {Grant::Kind::granted, left, {}};
-    return {Grant::Kind::taken, 0, "team " + std::to_string(team) + " is taken: " + free};
+    return {Grant::Kind::taken, 0, say<Said::team_taken>(team)};
   }
-  if ((wanted & ~own) != 0 && !trusted && !mixed_teams_) {
-    return {Grant::Kind::other_team, 0,
-            "rods of both teams are for the table's own machine: ask for rods of team " +
-                std::to_string(team) + ", or start the server with --mixed-teams"};
-  }
+  if ((wanted & ~own) != 0 && !trusted && !mixed_teams_)
+    return {Grant::Kind::other_team, 0, say<Said::rods_of_both_teams>(team)};
   if ((wanted & taken) != 0) {
+    const std::string theirs = to_text(RodSet(wanted & taken));
     return {Grant::Kind::taken, 0,
-            "rods " + to_text(RodSet(wanted & taken)) + " of team " + std::to_string(team) +
-                " are taken: " + free};
+            left != 0 ? say<Said::rods_taken>(theirs, team, to_text(left))
+                      : say<Said::rods_and_team_taken>(theirs, team)};
   }
   return {Grant::Kind::granted, wanted, {}};
 }

@@ -11,6 +11,7 @@
 #include "wire/control.h"
 #include "wire/enums.h"
 #include "wire/seal.h"
+#include "wire/sentence.h"
 
 namespace server {
 
@@ -60,8 +61,8 @@ class Seats {
   struct Grant {
     enum class Kind : std::uint8_t { granted, taken, other_team, none };
     Kind kind = Kind::none;
-    RodSet rods = 0;       // granted
-    std::string sentence;  // else why not, and what to do
+    RodSet rods = 0;          // granted
+    wire::Sentence sentence;  // else why not, and what to do
   };
   // What somebody of this team may have of the rods wanted; 0: all of the team that are free.
   // client: whose own rods count as free; 0: nobody's. trusted: at this machine, or the host.

@@ -174,9 +174,10 @@ void Server::Impl::gather_live(std::int64_t now_us) {
   tell_match();
   next.tick = ticks;
   for (int rod = 0; rod < foosball::kRods; ++rod) next.rods[rod] = to_grid(desk.rods()[rod]);
-  device_watch.look(desk.devices(), now_us, [this](auto level, auto index, const auto& text) {
-    notify(level, static_cast<std::uint32_t>(Topic::devices) + index, text);
-  });
+  device_watch.look(desk.devices(), now_us,
+                    [this](auto index, const auto& fault, const auto& is_well) {
+                      notify(Topic::devices, fault, is_well, index);
+                    });
 }
 
 // --- what goes out
@@ -203,8 +204,7 @@ void Server::Impl::broadcast(std::int64_t now_us, std::int64_t tick_ns) {
 void Server::Impl::watch_journal() {
   if (!recorder || journal_told || !recorder->file().failed()) return;
   journal_told = true;
-  notify(wire::Notice::Level::warning, static_cast<std::uint32_t>(Topic::journal),
-         recorder->file().problem());
+  notify(Topic::journal, recorder->file().problem());
 }
 
 // Clients show it, and move their own rods by it.
@@ -226,18 +226,17 @@ void Server::Impl::watch_sending() {
   sent_seen = sent;
   errors_seen = errors;
   if (failing == std::exchange(sending_fails, failing)) return;
-  const auto topic = static_cast<std::uint32_t>(Topic::sending);
-  if (failing) {
-    notify(wire::Notice::Level::warning, topic,
-           std::string("no snapshot can be sent: ") + std::strerror(broadcaster.last_error()) +
-               "; check the network's routes, or leave --multicast out");
-  } else {
-    notify(wire::Notice::Level::cleared, topic, "snapshots are sent again");
-  }
+  notify(Topic::sending,
+         failing ? wire::say<wire::Said::nothing_is_sent>(std::strerror(broadcaster.last_error()))
+                 : wire::Sentence(),
+         "snapshots are sent again");
 }
 
-void Server::Impl::notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text) {
-  control.notify({level, topic, text});
+void Server::Impl::notify(Topic topic, const wire::Sentence& text, const std::string& over,
+                          std::uint32_t index) {
+  const std::uint32_t number = static_cast<std::uint32_t>(topic) + index;
+  if (text.empty()) return control.clear(number, over);
+  control.notify(wire::Notice::Level::warning, number, text);
 }
 
 // --- the face
@@ -285,7 +284,7 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Server::~Server() {
-  finish("the server ends");
+  finish(wire::say<wire::Said::server_ends>());
 }
 
 void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
@@ -324,15 +323,15 @@ void Server::wait_sent() {
   impl_->broadcaster.wait_sent();
 }
 
-void Server::warn(Topic topic, const std::string& text) {
-  impl_->notify(wire::Notice::Level::warning, static_cast<std::uint32_t>(topic), text);
+void Server::warn(Topic topic, const wire::Sentence& text) {
+  impl_->notify(topic, text);
 }
 
 void Server::clear(Topic topic, const std::string& text) {
-  impl_->notify(wire::Notice::Level::cleared, static_cast<std::uint32_t>(topic), text);
+  impl_->notify(topic, {}, text);
 }
 
-void Server::finish(const std::string& reason) {
+void Server::finish(const wire::Sentence& reason) {
   if (impl_->finished) return;
   impl_->finished = true;
   impl_->broadcaster.close();  // the last snapshot before the Bye
@@ -366,7 +365,7 @@ std::uint64_t Server::ticks() const {
 }
 
 std::string Server::journal_problem() const {
-  return impl_->recorder ? impl_->recorder->file().problem() : std::string{};
+  return impl_->recorder ? impl_->recorder->file().problem().text() : std::string{};
 }
 
 std::string Server::results_problem() const {

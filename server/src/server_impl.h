@@ -56,7 +56,9 @@ struct Server::Impl {
   void tell_not_counted(const results::MatchResult& result);
   void watch_sending();
   void watch_tuning();
-  void notify(wire::Notice::Level level, std::uint32_t topic, const std::string& text);
+  // Empty: the notice is cleared, and the log has over.
+  void notify(Topic topic, const wire::Sentence& text, const std::string& over = {},
+              std::uint32_t index = 0);
   ControlOptions control_options() const;
 
   using Name = std::array<char, wire::kMaxName + 1>;

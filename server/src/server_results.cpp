@@ -65,8 +65,7 @@ void Server::Impl::keep_answers(const ControlEvent& event) {
 void Server::Impl::begin_lineup() {
   lineup.begin();
   if (std::exchange(not_counted_told, false))
-    notify(wire::Notice::Level::cleared, static_cast<std::uint32_t>(Topic::not_counted),
-           "another match begins");
+    notify(Topic::not_counted, {}, "another match begins");
 }
 
 MatchScribe::Players Server::Impl::players() const {
@@ -92,16 +91,13 @@ void Server::Impl::tell_not_counted(const results::MatchResult& result) {
   }
   if (who.empty()) return;
   not_counted_told = true;
-  notify(wire::Notice::Level::info, static_cast<std::uint32_t>(Topic::not_counted),
-         "the match does not count for the rating of who played too little of it: " + who);
+  notify(Topic::not_counted, wire::say<wire::Said::not_rated>(who));
 }
 
 void Server::Impl::watch_results() {
-  std::string problem;
+  wire::Sentence problem;
   if (!results || !results->problem_changed(problem)) return;
-  const auto level = problem.empty() ? wire::Notice::Level::cleared : wire::Notice::Level::warning;
-  notify(level, static_cast<std::uint32_t>(Topic::results),
-         problem.empty() ? "results are kept again" : problem);
+  notify(Topic::results, problem, "results are kept again");
 }
 
 // Clients show it at the match's end and on the logo.

@@ -9,6 +9,9 @@
 namespace server {
 namespace {
 
+using wire::Said;
+using wire::say;
+
 // "rods 1 and 2 for Ann; rods 3 for Bob"
 std::string rods_by_name(RodSet rods, const auto& names) {
   std::string text;
@@ -19,7 +22,8 @@ std::string rods_by_name(RodSet rods, const auto& names) {
       if ((rods >> rod & 1) != 0 && names[rod] == name) same |= RodSet(1u << rod);
     rods &= static_cast<RodSet>(~same);
     if (!text.empty()) text += "; ";
-    text += "rods " + to_text(same) + " for " + (name[0] != 0 ? name.data() : "a player");
+    const std::string who = name[0] != 0 ? name.data() : say<Said::a_player>().text();
+    text += say<Said::rods_for>(to_text(same), who).text();
   }
   return text;
 }
@@ -90,22 +94,17 @@ void Server::Impl::watch_absences() {
       remember_name(client.id);
   }
   if (!desk.watch_absences(in_match, tick_us)) return;
-  const auto tell = [&](Topic topic, bool& told, const std::string& text, const char* over) {
-    if (text.empty() && !told) return;
+  const auto tell = [&](Topic topic, bool& told, const wire::Sentence& text, const char* over) {
+    if (!text.empty() || told) notify(topic, text, over);
     told = !text.empty();
-    using Level = wire::Notice::Level;
-    notify(told ? Level::warning : Level::cleared, static_cast<std::uint32_t>(topic),
-           told ? text : over);
   };
   const RodSet plays = desk.stand_ins(), offered = desk.offered();
-  tell(Topic::stand_in, stand_ins_told,
-       plays == 0 ? "" : "the computer plays " + rods_by_name(plays, had_rod),
-       "the computer stands in for nobody any more");
-  tell(Topic::offer, offer_told,
-       offered == 0
-           ? ""
-           : "free to the team for 10 s, then the computer's: " + rods_by_name(offered, had_rod),
-       "no rods are offered any more");
+  wire::Sentence stand_in, offer;
+  if (plays != 0) stand_in = say<Said::computer_plays>(rods_by_name(plays, had_rod));
+  if (offered != 0)
+    offer = say<Said::rods_offered>(RodDesk::kOfferUs / 1'000'000, rods_by_name(offered, had_rod));
+  tell(Topic::stand_in, stand_ins_told, stand_in, "the computer stands in for nobody any more");
+  tell(Topic::offer, offer_told, offer, "no rods are offered any more");
 }
 
 bool Server::Impl::plays(std::uint32_t client) const {

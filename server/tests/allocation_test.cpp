@@ -98,7 +98,7 @@ TEST(WarmJournal, TakesNoMemoryForTheLargestEntries) {
   }
   (*file)->close();
   EXPECT_EQ((*file)->entries_dropped(), 0u);
-  EXPECT_EQ((*file)->problem(), "");
+  EXPECT_EQ((*file)->problem().text(), "");
   ::unlink(path.c_str());
 }
 

@@ -325,7 +325,7 @@ TEST(Control, TellsEveryoneANoticeAndThoseWhoJoinLaterUntilItIsCleared) {
   Lockstep table;
   ProbeClient first(table.port());
   ASSERT_TRUE(first.join());
-  table->warn(Server::Topic::overload, "slow");
+  table->warn(Server::Topic::overload, wire::Sentence::untranslated("slow"));
   const auto told = first.hear_a<wire::Notice>();
   ASSERT_TRUE(told);
   EXPECT_EQ(told->text, "slow");
@@ -350,7 +350,7 @@ TEST(Control, SaysByeBeforeItEnds) {
   Lockstep table;
   ProbeClient client(table.port());
   ASSERT_TRUE(client.join());
-  table->finish("closing time");
+  table->finish(wire::Sentence::untranslated("closing time"));
   const auto bye = client.hear_a<wire::Bye>();
   ASSERT_TRUE(bye);
   EXPECT_EQ(bye->reason, "closing time");

@@ -159,7 +159,7 @@ TEST_F(QuestionnaireTest, AMatchThatIsShownIsNotKeptAndNobodyIsAsked) {
   }));
   table.tick(5);
   EXPECT_FALSE(player.hear_a<wire::Questionnaire>(50));
-  table->finish("done");
+  table->finish(wire::Sentence::untranslated("done"));
   EXPECT_EQ(table->counters().results_kept, 0u);
 }
 

@@ -72,7 +72,7 @@ Recorded record(int ticks) {
     }
     table.tick();
   }
-  table->finish("done");
+  table->finish(wire::Sentence::untranslated("done"));
   out.hash = table->match().state_hash();
   out.ticks = table->counters().ticks;
   out.score = table->match().view().score;
@@ -321,7 +321,7 @@ TEST(Results, OfAMatchThatWasWonAreInTheFile) {
         table.tick_until([&] { return table->match().view().screen == foosball::Screen::end; }));
     score = table->match().view().score;
     seconds = table->match().view().play_seconds;
-    table->finish("done");
+    table->finish(wire::Sentence::untranslated("done"));
     EXPECT_EQ(table->results_problem(), "");
     EXPECT_EQ(table->counters().results_kept, 1u);
   }
@@ -371,8 +371,9 @@ TEST(JournalFile, WaitsForTheDiskAtItsEndAndSaysWhenThatFails) {
     file->close();
     disk_fails = false;
     EXPECT_EQ(fdatasyncs, 1);
-    EXPECT_EQ(file->problem().find("ended early: Input/output error") != std::string::npos, fails)
-        << file->problem();
+    EXPECT_EQ(file->problem().text().find("ended early: Input/output error") != std::string::npos,
+              fails)
+        << file->problem().text();
   }
   std::remove(path.c_str());
 }
@@ -390,7 +391,7 @@ TEST(JournalFile, HasTheDiskTakeItAgainAndAgainWhileItIsWritten) {
   }
   EXPECT_GE(fdatasyncs, 5) << "and it is not closed yet";
   file->close();
-  EXPECT_EQ(file->problem(), "");
+  EXPECT_EQ(file->problem().text(), "");
   std::remove(path.c_str());
 }
 
@@ -415,7 +416,7 @@ TEST(JournalFile, IsWrittenByOneServerOnly) {
   }
   first->add(wire::JournalHeader{});
   first->close();
-  EXPECT_EQ(first->problem(), "");
+  EXPECT_EQ(first->problem().text(), "");
   EXPECT_FALSE(contents(path).empty());
   first.reset();
   EXPECT_TRUE(JournalFile::create({.path = path, .overwrite = true})) << "the lock goes with it";
@@ -458,7 +459,7 @@ TEST(JournalFile, EndsInTimeThoughItsPipeIsFull) {
   const auto before = std::chrono::steady_clock::now();
   file->close();
   EXPECT_LT(std::chrono::steady_clock::now() - before, 5s);
-  EXPECT_NE(file->problem().find("did not take the rest in time"), std::string::npos);
+  EXPECT_NE(file->problem().text().find("did not take the rest in time"), std::string::npos);
   std::remove(path.c_str());
 }
 
@@ -471,7 +472,7 @@ TEST(JournalFile, EndsInTimeThoughTheDiskHangs) {
   const auto before = std::chrono::steady_clock::now();
   file->close();
   EXPECT_LT(std::chrono::steady_clock::now() - before, 5s);
-  EXPECT_NE(file->problem().find("did not take the rest in time"), std::string::npos);
+  EXPECT_NE(file->problem().text().find("did not take the rest in time"), std::string::npos);
   file.reset();
   disk_hangs = false;
   disk_hangs.notify_all();
@@ -487,7 +488,7 @@ TEST(JournalFile, EndsReadableWhenItsRingOverflows) {
   EXPECT_FALSE(file->failed());
   file->add(wire::JournalKeyframe{64, std::vector<std::byte>(100'000)});
   EXPECT_TRUE(file->failed());
-  EXPECT_NE(file->problem().find("disk is too slow"), std::string::npos);
+  EXPECT_NE(file->problem().text().find("disk is too slow"), std::string::npos);
   file->add(wire::JournalTick{64, {}, {}});
   EXPECT_EQ(file->entries_dropped(), 2u);
   file->close();

@@ -31,7 +31,7 @@ std::vector<Moment> record(const std::string& path, int seconds) {
     moments.push_back({{}, events});
     build_snapshot(table->match().view(), moments.back().scene);
   }
-  table->finish("done");
+  table->finish(wire::Sentence::untranslated("done"));
   return moments;
 }
 

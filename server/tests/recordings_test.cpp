@@ -47,7 +47,7 @@ class Recordings : public testing::Test {
       o.record = path(name);
     });
     for (int i = 0; i < ticks; ++i) table.tick();
-    table->finish("done");
+    table->finish(wire::Sentence::untranslated("done"));
   }
 
   const fs::path folder_ = temp_path("recordings");
@@ -168,7 +168,7 @@ TEST_F(Recordings, ByDefaultNothingFailsAndWhatNobodyPlayedIsRemoved) {
       o.record_by_default_bytes = limit;
     });
     for (int i = 0; i < ticks; ++i) table.tick();
-    table->finish("done");
+    table->finish(wire::Sentence::untranslated("done"));
     return table->journal_problem();
   };
   EXPECT_EQ(run("/no/such/folder/a.sfr", 1 << 20, false, 100), "");

@@ -53,11 +53,12 @@ TEST(ResultsLog, TellsOnceThatTheFileIsDamagedAndTakesItWhenItIsMendedWithWhatWa
   std::ofstream(path) << std::string(5000, 'x');
   ResultsLog log({.path = path, .retry_period = 1ms});
   const auto until = std::chrono::steady_clock::now() + 20s;
-  std::string told;
+  wire::Sentence told;
   while (!log.problem_changed(told) && std::chrono::steady_clock::now() < until) {
   }
-  EXPECT_NE(told.find("no database of results"), std::string::npos) << told;
-  EXPECT_NE(told.find(path), std::string::npos);
+  EXPECT_EQ(told, wire::say<wire::Said::results_not_kept>(wire::say<wire::Said::results_problem>(
+                      path, wire::say<wire::Said::results_no_database>())))
+      << told.text() << ": clients know the store's sentence";
   EXPECT_FALSE(log.problem_changed(told));
   log.add(won());
   remove(path);

@@ -271,7 +271,7 @@ TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
   EXPECT_TRUE(
       logged("the match does not count for the rating of who played too little of it: "
              "Ann ("));
-  table->finish("done");
+  table->finish(wire::Sentence::untranslated("done"));
   const auto store = results::Store::open(path(), results::Access::read_only);
   ASSERT_TRUE(store) << store.error();
   const auto matches = store->matches({}).value();

@@ -6,36 +6,24 @@
 #include <vector>
 
 #include "render/translate.h"
+#include "wire/sentence.h"
 
 namespace client {
 namespace {
 
-// %1 .. %9 stand for what changes, in their order; a translation may have them in another.
-constexpr std::array kKnown{
-    // notices of the server
-    N_("%1 was lost: rods %2 are kept for %3 s"),
-    N_("the computer plays rods %1 for %2"),
-    N_("free to the team for 10 s, then the computer's: rods %1 for %2"),
-    N_("%1 would put %2 out of the match: %3 of %4 votes"),
-    N_("%1 is back: the vote to put them out of the match goes on"),
-    N_("%1 asks for a pause: %2 of %3 votes. Ask for it too to agree"),
-    N_("%1 asks for a restart: %2 of %3 votes. Ask for it too to agree"),
-    N_("%1 asks for the game to go on: %2 of %3 votes. Ask for it too to agree"),
-    N_("watchers have no vote"),
-    N_("who you would put out has left"),
-    N_("the host cannot be put out"),
-    N_("one player alone puts nobody out: ask the host"),
-    N_("you began a vote a moment ago: wait a minute"),
-    N_("results in %1: %2; play goes on"),
-    N_("the physics server cannot keep up: end other programs on its machine"),
-    // why it refuses, or is not there
-    N_("the host put you out of this match: join to watch, or play in the next"),
-    N_("the players put you out of this match: join to watch, or play in the next"),
-    N_("somebody at your machine was put out of this match: join to watch, or play in the next"),
-    N_("the server is full: try again when somebody has left"),
+// What the client itself and recordings say, as forms with %1 .. %9 in their order, as
+// wire/sentence.h has the server's.
+constexpr std::array kOwn{
+    // why the server is not there
     N_("no snapshot for %1 ms"),
     N_("it does not answer"),
     N_("it closed the connection"),
+    N_("it said good-bye"),
+    N_("it sends what is no message"),
+    N_("it does not read what it is sent"),
+    N_("its characters cannot be played: use the same release of both"),
+    N_("the password is not the server's: give --password-file with the right one"),
+    N_("There is no way to the server's UDP port %1: check this machine's network."),
     // recordings
     N_("%1 is no recorded match (%2): choose a file that --record wrote"),
     N_("%1 is no recorded match: choose a file that --record wrote"),
@@ -77,12 +65,12 @@ std::string plain_list(std::string_view word) {
   return text;
 }
 
-std::string filled(std::string_view form, const Words& words) {
+std::string filled(std::string_view form, const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t i = 0; i < form.size(); ++i) {
     const std::size_t which = i + 1 < form.size() ? static_cast<std::size_t>(form[i + 1] - '1') : 9;
     if (form[i] == '%' && which < words.size()) {
-      text += plain_list(words[which]);
+      text += words[which];
       ++i;
     } else {
       text += form[i];
@@ -91,13 +79,56 @@ std::string filled(std::string_view form, const Words& words) {
   return text;
 }
 
+// The form that says most of the sentence in its own words: a stranger's may look like another.
+struct Known {
+  const char* form = nullptr;
+  Words words;
+};
+Known known(std::string_view sentence) {
+  Known best;
+  std::size_t most = 0;
+  const auto look = [&](const char* form) {
+    auto words = words_in(sentence, form);
+    if (!words) return;
+    std::size_t own = sentence.size() + 1;
+    for (const std::string_view word : *words) own -= word.size();
+    if (own > most) best = {form, std::move(*words)}, most = own;
+  };
+  for (const char* form : wire::kSentences) look(form);
+  for (const char* form : kOwn) look(form);
+  return best;
+}
+
+// A word may be a sentence of its own, or several with "; " between them. None is deeper than this.
+constexpr int kDeepest = 3;
+std::optional<std::string> translated(std::string_view sentence, int depth);
+
+std::string translated_word(std::string_view word, int depth) {
+  std::string text;
+  for (std::string_view rest = word; !rest.empty();) {
+    const std::size_t end = rest.find("; ");
+    const auto part = translated(rest.substr(0, end), depth + 1);
+    // One whose own text has a "; ", or no sentence.
+    if (!part) return translated(word, depth + 1).value_or(plain_list(word));
+    text += (text.empty() ? "" : "; ") + *part;
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 2);
+  }
+  return text;
+}
+
+std::optional<std::string> translated(std::string_view sentence, int depth) {
+  if (depth > kDeepest) return std::nullopt;
+  const Known found = known(sentence);
+  if (found.form == nullptr) return std::nullopt;
+  std::vector<std::string> words;
+  for (const std::string_view word : found.words) words.push_back(translated_word(word, depth));
+  return filled(tr(found.form), words);
+}
+
 }  // namespace
 
 std::string tr_sentence(const std::string& english) {
-  for (const char* form : kKnown) {
-    if (const auto words = words_in(english, form)) return filled(tr(form), *words);
-  }
-  return english;
+  return translated(english, 0).value_or(english);
 }
 
 }  // namespace client

@@ -17,7 +17,7 @@ struct RunOptions {
 
 // Why a run ended.
 enum class RunEnd : std::uint8_t { stopped, time_over, empty, replay_over };
-const char* to_text(RunEnd end);
+wire::Sentence to_sentence(RunEnd end);
 
 // Watches for overload on the way: clients are told while more than 5% of a second's ticks are
 // missed.

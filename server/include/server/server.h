@@ -22,6 +22,7 @@
 #include "server/log.h"
 #include "server/network.h"
 #include "server/playback.h"
+#include "wire/sentence.h"
 
 namespace server {
 
@@ -83,12 +84,12 @@ class Server {
     not_counted = 8,
     devices = 100
   };
-  void warn(Topic topic, const std::string& text);
+  void warn(Topic topic, const wire::Sentence& text);
   void clear(Topic topic, const std::string& text);
 
   // Says Bye to the clients and closes the journal and the results, waiting for them: up to 0.2 s,
   // and for the disk, up to 4 s each.
-  void finish(const std::string& reason);
+  void finish(const wire::Sentence& reason);
 
   std::uint16_t port() const;
   const foosball::Match& match() const;

@@ -1,0 +1,152 @@
+// What the server says to people: every sentence that a Notice, a Refusal or a Bye carries, as a
+// form with places for what changes. They travel in English, as logs have them; a client knows the
+// same forms and shows them in the person's language. A Sentence is made from a form alone, so that
+// none is said that clients do not know.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace wire {
+
+// Name and English form. %1 .. %9 stand for words, each once; a word may be another sentence, or
+// several with "; " between them. Texts are cut to kMaxText bytes.
+// clang-format off
+#define WIRE_SENTENCES(X) \
+  /* who joins, and why not */ \
+  X(other_version, "this server speaks control version %1, you speak %2: use the same release of both") \
+  X(other_snapshots, "your snapshots are laid out otherwise: use the same release of both") \
+  X(other_password_share, "a share that is none: use the same release of both") \
+  X(no_such_wish, "a wish that does not exist: use the same release of client and server") \
+  X(unreadable, "your message could not be read: is this a Space Foosball client?") \
+  X(out_of_place, "a message out of its place: say Hello first and once") \
+  X(no_hosts_from_afar, "nobody is host from another machine here: start the server with --host-password-file") \
+  X(nobody_from_afar, "nobody joins from another machine here: start the server with --password-file") \
+  X(password_wanted, "from another machine a password is wanted: give --password-file") \
+  X(wrong_passwords, "too many wrong passwords from your network: wait a minute") \
+  X(server_overloaded, "the server is overloaded: try again") \
+  X(server_full, "the server is full: try again when somebody has left") \
+  X(too_many_connections, "too many connections from your address: close one first") \
+  X(no_socket_left, "the server has no socket left for you: try again") \
+  X(recording_plays, "a recording plays here") \
+  X(recording_plays_join, "a recording plays here: join to watch") \
+  /* who has which rods */ \
+  X(which_team, "choose a team to have rods of: 0 or 1") \
+  X(team_taken, "team %1 is taken: ask for the other one, or join to watch") \
+  X(rods_of_both_teams, "rods of both teams are for the table's own machine: ask for rods of team %1, or start the server with --mixed-teams") \
+  X(rods_taken, "rods %1 of team %2 are taken: free are rods %3") \
+  X(rods_and_team_taken, "rods %1 of team %2 are taken: ask for the other one, or join to watch") \
+  X(joined_to_watch, "you joined to watch") \
+  X(player_lost, "%1 was lost: rods %2 are kept for %3 s") \
+  X(rods_for, "rods %1 for %2") \
+  X(a_player, "a player") \
+  X(computer_plays, "the computer plays %1") \
+  X(rods_offered, "free to the team for %1 s, then the computer's: %2") \
+  X(not_rated, "the match does not count for the rating of who played too little of it: %1") \
+  /* votes */ \
+  X(asks_for_pause, "%1 asks for a pause: %2 of %3 votes. Ask for it too to agree") \
+  X(asks_for_restart, "%1 asks for a restart: %2 of %3 votes. Ask for it too to agree") \
+  X(asks_to_go_on, "%1 asks for the game to go on: %2 of %3 votes. Ask for it too to agree") \
+  X(watchers_have_no_vote, "watchers have no vote") \
+  X(target_has_left, "who you would put out has left") \
+  X(target_is_you, "you cannot put yourself out: give up your rods") \
+  X(target_watches, "only players are put out, and this one watches") \
+  X(target_is_host, "the host cannot be put out") \
+  X(target_at_your_address, "your address has no vote on its own players") \
+  X(one_alone, "one player alone puts nobody out: ask the host") \
+  X(vote_just_begun, "you began a vote a moment ago: wait a minute") \
+  X(would_put_out, "%1 would put %2 out of the match: %3 of %4 votes") \
+  X(vote_goes_on, "%1 comes from the address of %2, who has left: the vote to put that player out goes on against %3") \
+  X(vote_at_your_address, "a vote against a player at your address is open: wait for its end") \
+  X(put_out_by_host, "the host put you out: join to watch. You may play when a match has ended, or in %1 minutes") \
+  X(put_out_by_players, "the players put you out: join to watch. You may play when a match has ended, or in %1 minutes") \
+  X(address_put_out, "somebody at your address was put out: join to watch. You may play when a match has ended, or in %1 minutes") \
+  /* answers to the questionnaire */ \
+  X(answers_of_other_match, "your answers are not kept: the match is not the one you were asked about") \
+  X(answers_given_already, "your answers are not kept: they were given already, or are of others") \
+  X(answers_of_both_teams, "your answers are not kept: one player has rods of one team") \
+  X(answers_empty, "your answers are not kept: there are none") \
+  /* the server's machine */ \
+  X(cannot_keep_up, "the physics server cannot keep up: end other programs on its machine") \
+  X(nothing_is_sent, "no snapshot can be sent: %1; check the network's routes, or leave --multicast out") \
+  X(disk_too_slow, "recording to %1 ended early: the disk is too slow; play goes on") \
+  X(recording_failed, "recording to %1 ended early: %2; play goes on") \
+  X(recording_too_large, "recording to %1 ended early: it has reached its %2 MiB; play goes on") \
+  X(recording_stalled, "recording to %1 ended early: the disk, or the pipe's reader, did not take the rest in time") \
+  X(results_not_kept, "%1; play goes on") \
+  X(results_problem, "results in %1: %2") \
+  /* %2 of it: the sentences of results::Store, which knows no wire */ \
+  X(results_locked, "another program has them locked; end it and try again") \
+  X(results_no_database, "the file is no database of results; choose another file") \
+  X(results_damaged, "the file is damaged; move it away, a new one is made") \
+  X(results_not_opened, "the file cannot be opened; check its folder and permissions") \
+  X(results_not_written, "the file cannot be written; check its permissions") \
+  X(results_disk_full, "the disk is full; make room") \
+  X(results_no_file, "it is no ordinary file; choose another") \
+  X(results_too_new, "they are of version %1, this program knows %2; use the release that wrote them") \
+  /* its devices */ \
+  X(device_not_allowed, "%1 cannot be opened: %2; install cabinet/70-space-foosball.rules or join the device's group") \
+  X(device_busy, "%1 cannot be opened: %2; end the other program that uses it") \
+  X(device_refused, "%1 cannot be opened: %2; plug it in anew, or give another address") \
+  X(device_unplugged, "%1 unplugged: its rods hold; plug it in again") \
+  X(device_missing, "%1 is not there: plug it in, or give its right address") \
+  X(device_silent, "%1 is there but sends nothing: plug it in anew, and check its firmware") \
+  X(device_garbled, "%1 sends what is no frame: is it the right device, with our firmware?") \
+  X(device_over, "%1 is over: its rods hold") \
+  X(device_without_frames, "%1 holds no frame: give a recording of a controller") \
+  /* its end */ \
+  X(server_stopped, "the server was stopped") \
+  X(server_ends, "the server ends") \
+  X(time_is_over, "the time is over") \
+  X(everybody_left, "everybody has left") \
+  X(recording_over, "the recording is over")
+// clang-format on
+
+#define WIRE_NAME(name, form) name,
+enum class Said : std::uint8_t { WIRE_SENTENCES(WIRE_NAME) };
+#undef WIRE_NAME
+#define WIRE_FORM(name, form) form,
+inline constexpr std::array kSentences{WIRE_SENTENCES(WIRE_FORM)};
+#undef WIRE_FORM
+
+// How many places the form has.
+constexpr int places_of(std::string_view form) {
+  int places = 0;
+  for (const char c : form) places += c == '%' ? 1 : 0;
+  return places;
+}
+
+class Sentence {
+ public:
+  Sentence() = default;  // none
+  // Words of others (the operating system's, a library's), which no client knows.
+  static Sentence untranslated(std::string text);
+
+  const std::string& text() const { return text_; }
+  bool empty() const { return text_.empty(); }
+  bool operator==(const Sentence&) const = default;
+
+ private:
+  template <Said said, class... Words>
+  friend Sentence say(const Words&... words);
+  static Sentence filled(std::string_view form, std::initializer_list<std::string> words);
+  static std::string word(const Sentence& sentence) { return sentence.text_; }
+  static std::string word(std::string_view text) { return std::string(text); }
+  static std::string word(std::integral auto number) { return std::to_string(number); }
+
+  std::string text_;
+};
+
+// Words in the order of the form's places: texts, whole numbers or sentences.
+template <Said said, class... Words>
+Sentence say(const Words&... words) {
+  constexpr std::string_view form = kSentences[static_cast<std::size_t>(said)];
+  static_assert(places_of(form) == sizeof...(Words), "a word for each place of the form");
+  return Sentence::filled(form, {Sentence::word(words)...});
+}
+
+}  // namespace wire

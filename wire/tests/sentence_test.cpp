@@ -1,0 +1,40 @@
+// The forms of what the server says.
+#include "wire/sentence.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "wire/control.h"
+
+namespace wire {
+namespace {
+
+TEST(Sentence, HasItsWordsInTheirPlaces) {
+  EXPECT_EQ(say<Said::player_lost>("Ann", "1 and 2", 30).text(),
+            "Ann was lost: rods 1 and 2 are kept for 30 s");
+  EXPECT_EQ(say<Said::player_lost>("%2", std::string("%1"), std::uint8_t{3}).text(),
+            "%2 was lost: rods %1 are kept for 3 s")
+      << "a stranger's words are no form";
+  EXPECT_EQ(say<Said::computer_plays>(say<Said::rods_for>("3", "Bob")).text(),
+            "the computer plays rods 3 for Bob");
+}
+
+// A client finds the words by their order; a form that is cut has lost what it says.
+TEST(Sentence, FormsHaveTheirPlacesInOrderAreDifferentAndFitIntoAText) {
+  std::set<std::string_view> all;
+  for (const std::string_view form : kSentences) {
+    EXPECT_TRUE(all.insert(form).second) << form;
+    EXPECT_LT(form.size(), kMaxText / 4 * 3) << form;
+    char next = '1';
+    for (std::size_t i = 0; i < form.size(); ++i) {
+      if (form[i] != '%') continue;
+      ASSERT_LT(i + 1, form.size()) << form;
+      EXPECT_EQ(form[i + 1], next++) << form;
+    }
+    EXPECT_EQ(form.find("%1%"), std::string_view::npos) << form;
+  }
+}
+
+}  // namespace
+}  // namespace wire
