@@ -16,11 +16,21 @@ constexpr double kSurprise = 0.008, kSurpriseBy = 0.4;
 
 constexpr double kKeepsOn = 0.6;  // of another player's way; a hand that moved may have stopped
 
+// A world takes memory in its first steps: at the start, and where the ball first touches
+// something. What they make of rods and ball is set again where a run starts.
+void take_memory(TableWorld& world) {
+  const double radius = world.table().ball_radius;
+  world.set_ball({0.0, 0.0, radius}, {0.0, 0.0, -1.0});
+  world.step();
+  world.park_ball();
+  world.step();
+}
+
 }  // namespace
 
 struct BallForecast::Run {
   Run(Layout layout, const TeamBodies& bodies, int team, const Tuning& tuning, std::size_t memory)
-      : world(layout, bodies, team, tuning), expected(memory) {}
+      : world(TableWorld::InParts{}, layout, bodies, team, tuning), expected(memory) {}
 
   TableWorld world;
   std::vector<BallGuess> expected;  // by tick, a ring
@@ -39,17 +49,33 @@ BallForecast::BallForecast(BallForecast&&) noexcept = default;
 BallForecast& BallForecast::operator=(BallForecast&&) noexcept = default;
 
 void BallForecast::set_table(Layout layout, const TeamBodies& bodies, const Tuning& tuning) {
-  if (now_ && layout == layout_ && bodies == bodies_ && tuning == tuning_) return;
+  const bool same = layout == layout_ && bodies == bodies_ && tuning == tuning_;
+  if (same && is_built()) return;
+  if (!same) {
+    built_ = 0;
+    begun_ = false;
+  }
   layout_ = layout;
   bodies_ = bodies;
   tuning_ = tuning;
-  now_ = std::make_unique<Run>(layout, bodies, team_, tuning, memory_);
-  catching_up_ = std::make_unique<Run>(layout, bodies, team_, tuning, memory_);
+  build_part();
+}
+
+void BallForecast::build_part() {
+  std::unique_ptr<Run>& run = built_ == 0 ? now_ : catching_up_;
+  if (!begun_) {
+    run = std::make_unique<Run>(layout_, bodies_, team_, tuning_, memory_);
+    begun_ = true;
+    return;
+  }
+  if (!run->world.is_built()) return run->world.build_part();
+  take_memory(run->world);
+  ++built_;
+  begun_ = false;
 }
 
 void BallForecast::forget() {
-  if (!now_) return;
-  now_->runs = catching_up_->runs = false;
+  if (is_built()) now_->runs = catching_up_->runs = false;
 }
 
 std::size_t BallForecast::slot(long tick) const {
@@ -73,6 +99,7 @@ bool BallForecast::as_expected(const Run& run, const Sighting& seen, double metr
 void BallForecast::see(const Sighting& seen) {
   spent_ = 0;
   seen_ = seen;
+  if (!is_built()) return;
   if (!seen.ball_in_play) return forget();
   if (now_->runs && !as_expected(*now_, seen, kSurprise, kSurpriseBy)) now_->runs = false;
   if (catching_up_->runs && !as_expected(*catching_up_, seen, kSurprise, kSurpriseBy)) {
@@ -89,7 +116,7 @@ void BallForecast::see(const Sighting& seen) {
 }
 
 std::optional<BallGuess> BallForecast::ball() const {
-  if (!now_ || !now_->runs) return std::nullopt;
+  if (!is_built() || !now_->runs) return std::nullopt;
   return now_->expected[slot(tick_)];
 }
 
@@ -99,7 +126,7 @@ void BallForecast::act(const RodTargets& targets, std::uint8_t own) {
     acted[rod] = targets[rod];
     acted[rod].live = (own >> rod & 1) != 0;  // without a hand it stays where it was left
   }
-  if (now_ && now_->runs) step(*now_);
+  if (is_built() && now_->runs) step(*now_);
   ++tick_;
 }
 

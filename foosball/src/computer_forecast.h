@@ -36,9 +36,10 @@ class BallForecast {
   BallForecast(BallForecast&&) noexcept;
   BallForecast& operator=(BallForecast&&) noexcept;
 
-  // Builds the worlds anew if they differ; allocates then.
+  // Each tick, before see(). If they differ, the worlds are made anew, a part of one world a call
+  // (table_world.h): until both are whole there is no forecast. Takes memory then, and only then.
   void set_table(Layout layout, const TeamBodies& bodies, const Tuning& tuning);
-  // Before the player acts. Precondition: set_table().
+  // Before the player acts. Precondition: set_table() in this tick.
   void see(const Sighting& seen);
   // The ball now; nothing while it does what was not expected.
   std::optional<BallGuess> ball() const;
@@ -54,6 +55,9 @@ class BallForecast {
  private:
   struct Run;
 
+  static constexpr int kWorlds = 2;
+  bool is_built() const { return built_ == kWorlds; }
+  void build_part();
   void start(Run& run, const Sighting& seen);
   void step(Run& run);
   bool as_expected(const Run& run, const Sighting& seen, double metres, double speed) const;
@@ -65,8 +69,10 @@ class BallForecast {
   Layout layout_ = Layout::tournament;
   TeamBodies bodies_;
   Tuning tuning_;
-  std::unique_ptr<Run> now_, catching_up_;
-  std::vector<RodTargets> targets_;  // by tick, a ring; live: of a rod that was its own
+  std::unique_ptr<Run> now_, catching_up_;  // null until made
+  int built_ = 0;                           // of them, of this table
+  bool begun_ = false;                      // the next one
+  std::vector<RodTargets> targets_;         // by tick, a ring; live: of a rod that was its own
   Sighting seen_;
   long tick_ = 0;
   int spent_ = 0;

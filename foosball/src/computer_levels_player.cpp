@@ -45,6 +45,7 @@ class LevelPlayer final : public ComputerPlayer::Impl {
 };
 
 void LevelPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t rods) {
+  if (forecast_) forecast_->set_table(view.layout, view.bodies, view.tuning);
   lines_ = lines_of(view.layout, team_, rods);
   if (lines_ == 0) return let_go();
   mind_.keep_to(lines_);
@@ -67,7 +68,6 @@ void LevelPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t 
 void LevelPlayer::think(const MatchView& view) {
   std::optional<BallGuess> ball;
   if (forecast_) {
-    forecast_->set_table(view.layout, view.bodies, view.tuning);
     forecast_->see(sight_.seen());
     ball = forecast_->ball();
   }

@@ -106,26 +106,41 @@ Tag decode_tag(std::uint64_t user_data) {
 }
 
 TableWorld::TableWorld(Layout layout, const TeamBodies& bodies, int first, const Tuning& tuning)
+    : TableWorld(InParts{}, layout, bodies, first, tuning) {
+  while (!is_built()) build_part();
+}
+
+TableWorld::TableWorld(InParts /*later*/, Layout layout, const TeamBodies& bodies, int first,
+                       const Tuning& tuning)
     : table_(table_spec(layout)),
       first_(first),
       tuning_(tuning),
       bodies_(bodies),
       world_(
-          {.gravity = {0.0, 0.0, -tuning.gravity}, .restitution_threshold = tuning.still_speed}) {
-  vp::BodyDesc fixed;
-  fixed.motion = vp::Motion::fixed;
-  fixed_ = must(world_.create_body(fixed));
-  add_field_and_walls();
-  add_corners();
-  add_ball();
-  for (const int team : {first, 1 - first}) {
-    for (const int rod : rods_of_team(table_, team)) add_rod(rod);
-  }
-  found_.reserve(64);
-  park_ball();
-}
+          {.gravity = {0.0, 0.0, -tuning.gravity}, .restitution_threshold = tuning.still_speed}) {}
 
 // --- building ------------------------------------------------------------------------------------
+
+void TableWorld::build_part() {
+  VP_ASSERT(!is_built());
+  if (parts_ == 0) {
+    vp::BodyDesc fixed;
+    fixed.motion = vp::Motion::fixed;
+    fixed_ = must(world_.create_body(fixed));
+    add_field_and_walls();
+    add_corners();
+    add_ball();
+    found_.reserve(64);
+  } else {
+    const int row = parts_ - 1;
+    const int team = row < kRods / 2 ? first_ : 1 - first_;
+    add_rod(rods_of_team(table_, team)[static_cast<std::size_t>(row % (kRods / 2))]);
+  }
+  ++parts_;
+  if (!is_built()) return;
+  park_ball();
+  (void)free_for_ball({});  // the first question of a world takes memory
+}
 
 void TableWorld::add_fixed(const vp::Shape& shape, const SE3& T_world_shape,
                            const vp::Material& material, Tag::What what) {

@@ -50,6 +50,13 @@ class TableWorld {
   // each rod's men from the player's left. A world of the other team first, with characters,
   // targets and ball turned by half a revolution about z, then moves exactly turned.
   TableWorld(Layout layout, const TeamBodies& bodies, int first = 0, const Tuning& tuning = {});
+  // The same made in kParts parts, for whoever may not spend the time of the whole at once: a call
+  // of build_part() each. Precondition of every other call: is_built().
+  struct InParts {};
+  TableWorld(InParts, Layout layout, const TeamBodies& bodies, int first, const Tuning& tuning);
+  static constexpr int kParts = 1 + kRods;  // the table, and each row of men
+  void build_part();
+  bool is_built() const { return parts_ == kParts; }
 
   const TableSpec& table() const { return table_; }
   int first() const { return first_; }
@@ -105,6 +112,7 @@ class TableWorld {
 
   const TableSpec& table_;
   int first_;
+  int parts_ = 0;  // built
   Tuning tuning_;
   TeamBodies bodies_;
   vp::World world_;

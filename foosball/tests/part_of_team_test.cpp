@@ -228,8 +228,8 @@ TEST_P(MateForecast, IsAsCloseAtATeamMatesFeetAsAtAnOpponents) {
       "an opponent's %.2f, %.1f\n",
       half[own_feet], most[own_feet], half[mates], most[mates], half[opponents], most[opponents]);
   EXPECT_LE(half[mates], half[opponents] + 0.5);
-  // 0.8 and 1.3 times an opponent's; were a mate's men taken to stand still, it would be 2.1
-  // and 2.6.
+  // 0.3 and 1.2 times an opponent's; a forecast in which a mate's men stand still is off by more
+  // than twice as much.
   EXPECT_LE(most[mates], 1.6 * most[opponents]);
 }
 

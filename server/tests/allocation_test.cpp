@@ -1,9 +1,15 @@
 // Once warm, a tick takes no memory: an allocation may wait for a lock or for the kernel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
 #include "counting_new.h"
 #include "journal_file.h"
 #include "lockstep.h"
+#include "seats.h"
+#include "wire/enums.h"
 
 namespace server {
 namespace {
@@ -68,6 +74,102 @@ TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
     }));
     EXPECT_EQ(during, 0);
   }
+}
+
+// The best players have worlds of their own (foosball/src/computer_forecast.h).
+class BestPlayersTick : public testing::Test {
+ protected:
+  BestPlayersTick()
+      : table([](ServerOptions& o) {
+          o.computer = {true, true};
+          o.computer_fills = true;
+          o.computer_player = *foosball::parse_player("5");
+          o.limits.seat_kept_us = 30'000'000;
+          o.match.rules.goals_to_win = 99;
+          o.match.rules.max_goals = 99;
+        }),
+        host(table.port()) {}
+  void SetUp() override {
+    ASSERT_TRUE(host.join());
+    for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
+      for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
+        host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+      }
+      ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
+    }
+    table.tick(6'000);  // once warm
+  }
+  long taken() {
+    const long before = os::testing::allocations();
+    table.tick();
+    return os::testing::allocations() - before;
+  }
+  struct Taken {
+    int ticks = 0;  // that took memory
+    long sum = 0, most = 0;
+  };
+  Taken taken_in(int ticks) {
+    Taken all;
+    for (int i = 0; i < ticks; ++i) {
+      const long now = taken();
+      all.ticks += now > 0 ? 1 : 0;
+      all.sum += now;
+      all.most = std::max(all.most, now);
+    }
+    return all;
+  }
+
+  Lockstep table;
+  ProbeClient host;
+};
+
+TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  ProbeClient ann(table.port()), bob(table.port());
+  ASSERT_TRUE(ann.join(0, RodSet(all0 & -all0)));
+  const auto seat = bob.join(1);
+  ASSERT_TRUE(seat);
+  wire::InputDatagram input{.session = seat->session, .token = seat->token};
+  for (wire::InputRod& rod : input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
+  const auto play = [&](int seconds) {  // Bob's hand is heard all the while
+    Taken all;
+    for (int i = 0; i < seconds; ++i) {
+      ++input.sequence;
+      bob.send_input(input);
+      const Taken now = taken_in(1'000);
+      all.ticks += now.ticks;
+      all.sum += now.sum;
+    }
+    return all;
+  };
+  EXPECT_EQ(play(2).sum, 0) << "the computer fills her team";
+  ann.leave();
+  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  const Taken stood_in = play(5);
+  EXPECT_NE(table.log().find("the computer plays rods"), std::string::npos);
+  EXPECT_LE(stood_in.ticks, 1) << "that tells all who plays";
+  EXPECT_LT(stood_in.sum, 40);
+}
+
+// The one change in play that takes memory. docs/decisions/0050 says how long it takes.
+TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
+  EXPECT_EQ(taken_in(1'000).sum, 0);
+  const double gravity = table->match().view().tuning.gravity + 0.5;
+  host.say(wire::Wish{number(wire::WishKind::tune), 0,
+                      static_cast<std::uint8_t>(foosball::tuning_index("gravity")), gravity});
+  long at_once = 0;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (table->match().view().tuning.gravity != gravity) {
+    ASSERT_LT(std::chrono::steady_clock::now(), until);
+    at_once = taken();
+  }
+  const Taken making = taken_in(25);
+  std::printf("the match's world: %ld allocations; the players', %ld in %d ticks, %ld at most\n",
+              at_once, making.sum, making.ticks, making.most);
+  EXPECT_LT(at_once, 1'500);
+  EXPECT_LT(making.most, 400);
+  taken_in(500);  // the match's new world meets its sizes
+  EXPECT_EQ(taken_in(2'000).sum, 0);
 }
 
 // A match with more contacts has a larger keyframe than any before it.

@@ -69,10 +69,10 @@ class ComputerPlayer {
 
   // Targets for its rods: those of its team among `rods`; all other targets are left as they are,
   // and not read. Rods of its team that are not its own are a team mate's: it sees where they are,
-  // as it sees the opponent's. They may change from tick to tick; none: it lets go and looks anew
-  // when it has some again.
-  // With its whole team it works the screens too: pushes at the logo, chooses and confirms a
-  // character. With a part of it, that is left to the team mate.
+  // as it sees the opponent's. They may change from tick to tick. None: it lets go, is ready to
+  // play at once, and looks anew when it has some again. With its whole team it works the screens
+  // too: pushes at the logo, chooses and confirms a character. With a part of it, that is left to
+  // the team mate.
   void play(const MatchView& view, RodTargets& targets, std::uint8_t rods = kAllRods);
   // The pass that a foot sent off in the last play(), if one did.
   PlayedPass passed() const;
