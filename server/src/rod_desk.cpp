@@ -31,6 +31,7 @@ RodDesk::RodDesk(const foosball::MatchDesc& match,
       seed_(match.seed),
       mux_(slide_limits(table_)) {
   if (match.mode == foosball::Mode::ladder) rung_ = 0;
+  hand_watch_.resize(places_.size());
   for (Place& place : places_) {
     place.remote = std::make_unique<RemoteSource>("client");
     place.index = add(*place.remote, cabinet::Origin::absolute, RodDriver::client);
@@ -82,16 +83,14 @@ void RodDesk::show_match(bool shown) {
 }
 
 bool RodDesk::hand_moved() const {
-  // More than a sensor's noise, as foosball's idle watch has it.
-  constexpr double kSlide = 0.003, kAngle = 0.05;  // [m], [rad]
   for (std::size_t source = 0; source < hands_.size(); ++source) {
     for (int rod = 0; rod < cabinet::kRods; ++rod) {
       const cabinet::RodInput& now = hand(source, rod);
       const cabinet::RodInput& then = hands_[source][rod];
       if (now.status != cabinet::RodStatus::live) continue;
       if (then.status != cabinet::RodStatus::live) return true;
-      if (std::fabs(now.slide - then.slide) > kSlide) return true;
-      if (std::fabs(now.angle - then.angle) > kAngle) return true;
+      if (std::fabs(now.slide - then.slide) > HandWatch::kSlide) return true;
+      if (std::fabs(now.angle - then.angle) > HandWatch::kAngle) return true;
     }
   }
   return false;
@@ -105,6 +104,7 @@ int RodDesk::add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver
 void RodDesk::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
   order_.insert(order_.end() - 1, add(*device, cabinet::Origin::relative, RodDriver::cabinet));
   devices_.push_back(std::move(device));
+  hand_watch_.resize(places_.size() + devices_.size());
   assign_all();
 }
 
@@ -125,6 +125,8 @@ RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods, std::int64_
   vacated_ &= static_cast<std::uint8_t>(~rods);
   place->rods = rods;
   place->remote->set_rods(rods);
+  // Who takes rods, or gives some up, is there.
+  hand_watch_.restart(static_cast<std::size_t>(place - places_.begin()), now_us, play_us_);
   assign_all();
   return rods != 0 ? place->remote.get() : nullptr;
 }
@@ -145,7 +147,9 @@ bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_
   for (int rod = 0; rod < foosball::kRods; ++rod)
     if ((rods >> rod & 1) != 0) wanted[table_.rods[rod].team] = true;
   return std::ranges::any_of(places_, [&](const Place& place) {
-    if (place.client == client || place.lost || absent(place, now_us)) return false;
+    const auto source = static_cast<std::size_t>(&place - places_.data());
+    if (place.client == client || place.rods == 0 || place.lost) return false;
+    if (gone(source, place.rods, now_us)) return false;
     for (int rod = 0; rod < foosball::kRods; ++rod)
       if ((place.rods >> rod & 1) != 0 && wanted[table_.rods[rod].team]) return true;
     return false;
@@ -164,25 +168,77 @@ void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
     if ((rods >> rod & 1) != 0) offered_until_us_[rod] = offer ? now_us + kOfferUs : now_us;
 }
 
-bool RodDesk::absent(const Place& place, std::int64_t now_us) const {
-  return place.remote->silent_us(now_us) >= kStandInAfterUs;
+// The device that has the rod, else the client; as assign_all() has it.
+std::size_t RodDesk::owner(int rod) const {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (devices_[i]->rods()[rod].status != cabinet::RodStatus::absent) return places_.size() + i;
+  }
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if ((places_[i].rods >> rod & 1) != 0) return i;
+  }
+  return kNone;
 }
 
-bool RodDesk::watch_absences(bool in_match, std::int64_t now_us) {
-  std::uint8_t stand_ins = 0, offered = 0;
-  bool somebody = !devices_.empty();
-  for (const Place& place : places_) {
-    if (place.rods == 0) continue;
-    const bool away = absent(place, now_us);
-    if (away) stand_ins |= place.rods;
-    somebody = somebody || !away;
+bool RodDesk::of_device(int rod) const {
+  const std::size_t source = owner(rod);
+  return source != kNone && source >= places_.size();
+}
+
+// Nothing is heard of the hand, or it has done nothing for long.
+bool RodDesk::gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const {
+  const std::int64_t silent_us = source < places_.size()
+                                     ? places_[source].remote->silent_us(now_us)
+                                     : hand_watch_.undriven_us(source, rods, now_us);
+  return silent_us >= kStandInAfterUs || hand_watch_.still_us(source, rods, play_us_) >= kIdleUs;
+}
+
+void RodDesk::look_at_hands(bool in_match, bool in_play, std::int64_t now_us) {
+  if (in_play && looked_us_ >= 0) play_us_ += now_us - looked_us_;
+  looked_us_ = now_us;
+  const bool begins = in_match && !in_match_;
+  in_match_ = in_match;
+  for (std::size_t source = 0; source < places_.size() + devices_.size(); ++source) {
+    const cabinet::RodInputs& rods = source < places_.size()
+                                         ? places_[source].remote->rods()
+                                         : devices_[source - places_.size()]->rods();
+    if (begins) hand_watch_.restart(source, now_us, play_us_);
+    hand_watch_.look(source, rods, now_us, play_us_);
   }
+}
+
+// A client's and a device's rods of a team are one player's: two may stand at one cabinet.
+std::uint8_t RodDesk::rods_of_gone(bool& somebody, std::int64_t now_us) const {
+  std::array<std::size_t, foosball::kRods> owners;
+  for (int rod = 0; rod < foosball::kRods; ++rod) owners[rod] = owner(rod);
+  std::uint8_t all = 0, looked_at = 0;
+  for (int first = 0; first < foosball::kRods; ++first) {
+    if (owners[first] == kNone || (looked_at >> first & 1) != 0) continue;
+    std::uint8_t rods = 0;
+    for (int rod = first; rod < foosball::kRods; ++rod) {
+      const bool same = owners[rod] == owners[first];
+      if (same && table_.rods[rod].team == table_.rods[first].team)
+        rods |= static_cast<std::uint8_t>(1u << rod);
+    }
+    looked_at |= rods;
+    if (gone(owners[first], rods, now_us)) {
+      all |= rods;
+    } else {
+      somebody = true;
+    }
+  }
+  return all;
+}
+
+bool RodDesk::watch_absences(bool in_match, bool in_play, std::int64_t now_us) {
+  look_at_hands(in_match, in_play, now_us);
+  bool somebody = false;
+  std::uint8_t stand_ins = rods_of_gone(somebody, now_us), offered = 0;
   if (!in_match) vacated_ = 0;
   // Nobody keeps up a match that all have left: it ends by the rule for idle ones.
   if (!in_match || !somebody) stand_ins = 0;
   for (int rod = 0; somebody && rod < foosball::kRods; ++rod) {
     const auto bit = static_cast<std::uint8_t>(1u << rod);
-    if ((vacated_ & bit) == 0) continue;
+    if ((vacated_ & bit) == 0 || of_device(rod)) continue;
     (now_us >= offered_until_us_[rod] ? stand_ins : offered) |= bit;
   }
   if (stand_ins == stand_ins_ && offered == offered_) return false;
@@ -211,11 +267,9 @@ void RodDesk::assign_all() {
       order_.back() = computer_index_[team];
       computed |= 1U << rod;
     }
-    if ((stand_ins_ >> rod & 1) != 0) {
-      order_.back() = computer_index_[team];
-      computed |= 1U << rod;
-    }
-    if (shown_) {
+    const bool stands_in = (stand_ins_ >> rod & 1) != 0;
+    if (stands_in) computed |= 1U << rod;
+    if (shown_ || stands_in) {
       mux_.assign(rod, std::span(&computer_index_[team], 1));
     } else {
       mux_.assign(rod, order_);
@@ -232,7 +286,7 @@ void RodDesk::poll(std::int64_t now_us) {
     const int source = mux_.source_of(rod);
     const bool device =
         source != cabinet::SourceMux::kNobody && kinds_[source] == RodDriver::cabinet;
-    if (device && !shown_) rods &= ~(1U << rod);
+    if (device && !shown_ && (stand_ins_ >> rod & 1) == 0) rods &= ~(1U << rod);
   }
   for (const auto& computer : computers_) computer->set_rods(static_cast<std::uint8_t>(rods));
   mux_.poll(now_us);

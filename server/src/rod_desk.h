@@ -1,8 +1,8 @@
 // Who drives which rod: the cabinet's sensors first, then the client that has the rod. The computer
 // has the rods of a team without a person; where people have only some of a team's rods, it has the
-// others if the options say so. In a match it also stands in for a person who is lost, silent or
-// has left, until the person is back or somebody takes the rods. Built on cabinet::SourceMux, which
-// keeps rods from jumping when the driver changes.
+// others if the options say so. In a match it also stands in for a person who is lost, silent, idle
+// or has left, until the person is back or somebody takes the rods. Built on cabinet::SourceMux,
+// which keeps rods from jumping when the driver changes.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include "cabinet/source_mux.h"
 #include "computer_source.h"
 #include "foosball/match.h"
+#include "hand_watch.h"
 #include "remote_source.h"
 
 namespace server {
@@ -42,14 +43,18 @@ class RodDesk {
   void leave(std::uint32_t client, std::int64_t now_us);
   // Each tick: whom the computer stands in for, where somebody else is there to play with or
   // against. True: it changed. in_match: there is a match to keep going; what was vacated in
-  // another is forgotten.
-  bool watch_absences(bool in_match, std::int64_t now_us);
+  // another is forgotten. in_play: the ball is in play, so that hands have something to do.
+  bool watch_absences(bool in_match, bool in_play, std::int64_t now_us);
   std::uint8_t stand_ins() const { return stand_ins_; }  // rods that the computer plays so
   std::uint8_t offered() const { return offered_; }      // to team mates, by watch_absences()
 
   // How long nothing may be heard of a person's hand until the computer stands in: more than a gap
   // in a line, less than it takes to concede.
   static constexpr std::int64_t kStandInAfterUs = 3'000'000;
+  // How long of play a hand that is there may move none of its team's rods until the computer
+  // stands in: as long as an opponent may hold the ball on his midfield (10 s) and his attack
+  // (15 s).
+  static constexpr std::int64_t kIdleUs = 25'000'000;
   // How long team mates are offered the rods of one who left.
   static constexpr std::int64_t kOfferUs = 10'000'000;
 
@@ -65,6 +70,7 @@ class RodDesk {
   void poll(std::int64_t now_us);
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
   RodDriver driver(int rod) const;
+  bool of_device(int rod) const;  // a device has it, also while the computer stands in
 
  private:
   struct Place {
@@ -78,7 +84,11 @@ class RodDesk {
   int add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver kind);
   void assign_all();
   foosball::ComputerPlayerDesc computer_desc(int team) const;
-  bool absent(const Place& place, std::int64_t now_us) const;
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  std::size_t owner(int rod) const;  // of the sources that hands drive, or kNone
+  bool gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
+  void look_at_hands(bool in_match, bool in_play, std::int64_t now_us);
+  std::uint8_t rods_of_gone(bool& somebody, std::int64_t now_us) const;
   bool has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const;
   const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
@@ -97,6 +107,10 @@ class RodDesk {
   std::uint8_t vacated_ = 0;  // by who left in this match; nobody has taken them since
   std::array<std::int64_t, foosball::kRods> offered_until_us_{};
   std::uint8_t stand_ins_ = 0, offered_ = 0;
+  HandWatch hand_watch_;         // by source: clients' places, then devices
+  std::int64_t play_us_ = 0;     // time of play
+  std::int64_t looked_us_ = -1;  // negative: not yet
+  bool in_match_ = false;
   std::vector<cabinet::RodInputs> hands_;  // where each device and client had the rods then
   cabinet::SourceMux mux_;
   std::vector<RodDriver> kinds_;                         // by the mux's index

@@ -88,12 +88,15 @@ void Server::Impl::watch_absences() {
   const bool in_match = view.screen != foosball::Screen::logo &&
                         view.screen != foosball::Screen::end && !view.attract &&
                         options.match.mode != foosball::Mode::training;
-  for (const Client& client : clients) {  // silent, though its connection stands
-    const RemoteSource* source = desk.remote(client.id);
-    if (source != nullptr && source->silent_us(tick_us) >= RodDesk::kStandInAfterUs)
-      remember_name(client.id);
+  const bool in_play = in_match && view.screen == foosball::Screen::play && !view.paused &&
+                       view.time_out_seconds <= 0.0;
+  if (!desk.watch_absences(in_match, in_play, tick_us)) return;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {  // at a cabinet nobody has a name
+    if ((desk.stand_ins() >> rod & 1) != 0 && desk.of_device(rod)) had_rod[rod] = {};
   }
-  if (!desk.watch_absences(in_match, tick_us)) return;
+  for (const Client& client : clients) {
+    if ((client.rods & desk.stand_ins()) != 0) remember_name(client.id);
+  }
   const auto tell = [&](Topic topic, bool& told, const wire::Sentence& text, const char* over) {
     if (!text.empty() || told) notify(topic, text, over);
     told = !text.empty();

@@ -35,6 +35,7 @@ class StandIn : public testing::Test {
   struct Hand {
     ProbeClient* client;
     wire::InputDatagram input;
+    bool moves = false;
   };
   void plays(ProbeClient& client, const wire::Welcome& seat) {
     Hand hand{&client, {.session = seat.session, .token = seat.token, .sequence = 0}};
@@ -49,6 +50,8 @@ class StandIn : public testing::Test {
     const std::uint64_t heard = table->counters().input.accepted;
     for (Hand& hand : hands) {
       ++hand.input.sequence;
+      if (hand.moves)
+        for (wire::InputRod& rod : hand.input.rods) rod.slide = 0.01f - rod.slide;
       ASSERT_TRUE(hand.client->send_input(hand.input));
     }
     ASSERT_TRUE(
@@ -233,6 +236,28 @@ TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
   hands.push_back(hand);
   hear_hands();
   EXPECT_EQ(source(bob, goalie), kClient) << "heard again, it has its rods in that tick";
+}
+
+TEST_F(StandIn, PlaysForOneWhoIsThereAndMovesNothingInPlay) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(seat && opponent);
+  plays(ann, *seat);
+  plays(bob, *opponent);
+  hands[1].moves = true;
+  begin_match(bob);
+  for (ProbeClient* client : {&ann, &bob}) {
+    const auto team = static_cast<std::uint8_t>(client == &ann ? 0 : 1);
+    client->say(wire::Wish{number(wire::WishKind::push), team, 0});
+  }
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+  for (int i = 0; i < 600 && source(bob, goalie) != kComputer; ++i) pass(100'000);
+  EXPECT_EQ(source(bob, goalie), kComputer);
+  EXPECT_TRUE(logged("the computer plays rods " + to_text(all0) + " for Ann"));
+  hands[0].moves = true;
+  pass(200'000);
+  EXPECT_EQ(source(bob, goalie), kClient) << "at the first movement";
 }
 
 class StandInResults : public StandIn {

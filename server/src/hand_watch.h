@@ -1,0 +1,37 @@
+// Since when a hand has not moved its rods, and since when nothing drives them: of each source and
+// rod. Times are arguments; play_us is a clock that runs in play alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cabinet/rod_input.h"
+
+namespace server {
+
+class HandWatch {
+ public:
+  // What a sensor's noise or a table that is leant on does not reach, as foosball's idle watch has
+  // it.
+  static constexpr double kSlide = 0.003, kAngle = 0.05;  // [m], [rad]
+
+  void resize(std::size_t sources) { sources_.resize(sources); }  // takes memory
+  // As if every rod of the source had just been moved.
+  void restart(std::size_t source, std::int64_t now_us, std::int64_t play_us);
+  void look(std::size_t source, const cabinet::RodInputs& rods, std::int64_t now_us,
+            std::int64_t play_us);
+
+  // Since one of these rods, by bit, was last moved; since one was last live. rods != 0.
+  std::int64_t still_us(std::size_t source, std::uint8_t rods, std::int64_t play_us) const;
+  std::int64_t undriven_us(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
+
+ private:
+  struct Rod {
+    double slide = 0.0, angle = 0.0;  // where it was when it last moved
+    std::int64_t live_us = 0, moved_us = 0;
+  };
+  std::vector<std::array<Rod, cabinet::kRods>> sources_;
+};
+
+}  // namespace server
