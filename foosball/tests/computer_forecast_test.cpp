@@ -14,7 +14,7 @@ namespace foosball {
 namespace {
 
 constexpr int kDelay = 80;  // ticks
-constexpr int kMost = 20;   // world ticks for a tick of play
+constexpr int kMost = 8;    // world ticks for a tick of play
 
 double percentile(std::vector<double>& values, double share) {
   const auto at =

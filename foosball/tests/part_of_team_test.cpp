@@ -188,7 +188,7 @@ TEST_P(MateForecast, IsAsCloseAtATeamMatesFeetAsAtAnOpponents) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     SharedTeam game(GetParam(), "5", "5", {Line::goalie, Line::defence}, seed);
     ComputerSight sight{0, kDelay};
-    BallForecast forecast{0, kDelay, 20};
+    BallForecast forecast{0, kDelay, 8};
     const TableSpec& table = table_spec(GetParam());
     for (int tick = 0; tick < 40'000; ++tick) {
       const MatchView& view = game.view();
