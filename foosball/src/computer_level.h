@@ -1,6 +1,8 @@
 // What level and style make of a computer player: a person's limits, and what it prefers.
 #pragma once
 
+#include <cstdint>
+
 #include "computer_hand.h"
 #include "foosball/computer_player.h"
 #include "foosball/judgment.h"
@@ -29,5 +31,7 @@ struct Temperament {
 };
 
 Temperament temperament_of(int level, PlayStyle style);
+// Differs where one of its numbers does.
+std::uint64_t digest(const Temperament& t);
 
 }  // namespace foosball

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../src/computer_hands.h"
@@ -72,6 +73,35 @@ TEST(Temperament, HigherLevelsAreBetterInEverythingButNoBetterThanAPerson) {
   EXPECT_GE(best.delay, 0.08);
   EXPECT_GE(best.hand_travel, 0.12);
   EXPECT_LE(best.strike.rate, 140.0);
+}
+
+TEST(PlayersDigest, TellsEveryNumberOfEveryLevel) {
+  for (int level = 1; level <= kLevels; ++level) {
+    for (int style = 0; style < kPlayStyles; ++style) {
+      const Temperament t = temperament_of(level, static_cast<PlayStyle>(style));
+      const std::uint64_t is = digest(t);
+      EXPECT_EQ(is, digest(temperament_of(level, static_cast<PlayStyle>(style))));
+      const auto differs = [&](auto change) {
+        Temperament other = t;
+        change(other);
+        return digest(other) != is;
+      };
+      EXPECT_TRUE(differs([](Temperament& o) { o.delay += 1e-3; }));
+      EXPECT_TRUE(differs([](Temperament& o) { o.hand_travel += 1e-9; }));
+      EXPECT_TRUE(differs([](Temperament& o) { o.aim_error += 1e-9; }));
+      EXPECT_TRUE(differs([](Temperament& o) { o.slide.acceleration += 1.0; }));
+      EXPECT_TRUE(differs([](Temperament& o) { o.swing.rate += 1.0; }));
+      EXPECT_TRUE(differs([](Temperament& o) { std::swap(o.strike.rate, o.strike.acceleration); }));
+      EXPECT_TRUE(differs([](Temperament& o) { std::swap(o.pause_low, o.pause_high); }));
+      EXPECT_TRUE(differs([](Temperament& o) { ++o.forecast_ticks; }));
+      EXPECT_TRUE(differs([](Temperament& o) { o.stays_home = !o.stays_home; }));
+      for (const JudgmentField& field : kJudgmentFields) {
+        EXPECT_TRUE(differs([&](Temperament& o) { o.judgment.*field.value += 1e-12; }))
+            << field.name;
+      }
+    }
+  }
+  EXPECT_EQ(players_digest(), players_digest());
 }
 
 struct Case {

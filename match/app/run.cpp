@@ -60,7 +60,13 @@ tl::expected<match::Effort, std::string> play_rounds(
   for (std::size_t first = 0; first < schedule.series().size();) {
     const std::size_t end = schedule.series().size();
     for (const auto& line : known) {
-      if (line.id.series >= first) schedule.know(line.id, line.result);
+      if (line.id.series < first || line.id.series >= end) continue;
+      if (line.series != schedule.series()[line.id.series].digest_of_desc()) {
+        return tl::unexpected(std::string(
+            "the checkpoint has games of other samples than this search draws: it was begun by "
+            "another version of the search; finish it with that version, or give another file"));
+      }
+      schedule.know(line.id, line.result);
     }
     const auto effort = play();
     if (!effort) return effort;

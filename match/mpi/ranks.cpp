@@ -169,13 +169,9 @@ class Round {
     ++effort_.games;
     effort_.ticks += answer->result.statistics.ticks;
     effort_.core_seconds += static_cast<double>(answer->cost_ns) * 1e-9;
-    if (options_.checkpoint != nullptr) {
-      if (auto kept = options_.checkpoint->append(answer->id, answer->result); !kept) {
-        problem_ = kept.error();
-      }
+    if (auto kept = match::keep(schedule_, options_, answer->id, answer->result); !kept) {
+      problem_ = kept.error();
     }
-    if (options_.taken) options_.taken(schedule_.game(answer->id), answer->id, answer->result);
-    schedule_.complete(answer->id, answer->result);
     if (options_.progress) options_.progress(schedule_, effort_);
   }
 

@@ -1,30 +1,45 @@
 #include "match/checkpoint.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include "foosball/computer_player.h"
 #include "match/codec.h"
+#include "server/match_record.h"
+#include "wire/journal.h"
 
 namespace match {
 namespace {
 
-std::string head_of(const std::vector<SeriesDesc>& series, const std::string& plan) {
-  std::string head = "space-foosball-match checkpoint 1; game " +
-                     std::to_string(game_fingerprint()) + "; " + std::to_string(series.size()) +
-                     " series";
+constexpr const char* kKind = "space-foosball-match checkpoint ";
+constexpr const char* kVersion = "2; ";
+
+// What is played.
+std::string subject_of(const std::vector<SeriesDesc>& series, const std::string& plan) {
   std::uint64_t digest = 0;
-  const auto add = [&](const std::string& text) {
-    for (const char c : text) digest = mix_seed(digest ^ static_cast<unsigned char>(c));
-  };
-  for (const SeriesDesc& desc : series) add(desc.text() + ";");
-  add(plan);
-  return head + " " + std::to_string(digest);
+  for (const SeriesDesc& desc : series) digest = mix_seed(digest ^ desc.digest());
+  for (const char c : plan) digest = mix_seed(digest ^ static_cast<unsigned char>(c));
+  return kKind + std::string(kVersion) + std::to_string(series.size()) + " series, " +
+         std::to_string(digest);
+}
+
+// Why this first line of a file is not the head.
+std::string refusal(const std::string& path, const std::string& line, const std::string& subject) {
+  if (!line.starts_with(kKind)) return path + " is no checkpoint: give another file";
+  if (!line.starts_with(kKind + std::string(kVersion)) || line.starts_with(subject + ";")) {
+    return path +
+           " was begun by another version of the game, whose players, rules, tuning or physics "
+           "differ: finish it with that version, or give another file";
+  }
+  return path + " is the checkpoint of other matches: give the same options, or another file";
 }
 
 std::optional<Checkpoint::Line> parse(const std::string& line) {
@@ -34,7 +49,10 @@ std::optional<Checkpoint::Line> parse(const std::string& line) {
   if (series.ec != std::errc{} || series.ptr == end || *series.ptr != ' ') return std::nullopt;
   const auto game = std::from_chars(series.ptr + 1, end, parsed.id.game);
   if (game.ec != std::errc{} || game.ptr == end || *game.ptr != ' ') return std::nullopt;
-  const auto result = decode_result({game.ptr + 1, static_cast<std::size_t>(end - game.ptr - 1)});
+  const auto digest = std::from_chars(game.ptr + 1, end, parsed.series);
+  if (digest.ec != std::errc{} || digest.ptr == end || *digest.ptr != ' ') return std::nullopt;
+  const auto result =
+      decode_result({digest.ptr + 1, static_cast<std::size_t>(end - digest.ptr - 1)});
   if (!result) return std::nullopt;
   parsed.result = *result;
   return parsed;
@@ -44,25 +62,31 @@ std::optional<Checkpoint::Line> parse(const std::string& line) {
 
 tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
     const std::string& path, const std::vector<SeriesDesc>& series, const std::string& plan) {
-  const std::string head = head_of(series, plan);
-  std::ifstream before(path);
-  std::stringstream text;
-  if (before) text << before.rdbuf();
+  const std::string subject = subject_of(series, plan);
+  const std::string head = subject + "; game " + std::to_string(game_fingerprint(series));
   os::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
   if (!file) {
     return tl::unexpected("cannot open the checkpoint " + path + ": " + std::strerror(errno) +
                           "; choose a file in a folder that can be written");
   }
+  // Two runs would play each other's games again. Not every file system has locks.
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    return tl::unexpected("another run has the checkpoint " + path +
+                          ": wait for it, or give another file");
+  }
+  std::ifstream before(path);
+  std::stringstream text;
+  if (before) text << before.rdbuf();
+  const std::string all = text.str();
+  const bool whole_head = all.find('\n') != std::string::npos;
   Opened opened;
   opened.checkpoint.reset(new Checkpoint(path, std::move(file)));
   std::string line;
-  const bool old = static_cast<bool>(std::getline(text, line));
-  if (old && line != head) {
-    return tl::unexpected(path +
-                          " is the checkpoint of other matches or of another version of the "
-                          "game: give the same options, or another file");
-  }
-  while (old && std::getline(text, line)) {
+  std::getline(text, line);
+  // A head that was cut off as it was written is written again.
+  const bool begins = !whole_head && head.starts_with(all);
+  if (!begins && line != head) return tl::unexpected(refusal(path, line, subject));
+  while (std::getline(text, line)) {
     auto parsed = parse(line);
     if (parsed) {
       opened.lines.push_back(*parsed);
@@ -71,19 +95,17 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
     }
   }
   // After a line that was cut off, a new one must begin.
-  const std::string all = text.str();
-  const bool cut = !all.empty() && all.back() != '\n';
-  if (auto wrote =
-          opened.checkpoint->write((old ? "" : head + "\n") + std::string(cut ? "\n" : ""));
-      !wrote) {
-    return tl::unexpected(wrote.error());
-  }
+  const std::string missing = begins               ? head.substr(all.size()) + "\n"
+                              : all.back() != '\n' ? "\n"
+                                                   : "";
+  if (auto wrote = opened.checkpoint->write(missing); !wrote) return tl::unexpected(wrote.error());
   return opened;
 }
 
-tl::expected<void, std::string> Checkpoint::append(JobId id, const GameResult& result) {
+tl::expected<void, std::string> Checkpoint::append(JobId id, std::uint64_t series,
+                                                   const GameResult& result) {
   return write(std::to_string(id.series) + ' ' + std::to_string(id.game) + ' ' +
-               encode_result(result) + '\n');
+               std::to_string(series) + ' ' + encode_result(result) + '\n');
 }
 
 tl::expected<void, std::string> Checkpoint::write(const std::string& text) {
@@ -102,13 +124,39 @@ tl::expected<void, std::string> Checkpoint::write(const std::string& text) {
   return {};
 }
 
-std::uint64_t game_fingerprint() {
-  std::uint64_t fingerprint = 0;
-  for (const char* player : {"classic:0.9", "5"}) {
-    GameDesc game;
-    game.players = {player, player};
-    game.max_ticks = 5000;
-    fingerprint = mix_seed(fingerprint ^ play_game(game).result.state_hash);
+namespace {
+
+// Rules and tuning as a recording's head has them.
+std::uint64_t digest_of_defaults() {
+  wire::JournalEncoder encoder;
+  std::vector<std::byte> bytes;
+  encoder.add(server::to_header(foosball::MatchDesc{}), bytes);
+  encoder.flush(bytes);
+  std::uint64_t digest = 0;
+  for (const std::byte byte : bytes) digest = mix_seed(digest ^ static_cast<std::uint64_t>(byte));
+  return digest;
+}
+
+}  // namespace
+
+std::uint64_t game_fingerprint(const std::vector<SeriesDesc>& series) {
+  // Values of judgment are in the series' text: what is played is the level that they are of.
+  std::set<std::string> players;
+  std::set<foosball::Layout> layouts;
+  for (const SeriesDesc& desc : series) {
+    for (const std::string& player : desc.players)
+      players.insert(player.substr(0, player.find('@')));
+    layouts.insert(desc.layout);
+  }
+  std::uint64_t fingerprint = mix_seed(foosball::players_digest() ^ digest_of_defaults());
+  for (const foosball::Layout layout : layouts) {
+    for (const std::string& player : players) {
+      GameDesc game;
+      game.players = {player, player};
+      game.layout = layout;
+      game.max_ticks = 5000;
+      fingerprint = mix_seed(fingerprint ^ play_game(game).result.state_hash);
+    }
   }
   return fingerprint;
 }

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "match/game.h"
+#include "plain_math.h"
+#include "vphysics/lie.h"
 
 namespace match {
 namespace {
@@ -26,7 +28,7 @@ constexpr double kLeastStep = 0.01, kMostStep = 0.5;
 
 std::size_t usual_population(std::size_t coordinates) {
   const double wanted =
-      4.0 + 3.0 * std::log(static_cast<double>(std::max<std::size_t>(1, coordinates)));
+      4.0 + 3.0 * plain_log(static_cast<double>(std::max<std::size_t>(1, coordinates)));
   return 2 * static_cast<std::size_t>(std::ceil(0.5 * wanted));
 }
 
@@ -42,7 +44,7 @@ EvolutionStrategy::EvolutionStrategy(Point start, double step, std::size_t popul
       samples_(population, Point(size_)) {
   const double n = static_cast<double>(size_), half = 0.5 * static_cast<double>(population);
   for (double rank = 1.0; rank <= half; ++rank) {
-    weights_.push_back(std::log(half + 0.5) - std::log(rank));
+    weights_.push_back(plain_log(half + 0.5) - plain_log(rank));
   }
   const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
   double squares = 0.0;
@@ -67,8 +69,8 @@ double EvolutionStrategy::normal() {
     random_ = mix_seed(random_);
     return (static_cast<double>(random_ >> 11) + 0.5) * 0x1p-53;
   };
-  const double radius = std::sqrt(-2.0 * std::log(uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  const double radius = std::sqrt(-2.0 * plain_log(uniform()));
+  return radius * vp::sin_cos(2.0 * std::numbers::pi * uniform()).cos;
 }
 
 void EvolutionStrategy::sample() {
@@ -109,7 +111,8 @@ void EvolutionStrategy::tell(const std::vector<double>& values) {
   const double n = static_cast<double>(size_), told = static_cast<double>(means_.size());
   const double relative = length(path_s_) / expected_length(n);
   // A path that has grown too long by itself must not stretch the variances too.
-  const double unbiased = relative / std::sqrt(1.0 - std::pow(1.0 - c_s_, 2.0 * told));
+  const double unbiased =
+      relative / std::sqrt(1.0 - plain_exp(std::max(-600.0, 2.0 * told * plain_log(1.0 - c_s_))));
   const double h = unbiased < 1.4 + 2.0 / (n + 1.0) ? 1.0 : 0.0;
   for (std::size_t i = 0; i < size_; ++i) {
     path_c_[i] = (1.0 - c_c_) * path_c_[i] + h * std::sqrt(c_c_ * (2.0 - c_c_) * mu_w_) * y[i];
@@ -117,7 +120,8 @@ void EvolutionStrategy::tell(const std::vector<double>& values) {
     variance_[i] = (1.0 - c_1_ - c_mu_) * variance_[i] +
                    c_1_ * (path_c_[i] * path_c_[i] + missing) + c_mu_ * squares[i];
   }
-  step_ = std::clamp(step_ * std::exp(c_s_ / d_s_ * (relative - 1.0)), kLeastStep, kMostStep);
+  step_ = std::clamp(step_ * plain_exp(std::min(600.0, c_s_ / d_s_ * (relative - 1.0))), kLeastStep,
+                     kMostStep);
   sample();
 }
 

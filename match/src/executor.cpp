@@ -62,14 +62,10 @@ class Pool {
     effort_.core_seconds += static_cast<double>(cost_ns) * 1e-9;
     effort_.ticks += result->statistics.ticks;
     ++effort_.games;
-    if (options_.checkpoint != nullptr) {
-      if (auto kept = options_.checkpoint->append(id, *result); !kept) {
-        problem_ = kept.error();
-        return false;
-      }
+    if (auto kept = keep(schedule_, options_, id, *result); !kept) {
+      problem_ = kept.error();
+      return false;
     }
-    if (options_.taken) options_.taken(schedule_.game(id), id, *result);
-    schedule_.complete(id, *result);
     if (options_.progress) options_.progress(schedule_, effort_);
     return true;
   }
@@ -82,6 +78,17 @@ class Pool {
 };
 
 }  // namespace
+
+tl::expected<void, std::string> keep(Schedule& schedule, const ExecutorOptions& options, JobId id,
+                                     const GameResult& result) {
+  if (!schedule.complete(id, result)) return {};
+  if (options.checkpoint != nullptr) {
+    const std::uint64_t series = schedule.series()[id.series].digest_of_desc();
+    if (auto kept = options.checkpoint->append(id, series, result); !kept) return kept;
+  }
+  if (options.taken) options.taken(schedule.game(id), id, result);
+  return {};
+}
 
 tl::expected<Effort, std::string> play_all(Schedule& schedule, const ExecutorOptions& options) {
   return Pool(schedule, options).run();

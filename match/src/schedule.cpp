@@ -34,10 +34,13 @@ std::optional<JobId> Schedule::next() {
   return JobId{*best, handed_out_[*best]++};
 }
 
-void Schedule::complete(JobId id, const GameResult& result) {
-  if (id.game < series_[id.series].taken() || series_[id.series].decided()) return;
-  waiting_.insert_or_assign(id, result);
+bool Schedule::complete(JobId id, const GameResult& result) {
+  const Series& series = series_[id.series];
+  if (id.game < series.taken() || waiting_.contains(id)) return false;
+  if (series.decided()) return uncounted_.insert(id).second;
+  waiting_.emplace(id, result);
   take_known(id.series);
+  return true;
 }
 
 void Schedule::take_known(std::size_t index) {

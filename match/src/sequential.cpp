@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "plain_math.h"
 
 namespace match {
 namespace {
@@ -31,7 +34,7 @@ double tilt(const Frequencies& p, double s) {
 }  // namespace
 
 double score_of_elo(double elo) {
-  return 1.0 / (1.0 + std::pow(10.0, -elo / 400.0));
+  return 1.0 / (1.0 + plain_exp(-elo / 400.0 * std::numbers::ln10));
 }
 
 double elo_of_score(double score) {
@@ -79,17 +82,17 @@ double log_likelihood_ratio(const PairCounts& pairs, double score0, double score
   double ratio = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double f0 = 1.0 + t0 * (points(i) - score0), f1 = 1.0 + t1 * (points(i) - score1);
-    ratio += p[i] * std::log(f0 / f1);
+    ratio += p[i] * plain_log(f0 / f1);
   }
   return sum * ratio;
 }
 
 double SequentialTest::lower_bound() const {
-  return std::log(beta / (1.0 - alpha));
+  return plain_log(beta / (1.0 - alpha));
 }
 
 double SequentialTest::upper_bound() const {
-  return std::log((1.0 - beta) / alpha);
+  return plain_log((1.0 - beta) / alpha);
 }
 
 Verdict SequentialTest::verdict(const PairCounts& pairs) const {
@@ -106,8 +109,8 @@ void BandTest::take(std::size_t half_points) {
   const double s = points(half_points), c = band_.limit;
   const std::array<double, 4> gain{c - s, s - (1.0 - c), s - c, (1.0 - c) - s};
   for (std::size_t i = 0; i < gain.size(); ++i) {
-    capital_[i] += std::log(1.0 + kStake * gain[i]);
-    rejected_[i] = rejected_[i] || capital_[i] >= std::log((i < 2 ? 1.0 : 2.0) / band_.alpha);
+    capital_[i] += plain_log(1.0 + kStake * gain[i]);
+    rejected_[i] = rejected_[i] || capital_[i] >= plain_log((i < 2 ? 1.0 : 2.0) / band_.alpha);
   }
   if (verdict_ != Verdict::open) return;
   verdict_ = rejected_[2] || rejected_[3]   ? Verdict::h1

@@ -23,7 +23,7 @@ std::string SeriesDesc::text() const {
           std::to_string(max_games) + " games, characters ";
   text += draw_characters ? std::string("drawn")
                           : std::to_string(characters[0]) + "/" + std::to_string(characters[1]);
-  text += " of " + std::to_string(digest(character_list));
+  text += " of " + std::to_string(foosball::digest(character_list));
   const auto add = [&](const char* name, std::initializer_list<double> values) {
     text += std::string(", ") + name;
     for (const double value : values) {
@@ -41,6 +41,12 @@ std::string SeriesDesc::text() const {
   if (test) add("test", {test->score0, test->score1, test->alpha, test->beta});
   if (band) add("band", {band->limit, band->alpha});
   return text;
+}
+
+std::uint64_t SeriesDesc::digest() const {
+  std::uint64_t digest = 0;
+  for (const char c : text()) digest = mix_seed(digest ^ static_cast<unsigned char>(c));
+  return digest;
 }
 
 GameDesc Series::game(std::uint64_t index) const {

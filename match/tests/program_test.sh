@@ -108,6 +108,15 @@ cp "$folder/search-cut" "$folder/search-mpi"
 found "that was stopped"
 grep -q '^27 matches played' "$folder/out" || fail "a search that was stopped: $(grep played "$folder/out")"
 refuses 'of other matches' "${search[@]}" --step 0.2 --checkpoint "$folder/search"
+# A changed player, rule or physics shows in the fingerprint of the head; another search, in the
+# digests of the samples.
+sed '1s/[0-9]*$/7/' "$folder/search" >"$folder/changed"
+refuses 'another version of the game, whose players' "${search[@]}" --checkpoint "$folder/changed"
+sed -E '2,$s/^([0-9]+ [0-9]+) [0-9]+/\1 7/' "$folder/search" >"$folder/changed"
+code=0
+"$match" "${search[@]}" --checkpoint "$folder/changed" >/dev/null 2>"$folder/err" || code=$?
+[[ $code == 1 ]] || fail "other samples: ended with $code"
+grep -q 'games of other samples' "$folder/err" || fail "other samples: said $(cat "$folder/err")"
 
 # Killed at whatever point it had reached.
 long=(--quiet --matches 12 --max-minutes 0.2 --jobs 1)
@@ -131,6 +140,33 @@ if [[ -n $mpi ]]; then
   found "that was stopped, by 3 ranks"
   launch 3 "$mpi" "${options[@]}" --json "$folder/ranks.json" --checkpoint "$folder/cut-mpi" >"$folder/out"
   same "$folder/ranks.json" "resumed by 3 ranks"
+
+  # Two ranks are stopped with a match each, which are handed out again; one is back before the end.
+  # Its match is counted, and is in the checkpoint and in the file of results, once.
+  back=(--quiet --matches 8 --max-minutes 8 --home idle --away idle --checkpoint "$folder/back")
+  launch 4 "$mpi" "${back[@]}" --results "$folder/back.sqlite" >/dev/null 2>&1 &
+  job=$!
+  rank() {
+    for process in $(pgrep -f -- "--checkpoint $folder/back"); do
+      if tr '\0' '\n' 2>/dev/null <"/proc/$process/environ" | grep -qx "OMPI_COMM_WORLD_RANK=$1"; then echo "$process"; fi
+    done
+  }
+  in_file() { if [[ -f $folder/back ]]; then grep -c '#' "$folder/back" || true; else echo 0; fi; }
+  until_in_file() { until (($(in_file) >= $1)) || ! kill -0 $job 2>/dev/null; do sleep 0.02; done; }
+  until_in_file 1
+  first=$(rank 1) second=$(rank 2) third=$(rank 3)
+  if [[ -n $first && -n $second && -n $third ]]; then
+    kill -STOP "$second" "$third"
+    until_in_file 7
+    kill -STOP "$first"
+    kill -CONT "$second"
+    until_in_file 8
+    kill -CONT "$first" "$third" || true
+  fi
+  wait $job || fail "ranks that were stopped: ended with $?"
+  rows=$("$results" matches "$folder/back.sqlite" --format csv | wc -l)
+  [[ $rows == 9 ]] || fail "ranks that were stopped: $((rows - 1)) rows of 8 matches in the file of results"
+  [[ $(in_file) == 8 ]] || fail "ranks that were stopped: $(in_file) of 8 matches in the checkpoint"
 
   # A rank that is killed ends the job with it; what was finished is not lost, nor played again.
   lost=(--quiet --matches 24 --max-minutes 0.3)

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "match/checkpoint.h"
 #include "match/codec.h"
@@ -118,12 +121,13 @@ TEST_F(CheckpointFile, LetsAKilledRunGoOnToTheSameTotals) {
     auto opened = Checkpoint::open(path, plan);
     ASSERT_TRUE(opened.has_value()) << opened.error();
     for (const std::uint64_t game : {0u, 3u, 4u}) {
-      ASSERT_TRUE(opened->checkpoint->append({0, game}, play_game(whole.game({0, game})).result));
+      ASSERT_TRUE(opened->checkpoint->append({0, game}, plan[0].digest(),
+                                             play_game(whole.game({0, game})).result));
     }
   }
   // The last line was being written when the power went.
-  std::ofstream(path, std::ios::app)
-      << "0 5 " << encode_result(made_up(whole.game({0, 5}))).substr(0, 20);
+  std::ofstream(path, std::ios::app) << "0 5 " << plan[0].digest() << ' '
+                                     << encode_result(made_up(whole.game({0, 5}))).substr(0, 20);
   auto opened = Checkpoint::open(path, plan);
   ASSERT_TRUE(opened.has_value()) << opened.error();
   EXPECT_EQ(opened->lines.size(), 3u);
@@ -136,6 +140,7 @@ TEST_F(CheckpointFile, LetsAKilledRunGoOnToTheSameTotals) {
   ASSERT_TRUE(effort.has_value());
   EXPECT_EQ(effort->games, 3u);
   EXPECT_EQ(outcome(resumed), outcome(whole));
+  opened->checkpoint.reset();
   const auto again = Checkpoint::open(path, plan);
   ASSERT_TRUE(again.has_value());
   EXPECT_EQ(again->lines.size(), 6u);
@@ -147,6 +152,113 @@ TEST_F(CheckpointFile, OfOtherMatchesIsRefused) {
   ASSERT_FALSE(other.has_value());
   EXPECT_NE(other.error().find("other matches"), std::string::npos);
   EXPECT_FALSE(Checkpoint::open("/no/such/folder/file", plan).has_value());
+}
+
+// As a changed level leaves it: the same matches, another fingerprint.
+TEST_F(CheckpointFile, OfAnotherVersionOfTheGameIsRefused) {
+  ASSERT_TRUE(Checkpoint::open(path, plan).has_value());
+  std::string head;
+  std::getline(std::ifstream(path), head);
+  const auto rewrite = [&](const std::string& text) { std::ofstream(path) << text; };
+  const std::size_t at = head.rfind(' ') + 1;
+  rewrite(head.substr(0, at) + "123\n");
+  const auto changed = Checkpoint::open(path, plan);
+  ASSERT_FALSE(changed.has_value());
+  EXPECT_NE(changed.error().find("another version of the game, whose players"), std::string::npos);
+  rewrite("space-foosball-match checkpoint 1; game 12; 1 series 5\n");
+  const auto older = Checkpoint::open(path, plan);
+  ASSERT_FALSE(older.has_value());
+  EXPECT_NE(older.error().find("another version"), std::string::npos);
+}
+
+TEST_F(CheckpointFile, OfAnotherKindIsRefusedAndLeftAsItIs) {
+  for (const std::string text : {"series,game\n1,2\n", "no line", "\n"}) {
+    std::ofstream(path) << text;
+    const auto opened = Checkpoint::open(path, plan);
+    ASSERT_FALSE(opened.has_value()) << text;
+    EXPECT_NE(opened.error().find("is no checkpoint"), std::string::npos) << opened.error();
+    std::stringstream after;
+    after << std::ifstream(path).rdbuf();
+    EXPECT_EQ(after.str(), text);
+  }
+}
+
+// Killed at whatever byte: what is whole is read, and the run goes on.
+TEST_F(CheckpointFile, CutOffAnywhereIsGoneOnFrom) {
+  {
+    auto opened = Checkpoint::open(path, plan);
+    ASSERT_TRUE(opened.has_value());
+    const Schedule whole(plan);
+    for (const std::uint64_t game : {0u, 1u, 2u})
+      ASSERT_TRUE(
+          opened->checkpoint->append({0, game}, plan[0].digest(), made_up(whole.game({0, game}))));
+  }
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  const std::string all = text.str();
+  for (std::size_t size = 0; size <= all.size(); size += 17) {
+    std::ofstream(path) << all.substr(0, size);
+    const auto lines =
+        std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(size), '\n');
+    {
+      auto opened = Checkpoint::open(path, plan);
+      ASSERT_TRUE(opened.has_value()) << size << ": " << opened.error();
+      // A line without its end may be whole all the same.
+      ASSERT_GE(static_cast<long>(opened->lines.size()), std::max(0l, lines - 1)) << size;
+      ASSERT_LE(static_cast<long>(opened->lines.size()), std::max(0l, lines)) << size;
+      ASSERT_TRUE(opened->checkpoint->append({0, 5}, plan[0].digest(), {}));
+    }
+    auto again = Checkpoint::open(path, plan);
+    ASSERT_TRUE(again.has_value()) << size;
+    ASSERT_FALSE(again->lines.empty()) << size;
+    EXPECT_EQ(again->lines.back().id.game, 5u) << size;
+  }
+}
+
+TEST_F(CheckpointFile, IsOneRunsAtATime) {
+  const auto first = Checkpoint::open(path, plan);
+  ASSERT_TRUE(first.has_value());
+  const auto second = Checkpoint::open(path, plan);
+  ASSERT_FALSE(second.has_value());
+  EXPECT_NE(second.error().find("another run has"), std::string::npos);
+}
+
+TEST(GameFingerprint, TellsPlayersAndLayouts) {
+  const auto of = [](const char* player, foosball::Layout layout) {
+    SeriesDesc desc;
+    desc.players = {player, player};
+    desc.layout = layout;
+    return game_fingerprint({desc});
+  };
+  using foosball::Layout;
+  EXPECT_EQ(of("3", Layout::paper), of("3", Layout::paper));
+  EXPECT_NE(of("3", Layout::paper), of("3", Layout::tournament));
+  EXPECT_NE(of("3", Layout::tournament), of("2", Layout::tournament));
+  EXPECT_EQ(of("3@patience=1", Layout::paper), of("3", Layout::paper)) << "its text is the series'";
+}
+
+// A rank that was thought lost comes back with a game that another has played since.
+TEST(Schedule, TakesEachGameOnce) {
+  Schedule schedule({short_series(1, 6)});
+  const auto first = schedule.next(), second = schedule.next();
+  ASSERT_TRUE(first && second);
+  std::vector<JobId> kept;
+  ExecutorOptions options;
+  options.taken = [&](const GameDesc&, JobId id, const GameResult&) { kept.push_back(id); };
+  const auto play = [&](JobId id) {
+    ASSERT_TRUE(keep(schedule, options, id, made_up(schedule.game(id))));
+  };
+  play(*second);  // waits for the first
+  play(*second);
+  play(*first);
+  play(*first);
+  play(*second);
+  EXPECT_EQ(kept, (std::vector<JobId>{*second, *first}));
+  EXPECT_EQ(schedule.series()[0].taken(), 2u);
+  while (!schedule.finished()) play(*schedule.next());
+  EXPECT_EQ(kept.size(), 6u);
+  for (std::uint64_t game = 0; game < 6; ++game) play({0, game});
+  EXPECT_EQ(kept.size(), 6u);
 }
 
 }  // namespace

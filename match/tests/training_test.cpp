@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <set>
 
+#include "../src/plain_math.h"
 #include "foosball/computer_player.h"
 #include "match/evolution.h"
 #include "match/game.h"
@@ -94,6 +96,43 @@ TEST(EvolutionStrategy, StaysInTheCubeAndIsTheSameForTheSameSeed) {
     b.tell(values);
   }
   EXPECT_LT(distance({a.answer()[0], a.answer()[1]}, {1.0, 0.0}), 0.1);
+}
+
+TEST(PlainMath, IsWithinAFewUnitsOfTheLibrarys) {
+  std::uint64_t random = 1;
+  double worst_log = 0.0, worst_exp = 0.0;
+  for (int i = 0; i < 100'000; ++i) {
+    random = mix_seed(random);
+    const double unit = static_cast<double>((random >> 11) + 1) * 0x1p-53;
+    for (const double x : {unit, 1.0 + 1e-3 * unit, 1e6 * unit, std::ldexp(unit, i % 1000 - 500)}) {
+      const double expected = std::log(x);
+      const double scale = std::max(std::fabs(expected), 1e-300);
+      worst_log = std::max(worst_log, std::fabs(plain_log(x) - expected) / scale);
+    }
+    const double x = 1300.0 * (unit - 0.5);
+    worst_exp = std::max(worst_exp, std::fabs(plain_exp(x) / std::exp(x) - 1.0));
+  }
+  EXPECT_LT(worst_log, 1e-15) << "measured: 3e-16";
+  EXPECT_LT(worst_exp, 1e-15) << "measured: 3e-16";
+  EXPECT_EQ(plain_log(1.0), 0.0);
+  EXPECT_EQ(plain_exp(0.0), 1.0);
+}
+
+// A search that goes on on another machine must draw the same samples. The number changes with the
+// strategy; with compiler and library it does not.
+TEST(EvolutionStrategy, DrawsTheSameSamplesOnEveryMachine) {
+  EvolutionStrategy search(Point(kBest.size(), 0.5), 0.15, 10, 1);
+  std::uint64_t hash = 0;
+  for (int g = 0; g < 30; ++g) {
+    std::vector<double> values;
+    for (const Point& x : search.samples()) {
+      for (const double coordinate : x)
+        hash = mix_seed(hash ^ std::bit_cast<std::uint64_t>(coordinate));
+      values.push_back(1.0 - distance(x, kBest) * distance(x, kBest));
+    }
+    search.tell(values);
+  }
+  EXPECT_EQ(hash, 0xd629a24f360d0966u) << "0x" << std::hex << hash;
 }
 
 TEST(EvolutionStrategy, OfNoiseAloneKeepsItsStepWithinBounds) {

@@ -50,6 +50,10 @@ PlayStyle style_of_level(int level);  // precondition: 1 <= level <= kLevels
 // What a player of this level and style judges by. Levels out of range are clamped.
 Judgment judgment_of(int level, PlayStyle style);
 
+// Differs where a number of any player does, of a level, a style or the first player: who goes on
+// with games that were played before must know that it is with the same players.
+std::uint64_t players_digest();
+
 struct ComputerPlayerDesc {
   int team = 1;
   std::uint64_t seed = 1;

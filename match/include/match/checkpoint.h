@@ -1,7 +1,10 @@
 // The results of finished games in a file, one line each, appended as they come and on disk
 // (fdatasync) before the next: a run that was killed goes on from there and gives the same totals.
 // A last line that was cut off, or any line that was changed, is not read, and its game is played
-// again.
+// again. One run at a time has the file.
+//
+//   space-foosball-match checkpoint 2; N series, DIGEST; game FINGERPRINT
+//   SERIES GAME DIGEST_OF_SERIES RESULT                                    (match/codec.h)
 #pragma once
 
 #include <memory>
@@ -18,6 +21,7 @@ class Checkpoint {
  public:
   struct Line {
     JobId id;
+    std::uint64_t series = 0;  // SeriesDesc::digest() of the series that the game is of
     GameResult result;
   };
   struct Opened {
@@ -27,12 +31,12 @@ class Checkpoint {
   };
 
   // Creates the file, or continues it if its head is that of the same series played by the same
-  // game. plan: what else the games depend on, if these series are only the first. The error is a
-  // sentence.
+  // game with the same players. plan: what else the games depend on, if these series are only the
+  // first. The error is a sentence.
   static tl::expected<Opened, std::string> open(const std::string& path,
                                                 const std::vector<SeriesDesc>& series,
                                                 const std::string& plan = {});
-  tl::expected<void, std::string> append(JobId id, const GameResult& result);
+  tl::expected<void, std::string> append(JobId id, std::uint64_t series, const GameResult& result);
 
  private:
   Checkpoint(std::string path, os::FileDescriptor file)
@@ -43,7 +47,9 @@ class Checkpoint {
   os::FileDescriptor file_;
 };
 
-// Differs between programs that do not play the same game: a hash of a few seconds of play.
-std::uint64_t game_fingerprint();
+// Differs between programs that would play these series otherwise: of all numbers of all players
+// (foosball::players_digest()), of the default rules and tuning, and of a few seconds of play of
+// each player of the series, which tell of what is no number, the physics and the players' code.
+std::uint64_t game_fingerprint(const std::vector<SeriesDesc>& series);
 
 }  // namespace match

@@ -25,6 +25,7 @@ using Point = std::vector<double>;  // coordinates from 0 to 1
 
 class EvolutionStrategy {
  public:
+  // The samples are the same on every machine (src/plain_math.h): a search may go on elsewhere.
   // Preconditions: at least one coordinate, 0 < step <= 1, population >= 4. The same arguments and
   // the same values told give the same samples.
   EvolutionStrategy(Point start, double step, std::size_t population, std::uint64_t seed);

@@ -25,7 +25,7 @@ struct ExecutorOptions {
   int jobs = 1;
   std::string record_folder;         // a journal of each game; empty: none
   Checkpoint* checkpoint = nullptr;  // takes each result as it comes
-  // Each result as it comes, one at a time: for whoever keeps them elsewhere.
+  // Each game once, as it comes, one at a time: for whoever keeps them elsewhere.
   std::function<void(const GameDesc&, JobId, const GameResult&)> taken;
   const std::atomic<bool>* stop = nullptr;  // true: no new games; those under way are finished
   std::function<void(const Schedule&, const Effort&)> progress;  // after each game, one at a time
@@ -33,6 +33,11 @@ struct ExecutorOptions {
 
 // The error is a sentence: a file that could not be written.
 tl::expected<Effort, std::string> play_all(Schedule& schedule, const ExecutorOptions& options);
+
+// Hands a finished game on to the schedule, the checkpoint and options.taken; one that was finished
+// before, to nobody. The error is a sentence: the checkpoint could not be written.
+tl::expected<void, std::string> keep(Schedule& schedule, const ExecutorOptions& options, JobId id,
+                                     const GameResult& result);
 
 // Plays one game and writes its journal, if there is a folder for it. Any thread.
 tl::expected<GameResult, std::string> play_job(const GameDesc& game, JobId id,

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "match/series.h"
@@ -31,8 +32,9 @@ class Schedule {
   // The next game to play; nothing, if all that may still be needed is under way. Gives a game
   // again after give_back().
   std::optional<JobId> next();
-  // Takes results in any order; each series sees them in its own.
-  void complete(JobId id, const GameResult& result);
+  // Takes results in any order; each series sees them in its own. False: this game was played
+  // before, by another who was thought lost, and nothing is taken.
+  bool complete(JobId id, const GameResult& result);
   // Whoever played it is gone.
   void give_back(JobId id);
 
@@ -49,6 +51,7 @@ class Schedule {
   std::vector<std::uint64_t> handed_out_;  // by series: games below this
   std::map<JobId, GameResult> waiting_;    // for those before them
   std::vector<JobId> returned_;
+  std::set<JobId> uncounted_;  // played beyond the point where their series was decided
 };
 
 }  // namespace match

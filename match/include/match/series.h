@@ -34,14 +34,19 @@ struct SeriesDesc {
                                         // kAnyOther: for each pair drawn from its seed
   std::optional<SequentialTest> test;   // of the first player's score; none: by max_games
   std::optional<Band> band;             // or: whether that score lies within it
-  std::string text() const;             // all of it, for a checkpoint's head
+  std::string text() const;             // all of it, for a checkpoint
+  std::uint64_t digest() const;         // of the text
 };
 
 class Series {
  public:
-  explicit Series(SeriesDesc desc) : desc_(std::move(desc)), band_(desc_.band.value_or(Band{})) {}
+  explicit Series(SeriesDesc desc)
+      : desc_(std::move(desc)),
+        digest_of_desc_(desc_.digest()),
+        band_(desc_.band.value_or(Band{})) {}
 
   const SeriesDesc& desc() const { return desc_; }
+  std::uint64_t digest_of_desc() const { return digest_of_desc_; }
   GameDesc game(std::uint64_t index) const;
   // Precondition: that of game taken(), and not decided().
   void take(const GameResult& result);
@@ -60,6 +65,7 @@ class Series {
 
  private:
   SeriesDesc desc_;
+  std::uint64_t digest_of_desc_;
   BandTest band_;
   std::uint64_t taken_ = 0;
   int first_of_pair_ = 0;
