@@ -184,12 +184,16 @@ bool RodDesk::of_device(int rod) const {
   return source != kNone && source >= places_.size();
 }
 
-// Nothing is heard of the hand, or it has done nothing for long.
-bool RodDesk::gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const {
+bool RodDesk::silent(std::size_t source, std::uint8_t rods, std::int64_t now_us) const {
   const std::int64_t silent_us = source < places_.size()
                                      ? places_[source].remote->silent_us(now_us)
                                      : hand_watch_.undriven_us(source, rods, now_us);
-  return silent_us >= kStandInAfterUs || hand_watch_.still_us(source, rods, play_us_) >= kIdleUs;
+  return silent_us >= kStandInAfterUs;
+}
+
+// Nothing is heard of the hand, or it has done nothing for long.
+bool RodDesk::gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const {
+  return silent(source, rods, now_us) || hand_watch_.still_us(source, rods, play_us_) >= kIdleUs;
 }
 
 void RodDesk::look_at_hands(bool in_match, bool in_play, std::int64_t now_us) {
@@ -207,10 +211,11 @@ void RodDesk::look_at_hands(bool in_match, bool in_play, std::int64_t now_us) {
 }
 
 // A client's and a device's rods of a team are one player's: two may stand at one cabinet.
-std::uint8_t RodDesk::rods_of_gone(bool& somebody, std::int64_t now_us) const {
+std::uint8_t RodDesk::rods_of_gone(bool& somebody, std::int64_t now_us) {
   std::array<std::size_t, foosball::kRods> owners;
   for (int rod = 0; rod < foosball::kRods; ++rod) owners[rod] = owner(rod);
   std::uint8_t all = 0, looked_at = 0;
+  all_silent_ = false;
   for (int first = 0; first < foosball::kRods; ++first) {
     if (owners[first] == kNone || (looked_at >> first & 1) != 0) continue;
     std::uint8_t rods = 0;
@@ -219,6 +224,7 @@ std::uint8_t RodDesk::rods_of_gone(bool& somebody, std::int64_t now_us) const {
       if (same && table_.rods[rod].team == table_.rods[first].team)
         rods |= static_cast<std::uint8_t>(1u << rod);
     }
+    all_silent_ = (looked_at == 0 || all_silent_) && silent(owners[first], rods, now_us);
     looked_at |= rods;
     if (gone(owners[first], rods, now_us)) {
       all |= rods;

@@ -47,6 +47,8 @@ class RodDesk {
   bool watch_absences(bool in_match, bool in_play, std::int64_t now_us);
   std::uint8_t stand_ins() const { return stand_ins_; }  // rods that the computer plays so
   std::uint8_t offered() const { return offered_; }      // to team mates, by watch_absences()
+  // There are players, and nothing is heard of any of them, as of watch_absences().
+  bool all_silent() const { return all_silent_; }
 
   // How long nothing may be heard of a person's hand until the computer stands in: more than a gap
   // in a line, less than it takes to concede.
@@ -86,9 +88,10 @@ class RodDesk {
   foosball::ComputerPlayerDesc computer_desc(int team) const;
   static constexpr std::size_t kNone = ~std::size_t{0};
   std::size_t owner(int rod) const;  // of the sources that hands drive, or kNone
+  bool silent(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
   bool gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
   void look_at_hands(bool in_match, bool in_play, std::int64_t now_us);
-  std::uint8_t rods_of_gone(bool& somebody, std::int64_t now_us) const;
+  std::uint8_t rods_of_gone(bool& somebody, std::int64_t now_us);
   bool has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const;
   const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
@@ -110,7 +113,7 @@ class RodDesk {
   HandWatch hand_watch_;         // by source: clients' places, then devices
   std::int64_t play_us_ = 0;     // time of play
   std::int64_t looked_us_ = -1;  // negative: not yet
-  bool in_match_ = false;
+  bool in_match_ = false, all_silent_ = false;
   std::vector<cabinet::RodInputs> hands_;  // where each device and client had the rods then
   cabinet::SourceMux mux_;
   std::vector<RodDriver> kinds_;                         // by the mux's index

@@ -36,6 +36,7 @@ struct Server::Impl {
   void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client);
   void watch_absences();
+  void wait_for_players(bool in_match);
   void remember_name(std::uint32_t client);
   void take_wish(const ControlEvent& event);
   bool plays(std::uint32_t client) const;
@@ -93,6 +94,7 @@ struct Server::Impl {
   std::array<Name, foosball::kRods> had_rod{};  // who was lost, or left, with the rod
   bool playing = false;                         // people have played since the logo was last seen
   bool stand_ins_told = false, offer_told = false;  // notices that stand
+  bool waiting = false;                             // paused, for nobody is heard
   bool paused_by_watcher = false;                   // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;

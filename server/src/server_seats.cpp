@@ -90,7 +90,9 @@ void Server::Impl::watch_absences() {
                         options.match.mode != foosball::Mode::training;
   const bool in_play = in_match && view.screen == foosball::Screen::play && !view.paused &&
                        view.time_out_seconds <= 0.0;
-  if (!desk.watch_absences(in_match, in_play, tick_us)) return;
+  const bool changed = desk.watch_absences(in_match, in_play, tick_us);
+  wait_for_players(in_match);
+  if (!changed) return;
   for (int rod = 0; rod < foosball::kRods; ++rod) {  // at a cabinet nobody has a name
     if ((desk.stand_ins() >> rod & 1) != 0 && desk.of_device(rod)) had_rod[rod] = {};
   }
@@ -108,6 +110,21 @@ void Server::Impl::watch_absences() {
     offer = say<Said::rods_offered>(RodDesk::kOfferUs / 1'000'000, rods_by_name(offered, had_rod));
   tell(Topic::stand_in, stand_ins_told, stand_in, "the computer stands in for nobody any more");
   tell(Topic::offer, offer_told, offer, "no rods are offered any more");
+}
+
+// A match of whose players nobody is heard stands still until somebody is, so that a gap in the
+// only player's line costs no goals. It ends by the rule for idle ones all the same.
+void Server::Impl::wait_for_players(bool in_match) {
+  const foosball::MatchView& view = match.view();
+  const bool play = in_match && view.screen == foosball::Screen::play;
+  const bool waits = play && desk.all_silent();
+  if (waits == waiting || (waits && view.paused)) return;
+  waiting = waits;
+  notify(Topic::waiting, waits ? say<Said::waits_for_players>() : wire::Sentence(),
+         "the match goes on, or is over");
+  if (play)
+    next.commands.push_back(
+        to_record({foosball::Command::Kind::pause, 0, static_cast<std::uint8_t>(waits)}));
 }
 
 bool Server::Impl::plays(std::uint32_t client) const {

@@ -29,15 +29,24 @@ class QuestionnaireTest : public testing::Test {
       o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
     };
   }
-  static bool play_to_the_end(Lockstep& table, ProbeClient& player, std::uint8_t team = 0) {
+  // A hand at the rods, without which a match waits: heard in each tick.
+  static bool play_to_the_end(Lockstep& table, ProbeClient& player, const wire::Welcome& seat) {
+    const auto played_until = [&](const std::function<bool()>& condition) {
+      return table.tick_until([&] {
+        wire::InputDatagram input{.session = seat.session, .token = seat.token};
+        input.sequence = static_cast<std::uint32_t>(table->ticks() + 1);
+        for (wire::InputRod& rod : input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
+        player.send_input(input);
+        return condition();
+      });
+    };
     for (int i = 0; i < 2; ++i) {
       const auto before = table->counters().control.wishes;
-      player.say(wire::Wish{number(wire::WishKind::push), team, 0});
-      if (!table.tick_until([&] { return table->counters().control.wishes > before; }))
-        return false;
+      player.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+      if (!played_until([&] { return table->counters().control.wishes > before; })) return false;
       table.tick(3);
     }
-    return table.tick_until([&] { return table->match().view().screen == foosball::Screen::end; });
+    return played_until([&] { return table->match().view().screen == foosball::Screen::end; });
   }
   std::vector<results::Answers> kept() {
     const auto store = results::Store::open(path_, results::Access::read_only);
@@ -51,10 +60,11 @@ TEST_F(QuestionnaireTest, WhoHasPlayedIsAskedAndTheAnswersAreKeptWithTheMatch) {
   {
     Lockstep table(short_match());
     ProbeClient player(table.port()), watcher(table.port());
-    ASSERT_TRUE(player.join(0));
+    const auto seat = player.join(0);
+    ASSERT_TRUE(seat);
     ASSERT_TRUE(watcher.join());
     for (std::uint32_t match = 1; match <= 2; ++match) {
-      ASSERT_TRUE(play_to_the_end(table, player));
+      ASSERT_TRUE(play_to_the_end(table, player, *seat));
       const auto asked = player.hear_a<wire::Questionnaire>();
       ASSERT_TRUE(asked);
       EXPECT_EQ(asked->match, match);
@@ -87,11 +97,12 @@ TEST_F(QuestionnaireTest, ForgedAndRepeatedAnswersAreRefusedAndSaidSo) {
   {
     Lockstep table(short_match());
     ProbeClient player(table.port()), watcher(table.port());
-    ASSERT_TRUE(player.join(0));
+    const auto seat = player.join(0);
+    ASSERT_TRUE(seat);
     ASSERT_TRUE(watcher.join());
     player.say(wire::Answers{1, rods, kScores});
     EXPECT_NE(notice_of(player).find("not the one"), std::string::npos) << "before any match";
-    ASSERT_TRUE(play_to_the_end(table, player));
+    ASSERT_TRUE(play_to_the_end(table, player, *seat));
     ASSERT_TRUE(player.hear_a<wire::Questionnaire>());
     const auto refused = [&](ProbeClient& client, const wire::Answers& answers) {
       client.say(answers);
@@ -117,8 +128,9 @@ TEST_F(QuestionnaireTest, ForgedAndRepeatedAnswersAreRefusedAndSaidSo) {
 TEST_F(QuestionnaireTest, AnswersThatAreNoneEndTheConnection) {
   Lockstep table(short_match());
   ProbeClient player(table.port());
-  ASSERT_TRUE(player.join(0));
-  ASSERT_TRUE(play_to_the_end(table, player));
+  const auto seat = player.join(0);
+  ASSERT_TRUE(seat);
+  ASSERT_TRUE(play_to_the_end(table, player, *seat));
   const auto asked = player.hear_a<wire::Questionnaire>();
   ASSERT_TRUE(asked);
   wire::Answers forged{asked->match, asked->rods, kScores};
@@ -139,8 +151,9 @@ TEST_F(QuestionnaireTest, NobodyIsAskedWithoutAFileOrWhereItIsTurnedOff) {
       o.questionnaire = !file;
     });
     ProbeClient player(table.port());
-    ASSERT_TRUE(player.join(0));
-    ASSERT_TRUE(play_to_the_end(table, player));
+    const auto seat = player.join(0);
+    ASSERT_TRUE(seat);
+    ASSERT_TRUE(play_to_the_end(table, player, *seat));
     table.tick(5);
     EXPECT_FALSE(player.hear_a<wire::Questionnaire>(50)) << file;
   }

@@ -260,6 +260,63 @@ TEST_F(StandIn, PlaysForOneWhoIsThereAndMovesNothingInPlay) {
   EXPECT_EQ(source(bob, goalie), kClient) << "at the first movement";
 }
 
+class Alone : public StandIn {
+ protected:
+  static void against_the_computer(ServerOptions& o) {
+    options(o);
+    o.computer = {false, true};
+    o.match.rules.idle_seconds = 12.0;
+  }
+  Alone() : StandIn(against_the_computer) {}
+};
+
+TEST_F(Alone, AGapInTheOnlyPlayersLineCostsNoGoals) {
+  ProbeClient ann(table.port());
+  const auto seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(seat);
+  plays(ann, *seat);
+  begin_match(ann, 0);
+  ann.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+  hear_hands();
+  const Hand hand = hands.front();
+  lets_go(ann);
+  pass(RodDesk::kStandInAfterUs / 2);
+  EXPECT_FALSE(table->match().view().paused);
+  pass(RodDesk::kStandInAfterUs / 2 + 10'000);
+  EXPECT_TRUE(table->match().view().paused);
+  EXPECT_TRUE(logged("the match waits"));
+  hands.push_back(hand);
+  pass(10'000);
+  EXPECT_FALSE(table->match().view().paused);
+  EXPECT_TRUE(logged("the match goes on"));
+  lets_go(ann);
+  pass(RodDesk::kStandInAfterUs + 10'000);
+  EXPECT_TRUE(table->match().view().paused);
+  pass(12'000'000);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::logo) << "it waits for nobody for long";
+}
+
+TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
+  ProbeClient ann(table.port());
+  const auto seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(seat);
+  plays(ann, *seat);
+  begin_match(ann, 0);
+  ann.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+  ann.say(wire::Wish{number(wire::WishKind::pause), 0, 1});
+  ASSERT_TRUE(table.tick_until([&] { return table->match().view().paused; }));
+  const Hand hand = hands.front();
+  lets_go(ann);
+  pass(RodDesk::kStandInAfterUs + 100'000);
+  hands.push_back(hand);
+  pass(100'000);
+  EXPECT_TRUE(table->match().view().paused);
+}
+
 class StandInResults : public StandIn {
  protected:
   static std::string path() { return temp_path("results.sqlite"); }

@@ -82,6 +82,7 @@ class Server {
     stand_in = 6,
     offer = 7,
     not_counted = 8,
+    waiting = 9,
     devices = 100
   };
   void warn(Topic topic, const wire::Sentence& text);

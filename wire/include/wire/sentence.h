@@ -46,6 +46,7 @@ namespace wire {
   X(a_player, "a player") \
   X(computer_plays, "the computer plays %1") \
   X(rods_offered, "free to the team for %1 s, then the computer's: %2") \
+  X(waits_for_players, "the match waits: nothing is heard of any player") \
   X(not_rated, "the match does not count for the rating of who played too little of it: %1") \
   /* votes */ \
   X(asks_for_pause, "%1 asks for a pause: %2 of %3 votes. Ask for it too to agree") \
