@@ -45,6 +45,50 @@ TEST_P(PlayerInputTest, DrivesTheOwnFourRodsOnlyAndTakesThemOverWhereTheyAre) {
 
 INSTANTIATE_TEST_SUITE_P(BothTeams, PlayerInputTest, ::testing::Values(0, 1));
 
+// What another moves for this person is no motion of the hand: the server would take it for one.
+TEST(PlayerInput, AHandThatRestsSendsItsOwnPlacesWhateverBecomesOfTheRods) {
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  wire::Snapshot scene = scripted_play(0.0);
+  const auto all_at = [&](float slide, wire::RodSource source) {
+    for (auto& rod : scene.rods) rod.slide = slide, rod.source = number(source);
+  };
+  all_at(0.02f, wire::RodSource::none);
+  player.update({}, &scene, kFrame);
+  EXPECT_NEAR(player.rods()[0].slide, 0.02, 1e-6) << "it takes them over where they are";
+  all_at(0.02f, wire::RodSource::client);
+  player.update({}, &scene, 2 * kFrame);
+  all_at(0.03f, wire::RodSource::client);  // a ball has pushed them
+  player.update({}, &scene, 3 * kFrame);
+  all_at(-0.05f, wire::RodSource::computer);  // the computer stands in
+  player.update({}, &scene, 4 * kFrame);
+  for (const int rod : {0, 1, 3, 5}) {
+    EXPECT_TRUE(player.rods()[static_cast<std::size_t>(rod)].driven);
+    EXPECT_NEAR(player.rods()[static_cast<std::size_t>(rod)].slide, 0.02, 1e-6) << rod;
+  }
+}
+
+TEST(PlayerInput, TheGoalieRestsWithAHandThatHasDoneNothingForLong) {
+  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  player.set_assists({.goalie_follows = true});
+  wire::Snapshot scene = scripted_play(0.0);
+  for (auto& rod : scene.rods) rod.slide = 0.0f;
+  std::int64_t now = 0;
+  const auto seconds = [&](double s, float ball, const InputEvents& events = {}) {
+    scene.ball.position = {0.1f, ball, 0.0173f};
+    scene.ball.linear_velocity = {-1.5f, 0.0f, 0.0f};
+    for (const std::int64_t end = now + static_cast<std::int64_t>(1e6 * s); now < end;)
+      player.update(events, &scene, now += kFrame);
+    return player.rods()[0].slide;
+  };
+  EXPECT_GT(seconds(2.0, 0.08f), 0.05f);
+  EXPECT_LT(seconds(6.0, -0.08f), -0.05f);
+  const float rests = seconds(4.0, -0.08f);
+  EXPECT_EQ(seconds(2.0, 0.08f), rests) << "nobody is there to help";
+  InputEvents wheel;
+  wheel.key_slide = 1.0;
+  EXPECT_GT(seconds(2.0, 0.08f, wheel), 0.05f);
+}
+
 TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
   const auto lines = foosball::rods_of_team(foosball::table_spec(foosball::Layout::tournament), 1);
   PlayerInput player(kSession, 1, foosball::Layout::tournament);

@@ -62,6 +62,8 @@ class PlayerInput {
   foosball::Assists assists_;
   int rod_to_take_ = -1;          // by the assist; a rod chosen by hand stays until it changes
   std::int64_t assisted_us_ = 0;  // up to when
+  std::int64_t acted_us_ = -1;    // when the person last did anything; negative: no frame yet
+  std::uint8_t drives_ = 0;       // rods that were this client's in a scene, by bit
   std::array<foosball::RodTarget, foosball::kRods> targets_{};
   bool begun_ = false;
   foosball::Characters characters_ = foosball::built_in_characters();

@@ -54,6 +54,23 @@ foosball::AssistView seen_in(const wire::Snapshot& scene, const foosball::Charac
   return view;
 }
 
+// A goalie that follows the ball for nobody would look as if somebody were there, to the server
+// too.
+constexpr std::int64_t kRestsAfterUs = 10'000'000;
+
+bool acts(const InputEvents& events) {
+  constexpr float kStick = 0.25f;  // beyond a worn stick's rest
+  const cabinet::PadState& pad = events.pad;
+  const auto beyond = [](float axis) { return std::fabs(axis) > kStick; };
+  const bool by_pad =
+      events.has_pad && (beyond(pad.left_x) || beyond(pad.left_y) || beyond(pad.right_x) ||
+                         beyond(pad.right_y) || pad.previous_rod || pad.next_rod);
+  return by_pad || events.mouse_right != 0.0 || events.mouse_forward != 0.0 ||
+         events.choose_line >= 0 || events.wheel != 0 || events.key_slide != 0.0 ||
+         events.key_spin != 0.0 || events.slide_taps != 0 || events.spin_taps != 0 ||
+         events.any_key != 0 || events.push || events.pad_push;
+}
+
 }  // namespace
 
 PlayerInput::PlayerInput(std::uint64_t session, int team, foosball::Layout layout,
@@ -89,8 +106,9 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
   hand_.poll(now_us);
   if (known) {
     const bool in_play = scene->screen == number(wire::Screen::play) && !scene->paused;
-    if (in_play) assist(view, now_us);
-    if (!in_play) rest();
+    if (acted_us_ < 0 || now_us < acted_us_ || acts(events)) acted_us_ = now_us;
+    const bool helps = in_play && now_us - acted_us_ < kRestsAfterUs;
+    helps ? assist(view, now_us) : rest();
     collect_wishes(events, *scene);
   }
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
@@ -141,9 +159,13 @@ void PlayerInput::rest() {
 }
 
 void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
+  // Taken over where they are until they follow this hand. What a ball, or the computer that stands
+  // in, does to them later is no motion of the hand.
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const wire::RodSnapshot& r = scene.rods[static_cast<std::size_t>(rod)];
-    hand_.adopt(rod, r.slide, r.angle);
+    const auto bit = static_cast<std::uint8_t>(1u << rod);
+    if ((drives_ & bit) == 0) hand_.adopt(rod, r.slide, r.angle);
+    if (r.source == number(wire::RodSource::client)) drives_ |= bit;
   }
   hand_.mouse_moved(events.mouse_forward, events.mouse_right);
   hand_.key_axis(events.key_slide, events.key_spin);
