@@ -74,6 +74,11 @@ void Timeline::run() {
   do {
     read(story);
   } while (await_growth());
+  {
+    const std::lock_guard guard(mutex_);
+    over_ = true;
+  }
+  news_.notify_all();
 }
 
 // All that is there.
@@ -104,7 +109,7 @@ bool Timeline::await_growth() {
   }
   news_.notify_all();
   while (open_end && !stop_) {
-    if (grow()) return true;
+    if (look()) return true;
     std::unique_lock lock(mutex_);
     news_.wait_for(lock, kLookAgain, [&] { return stop_ || look_; });
     look_ = false;
@@ -118,6 +123,20 @@ bool Timeline::await_growth() {
 }
 
 // True: there is more of the same file.
+bool Timeline::look() {
+  {
+    const std::lock_guard guard(mutex_);
+    ++looks_begun_;
+  }
+  const bool more = grow();
+  {
+    const std::lock_guard guard(mutex_);
+    ++looks_ended_;
+  }
+  news_.notify_all();
+  return more;
+}
+
 bool Timeline::grow() {
   const auto& had = *reader_.playback().bytes();
   struct stat about {};
@@ -213,12 +232,11 @@ void Timeline::wait_until_read() const {
   news_.wait(lock, [&] { return findings_.done && findings_.read >= findings_.total; });
 }
 
-void Timeline::look_again() {
-  {
-    const std::lock_guard guard(mutex_);
-    look_ = true;
-  }
+void Timeline::look_now() {
+  std::unique_lock lock(mutex_);
+  look_ = true;
   news_.notify_all();
+  news_.wait(lock, [&, wanted = looks_begun_ + 1] { return looks_ended_ >= wanted || over_; });
 }
 
 }  // namespace watch

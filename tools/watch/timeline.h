@@ -60,8 +60,9 @@ class Timeline {
   const std::string& path() const { return path_; }
   // Until all that the file holds is read.
   void wait_until_read() const;
-  // Looks at once whether the file has grown, rather than twice a second.
-  void look_again();
+  // Looks at once whether the file has grown, rather than twice a second, and waits until a look
+  // that began after this call has ended. Returns at once if nothing more can come.
+  void look_now();
 
  private:
   struct Mark {
@@ -77,6 +78,7 @@ class Timeline {
   void run();
   void read(client::MatchStory& story);
   bool await_growth();
+  bool look();
   bool grow();
   void note(const std::vector<wire::EventSnapshot>& events, const client::MatchStory& story);
   void leave_mark(const client::MatchStory& story);
@@ -94,6 +96,8 @@ class Timeline {
   std::uint64_t between_ = kMarkTicks;
   server::Playback::Bytes grown_;  // longer than the scene's, or null
   bool look_ = false;
+  std::uint64_t looks_begun_ = 0, looks_ended_ = 0;
+  bool over_ = false;  // the thread looks no more
   mutable std::condition_variable news_;
 
   server::RecordedScene reader_;  // the thread's own

@@ -76,7 +76,8 @@ TEST_F(TimelineTest, FollowsAFileThatGrowsToItsEndToTheBit) {
     ASSERT_EQ(::write(writer.get(), bytes_.data() + had, size - had),
               static_cast<ssize_t>(size - had));
     const std::uint64_t before = timeline->findings().total;
-    while (timeline->findings().total == before) timeline->look_again();
+    timeline->look_now();
+    ASSERT_GT(timeline->findings().total, before);
     timeline->wait_until_read();
     EXPECT_EQ(timeline->scene().ticks(), 1'500u) << "what is watched stays where it is";
     const std::uint64_t last = timeline->findings().total;
@@ -111,7 +112,8 @@ TEST_F(TimelineTest, OfAFileThatGrowsOnlyWhatIsNewIsRead) {
   timeline->wait_until_read();
   const std::uint64_t before = bytes_read(), total = timeline->findings().total;
   ASSERT_EQ(::write(writer.get(), bytes_.data() + half, 8'000), 8'000);
-  while (timeline->findings().total == total) timeline->look_again();
+  timeline->look_now();
+  ASSERT_GT(timeline->findings().total, total);
   EXPECT_LT(bytes_read() - before, 20'000u) << "8000 are new, of " << half + 8'000;
 }
 
@@ -122,8 +124,40 @@ TEST_F(TimelineTest, AnotherFileOfTheSameNameIsNotTakenForMoreOfIt) {
   const std::uint64_t total = timeline->findings().total;
   write("b.sfr", bytes_.size());
   std::filesystem::rename(path("b.sfr"), path("a.sfr"));
-  for (int i = 0; i < 3; ++i) timeline->look_again();
+  timeline->look_now();
   EXPECT_EQ(timeline->findings().total, total);
+  // In the very same file, as `cat b.sfr > a.sfr` would write it, it is what was there and more.
+  write("c.sfr", bytes_.size() / 3);
+  const auto growing = open("c.sfr");
+  growing->wait_until_read();
+  write("c.sfr", bytes_.size());
+  growing->look_now();
+  EXPECT_EQ(growing->findings().total, kTicks);
+}
+
+// Of another match, longer than what was read: the same inode, other bytes.
+TEST_F(TimelineTest, AFileThatIsWrittenAnewIsNotTakenForMoreOfIt) {
+  write("a.sfr", bytes_.size() / 3);
+  const auto timeline = open("a.sfr");
+  timeline->wait_until_read();
+  const std::uint64_t total = timeline->findings().total;
+  const std::vector<std::byte> other = play(12'345).bytes;
+  ASSERT_GT(other.size(), bytes_.size() / 2);
+  const os::FileDescriptor writer(::open(path("a.sfr").c_str(), O_WRONLY | O_TRUNC));
+  timeline->look_now();
+  EXPECT_EQ(timeline->findings().total, total) << "shorter than before";
+  ASSERT_EQ(::write(writer.get(), other.data(), other.size()), static_cast<ssize_t>(other.size()));
+  timeline->look_now();
+  EXPECT_EQ(timeline->findings().total, total);
+  ASSERT_TRUE(timeline->seek(total));
+  EXPECT_EQ(timeline->scene().state_hash(), hashes_[total - 1]) << "what was read stays";
+}
+
+TEST_F(TimelineTest, ALookAtAWholeRecordingReturnsAtOnce) {
+  const auto timeline = open("match.sfr");
+  timeline->wait_until_read();
+  timeline->look_now();
+  EXPECT_EQ(timeline->findings().total, kTicks);
 }
 
 // Every damage is a sentence or a recording that stops early; never a crash.
