@@ -21,6 +21,7 @@ FIGURES = (
     ('hop, 90th percentile', 'hop 90 % [mm]', (80.0, 160.0)),
     ('nobody can reach the ball', 'out of reach [%]', (None, 10.0)),
     ('ball still', 'ball still [%]', (None, 5.0)),
+    ('balls out', 'balls out/min', (None, 1.0)),
     ('playability', 'playability', (None, None)),
 )
 

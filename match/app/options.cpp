@@ -67,9 +67,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* away = cli.add_option("--away", raw.away, "the second player")->check(check_player);
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  auto* tuning = cli.add_option(
-      "--tuning", raw.tuning,
-      "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
+  cli.add_option("--tuning", raw.tuning,
+                 "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
   cli.add_option("--characters", raw.characters,
                  "folder of character files, in place of the built-in ones: docs/characters.md");
   cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
@@ -102,10 +101,11 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   for (auto* mode : {sprt, robin}) mode->excludes(home)->excludes(balance);
   sprt->excludes(robin);
   auto* study = cli.add_flag("--study", raw.study,
-                             "what the tuning values do to play: --matches at each point of a "
-                             "design, in both layouts, played by --home (docs/tuning-study.md)");
+                             "what the tuning values do to play, varied about those of --tuning: "
+                             "--matches at each point of a design, in both layouts, played by "
+                             "--home (docs/tuning-study.md)");
   study->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance);
-  study->excludes(away)->excludes(passive)->excludes(tuning);
+  study->excludes(away)->excludes(passive);
   auto* vary = cli.add_option(
       "--vary", raw.vary,
       "NAME:KEY=LOW:HIGH:STEPS, as in \"jumper:mass=0.05:0.09:5\": the points of a character "

@@ -37,7 +37,8 @@ match::ReportPlan report_plan(const Options& o) {
 }
 
 match::StudyPlan study_plan(const Options& o) {
-  return {o.players[0], o.seed, base_of(o).max_ticks, o.matches, o.samples, o.character_list};
+  return {o.players[0],     o.seed,  base_of(o).max_ticks, o.matches, o.samples,
+          o.character_list, o.tuning};
 }
 
 // Both sides by the same player.

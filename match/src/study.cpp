@@ -47,15 +47,15 @@ const std::vector<StudiedValue>& studied_values() {
   return kValues;
 }
 
-std::vector<StudyPoint> study_points(std::uint64_t samples) {
-  std::vector<StudyPoint> points{{"defaults", {}}};
+std::vector<StudyPoint> study_points(std::uint64_t samples, const foosball::Tuning& about) {
+  std::vector<StudyPoint> points{{"defaults", about}};
   for (const StudiedValue& studied : studied_values()) {
     points[0].name += setting(studied, value_of(points[0].tuning, studied));
   }
   for (const StudiedValue& studied : studied_values()) {
     for (int level = 0; level < kLevels; ++level) {
       const double value = between(studied, static_cast<double>(level) / (kLevels - 1));
-      StudyPoint point{"one" + setting(studied, value), {}};
+      StudyPoint point{"one" + setting(studied, value), about};
       value_of(point.tuning, studied) = value;
       points.push_back(point);
     }
@@ -64,7 +64,7 @@ std::vector<StudyPoint> study_points(std::uint64_t samples) {
   // The first points of the higher bases lie on a line.
   constexpr std::uint64_t kSkipped = 409;
   for (std::uint64_t sample = 0; sample < samples; ++sample) {
-    StudyPoint point{"fill", {}};
+    StudyPoint point{"fill", about};
     for (std::size_t i = 0; i < studied_values().size(); ++i) {
       const StudiedValue& studied = studied_values()[i];
       const double value = between(studied, radical_inverse(kSkipped + sample, kBases[i]));
@@ -78,7 +78,7 @@ std::vector<StudyPoint> study_points(std::uint64_t samples) {
 
 std::vector<SeriesDesc> study_series(const StudyPlan& plan) {
   std::vector<SeriesDesc> all;
-  for (const StudyPoint& point : study_points(plan.samples)) {
+  for (const StudyPoint& point : study_points(plan.samples, plan.tuning)) {
     SeriesDesc desc;
     desc.players = {plan.player, plan.player};
     desc.seed = plan.seed;
@@ -96,7 +96,7 @@ std::vector<SeriesDesc> study_series(const StudyPlan& plan) {
 
 std::vector<Figure> study_figures(const StudyPlan& plan, const std::vector<Series>& series) {
   std::vector<Figure> all;
-  const std::vector<StudyPoint> points = study_points(plan.samples);
+  const std::vector<StudyPoint> points = study_points(plan.samples, plan.tuning);
   for (std::size_t i = 0; i < series.size(); ++i) {
     const bool paper = series[i].desc().layout == foosball::Layout::paper;
     const std::string section =

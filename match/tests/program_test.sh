@@ -53,6 +53,12 @@ echo 'gravity = 9.0' >"$folder/light.toml"
 [[ ${#recordings[@]} == 8 ]] || fail "${#recordings[@]} recordings of 8 matches"
 "$replay" "${recordings[0]}" | grep -q 'is the match that was played' || fail "a recording does not replay"
 
+# The study that chose the defaults can be run about the values of then.
+"$match" --quiet --study --samples 0 --home idle --matches 2 --max-minutes 0.05 --csv "$folder/study.csv" \
+  --tuning "${0%/*}/../../docs/tuning-before-the-study.toml" >/dev/null
+grep -q '^"paper; defaults gravity=14 field_restitution=0.7 .* sag_acceleration=0.45' "$folder/study.csv" ||
+  fail "a study about other values: $(sed -n 2p "$folder/study.csv")"
+
 # Into a file of results: every match once, with its recording; a file that fails loses none.
 "$match" "${options[@]}" --results "$folder/matches.sqlite" --record "$folder" >"$folder/out"
 grep -qx "$digest" "$folder/out" || fail "--results changes the matches"

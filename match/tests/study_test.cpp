@@ -48,6 +48,21 @@ TEST(Study, HasTheDefaultsEachValueAloneAndSamplesThatFillTheBox) {
   EXPECT_EQ(study_points(kSamples)[70].tuning, points[70].tuning) << "the same at every run";
 }
 
+TEST(Study, VariesTheValuesAboutThoseThatItWasGiven) {
+  StudyPlan plan{.matches = 2, .samples = 1};
+  plan.tuning.gravity = 14.0;
+  plan.tuning.serve_ahead = 0.02;  // not studied
+  const auto series = study_series(plan);
+  EXPECT_EQ(series[0].tuning, plan.tuning);
+  int others = 0;
+  for (const SeriesDesc& desc : series) {
+    EXPECT_EQ(desc.tuning.serve_ahead, 0.02);
+    others += desc.tuning.gravity != 14.0 ? 1 : 0;
+  }
+  EXPECT_EQ(others, 2 * (5 + 1)) << "its own levels, and the sample";
+  EXPECT_NE(study_points(0, plan.tuning)[0].name.find("gravity=14 "), std::string::npos);
+}
+
 TEST(Study, PlaysEachPointWithItsValuesInBothLayouts) {
   const StudyPlan plan{.player = "classic:0.9", .max_ticks = 3000, .matches = 2, .samples = 1};
   const auto series = study_series(plan);

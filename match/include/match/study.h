@@ -19,6 +19,7 @@ struct StudyPlan {
   std::uint64_t matches = 100;  // at each point, in each layout
   std::uint64_t samples = 64;   // points that fill the space
   foosball::Characters character_list = foosball::built_in_characters();
+  foosball::Tuning tuning{};  // that the values are varied about; in its ranges
 };
 
 // A value that is varied, and between which ends: a part of its range, in which a match is still
@@ -34,10 +35,10 @@ struct StudyPoint {
       name;  // "defaults gravity=12 ...", "one gravity=9.8", "fill gravity=12.1 hop_gain=1.7 ..."
   foosball::Tuning tuning;
 };
-// The defaults; each value alone at the levels 0, 1/4, 1/2, 3/4 and 1 between its ends; and samples
-// of the whole box, by the Halton sequence (halton1960): low discrepancy, and the same at every
-// run.
-std::vector<StudyPoint> study_points(std::uint64_t samples);
+// The values of `about`, which are called defaults; each value alone at the levels 0, 1/4, 1/2, 3/4
+// and 1 between its ends; and samples of the whole box, by the Halton sequence (halton1960): low
+// discrepancy, and the same at every run.
+std::vector<StudyPoint> study_points(std::uint64_t samples, const foosball::Tuning& about = {});
 
 // For each point one series in the tournament layout and one in the paper's.
 std::vector<SeriesDesc> study_series(const StudyPlan& plan);
