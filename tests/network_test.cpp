@@ -5,11 +5,13 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <mutex>
 #include <thread>
 
 #include "client/connection.h"
+#include "client/player_input.h"
 #include "os/clock.h"
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
@@ -235,6 +237,37 @@ bool has_ipv6() {
   const os::FileDescriptor probe(::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto here = *os::parse_address("::1", 0);
   return probe && ::bind(probe.get(), here.generic(), here.size()) == 0;
+}
+
+// The rods that computers move for show come back from the client as its targets, or it looks as if
+// somebody had touched them.
+TEST(Network, AMatchThatIsShownIsNotEndedByAClientWhoseHandRests) {
+  Table table([](server::ServerOptions& o) { o.match.rules.attract_seconds = 0.3; });
+  const auto ann = started(player_at(table.port()));
+  ASSERT_TRUE(ann && in_play(*ann));
+  const std::uint64_t session = ann->status().welcome.session;
+  client::PlayerInput hand(session, 0, foosball::Layout::tournament);
+  double farthest = 0.0;
+  const auto shown = [&] {
+    const std::int64_t now = os::monotonic_us();
+    const auto sample = ann->sample(now);
+    hand.update({}, sample.any ? &sample.state : nullptr, now);
+    ann->drive(session, hand.rods());
+    for (const auto& rod : sample.state.rods)
+      if (sample.state.attract) farthest = std::max(farthest, std::fabs(double{rod.slide}));
+    return sample.any && sample.state.attract;
+  };
+  ASSERT_TRUE(eventually(shown));
+  const std::int64_t until = os::monotonic_us() + 20'000'000;
+  while (farthest < 0.03 && os::monotonic_us() < until) {
+    ::poll(nullptr, 0, 2);
+    ASSERT_TRUE(shown()) << "after rods had moved by " << farthest << " m";
+  }
+  EXPECT_GE(farthest, 0.03);
+  for (int i = 0; i < 150; ++i) {  // time for it to go to the server and back
+    ::poll(nullptr, 0, 2);
+    ASSERT_TRUE(shown());
+  }
 }
 
 TEST(Network, ByIpv6) {
