@@ -11,7 +11,7 @@
 namespace foosball {
 namespace {
 
-struct Digest {
+struct NumbersDigest {
   std::uint64_t value = 14695981039346656037u;  // FNV-1a of the numbers' bits
   void add(double number) {
     const auto bits = std::bit_cast<std::uint64_t>(number);
@@ -33,7 +33,7 @@ struct Digest {
 std::uint64_t digest(const Temperament& t) {
   const auto& [delay, hand_travel, aim_error, slide, swing, strike, pause_low, pause_high,
                forecast_ticks, stays_home, judgment] = t;
-  Digest digest;
+  NumbersDigest digest;
   digest.add({delay, hand_travel, aim_error, pause_low, pause_high,
               static_cast<double>(forecast_ticks), stays_home ? 1.0 : 0.0});
   for (const AxisLimits* limits : {&slide, &swing, &strike}) digest.add(*limits);
@@ -42,7 +42,7 @@ std::uint64_t digest(const Temperament& t) {
 }
 
 std::uint64_t players_digest() {
-  Digest all;
+  NumbersDigest all;
   for (int level = 1; level <= kLevels; ++level) {
     for (int style = 0; style < kPlayStyles; ++style) {
       all.add(std::bit_cast<double>(digest(temperament_of(level, static_cast<PlayStyle>(style)))));

@@ -12,7 +12,7 @@ namespace {
 int play_ranks(int rank, int ranks, const app::Options& options) {
   if (ranks == 1) return app::run(options, match::play_all);
   if (rank != 0) return ranks::play(app::series_of(options), options.record);
-  ranks::Coordinator coordinator;
+  ranks::Coordinator coordinator(app::series_of(options));
   return app::run(options, [&](match::Schedule& schedule, const match::ExecutorOptions& executor) {
     return coordinator.play_all(schedule, executor);
   });

@@ -20,6 +20,13 @@ using match::JobId;
 
 enum Tag { kIdle, kResult, kFailed, kJob, kStop };
 
+// What an idle rank sends: which games it would play, and how.
+std::string identity_of(const std::vector<match::SeriesDesc>& series) {
+  std::uint64_t digest = match::game_fingerprint(series);
+  for (const match::SeriesDesc& desc : series) digest = match::mix_seed(digest ^ desc.digest());
+  return std::to_string(digest);
+}
+
 // What a rank sends back: "series game nanoseconds result", or a sentence with kFailed.
 struct Answer {
   JobId id;
@@ -121,8 +128,12 @@ Job decode(const std::string& text, const std::vector<match::SeriesDesc>& series
 class Round {
  public:
   Round(match::Schedule& schedule, const match::ExecutorOptions& options,
-        std::deque<JobId>& under_way, std::vector<int>& waiting)
-      : schedule_(schedule), options_(options), under_way_(under_way), waiting_(waiting) {}
+        const std::string& identity, std::deque<JobId>& under_way, std::vector<int>& waiting)
+      : schedule_(schedule),
+        options_(options),
+        identity_(identity),
+        under_way_(under_way),
+        waiting_(waiting) {}
 
   tl::expected<match::Effort, std::string> run() {
     const std::int64_t begun = os::monotonic_ns();
@@ -152,6 +163,11 @@ class Round {
 
   void take(const Message& message) {
     if (message.tag == kFailed) problem_ = message.text;
+    if (message.tag == kIdle && message.text != identity_) {
+      problem_ = "rank " + std::to_string(message.rank) +
+                 " plays other matches, or another version of the game: give all ranks the same "
+                 "program and the same options";
+    }
     if (message.tag == kResult) take_result(message.text);
     if (message.tag != kFailed && !over())
       hand_out(message.rank);
@@ -192,6 +208,7 @@ class Round {
 
   match::Schedule& schedule_;
   const match::ExecutorOptions& options_;
+  const std::string& identity_;
   std::deque<JobId>& under_way_;
   std::vector<int>& waiting_;
   match::Effort effort_;
@@ -200,7 +217,8 @@ class Round {
 
 }  // namespace
 
-Coordinator::Coordinator() {
+Coordinator::Coordinator(const std::vector<match::SeriesDesc>& series)
+    : identity_(identity_of(series)) {
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   players_ = ranks - 1;
@@ -218,11 +236,11 @@ Coordinator::~Coordinator() {
 
 tl::expected<match::Effort, std::string> Coordinator::play_all(
     match::Schedule& schedule, const match::ExecutorOptions& options) {
-  return Round(schedule, options, under_way_, waiting_).run();
+  return Round(schedule, options, identity_, under_way_, waiting_).run();
 }
 
 int play(const std::vector<match::SeriesDesc>& series, const std::string& record_folder) {
-  send(0, kIdle);
+  send(0, kIdle, identity_of(series));
   while (true) {
     const auto message = receive(INT64_MAX / 2);
     if (!message || message->tag != kJob) return 0;

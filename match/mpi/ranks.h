@@ -19,7 +19,9 @@ namespace ranks {
 // Rank 0, of two or more.
 class Coordinator {
  public:
-  Coordinator();
+  // series: what it begins with. A rank that would play it otherwise, since its program or its
+  // options are others, is an error of play_all().
+  explicit Coordinator(const std::vector<match::SeriesDesc>& series);
   // Tells all ranks that there is no more. Those that still play what is not needed any more are
   // waited for; one that does not answer is lost, and MPI could not be ended in order with it.
   ~Coordinator();
@@ -32,6 +34,7 @@ class Coordinator {
 
  private:
   int players_ = 0;
+  std::string identity_;
   std::vector<int> waiting_;  // ranks without a game
   std::deque<match::JobId> under_way_;
 };

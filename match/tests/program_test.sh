@@ -147,6 +147,14 @@ if [[ -n $mpi ]]; then
   launch 3 "$mpi" "${options[@]}" --json "$folder/ranks.json" --checkpoint "$folder/cut-mpi" >"$folder/out"
   same "$folder/ranks.json" "resumed by 3 ranks"
 
+  # As with another version of the program on another machine.
+  code=0
+  timeout 100 mpirun --oversubscribe --allow-run-as-root -n 1 "$mpi" "${options[@]}" : \
+    -n 1 "$mpi" "${options[@]}" --seed 2 >"$folder/out" 2>"$folder/err" || code=$?
+  [[ $code != 0 ]] || fail "ranks with other options ended as if nothing were"
+  grep -q 'rank 1 plays other matches, or another version' "$folder/err" ||
+    fail "ranks with other options: said $(cat "$folder/err")"
+
   # Two ranks are stopped with a match each, which are handed out again; one is back before the end.
   # Its match is counted, and is in the checkpoint and in the file of results, once.
   back=(--quiet --matches 8 --max-minutes 8 --home idle --away idle --checkpoint "$folder/back")
