@@ -35,7 +35,7 @@ double clearance(const TableSpec& table, const Sighting& now, int team, double t
   for (int rod = 0; rod < kRods; ++rod) {
     const RodSpec& spec = table.rods[rod];
     const double ahead = attack_sign(team) * spec.x - now.ball.x;
-    const bool lifted = std::fabs(std::remainder(now.swing[rod], 2.0 * vp::kPi)) > 1.0;
+    const bool lifted = std::fabs(within_half_turn(now.swing[rod])) > 1.0;
     if (spec.team == team || ahead < 0.03 || lifted) continue;
     const double y = now.ball.y + (target - now.ball.y) * ahead / run;
     for (int man = 0; man < spec.men; ++man) {

@@ -32,30 +32,25 @@ class Flight {
     return !(p_ == before_ && v_ == velocity);
   }
 
-  // As many steps as meet nothing but the field, `most` at most; returns how many.
-  int steps_among_men(int most) {
+  // As many steps at once as surely meet nothing, `most` at most; returns how many. What comes
+  // then, step() finds.
+  int skip(int most) {
     const Cell cell = free_cell();
     const double dx = kStep * v_.x, dy = kStep * v_.y;
-    vp::Vec3 p = p_;
-    double rise = v_.z;
-    const Field field = field_;
-    bool rolls = field.rolls(p.z, rise);
-    int i = 0;
-    for (; i < most; ++i) {
-      const double x = p.x + dx, y = p.y + dy;
-      if (!(x > cell.x[0] && x < cell.x[1] && y > cell.y[0] && y < cell.y[1])) break;
-      p.x = x;
-      p.y = y;
-      if (rolls) continue;
-      p.z += kStep * rise;
-      rise -= field.fall;
-      if (p.z > field.radius) continue;
-      field.bounce(p.z, rise);
-      rolls = field.rolls(p.z, rise);
-    }
-    p_ = p;
-    v_.z = rise;
-    return i;
+    const bool rolls = field_.rolls(p_.z, v_.z);
+    double free = most;
+    free = std::min(free, steps_within(cell.x, p_.x, dx));
+    free = std::min(free, steps_within(cell.y, p_.y, dy));
+    if (!rolls) free = std::min(free, field_.steps_above(p_.z, v_.z));
+    const int steps = static_cast<int>(free);
+    if (steps <= 0) return 0;
+    const double n = steps;
+    p_.x += n * dx;
+    p_.y += n * dy;
+    if (rolls) return steps;
+    p_.z += kStep * (n * v_.z - field_.fall * (0.5 * n * (n - 1.0)));
+    v_.z -= n * field_.fall;
+    return steps;
   }
 
  private:
@@ -70,7 +65,23 @@ class Flight {
     bool rolls(double z, double rise) const {
       return z == radius && rise == 0.0 && fall <= hop_from;
     }
+    // Of free fall until it lands, less one: height z + h (n rise - fall n (n - 1) / 2) after n.
+    // Negative where nothing pulls it down: such a ball goes step by step.
+    double steps_above(double z, double rise) const {
+      if (!(fall > 0.0)) return -1.0;
+      const double a = 0.5 * fall, b = rise + a;
+      return (b + std::sqrt(std::max(0.0, b * b + 4.0 * a * (z - radius) / kStep))) / fall - 1.0;
+    }
   };
+
+  // Of a way of `step` each, at least until it leaves the range, less one: negative where it is not
+  // within.
+  static double steps_within(const double (&range)[2], double at, double step) {
+    if (!(at > range[0] && at < range[1])) return -1.0;
+    constexpr double kEver = 1e9;
+    if (step > 0.0) return std::min(kEver, (range[1] - at) / step) - 1.0;
+    return step < 0.0 ? std::min(kEver, (range[0] - at) / step) - 1.0 : kEver;
+  }
 
   // Own men that hang down, by the row.
   struct Row {
@@ -112,7 +123,7 @@ class Flight {
     for (std::size_t rod = 0; rod < kRods; ++rod) {
       const RodSpec& spec = m_.table->rods[rod];
       if (spec.team != m_.team) continue;
-      const double swing = std::remainder(rods.swing[rod], 2.0 * vp::kPi);  // towards +x
+      const double swing = within_half_turn(rods.swing[rod]);  // towards +x
       if (std::fabs(swing) > kFeetUp) continue;
       own_[rows_++] = {&spec, attack_sign(m_.team) * spec.x + kFoot * swing, rods.slide[rod]};
     }
@@ -178,7 +189,7 @@ BallGuess advance(const GuessModel& model, const Tuning& tuning, const Sighting&
   const int steps = static_cast<int>(std::lround(time / kStep));
   for (int left = steps; left > 0 && flight.step();) {
     --left;
-    left -= flight.steps_among_men(left);
+    left -= flight.skip(left);
   }
   return ball;
 }

@@ -26,7 +26,7 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
     const RodSpec& spec = table.rods[rod];
     const double way = attack_sign(view.team) * spec.x - now.ball.x;
     if (rod == view.from_rod || way < 0.04 || way > run) continue;
-    const bool up = std::fabs(std::remainder(now.swing[rod], 2.0 * vp::kPi)) > kFeetUp;
+    const bool up = std::fabs(within_half_turn(now.swing[rod])) > kFeetUp;
     if (up && spec.team == view.team) continue;
     const double y = y_after(table, now.ball.y, slope, way);
     double gap = 1.0;

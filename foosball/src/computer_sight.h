@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -27,6 +28,11 @@ constexpr double team_slide(int team, double slide) {
 }
 constexpr double team_swing(int team, double angle) {
   return -attack_sign(team) * angle;
+}
+
+// The angle [rad] less its full turns; most have none, and the remainder is slow.
+inline double within_half_turn(double angle) {
+  return std::fabs(angle) <= vp::kPi ? angle : std::remainder(angle, 2.0 * vp::kPi);
 }
 
 class ComputerSight {
