@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 
 #include <functional>
+#include <future>
 
 #include "os/clock.h"
 #include "os/socket_address.h"
@@ -324,6 +325,26 @@ TEST_F(ConnectionTest, WishesAndGoodByeReachTheServer) {
   connection.reset();
   const auto bye = server.next_message();
   EXPECT_TRUE(bye && std::holds_alternative<wire::Bye>(*bye));
+}
+
+// Its kernel takes no more: the good-bye waits at the client, where a reset would discard it.
+TEST_F(ConnectionTest, TheGoodByeReachesAServerThatReadsLate) {
+  server.take_little();
+  open();
+  join(42);
+  constexpr int kWishes = 5000;
+  for (int i = 0; i < kWishes; ++i) connection->wish(42, {2, 0, 1});
+  std::vector<std::byte> pongs;
+  while (pongs.size() < 100'000) wire::encode_control(wire::Pong{1}, pongs);
+  server.send_bytes(pongs);  // not all read at the end
+  auto end = std::async(std::launch::async, [this] { connection.reset(); });
+  end.wait_for(std::chrono::milliseconds(20));  // one that waits for nothing is gone by then
+  int wishes = 0;
+  std::optional<wire::ControlMessage> message;
+  while ((message = server.next_message()) && std::holds_alternative<wire::Wish>(*message))
+    ++wishes;
+  end.wait();
+  EXPECT_TRUE(message && std::holds_alternative<wire::Bye>(*message)) << wishes;
 }
 
 TEST_F(ConnectionTest, APingIsAnswered) {

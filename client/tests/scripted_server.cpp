@@ -37,6 +37,11 @@ void ScriptedServer::drop_client() {
   reader_ = {};
 }
 
+void ScriptedServer::take_little() {
+  const int bytes = 4096;
+  setsockopt(listener_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+}
+
 bool ScriptedServer::accept() {
   drop_client();
   if (!readable(listener_)) return false;

@@ -24,6 +24,7 @@ class ScriptedServer {
   // Each waits until it happened, at most kPatience; false or nothing after that.
   static constexpr std::chrono::milliseconds kPatience{10'000};
   bool accept();
+  void take_little();  // of what clients who are yet to come send, before it is read
   std::optional<wire::ControlMessage> next_message();
   std::optional<wire::InputDatagram> next_input();
   void forget_inputs();  // that have come, and were not asked for

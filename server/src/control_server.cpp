@@ -115,8 +115,10 @@ void ControlServer::run() {
     if (polled_[1].revents & POLLIN) accept_all();
     for (auto& connection : connections_) {
       expire(*connection);
-      if (connection->state != State::dead && !connection->flush())
-        release(*connection, Going::lost);
+      if (connection->state != State::dead && !connection->flush()) {
+        hear_out(*connection);
+        if (connection->state != State::dead) release(*connection, Going::lost);
+      }
     }
     watch_seats();
     if (std::exchange(roster_changed_, false)) send_roster();
@@ -229,6 +231,13 @@ void ControlServer::serve(ControlConnection& connection) {
     }
     handle(connection, message);
   }
+}
+
+// A client's end may be known and not yet read: it comes behind what the client still said, which
+// may be its good-bye. Where the client had not read all it was sent, its end is a reset, which the
+// next send meets first.
+void ControlServer::hear_out(ControlConnection& connection) {
+  while (connection.state == State::joined && connection.peer_left()) serve(connection);
 }
 
 void ControlServer::handle(ControlConnection& connection, const wire::ControlMessage& message) {

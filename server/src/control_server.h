@@ -139,6 +139,7 @@ class ControlServer {
   void make_room_at_the_door();
   bool trusted(const ControlConnection& connection) const;
   void serve(ControlConnection& connection);
+  void hear_out(ControlConnection& connection);
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
   void send(ControlConnection& connection, const wire::ControlMessage& message);
   void refuse(ControlConnection& connection, wire::Refusal::Code code,

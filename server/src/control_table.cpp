@@ -180,14 +180,13 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
   return false;
 }
 
-// A client's end may be known and not yet read: it comes behind what the client still said, which
-// may be its good-bye.
+// Whoever has left and is not known to have: his rods are free.
 void ControlServer::hear_out_leavers(RodSet wanted) {
   for (std::size_t i = 0; i < connections_.size(); ++i) {
     ControlConnection& connection = *connections_[i];
     const Seat* seat = seats_.find(connection.client);
     if (seat == nullptr || (seat->rods & wanted) == 0) continue;
-    while (connection.state == State::joined && connection.peer_left()) serve(connection);
+    hear_out(connection);
   }
 }
 

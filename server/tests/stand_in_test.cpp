@@ -86,7 +86,7 @@ class StandIn : public testing::Test {
 };
 
 TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
-  ProbeClient ann(table.port()), bob(table.port()), again(table.port());
+  ProbeClient ann(table.port()), bob(table.port());
   const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
   ASSERT_TRUE(seat && opponent);
   plays(ann, *seat);
@@ -102,6 +102,7 @@ TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   EXPECT_TRUE(logged("the computer plays rods " + to_text(all0) + " for Ann"));
   ProbeClient rival(table.port());
   EXPECT_FALSE(rival.join(0)) << "the seat is kept all the same";
+  ProbeClient again(table.port());
   const auto back = again.resume(*seat);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->rods, all0);
@@ -179,7 +180,7 @@ TEST_F(StandIn, OffersNothingToATeamMateWhoIsNotHeard) {
 }
 
 TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes) {
-  ProbeClient ann(table.port()), bob(table.port()), carl(table.port()), dora(table.port());
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
   const auto mate = sit(bob, "Bob", 0, rest), opponent = sit(carl, "Carl", 1);
   ASSERT_TRUE(mate && opponent && sit(ann, "Ann", 0, one));
   plays(bob, *mate);
@@ -191,6 +192,7 @@ TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes)
   EXPECT_EQ(source(carl, goalie), kComputer);
   EXPECT_NE(source(carl, std::countr_zero(rest)), kComputer) << "Bob plays his own";
   EXPECT_FALSE(table->match().view().computer[0]) << "a team with a person is a person's";
+  ProbeClient dora(table.port());
   const auto joined = sit(dora, "Dora", 0);
   ASSERT_TRUE(joined);
   EXPECT_EQ(joined->rods, one);
