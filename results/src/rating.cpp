@@ -24,10 +24,10 @@ double weighted_rating(const Team& team, Players& players) {
 bool meets_himself(const MatchResult& match) {
   std::set<std::string> names;
   for (const Player& player : match.teams[0].players)
-    if (counts_for(player)) names.insert(player.name);
+    if (played(player)) names.insert(player.name);
   return std::any_of(
       match.teams[1].players.begin(), match.teams[1].players.end(),
-      [&](const Player& player) { return counts_for(player) && names.count(player.name) > 0; });
+      [&](const Player& player) { return played(player) && names.count(player.name) > 0; });
 }
 
 void count(const MatchResult& match, int side, Players& players) {
@@ -43,7 +43,8 @@ void count(const MatchResult& match, int side, Players& players) {
       continue;
     }
     ++standing.matches;
-    if (winner) ++(*winner == side ? standing.wins : standing.losses);
+    if (winner || player.left)
+      ++(!player.left && *winner == side ? standing.wins : standing.losses);
     standing.goals_for += own.goals;
     standing.goals_against += other.goals;
     if (match.shot_speeds) {
@@ -61,13 +62,14 @@ std::vector<Standing> standings(std::span<const MatchResult> matches) {
     const double ratings[] = {weighted_rating(match.teams[0], players),
                               weighted_rating(match.teams[1], players)};
     for (const int side : {0, 1}) count(match, side, players);
-    if (!match.winner() || meets_himself(match)) continue;
+    const bool decided = match.winner() && !meets_himself(match);
     for (const int side : {0, 1}) {
       const double expected =
           1.0 / (1.0 + std::pow(10.0, (ratings[1 - side] - ratings[side]) / 400.0));
-      const double gain = kRatingGain * ((*match.winner() == side ? 1.0 : 0.0) - expected);
       for (const Player& player : match.teams[static_cast<std::size_t>(side)].players) {
-        if (counts_for(player)) players[player.name].rating += gain;
+        if (!player.left && !(decided && played(player))) continue;
+        const double score = !player.left && *match.winner() == side ? 1.0 : 0.0;
+        players[player.name].rating += kRatingGain * (score - expected);
       }
     }
   }
@@ -80,9 +82,9 @@ std::vector<Standing> standings(std::span<const MatchResult> matches) {
 
 double rating_of(const Team& team, std::span<const Standing> standings) {
   double sum = 0.0, count = 0.0;
-  const bool all = std::ranges::none_of(team.players, counts_for);
+  const bool all = std::ranges::none_of(team.players, played);
   for (const Player& player : team.players) {
-    if (!all && !counts_for(player)) continue;
+    if (!all && !played(player)) continue;
     const auto own = std::ranges::find(standings, player.name, &Standing::name);
     sum += own != standings.end() ? own->rating : kFirstRating;
     count += 1.0;

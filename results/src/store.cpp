@@ -67,7 +67,10 @@ constexpr const char* kMigrations[kSchemaVersion] = {
          PRIMARY KEY (sheet, question)) STRICT, WITHOUT ROWID;)",
     // 4: how much of the match each has played
     R"(ALTER TABLE player ADD COLUMN share REAL NOT NULL DEFAULT 1.0
-         CHECK (share BETWEEN 0.0 AND 1.0);)"};
+         CHECK (share BETWEEN 0.0 AND 1.0);)",
+    // 5: who has left it
+    R"(ALTER TABLE player ADD COLUMN has_left INTEGER NOT NULL DEFAULT 0
+         CHECK (has_left IN (0, 1));)"};
 
 std::string sentence(const std::string& path, const std::string& why) {
   return "results in " + path + ": " + why;
@@ -297,12 +300,11 @@ std::optional<std::int64_t> insert(sqlite3* db, const MatchResult& result) {
              .run();
     for (int seat = 0; seat < static_cast<int>(team.players.size()) && ok; ++seat) {
       const Player& player = team.players[static_cast<std::size_t>(seat)];
-      ok =
-          Statement(
-              db,
-              "INSERT INTO player (match, team, seat, name, kind, share) VALUES (?, ?, ?, ?, ?, ?)")
-              .bind(id, t, seat, player.name, player.kind, player.share)
-              .run();
+      ok = Statement(db,
+                     "INSERT INTO player (match, team, seat, name, kind, share, has_left) "
+                     "VALUES (?, ?, ?, ?, ?, ?, ?)")
+               .bind(id, t, seat, player.name, player.kind, player.share, player.left ? 1 : 0)
+               .run();
     }
   }
   return ok ? std::optional(id) : std::nullopt;
@@ -399,15 +401,15 @@ bool read_teams(sqlite3* db, int version, std::map<std::int64_t, MatchResult*>& 
     team.statistics = {teams.count(3), teams.count(4), teams.count(5), teams.count(6),
                        teams.count(7), teams.count(8), teams.real(9)};
   }
-  Statement players(db, version < 4 ? "SELECT match, team, name, kind, 1.0 FROM player "
-                                      "ORDER BY match, team, seat"
-                                    : "SELECT match, team, name, kind, share FROM player "
-                                      "ORDER BY match, team, seat");
+  const std::string share = version < 4 ? "1.0" : "share", left = version < 5 ? "0" : "has_left";
+  Statement players(db, "SELECT match, team, name, kind, " + share + ", " + left +
+                            " FROM player ORDER BY match, team, seat");
   while (players.row()) {
     const auto at = by_id.find(players.integer(0));
     if (at == by_id.end()) continue;
     at->second->teams[players.integer(1) == 0 ? 0 : 1].players.push_back(
-        {players.text(2), players.text(3), std::clamp(players.real(4), 0.0, 1.0)});
+        {players.text(2), players.text(3), std::clamp(players.real(4), 0.0, 1.0),
+         players.integer(5) != 0});
   }
   return teams.done() && players.done();
 }

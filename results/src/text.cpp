@@ -18,14 +18,15 @@ std::string names(const Team& team, const char* between) {
   return text;
 }
 
-// "Ann (62%), computer 2 (38%)": of who has played all of it the name alone.
+// "Ann (62%), computer 2 (38%), Bob (20%, left)": of who has played all of it the name alone.
 std::string names_and_shares(const Team& team) {
   std::string text;
   for (const Player& player : team.players) {
     if (!text.empty()) text += ", ";
     text += player.name;
     const auto percent = std::lround(100.0 * player.share);
-    if (percent < 100) text += fmt::format(" ({}%)", percent);
+    if (percent < 100 || player.left)
+      text += fmt::format(" ({}%{})", percent, player.left ? ", left" : "");
   }
   return text;
 }
@@ -37,6 +38,12 @@ std::string shares(const Team& team) {
     text += fmt::format("{:.3g}", player.share);
   }
   return text;
+}
+
+std::string leavers(const Team& team) {
+  Team left;
+  std::ranges::copy_if(team.players, std::back_inserter(left.players), &Player::left);
+  return names(left, "; ");
 }
 
 // Names come from players: no control characters reach a terminal.
@@ -63,8 +70,10 @@ nlohmann::ordered_json json_of(const Team& team) {
   nlohmann::ordered_json out;
   out["players"] = nlohmann::ordered_json::array();
   for (const Player& player : team.players) {
-    out["players"].push_back(
-        {{"name", player.name}, {"kind", player.kind}, {"share", player.share}});
+    out["players"].push_back({{"name", player.name},
+                              {"kind", player.kind},
+                              {"share", player.share},
+                              {"left", player.left}});
   }
   out["goals"] = team.goals;
   if (const auto& s = team.statistics) {
@@ -104,7 +113,7 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       "shot_speed_fastest,recording";
   for (int t = 0; t < kTeams; ++t) {
     for (const char* column : {"players", "goals", "shots", "shots_on_target", "saves", "passes",
-                               "touches", "own_goals", "possession_s", "shares"}) {
+                               "touches", "own_goals", "possession_s", "shares", "left"}) {
       text += fmt::format(",team{}_{}", t, column);
     }
   }
@@ -126,6 +135,8 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       }
       text += ',';
       text += csv_cell(shares(team));
+      text += ',';
+      text += csv_cell(leavers(team));
     }
     text += "\r\n";
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "samples.h"
 
 namespace results {
@@ -64,6 +66,35 @@ TEST(Rating, CountsAMatchOnlyForWhoPlayedAlmostAllOfIt) {
   EXPECT_DOUBLE_EQ(rating(more, "Ann"), 1516.0) << "a moment's absence";
   EXPECT_DOUBLE_EQ(rating(more, "Cleo"), kFirstRating);
   EXPECT_DOUBLE_EQ(rating_of(match.teams[0], more), 1516.0);
+}
+
+TEST(Rating, WhoLeavesHasLostWhateverTheTeamDoesThen) {
+  for (const auto& [own, theirs] : {std::pair{5u, 3u}, {3u, 5u}, {4u, 4u}}) {
+    MatchResult match = match_between("Bob", "Cleo", own, theirs);
+    match.teams[0].players.push_back({"Ann", "person", 0.5, true});
+    const auto all = standings(std::vector{match});
+    EXPECT_DOUBLE_EQ(rating(all, "Ann"), 1484.0) << own << ":" << theirs;
+    const double bob = own > theirs ? 1516.0 : own < theirs ? 1484.0 : kFirstRating;
+    EXPECT_DOUBLE_EQ(rating(all, "Bob"), bob) << "who stayed has the team's result";
+    EXPECT_DOUBLE_EQ(rating(all, "Cleo"), 2.0 * kFirstRating - bob);
+    const auto ann = std::ranges::find(all, "Ann", &Standing::name);
+    EXPECT_EQ(ann->losses, 1u);
+    EXPECT_EQ(ann->wins + ann->not_counted, 0u);
+  }
+}
+
+TEST(Rating, IsNotSavedByLeavingInTheLastMoment) {
+  MatchResult match = match_between("Ann", "Bob", 5, 3);
+  match.teams[0].players = {{"Ann", "person", 0.99, true}};
+  EXPECT_DOUBLE_EQ(rating(standings(std::vector{match}), "Ann"), 1484.0) << "nor won so";
+}
+
+// Else one player could take the match from everybody's rating by changing sides.
+TEST(Rating, IsMovedThoughSomebodyWentOverToTheOtherTeam) {
+  MatchResult match = match_between("Bob", "Cleo", 5, 3);
+  match.teams[1].players.push_back({"Ann", "person", 0.05, true});
+  match.teams[0].players.push_back({"Ann", "person", 0.95});
+  EXPECT_DOUBLE_EQ(rating(standings(std::vector{match}), "Bob"), 1516.0);
 }
 
 // By hand: 0.75 of 1516 and 0.25 of 1484 are 1508; E of 1484 against it is 0.465516

@@ -145,9 +145,9 @@ TEST_F(StoreTest, ReadsAndMigratesTheFirstVersion) {
   EXPECT_TRUE(store.add(answers_of(7, 0, 1))) << "of a match from before there were answers";
 }
 
-TEST_F(StoreTest, KeepsHowMuchOfAMatchEachHasPlayed) {
+TEST_F(StoreTest, KeepsHowMuchOfAMatchEachHasPlayedAndWhoHasLeft) {
   MatchResult match = match_between("Ann", "Bob", 5, 3);
-  match.teams[0].players = {{"Ann", "person", 0.625}, {"computer 2", "computer", 0.375}};
+  match.teams[0].players = {{"Ann", "person", 0.625, true}, {"computer 2", "computer", 0.375}};
   ASSERT_TRUE(made().add(match));
   const auto found = Store::open(path_, Access::read_only).value().matches({}).value();
   ASSERT_EQ(found.size(), 1u);
@@ -191,7 +191,7 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   execute(
       "DROP TABLE answer; DROP TABLE sheet; ALTER TABLE player DROP COLUMN share; "
-      "PRAGMA user_version = 2");
+      "ALTER TABLE player DROP COLUMN has_left; PRAGMA user_version = 2");
   {
     const Store old = Store::open(path_, Access::read_only).value();
     EXPECT_EQ(old.matches({}).value().size(), 1u);
@@ -208,12 +208,28 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
 // As the release before shares made it.
 TEST_F(StoreTest, ReadsAndMigratesTheThirdVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
-  execute("ALTER TABLE player DROP COLUMN share; PRAGMA user_version = 3");
+  execute(
+      "ALTER TABLE player DROP COLUMN share; ALTER TABLE player DROP COLUMN has_left; PRAGMA "
+      "user_version = 3");
   const auto share = [](const Store& store) {
     return store.matches({}).value().at(0).teams[0].players.at(0).share;
   };
   EXPECT_EQ(share(Store::open(path_, Access::read_only).value()), 1.0);
   EXPECT_EQ(share(made()), 1.0) << "whoever played then played all of it";
+}
+
+// As the release before leavers made it.
+TEST_F(StoreTest, ReadsAndMigratesTheFourthVersion) {
+  MatchResult match = match_between("Ann", "Bob", 5, 3);
+  match.teams[0].players[0].left = true;
+  { ASSERT_TRUE(made().add(match)); }
+  const auto left = [](const Store& store) {
+    return store.matches({}).value().at(0).teams[0].players.at(0).left;
+  };
+  EXPECT_TRUE(left(made()));
+  execute("ALTER TABLE player DROP COLUMN has_left; PRAGMA user_version = 4");
+  EXPECT_FALSE(left(Store::open(path_, Access::read_only).value()));
+  EXPECT_FALSE(left(made())) << "nobody knows any more";
 }
 
 TEST_F(StoreTest, SaysWhichVersionItNeeds) {

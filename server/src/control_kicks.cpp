@@ -39,7 +39,7 @@ wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target
 void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& kick) {
   const Seat* voter = seats_.find(connection.client);
   if (voter == nullptr || !connection.wishes.take(os::monotonic_us())) return;
-  const Seat* target = seats_.find(kick.client);
+  Seat* target = seats_.find(kick.client);
   const auto refuse_it = [&](const wire::Sentence& why) {
     answer(connection, wire::kKickAnswerTopic, why);
   };
@@ -65,8 +65,9 @@ void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& k
 }
 
 // The seat is free, its ticket worth nothing, and the machine has no rods until a match is over.
-void ControlServer::put_out(const Seat& seat, bool by_host) {
+void ControlServer::put_out(Seat& seat, bool by_host) {
   const std::uint32_t client = seat.client;
+  seat.put_out = true;
   count(Count::kicked);
   kicks_.put_out(seat.owner(), os::monotonic_us());
   kicks_.close(client);

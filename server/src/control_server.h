@@ -62,6 +62,7 @@ struct ControlEvent {
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
   os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
   foosball::Command wish{};    // wish
+  bool put_out = false;        // left: by others, not of its own will
   wire::Answers answers;       // answers: of one team's rods that were asked and had not answered
 };
 
@@ -178,7 +179,7 @@ class ControlServer {
   // control_kicks.cpp
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
   wire::Sentence why_not_kick(const Seat& voter, const Seat* target) const;
-  void put_out(const Seat& seat, bool by_host);
+  void put_out(Seat& seat, bool by_host);
   wire::Sentence why_out(const os::SocketAddress& peer, wire::Role role,
                          std::uint32_t client) const;
   KickVotes::Here here() const;

@@ -350,11 +350,12 @@ void ControlServer::give_up_seat(std::uint32_t client) {
     clear_notice(kAwayTopic + client, seat->name + " has left");
   }
   log(LogLevel::info, seat->name + " at " + os::to_text(seat->peer) + " left");
-  seats_.remove(client);
-  count(Count::left);
   ControlEvent event;
   event.kind = ControlEvent::Kind::left;
   event.client = client;
+  event.put_out = seat->put_out;
+  seats_.remove(client);
+  count(Count::left);
   untold_.push_back(std::move(event));
   tell_tick();
   roster_changed_ = true;

@@ -34,6 +34,7 @@ struct Seat {
   bool has_socket = false;          // the tick has one for its inputs
   std::uint32_t asked_match = 0;    // the questionnaire's; 0: not asked yet
   RodSet asked_rods = 0;            // whose players have not answered it
+  bool put_out = false;             // by others
   std::int64_t away_since_us = -1;  // not negative: lost then, and not back yet
 
   bool away() const { return away_since_us >= 0; }

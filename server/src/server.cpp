@@ -104,7 +104,7 @@ void Server::Impl::take_control_events() {
         change_rods(event);
         break;
       case ControlEvent::Kind::left:
-        dismiss(event.client);
+        dismiss(event.client, event.put_out);
         break;
       case ControlEvent::Kind::wish:
         take_wish(event);

@@ -34,7 +34,7 @@ struct Server::Impl {
   void change_rods(ControlEvent& event);
   void take_back(ControlEvent& event);
   void listen_to(ControlEvent& event);
-  void dismiss(std::uint32_t client);
+  void dismiss(std::uint32_t client, bool put_out);
   void watch_absences();
   void wait_for_players(bool in_match);
   void remember_name(std::uint32_t client);
@@ -54,7 +54,7 @@ struct Server::Impl {
   void begin_lineup();
   void count_players();
   MatchScribe::Players players() const;
-  void tell_not_counted(const results::MatchResult& result);
+  void tell_who_is_not_rated_as_the_team(const results::MatchResult& result);
   void watch_sending();
   void watch_tuning();
   // Empty: the notice is cleared, and the log has over.
@@ -85,9 +85,9 @@ struct Server::Impl {
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;
   Lineup lineup;
-  bool not_counted_told = false;        // a notice that stands
-  std::unique_ptr<ResultsLog> results;  // or none
-  std::uint32_t matches = 0;            // handed to it
+  bool not_counted_told = false, leavers_told = false;  // notices that stand
+  std::unique_ptr<ResultsLog> results;                  // or none
+  std::uint32_t matches = 0;                            // handed to it
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
   std::int64_t tick_us = 0;                     // the clock at the tick under way

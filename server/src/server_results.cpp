@@ -21,14 +21,18 @@ void Server::Impl::count_players() {
     for (const Client& client : clients) {
       const RodSet rods = client.rods & own;
       person = person || rods != 0;
-      if ((rods & ~stand_ins) != 0) lineup.add(team, Lineup::Kind::person, client.name.data());
+      if ((rods & ~stand_ins) != 0) {
+        lineup.add(team, Lineup::Kind::person, client.name.data());
+      } else if (rods != 0) {
+        lineup.keep_seat(team, client.name.data());
+      }
     }
     for (int rod = 0; rod < foosball::kRods; ++rod) {
       if ((own >> rod & 1) == 0) continue;
       cabinet = cabinet || desk.driver(rod) == RodDriver::cabinet;
       computer = computer || (stand_ins >> rod & 1) != 0;
     }
-    if (cabinet && !person) lineup.add(team, Lineup::Kind::person, "cabinet");
+    if (cabinet && !person) lineup.add(team, Lineup::Kind::cabinet, "cabinet");
     if (computer) lineup.add(team, Lineup::Kind::computer, "computer");
   }
 }
@@ -42,7 +46,7 @@ void Server::Impl::keep_result() {
   count_players();
   if (!over || match.view().attract) return;
   results::MatchResult result = scribe.result(match.view(), players());
-  tell_not_counted(result);
+  tell_who_is_not_rated_as_the_team(result);
   result.finished_at = options.date();
   result.recording = options.record;
   if (!results->add(std::move(result), ++matches) || !options.questionnaire) return;
@@ -66,12 +70,14 @@ void Server::Impl::begin_lineup() {
   lineup.begin();
   if (std::exchange(not_counted_told, false))
     notify(Topic::not_counted, {}, "another match begins");
+  if (std::exchange(leavers_told, false)) notify(Topic::leavers, {}, "another match begins");
 }
 
 MatchScribe::Players Server::Impl::players() const {
   MatchScribe::Players players;
+  const auto return_ticks = static_cast<std::uint64_t>(options.limits.seat_kept_us / 1000);
   for (int team = 0; team < foosball::kTeams; ++team) {
-    players[team] = lineup.players(team);
+    players[team] = lineup.players(team, return_ticks);
     for (results::Player& player : players[team])
       if (player.kind == "computer") player.name = "computer " + to_text(desk.computer_player());
     if (players[team].empty()) players[team] = {{"nobody", "person"}};
@@ -79,19 +85,21 @@ MatchScribe::Players Server::Impl::players() const {
   return players;
 }
 
-// Those for whose rating the match does not count are told why.
-void Server::Impl::tell_not_counted(const results::MatchResult& result) {
-  std::string who;
+// Why: they have left it, or came too late.
+void Server::Impl::tell_who_is_not_rated_as_the_team(const results::MatchResult& result) {
+  std::string late, left;
   for (const results::Team& team : result.teams) {
     for (const results::Player& player : team.players) {
-      if (player.kind != "person" || results::counts_for(player)) continue;
+      if (player.kind != "person" || results::played(player)) continue;
+      std::string& who = player.left ? left : late;
       const auto percent = std::lround(100.0 * player.share);
       who += (who.empty() ? "" : ", ") + player.name + " (" + std::to_string(percent) + "%)";
     }
   }
-  if (who.empty()) return;
-  not_counted_told = true;
-  notify(Topic::not_counted, wire::say<wire::Said::not_rated>(who));
+  if (!late.empty()) notify(Topic::not_counted, wire::say<wire::Said::not_rated>(late));
+  if (!left.empty()) notify(Topic::leavers, wire::say<wire::Said::lost_by_leaving>(left));
+  not_counted_told = !late.empty();
+  leavers_told = !left.empty();
 }
 
 void Server::Impl::watch_results() {

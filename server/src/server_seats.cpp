@@ -60,12 +60,13 @@ void Server::Impl::take_back(ControlEvent& event) {
   listen_to(event);
 }
 
-void Server::Impl::dismiss(std::uint32_t client) {
+void Server::Impl::dismiss(std::uint32_t client, bool put_out) {
   const auto leaver =
       std::find_if(clients.begin(), clients.end(), [&](const Client& c) { return c.id == client; });
   if (leaver == clients.end()) return;
   const bool played = leaver->team < foosball::kTeams;
   remember_name(client);
+  if (put_out) lineup.excuse(leaver->name.data());
   clients.erase(leaver);
   desk.leave(client, tick_us);
   input.remove(client);

@@ -329,38 +329,98 @@ class StandInResults : public StandIn {
     o.results = path();
     o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
   }
-  StandInResults() : StandIn(rated) {}
+  explicit StandInResults(const std::function<void(ServerOptions&)>& change = rated)
+      : StandIn(change) {}
+
+  // Three people, one second of whose match is over.
+  void begin_three() {
+    const auto first = sit(ann, "Ann", 0, one), mate = sit(bob, "Bob", 0, rest),
+               opponent = sit(carl, "Carl", 1);
+    ASSERT_TRUE(first && mate && opponent);
+    plays(ann, *first);
+    plays(bob, *mate);
+    plays(carl, *opponent);
+    begin_match(carl);
+    for (ProbeClient* one_of : {&bob, &carl}) {
+      const auto team = static_cast<std::uint8_t>(one_of == &bob ? 0 : 1);
+      one_of->say(wire::Wish{number(wire::WishKind::push), team, 0});
+    }
+    ASSERT_TRUE(
+        table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+    pass(1'000'000);
+    ann_id = first->client;
+  }
+  bool end() {
+    const auto over = [&] { return table->match().view().screen == foosball::Screen::end; };
+    for (int i = 0; i < 300 && !over(); ++i) pass(100'000);
+    return over();
+  }
+  std::optional<results::MatchResult> result() {
+    table->finish(wire::Sentence::untranslated("done"));
+    const auto store = results::Store::open(path(), results::Access::read_only);
+    const auto matches = store ? store->matches({}).value() : std::vector<results::MatchResult>{};
+    return matches.size() == 1 ? std::optional(matches[0]) : std::nullopt;
+  }
+  static const results::Player* find(const results::MatchResult& match, const std::string& name) {
+    for (const results::Team& team : match.teams)
+      for (const results::Player& player : team.players)
+        if (player.name == name) return &player;
+    return nullptr;
+  }
+  ProbeClient ann{table.port()}, bob{table.port()}, carl{table.port()};
+  std::uint32_t ann_id = 0;
 };
 
-TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
-  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
-  const auto first = sit(ann, "Ann", 0, one), mate = sit(bob, "Bob", 0, rest),
-             opponent = sit(carl, "Carl", 1);
-  ASSERT_TRUE(first && mate && opponent);
-  plays(ann, *first);
-  plays(bob, *mate);
-  plays(carl, *opponent);
-  begin_match(carl);
-  for (ProbeClient* one_of : {&bob, &carl}) {
-    const auto team = static_cast<std::uint8_t>(one_of == &bob ? 0 : 1);
-    one_of->say(wire::Wish{number(wire::WishKind::push), team, 0});
-  }
-  ASSERT_TRUE(
-      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
-  pass(1'000'000);
+TEST_F(StandInResults, AreADefeatForWhoLeavesTheMatch) {
+  begin_three();
   lets_go(ann);
-  const auto over = [&] { return table->match().view().screen == foosball::Screen::end; };
-  for (int i = 0; i < 300 && !over(); ++i) pass(100'000);
-  ASSERT_TRUE(over());
+  ann.say_goodbye();
+  ASSERT_TRUE(end());
+  EXPECT_TRUE(logged("whoever leaves a match has lost it: Ann ("));
+  const auto match = result();
+  ASSERT_TRUE(match && find(*match, "Ann"));
+  EXPECT_TRUE(find(*match, "Ann")->left);
+  EXPECT_FALSE(find(*match, "Bob")->left || find(*match, "Carl")->left);
+  const auto all = results::standings(std::vector{*match});
+  const auto standing = std::ranges::find(all, "Ann", &results::Standing::name);
+  EXPECT_LT(standing->rating, results::kFirstRating);
+}
+
+class StandInResultsOfGuests : public StandInResults {
+ protected:
+  static void guests(ServerOptions& o) {
+    rated(o);
+    o.access.trust_this_machine = false;
+    o.access.password = "open sesame";
+    o.access.host_password = "mine";
+  }
+  StandInResultsOfGuests() : StandInResults(guests) {}
+};
+
+TEST_F(StandInResultsOfGuests, AreNoDefeatForWhoIsPutOut) {
+  ASSERT_TRUE(ann.prove("open sesame") && bob.prove("open sesame"));
+  ASSERT_TRUE(carl.prove("mine", wire::Role::host));
+  begin_three();
+  carl.say(wire::Kick{ann_id});
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
+  lets_go(ann);
+  ASSERT_TRUE(end());
+  const auto match = result();
+  ASSERT_TRUE(match && find(*match, "Ann"));
+  EXPECT_FALSE(find(*match, "Ann")->left);
+  EXPECT_FALSE(results::counts_for(*find(*match, "Ann")));
+}
+
+TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
+  begin_three();
+  lets_go(ann);
+  ASSERT_TRUE(end());
   EXPECT_TRUE(
       logged("the match does not count for the rating of who played too little of it: "
              "Ann ("));
-  table->finish(wire::Sentence::untranslated("done"));
-  const auto store = results::Store::open(path(), results::Access::read_only);
-  ASSERT_TRUE(store) << store.error();
-  const auto matches = store->matches({}).value();
-  ASSERT_EQ(matches.size(), 1u);
-  const auto& team = matches[0].teams[0].players;
+  const auto match = result();
+  ASSERT_TRUE(match);
+  const auto& team = match->teams[0].players;
   ASSERT_EQ(team.size(), 3u);
   EXPECT_EQ(team[0], (results::Player{"Bob", "person", 1.0})) << "not of the first seat alone";
   for (const results::Player& player : {team[1], team[2]}) {
@@ -368,7 +428,7 @@ TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
     EXPECT_FALSE(results::counts_for(player));
   }
   EXPECT_NEAR(team[1].share + team[2].share, 1.0, 1e-9);
-  EXPECT_EQ(matches[0].teams[1].players, (std::vector{results::Player{"Carl", "person", 1.0}}));
+  EXPECT_EQ(match->teams[1].players, (std::vector{results::Player{"Carl", "person", 1.0}}));
 }
 
 TEST_F(StandIn, IsNoneBeforeAMatch) {

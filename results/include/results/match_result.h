@@ -19,6 +19,8 @@ struct Player {
   std::string kind;  // as "person", "computer"
   // Of the match's time, what this player played: less for who came late, left, or was replaced.
   double share = 1.0;  // 0 .. 1
+  // Was away at the end, or for too long; see docs/rules.md. Whoever only came late has not left.
+  bool left = false;
   bool operator==(const Player&) const = default;
 };
 

@@ -19,10 +19,14 @@ namespace results {
 inline constexpr double kFirstRating = 1500.0;
 inline constexpr double kRatingGain = 32.0;  // K: half of it goes over where equals meet
 // A match counts for who has played all of it but so much: what the computer did for somebody who
-// was away is not that person's.
+// was away is not that person's. Whoever has left it has lost it, whatever the team has done since:
+// no rating is saved by leaving, and none is won by others' play.
 inline constexpr double kLargestAbsence = 0.1;
+inline bool played(const Player& player) {
+  return player.share >= 1.0 - kLargestAbsence && !player.left;
+}
 inline bool counts_for(const Player& player) {
-  return player.share >= 1.0 - kLargestAbsence;
+  return played(player) || player.left;
 }
 
 struct Standing {
@@ -36,10 +40,11 @@ struct Standing {
 };
 
 // Of all players, best first; equals by name. Matches in the order in which they were played; one
-// that nobody has won counts, but moves no rating, and so does one in which a player met himself.
+// that nobody has won counts, but moves no rating (but a leaver's), and so does one in which a
+// player met himself.
 std::vector<Standing> standings(std::span<const MatchResult> matches);
 
-// Of those of the team for whom the match counts, or of all if it counts for none: their mean.
+// Of those of the team who have played the match, or of all if none has: their mean.
 double rating_of(const Team& team, std::span<const Standing> standings);
 
 }  // namespace results

@@ -83,6 +83,7 @@ class Server {
     offer = 7,
     not_counted = 8,
     waiting = 9,
+    leavers = 10,
     devices = 100
   };
   void warn(Topic topic, const wire::Sentence& text);

@@ -48,6 +48,7 @@ namespace wire {
   X(rods_offered, "free to the team for %1 s, then the computer's: %2") \
   X(waits_for_players, "the match waits: nothing is heard of any player") \
   X(not_rated, "the match does not count for the rating of who played too little of it: %1") \
+  X(lost_by_leaving, "whoever leaves a match has lost it: %1") \
   /* votes */ \
   X(asks_for_pause, "%1 asks for a pause: %2 of %3 votes. Ask for it too to agree") \
   X(asks_for_restart, "%1 asks for a restart: %2 of %3 votes. Ask for it too to agree") \
