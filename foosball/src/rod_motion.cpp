@@ -14,17 +14,17 @@ namespace foosball {
 namespace {
 
 // A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
-// The error is cut so that the speed v which the drive comes to stays within the bound: there
-// stiffness * error + damping * (rate - v) = 0.
+// The way there is cut so that the speed v which the drive comes to stays within the bound: there
+// stiffness * way + damping * (rate - v) = 0.
 AxisDrive drive_towards(double target, double target_rate, double now, double inertia,
                         double max_force, double max_rate, double frequency) {
   const double stiffness = inertia * frequency * frequency;
   const double damping = 2.0 * inertia * frequency;
   const double rate = std::clamp(target_rate, -max_rate, max_rate);
-  const double error = target + rate * kTick - now;
   const double time = damping / stiffness;
-  return {now + std::clamp(error, -(max_rate + rate) * time, (max_rate - rate) * time), rate,
-          stiffness, damping, max_force};
+  const double goal = std::clamp(target + rate * kTick, now - (max_rate + rate) * time,
+                                 now + (max_rate - rate) * time);
+  return {goal, rate, stiffness, damping, max_force};
 }
 
 double step_rate(const AxisDrive& drive, double mass, double position, double rate) {

@@ -72,7 +72,9 @@ vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const RodInertia
   turn.parent = must(builder.add(slide));
   turn.joint = vp::RevoluteJoint{};
   if (!hinged) turn.inertia = link_inertia(inertia);
-  turn.armature = hinged ? inertia.turn : tuning.hand_inertia;
+  const double man_armature = inertia.turn - inertia.man_axial;
+  // The sum as a man's hinge has it: else hand and men would differ in its last bit.
+  turn.armature = hinged ? inertia.man_axial + man_armature : tuning.hand_inertia;
   must(builder.add(turn));
   for (int i = 0; hinged && i < rod.men; ++i) {
     vp::LinkSpec man;
@@ -81,7 +83,7 @@ vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const RodInertia
     man.T_parent_joint = SE3(Vec3{0.0, 0.0, man_offset(rod, man_from_left(rod, i))});
     man.inertia =
         vp::Inertia(inertia.man, Vec3{inertia.man_axial, inertia.man_axial, inertia.man_axial});
-    man.armature = inertia.turn - inertia.man_axial;
+    man.armature = man_armature;
     must(builder.add(man));
   }
   return builder.build().value();
@@ -275,14 +277,20 @@ vp::JointDrive joint_drive(const AxisDrive& d) {
 
 }  // namespace
 
+// The drives of a row whose men are all at their hand stay as they are until those of slide or hand
+// change.
 void TableWorld::drive(int rod, const RodTarget& target) {
-  const RodSpec& spec = table_.rods[rod];
   const RodInertia& inertia = inertias_[rod];
   const RodState& now = this->rod(rod);
-  const vp::JointDrive hand = joint_drive(angle_drive(inertia, now.angle, target));
+  RowDrive& row = driven_[rod];
+  const RowDrive before = row;
+  row = {slide_drive(table_.rods[rod], inertia, now, target),
+         angle_drive(inertia, now.angle, target), at_hand_[rod]};
+  if (row.at_hand && row == before) return;
   const std::span<const double> q = world_.coordinates(rods_[rod]);
   std::array<vp::JointDrive, kFirstMan + kMaxMenOnRod> drives;  // q.size() of them
-  drives[kSlide] = joint_drive(slide_drive(spec, inertia, now, target));
+  const vp::JointDrive hand = joint_drive(row.hand);
+  drives[kSlide] = joint_drive(row.slide);
   drives[kTurn] = hand;
   for (std::size_t man = kFirstMan; man < q.size(); ++man) {
     drives[man] =
@@ -299,12 +307,38 @@ void TableWorld::read_rods() {
     const std::span<const double> v = world_.velocities(rods_[rod]);
     const RodSpec& spec = table_.rods[rod];
     rod_states_[rod] = {q[kSlide], q[kTurn], v[kSlide], v[kTurn]};
+    at_hand_[rod] = true;
     for (int i = 0; i < spec.men; ++i) {
       const int link = hinged ? kFirstMan + i : kTurn;
-      man_states_[rod][man_from_left(spec, i)] = {q[link] - turns_ahead(q[link], q[kTurn]),
-                                                  v[link]};
+      ManState& man = man_states_[rod][man_from_left(spec, i)];
+      man = {q[link], v[link]};
+      if (q[link] == q[kTurn] && v[link] == v[kTurn]) continue;
+      at_hand_[rod] = false;
+      man.angle -= turns_ahead(q[link], q[kTurn]);
     }
   }
+}
+
+// A man who has been held comes back to his hand ever more slowly. Once nobody could tell them
+// apart he is at it: then they move alike to the bit, and are computed once. So he is, whole turns
+// behind or not.
+void TableWorld::join_hands() {
+  constexpr double kAngle = 1e-9, kRate = 1e-7;  // [rad], [rad/s]; at the foot less than an atom
+  bool joined = false;
+  for (int rod = 0; rod < kRods; ++rod) {
+    if (at_hand_[rod]) continue;
+    const std::span<const double> q = world_.coordinates(rods_[rod]);
+    const std::span<const double> v = world_.velocities(rods_[rod]);
+    const double angle = q[kTurn], rate = v[kTurn];
+    for (int man = kFirstMan; man < kFirstMan + table_.rods[rod].men; ++man) {
+      if (q[man] == angle && v[man] == rate) continue;
+      if (std::fabs(v[man] - rate) > kRate) continue;
+      if (std::fabs(q[man] - turns_ahead(q[man], angle) - angle) > kAngle) continue;
+      must(world_.set_joint_state(rods_[rod], man, 0, angle, rate));
+      joined = true;
+    }
+  }
+  if (joined) read_rods();
 }
 
 void TableWorld::set_rod(int rod, const RodState& state) {
@@ -394,6 +428,7 @@ void TableWorld::let_field_sag() {
 vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
   auto restored = world_.restore(bytes);
   if (!restored) return restored;
+  driven_.fill({});
   read_rods();
   read_ball();
   return restored;
@@ -446,6 +481,7 @@ bool TableWorld::step() {
   read_ball();
   exaggerate_bounce(velocity_before);
   read_rods();
+  join_hands();
   return !status_.non_finite;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foosball/match.h"
+#include "foosball/rod_motion.h"
 #include "foosball/tuning.h"
 #include "vphysics/world.h"
 
@@ -106,6 +107,7 @@ class TableWorld {
   const CharacterBody& body_of(int rod) const { return bodies_[table_.rods[rod].team]; }
   void let_field_sag();
   void read_rods();
+  void join_hands();
   void read_ball();
   void exaggerate_bounce(const vp::Vec3& velocity_before);
   void lift_ball(double speed);
@@ -122,7 +124,14 @@ class TableWorld {
   std::array<RodInertia, kRods> inertias_{};
   std::array<RodState, kRods> rod_states_{};  // read once a step: all ask for them
   ManStates man_states_{};
-  BallState ball_state_;  // read after each change
+  std::array<bool, kRods> at_hand_{};  // all men turn as the hand does, to the bit
+  struct RowDrive {
+    AxisDrive slide, hand;
+    bool at_hand = false;  // and the men have the hand's
+    bool operator==(const RowDrive&) const = default;
+  };
+  std::array<RowDrive, kRods> driven_{};  // as the world has them; none known after restore()
+  BallState ball_state_;                  // read after each change
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };

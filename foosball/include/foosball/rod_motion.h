@@ -40,6 +40,7 @@ struct AxisDrive {
   double stiffness;  // [N/m] | [N m/rad]
   double damping;    // [N s/m] | [N m s/rad]
   double max_force;  // [N] | [N m]
+  bool operator==(const AxisDrive&) const = default;
 };
 
 // What a hand can do at most with the men of a character: the lower of what the tuning allows every

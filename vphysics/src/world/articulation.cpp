@@ -150,6 +150,7 @@ void Articulation::find_responses() {
     }
     responses_.push_back(row.response);
   }
+  driven_alike_.assign(v.size(), 0);
 }
 
 // So far that no stop gets a row (add_stops(), articulations.cpp).
@@ -163,16 +164,24 @@ bool Articulation::stops_are_far(double h) const {
   return true;
 }
 
+void Articulation::compare_drives() {
+  drives_are_compared_ = true;
+  for (std::size_t i = 1; i < v.size(); ++i) {
+    driven_alike_[i] = responses_[i] == responses_[i - 1] && dofs[i].drive == dofs[i - 1].drive &&
+                       dofs[i].forces.motor_limit == dofs[i - 1].forces.motor_limit;
+  }
+}
+
 // p = push - gain (v + response p). Neighbours that move and are driven alike have one impulse.
+// There is a coordinate for each velocity (constant_).
 bool Articulation::settle_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
+  if (!drives_are_compared_) compare_drives();
   double impulse = 0.0, x_before = 0.0, v_before = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i) {
     JointDof& dof = dofs[i];
-    const double x = dof.coordinate < 0 ? 0.0 : q[static_cast<std::size_t>(dof.coordinate)];
-    const bool alike = i > 0 && v[i] == v_before && x == x_before &&
-                       responses_[i] == responses_[i - 1] && dof.drive == dofs[i - 1].drive &&
-                       dof.forces.motor_limit == dofs[i - 1].forces.motor_limit;
+    const double x = q[i];
+    const bool alike = driven_alike_[i] && v[i] == v_before && x == x_before;
     if (!alike) {
       x_before = x;
       v_before = v[i];
@@ -433,6 +442,10 @@ bool Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& poin
 }
 
 bool Articulation::in_range() const {
+  double squares = 0.0;
+  for (const double x : q) squares += x * x;
+  for (const double x : v) squares += x * x;
+  if (squares <= kLargest * kLargest) return true;
   bool good = true;
   for (const double x : q) good &= vp::in_range(x);
   for (const double x : v) good &= vp::in_range(x);

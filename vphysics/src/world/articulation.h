@@ -86,6 +86,8 @@ class Articulation {
   // nothing done, where it needs the solver.
   bool settle_alone(double h);
   bool settles_alone() const { return !responses_.empty(); }
+  // After a change of any dof's drive.
+  void drives_changed() { drives_are_compared_ = false; }
   solve::SolverArticulation begin_solve();
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();
@@ -121,6 +123,7 @@ class Articulation {
   void update_twists();
   void find_lines();
   void find_responses();
+  void compare_drives();
   bool stops_are_far(double h) const;
   void place_on_lines();
   se3 twist_in_data(int link, const Vec3& point) const;
@@ -162,6 +165,9 @@ class Articulation {
   // What a unit impulse of each motor gives its own coordinate; empty: joints feel one another, or
   // have more than motors and stops.
   std::vector<double> responses_;
+  // Then of each velocity: its drive and response are those of the one before it.
+  std::vector<std::uint8_t> driven_alike_;
+  bool drives_are_compared_ = false;
   bool factored_ = false;  // for this configuration, without damping
   bool twists_ = false;    // the factor has the links' velocities, else the data
   bool regular_ = false;

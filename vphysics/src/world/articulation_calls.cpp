@@ -158,6 +158,7 @@ Expected<void> World::set_drive(ArticulationId id, int link, int dof, const Join
     return refuse("set_drive: " + why_no_drive(joint != nullptr, drive));
   }
   joint->drive = drive;
+  art->drives_changed();
   if (impl_->recorder) impl_->log_drive(id, link, dof, drive);
   return {};
 }
@@ -167,11 +168,17 @@ Expected<void> World::set_drives(ArticulationId id, std::span<const JointDrive> 
   if (!art || drives.size() != art->dofs.size()) {
     return refuse("set_drives: give each degree of freedom of an articulation a drive");
   }
+  bool changed = false;
   for (std::size_t i = 0; i < drives.size(); ++i) {
+    if (art->dofs[i].drive == drives[i]) continue;  // accepted before
     if (!can_drive(art->dofs[i], drives[i]))
       return refuse("set_drives: " + why_no_drive(true, drives[i]));
+    changed = true;
   }
-  for (std::size_t i = 0; i < drives.size(); ++i) art->dofs[i].drive = drives[i];
+  if (changed) {
+    for (std::size_t i = 0; i < drives.size(); ++i) art->dofs[i].drive = drives[i];
+    art->drives_changed();
+  }
   if (!impl_->recorder) return {};
   for (int link = 0, i = 0; link < art->model().links(); ++link) {
     for (int dof = 0; art->dof_index(link, dof) >= 0; ++dof, ++i) {

@@ -261,6 +261,7 @@ void World::Impl::adopt(Incoming& from) {
       art.dofs[i].drive = dof->drive;
       art.dofs[i].drive_impulse = dof->drive_impulse;
     }
+    art.drives_changed();
     art.refresh();
     follow(art);
   }
