@@ -20,9 +20,9 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x3e81600f907e8b3fu;
+constexpr std::uint64_t kGolden = 0x116a2a87e4d599c3u;
 // Of players with levels.
-constexpr std::uint64_t kGoldenLevel = 0x1694118253deb2f4u;
+constexpr std::uint64_t kGoldenLevel = 0x8ede393381ea8a41u;
 
 struct Players {
   explicit Players(std::uint64_t seed, const char* player = "classic:0.9")

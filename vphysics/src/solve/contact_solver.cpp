@@ -24,7 +24,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/link_rows.h"
+#include "solve/acceleration.h"
+#include "solve/impulses.h"
 
 namespace vp::solve {
 namespace {
@@ -54,29 +55,6 @@ inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const Co
 inline double through_links(const ContactConstraint& c, int row) {
   if (!c.has_links()) return 0.0;
   return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
-}
-
-inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, const ContactPoint& p,
-                  const Vec3& impulse) {
-  if (c.moves_a) {
-    a.v -= a.inverse_mass * impulse;
-    a.w -= a.angular * cross(p.arm_a, impulse);
-  }
-  if (c.moves_b) {
-    b.v += b.inverse_mass * impulse;
-    b.w += b.angular * cross(p.arm_b, impulse);
-  }
-}
-inline void apply_to_links(const ContactConstraint& c, int row, double impulse) {
-  push(c.side_a, row, impulse, c.side_a.velocity);
-  push(c.side_b, row, impulse, c.side_b.velocity);
-}
-
-void apply_moment(SolverBody& a, SolverBody& b, const ContactConstraint& c, const Vec3& impulse) {
-  if (c.moves_a) a.w -= a.angular * impulse;
-  if (c.moves_b) b.w += b.angular * impulse;
-  if (!c.has_links()) return;
-  for (int i = 0; i < 3; ++i) apply_to_links(c, row_of(c.count, i), impulse[i]);
 }
 
 // The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
@@ -301,9 +279,12 @@ void iterate(const StepContext& s) {
   const std::size_t contacts = std::max<std::size_t>(1, s.contacts.size());
   const int more =
       static_cast<int>(std::clamp<std::size_t>(kFewContacts / contacts, 1, kMostRounds));
-  for (int i = 0; i < s.iterations * more; ++i) {
+  const int rounds = s.iterations * more;
+  Acceleration acceleration(s);
+  for (int i = 0; i < rounds; ++i) {
     // Friction reads the normal impulses of the round before: two quiet rounds are needed.
     if (one_round(s, i % 2 == 0) < kConverged && i > 0) break;
+    if (i % 2 == 1) acceleration.after_sweep(i + 1, rounds);
   }
 }
 
