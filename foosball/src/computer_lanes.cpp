@@ -26,7 +26,7 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
     const RodSpec& spec = table.rods[rod];
     const double way = attack_sign(view.team) * spec.x - now.ball.x;
     if (rod == view.from_rod || way < 0.04 || way > run) continue;
-    const bool up = std::fabs(within_half_turn(now.swing[rod])) > kFeetUp;
+    const bool up = !view.hops && std::fabs(within_half_turn(now.swing[rod])) > kFeetUp;
     if (up && spec.team == view.team) continue;
     const double y = y_after(table, now.ball.y, slope, way);
     double gap = 1.0;
@@ -55,15 +55,6 @@ double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& v
   const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
   const double scores = within(inside, 0.004 + view.slope_error * run);
   return men.cost + men.free * (scores + (1.0 - scores) * view.far_worth);
-}
-
-double foot_offset(double slope, double half_foot, double ahead) {
-  constexpr double kFlat = 0.035;
-  constexpr double kUnder = 0.012, kSteeper = 14.0;  // a ball below the axis goes off steeper
-  const double s = std::min(std::fabs(slope), kSteepest) /
-                   (1.0 + kSteeper * std::clamp(kUnder - ahead, 0.0, 0.035));
-  if (s < kFlat) return 0.0;
-  return -std::copysign(half_foot + s * (0.021 - 0.0055 * s), slope);
 }
 
 }  // namespace foosball

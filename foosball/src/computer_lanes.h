@@ -12,6 +12,7 @@ struct LaneView {
   int from_rod = 0;                        // index into TableSpec::rods; not in its own way
   std::array<double, kTeams> half_foot{};  // [m]
   double slope_error = 0.05;               // standard deviation of the ball's slope
+  bool hops = false;                       // the ball, which then meets men whose feet are up
   // As in Judgment.
   double risk_cost = 1.0, feet_stay_up = 0.2, far_worth = 0.10;
 };
@@ -27,12 +28,5 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
 // Expected worth of a ball that is sent from where it is along dy/dx = slope: 1 a goal; less where
 // men are in the way, and below 0 where it would come back towards the own goal.
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
-
-// Where the foot's centre must be beside the ball's to send it along a slope [m]: flat feet send it
-// straight on, edges at an angle. half_foot: half of its width [m]; ahead: the ball, of the rod's
-// axis [m]. Measured on the simulated table with feet of 20 to 30 mm; steeper than kSteepest is not
-// reached.
-double foot_offset(double slope, double half_foot, double ahead);
-inline constexpr double kSteepest = 0.75;
 
 }  // namespace foosball

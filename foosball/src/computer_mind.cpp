@@ -28,7 +28,8 @@ void ComputerMind::set_table(Layout layout, const TeamBodies& bodies) {
   model_ = {table_, team_, lanes.half_foot};
   const auto indices = rods_of_team(*table_, team_);
   for (std::size_t line = 0; line < indices.size(); ++line) {
-    ComputerRod rod(*table_, team_, indices[line], lanes, t_.judgment);
+    ComputerRod rod(*table_, team_, indices[line], lanes,
+                    foot_of(bodies[static_cast<std::size_t>(team_)]), t_.judgment);
     if (line < rods_.size()) {
       rod.adopt(rods_[line].slide().position(), rods_[line].swing().position());
       rods_[line] = rod;

@@ -29,43 +29,30 @@ struct Hook {
 // Measured on the simulated table, both layouts, a ball 30 to 40 mm behind the axis.
 constexpr std::array<Hook, 2> kHooks{{{0.005, 20.0, 0.48, 1.6}, {0.008, 35.0, 0.72, 2.4}}};
 
-constexpr double kPassSpeed = 2.2;    // [m/s]
-constexpr double kCatch = 0.6;        // a foot leant forward holds a ball that comes from behind
-constexpr double kFootSpeed = 0.11;   // ball's speed [m/s] for the foot's [rad/s]
-constexpr double kSoftSpeed = 0.090;  // the same of a soft stroke
+constexpr double kPassSpeed = 2.2;   // [m/s]
+constexpr double kCatch = 0.6;       // a foot leant forward holds a ball that comes from behind
+constexpr double kPassRate = 24.4;   // [rad/s], for that
+constexpr double kHookPower = 0.11;  // ball's speed [m/s] for the foot's [rad/s]
 
 constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 
 constexpr double kResting = 0.15;  // [m/s]
+constexpr double kSettled = 0.05;  // [rad] off the swing it is drawn to
 
 // A hand that follows a ball that comes soon holds still for less than this [m].
 constexpr double kClose = 0.004;
 
-// A ball far ahead is met by a foot already rising, which would lift it off the table: the further
-// ahead [m], the softer.
-double power_at(const TableSpec& table, double ahead) {
-  constexpr double kLift = 0.11;  // upward share of a full strike that still stays on the table
-  constexpr double kLeast = 0.4;
-  const double rise = std::max(0.0, ahead - 0.010 - table.ball_radius);
-  const double arm = table.rod_height - table.ball_radius;
-  const double sine = rise / std::sqrt(rise * rise + arm * arm);
-  return sine > kLift ? std::max(kLeast, kLift / sine) : 1.0;
-}
-
-// From the drawn foot to the hit [s].
-double strike_time(const AxisLimits& strike) {
-  const double way = -kDrawn;
-  const double gathering = 0.5 * strike.rate * strike.rate / strike.acceleration;
-  constexpr double kLag = 0.001;
-  if (way < gathering) return kLag + std::sqrt(2.0 * way / strike.acceleration);
-  return kLag + strike.rate / strike.acceleration + (way - gathering) / strike.rate;
+// 1 or -1; the same for either zero, which a mirrored match may have exchanged.
+double side_of(double value) {
+  return value < 0.0 ? -1.0 : 1.0;
 }
 
 }  // namespace
 
 ComputerRod::ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes,
-                         const Judgment& judgment)
+                         const Foot& foot, const Judgment& judgment)
     : table_(&table),
+      foot_(foot),
       team_(team),
       index_(index),
       x_(attack_sign(team) * table.rods[static_cast<std::size_t>(index)].x),
@@ -231,7 +218,7 @@ void ComputerRod::step_aside(const Sighting& now) {
   }
   const double aside = lanes_.half_foot[team_] + table_->ball_radius + 0.018;  // [m]
   const double off = man_y(man) - now.ball.y;
-  const double side = std::copysign(aside, off == 0.0 ? -now.ball.y : off);
+  const double side = aside * side_of(off == 0.0 ? -now.ball.y : off);
   double goal = slide_.position() - off + side;
   if (std::fabs(goal) > spec().slide_limit) goal -= 2.0 * side;
   goal_ = goal;
@@ -262,7 +249,7 @@ bool ComputerRod::can_control(const Sighting& now) const {
 
 void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Random& random) {
   slide_for(now.ball.y, &man_);
-  over_ = false;
+  over_ = planted_ = false;
   worth_ = -1e9;
   pause_ = random.between(t.pause_low, t.pause_high);
   noise_ = t.aim_error * random.bell();
@@ -282,27 +269,73 @@ bool ComputerRod::lost(const Sighting& now) const {
          vp::norm(now.velocity) > 1.5 * judgment_.tame_speed;
 }
 
+// Where and when a stroke that begins now meets the ball.
+Meeting ComputerRod::meeting(const Sighting& now, double rate, const Temperament& t) const {
+  Meeting m{0.0, ahead(now), now.ball.y, rate};
+  for (int step = 0; step < 2; ++step) {  // the time depends on where, and where on the time
+    m.time = stroke_time(std::min(angle(), kDrawn + kSettled),
+                         contact_swing(*table_, foot_, m.ahead), {m.rate, t.strike.acceleration});
+    m.ahead = ahead(now) + m.time * now.velocity.x;
+  }
+  m.y = y_after(*table_, now.ball.y, now.velocity.y, m.time);
+  return m;
+}
+
+// Of the pass or shot that is chosen; a ball that is only cleared is not played at full strength.
+double ComputerRod::chosen_rate(const Temperament& t) const {
+  if (pass_.rod >= 0) return kPassRate;
+  const bool clears = worth_ > -1e8 && worth_ < judgment_.clear_below;
+  return t.strike.rate * (clears ? judgment_.clear_power : 1.0);
+}
+
+// The slide that brings the man with the ball there; another man, if he cannot reach it.
+double ComputerRod::square_to(const Meeting& m) {
+  constexpr double kBeyond = 0.004;  // [m]
+  if (std::fabs(m.y - man_offset(spec(), man_)) > spec().slide_limit + kBeyond) {
+    slide_for(m.y, &man_);
+  }
+  return m.y - man_offset(spec(), man_);
+}
+
 // The foot goes back behind the ball; then it waits for a lane, follows the ball and strikes.
 void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random) {
   if (lost(now)) return enter(Act::watch);
-  const AxisLimits stroke = stroke_limits(t);
-  const double y = y_after(*table_, now.ball.y, now.velocity.y, strike_time(stroke));
-  const double square = y - man_offset(spec(), man_);
+  const Meeting m = meeting(now, chosen_rate(t), t);
+  const double square = square_to(m);
   const bool hooked = ahead(now) < 0.5 * table_->ball_radius;
   const double drawn = level() + (hooked ? kDrawnOver : kDrawn);
   if (!over_) return go_behind(now, square, drawn, t);
   swing_.move(drawn, t.swing);
   if (ahead(now) < kScoopTo) return prepare_scoop(now, square, t, random);
-  consider_lanes(now, square, t);
-  goal_ =
+  consider_lanes(now, t);
+  const double aim =
       square + noise_ +
-      foot_offset(slope_ - natural_slope(now, stroke.rate), lanes_.half_foot[team_], ahead(now));
+      foot_offset(foot_, *table_, m, slope_ - natural_slope(foot_, *table_, m, now.velocity.y));
   constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: as if to play it elsewhere
   if (feints_ && since_ < pause_ + kFeintFor) {
-    goal_ -= std::copysign(kFeintStep, slope_);
-  } else if (since_ >= pause_) {
-    strike_if_ready(now, t);
+    goal_ = aim - side_of(slope_) * kFeintStep;
+  } else {
+    wait_for_ball(now, m, aim, t);
   }
+}
+
+// A foot that slides as it strikes is where nobody can tell: it comes to rest ahead of a ball that
+// rolls along the rod, and strikes when the ball is there.
+void ComputerRod::wait_for_ball(const Sighting& now, const Meeting& m, double aim,
+                                const Temperament& t) {
+  constexpr double kLead = 0.020;                     // [s]
+  constexpr double kNear = 0.0005, kSurely = 0.0015;  // [m]
+  const double vy = now.velocity.y;
+  const double left = (goal_ - aim) * side_of(vy);  // until the ball is there
+  const bool over = left < -kSurely || left > 2.0 * kLead * std::fabs(vy) + kSurely;
+  if (planted_ && over) planted_ = false;
+  if (!planted_) {
+    goal_ = aim + kLead * vy;
+    planted_ = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
+  }
+  if (since_ < pause_) return;
+  const bool there = planted_ && (goal_ - aim) * side_of(vy) < kNear;
+  strike_if_ready(now, m, there, t);
 }
 
 // A foot that hangs beside the ball would push it away: it goes up before it comes near.
@@ -350,7 +383,7 @@ void ComputerRod::choose_hook(const Sighting& now, const Temperament& t, Random&
       scoop_rate_ = hook.rate;
       scoop_beside_ = hook.beside;
       slope_ = slope;
-      power_ = hook.speed / (kFootSpeed * t.strike.rate);
+      power_ = hook.speed / (kHookPower * t.strike.rate);
     }
   }
 }
@@ -360,7 +393,7 @@ void ComputerRod::scoop(const Temperament& t) {
   swing_.move(level(), {scoop_rate_, hooks ? t.strike.acceleration : t.swing.acceleration});
   if (angle() <= -0.02 && since_ <= 0.5) return;
   if (hooks) {
-    const double speed = kFootSpeed * power_ * t.strike.rate;
+    const double speed = kHookPower * power_ * t.strike.rate;
     sent_ = {speed, slope_ * speed, 0.0};
     struck_ = true;
   }
@@ -405,43 +438,40 @@ PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed
   return pass_along(*table_, now, view, slope);
 }
 
-AxisLimits ComputerRod::stroke_limits(const Temperament& t) const {
-  const double rate = pass_.rod >= 0 ? kPassSpeed / kSoftSpeed : t.strike.rate;
-  return {rate, t.strike.acceleration};
+// The ball as it will be met, past men who are where they are now.
+Sighting ComputerRod::met(const Sighting& now, const Meeting& m) const {
+  Sighting then = now;
+  then.ball.x = x_ + m.ahead;
+  then.ball.y = m.y;
+  return then;
 }
 
 // All lanes now and then; whether the chosen one closes, more often.
-void ComputerRod::consider_lanes(const Sighting& now, double square, const Temperament& t) {
+void ComputerRod::consider_lanes(const Sighting& now, const Temperament& t) {
   const int ticks = static_cast<int>(since_ / kTick);
   if (worth_ < -1e8 || ticks % 20 == 0) {
-    choose_lane(now, square, t);
+    choose_lane(now, t);
   } else if (ticks % 4 == 0) {
-    const double error = slope_error(false, t);
-    worth_ = pass_.rod >= 0 ? pass_worth(now, slope_, kPassSpeed, error, t).worth
-                            : shot_worth(now, slope_, t);
+    const bool passes = pass_.rod >= 0;
+    const Meeting m = meeting(now, chosen_rate(t), t);
+    const Sighting then = met(now, m);
+    worth_ = passes ? pass_worth(then, slope_, kPassSpeed, slope_error(false, t), t).worth
+                    : shot_worth(then, m, slope_, t);
   }
 }
 
-void ComputerRod::strike_if_ready(const Sighting& now, const Temperament& t) {
-  const double way = ahead(now);
-  if (way > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
-  const bool aligned = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
+void ComputerRod::strike_if_ready(const Sighting& now, const Meeting& m, bool aligned,
+                                  const Temperament& t) {
+  if (m.ahead > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
   const double bar = judgment_.shot_bar * (1.0 - (since_ - pause_) / judgment_.patience);
   if (!(aligned && worth_ >= bar) && since_ <= pause_ + judgment_.patience + judgment_.late) return;
-  power_ = pass_.rod >= 0 ? stroke_limits(t).rate / t.strike.rate
-                          : power_at(*table_, way) *
-                                (worth_ < judgment_.clear_below ? judgment_.clear_power : 1.0);
-  // A soft stroke has no swing left beyond where it is braked: it goes on to the ball.
-  constexpr double kFull = 0.08, kBeyond = 0.20, kTouches = 0.027;  // [rad], [rad], [m]
-  const double at_ball = std::max(0.0, way - kTouches) / kFoot;
-  through_ = pass_.rod >= 0 ? at_ball + kBeyond : kFull;
+  power_ = m.rate / t.strike.rate;
+  // It swings on to the ball and beyond, less what it needs to come to rest.
+  constexpr double kLeast = 0.08, kBeyond = 0.20;  // [rad]
+  const double rest = 0.5 * m.rate * m.rate / t.strike.acceleration;
+  through_ = std::max(kLeast, contact_swing(*table_, foot_, m.ahead) + kBeyond - rest);
+  sends_ = stroke_speed(foot_, *table_, m);
   enter(Act::strike);
-}
-
-// The slope at which a flat foot sends off a ball that rolls along the rod: it keeps most of that.
-double ComputerRod::natural_slope(const Sighting& now, double rate) const {
-  constexpr double kKept = 0.77;
-  return kKept * now.velocity.y / (kFootSpeed * rate);
 }
 
 // Of a ball played with the flat of the foot or with its edge [1].
@@ -450,34 +480,39 @@ double ComputerRod::slope_error(bool flat, const Temperament& t) const {
   return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, judgment_.aim_belief);
 }
 
-double ComputerRod::shot_worth(const Sighting& now, double slope, const Temperament& t) const {
-  constexpr double kFlat = 0.01;
+double ComputerRod::shot_worth(const Sighting& then, const Meeting& m, double slope,
+                               const Temperament& t) const {
   LaneView lanes = lanes_;
-  lanes.slope_error = slope_error(std::fabs(slope - natural_slope(now, t.strike.rate)) < kFlat, t);
-  return lane_worth(*table_, now, lanes, slope);
+  lanes.hops = lifts_ball(foot_, *table_, m);
+  const double turn = slope - natural_slope(foot_, *table_, m, then.velocity.y);
+  lanes.slope_error = slope_error(std::fabs(turn) < kFlatSlope, t);
+  return lane_worth(*table_, then, lanes, slope);
+}
+
+// Whether the rod can stand so, and the ball gets off the wall.
+bool ComputerRod::can_turn(const Meeting& m, double slope, double natural) const {
+  const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would only rub along
+  if (std::fabs(slope - natural) > kSteepest) return false;
+  const double offset = foot_offset(foot_, *table_, m, slope - natural);
+  if (std::fabs(m.y - man_offset(spec(), man_) + offset) > spec().slide_limit) return false;
+  return !(slope * m.y > 0.0 && std::fabs(m.y) > wall);
 }
 
 // The best shot, or the best pass if that is worth more.
-void ComputerRod::choose_lane(const Sighting& now, double square, const Temperament& t) {
+void ComputerRod::choose_lane(const Sighting& now, const Temperament& t) {
   constexpr double kStep = 0.05;
   const double keep = judgment_.keep_lane;
-  const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would only rub along
   const bool first = worth_ < -1e8;
   const bool passed = pass_.rod >= 0;
-  const auto reached = [&](double slope, double natural) {
-    const double turn = slope - natural;
-    if (std::fabs(turn) > kSteepest) return false;
-    const double offset = foot_offset(turn, lanes_.half_foot[team_], ahead(now));
-    if (std::fabs(square + offset) > spec().slide_limit) return false;
-    return !(slope * now.ball.y > 0.0 && std::fabs(now.ball.y) > wall);
-  };
-  const double natural = natural_slope(now, t.strike.rate);
-  double slope = natural, best = shot_worth(now, slope, t);
+  const Meeting shot = meeting(now, t.strike.rate, t);
+  const Sighting shot_at = met(now, shot);
+  const double natural = natural_slope(foot_, *table_, shot, now.velocity.y);
+  double slope = natural, best = shot_worth(shot_at, shot, slope, t);
   if (!first && !passed && std::fabs(slope_ - natural) < kStep) best += keep;
   for (int k = -15; k <= 15; ++k) {
     const double s = kStep * k;
-    if (std::fabs(s - natural) < kStep || !reached(s, natural)) continue;
-    double worth = shot_worth(now, s, t);
+    if (std::fabs(s - natural) < kStep || !can_turn(shot, s, natural)) continue;
+    double worth = shot_worth(shot_at, shot, s, t);
     if (!first && !passed && std::fabs(s - slope_) < 1e-9) worth += keep;
     if (worth > best) {
       best = worth;
@@ -485,12 +520,15 @@ void ComputerRod::choose_lane(const Sighting& now, double square, const Temperam
     }
   }
   PassPlan plan;
-  const double softly = natural_slope(now, kPassSpeed / kSoftSpeed);
-  for (int k = -15; k <= 15; ++k) {
+  const Meeting soft = meeting(now, kPassRate, t);
+  const Sighting soft_at = met(now, soft);
+  const double softly = natural_slope(foot_, *table_, soft, now.velocity.y);
+  const bool rolls = !lifts_ball(foot_, *table_, soft);
+  for (int k = -15; rolls && k <= 15; ++k) {
     const double s = kStep * k;
-    if (!reached(s, softly)) continue;
-    const bool flat = std::fabs(s - softly) < 0.035;
-    const PassPlan pass = pass_worth(now, s, kPassSpeed, slope_error(flat, t), t);
+    if (!can_turn(soft, s, softly)) continue;
+    const bool flat = std::fabs(s - softly) < kFlatSlope;
+    const PassPlan pass = pass_worth(soft_at, s, kPassSpeed, slope_error(flat, t), t);
     const double kept = !first && passed && std::fabs(s - slope_) < 1e-9 ? keep : 0.0;
     if (pass.worth + kept <= best) continue;
     best = pass.worth + kept;
@@ -505,8 +543,7 @@ void ComputerRod::choose_lane(const Sighting& now, double square, const Temperam
 void ComputerRod::strike(const Temperament& t) {
   swing_.swing(level() + 2.0, {power_ * t.strike.rate, t.strike.acceleration});
   if (swing_.position() > level() + through_) {
-    const double speed = pass_.rod >= 0 ? kPassSpeed : kFootSpeed * power_ * t.strike.rate;
-    sent_ = {speed, slope_ * speed, 0.0};
+    sent_ = {sends_, slope_ * sends_, 0.0};
     struck_ = true;
     enter(Act::brake);
   }

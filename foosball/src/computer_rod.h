@@ -11,13 +11,14 @@
 #include "computer_level.h"
 #include "computer_pass.h"
 #include "computer_sight.h"
+#include "computer_stroke.h"
 #include "random.h"
 
 namespace foosball {
 
 class ComputerRod {
  public:
-  ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes,
+  ComputerRod(const TableSpec& table, int team, int index, const LaneView& lanes, const Foot& foot,
               const Judgment& judgment);
 
   int index() const { return index_; }
@@ -58,7 +59,13 @@ class ComputerRod {
   void watch(const Sighting& now, double guard_y, const Temperament& t, Random& random);
   void begin_control(const Sighting& now, const Temperament& t, Random& random);
   void draw(const Sighting& now, const Temperament& t, Random& random);
-  double shot_worth(const Sighting& now, double slope, const Temperament& t) const;
+  Meeting meeting(const Sighting& now, double rate, const Temperament& t) const;
+  double chosen_rate(const Temperament& t) const;
+  double square_to(const Meeting& m);
+  Sighting met(const Sighting& now, const Meeting& m) const;
+  bool can_turn(const Meeting& m, double slope, double natural) const;
+  double shot_worth(const Sighting& then, const Meeting& m, double slope,
+                    const Temperament& t) const;
   void go_behind(const Sighting& now, double square, double drawn, const Temperament& t);
   void prepare_scoop(const Sighting& now, double square, const Temperament& t, Random& random);
   void choose_hook(const Sighting& now, const Temperament& t, Random& random);
@@ -67,11 +74,10 @@ class ComputerRod {
   PassPlan pass_worth(const Sighting& now, double slope, double speed, double slope_error,
                       const Temperament& t) const;
   double slope_error(bool flat, const Temperament& t) const;
-  AxisLimits stroke_limits(const Temperament& t) const;
-  void consider_lanes(const Sighting& now, double square, const Temperament& t);
-  void strike_if_ready(const Sighting& now, const Temperament& t);
-  void choose_lane(const Sighting& now, double square, const Temperament& t);
-  double natural_slope(const Sighting& now, double rate) const;
+  void consider_lanes(const Sighting& now, const Temperament& t);
+  void wait_for_ball(const Sighting& now, const Meeting& m, double aim, const Temperament& t);
+  void strike_if_ready(const Sighting& now, const Meeting& m, bool aligned, const Temperament& t);
+  void choose_lane(const Sighting& now, const Temperament& t);
   bool lost(const Sighting& now) const;
   void strike(const Temperament& t);
   void brake(const Temperament& t);
@@ -86,6 +92,7 @@ class ComputerRod {
   double man_y(int man) const { return man_offset(spec(), man) + slide_.position(); }
 
   const TableSpec* table_;
+  Foot foot_;
   int team_, index_;
   double x_;
   Judgment judgment_;
@@ -97,11 +104,13 @@ class ComputerRod {
   double since_ = 0.0;                // in this act [s]
   int man_ = 0;                       // with the ball
   bool over_ = false;                 // his foot is behind the ball
+  bool planted_ = false;              // the foot waits for the ball where it will strike
   bool feints_ = false;               // before this strike
   double pause_ = 0.0;                // before this strike [s]
   double noise_ = 0.0;                // of this strike's aim [m]
   double slope_ = 0.0, worth_ = 0.0;  // of the lane chosen
   double power_ = 1.0;
+  double sends_ = 0.0;    // the ball, of this stroke [m/s]
   double through_ = 0.0;  // swing at which the stroke is braked [rad]
   vp::Vec3 sent_;
   double scoop_side_ = 0.0;    // 0: not chosen yet

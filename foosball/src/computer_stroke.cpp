@@ -1,0 +1,79 @@
+#include "computer_stroke.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace foosball {
+namespace {
+
+// How far the ball is behind where a hanging foot would meet it [m]. The further, the more the
+// stroke comes from above and presses the ball on the field.
+double behind(const Foot& foot, const TableSpec& table, double ahead) {
+  return std::clamp(foot.half_depth + table.ball_radius - ahead, 0.0, 0.055);
+}
+
+}  // namespace
+
+Foot foot_of(const CharacterBody& body) {
+  return {0.5 * body.foot_width, 0.5 * body.foot_depth};
+}
+
+double contact_swing(const TableSpec& table, const Foot& foot, double ahead) {
+  // ahead * cos(s) - height * sin(s) = half_depth + radius, by Newton's steps on the series of sine
+  // and cosine, which are the same everywhere.
+  const double height = table.rod_height - table.ball_radius;
+  const double away = foot.half_depth + table.ball_radius;
+  double s = (ahead - away) / height;
+  for (int step = 0; step < 3; ++step) {
+    const double s2 = s * s;
+    const double sine = s * (1.0 - s2 / 6.0 * (1.0 - s2 / 20.0));
+    const double cosine = 1.0 - s2 / 2.0 * (1.0 - s2 / 12.0);
+    s += (ahead * cosine - height * sine - away) / (ahead * sine + height * cosine);
+  }
+  return std::clamp(s, -1.0, 0.6);
+}
+
+double stroke_time(double from, double contact, const AxisLimits& stroke) {
+  constexpr double kLag = 0.0013;  // [s]: a tick until the hand moves, and the foot's own
+  constexpr double kEarly = 0.04;  // [rad]: the ball is off before the foot is all there
+  const double way = std::max(0.0, contact - kEarly - from);
+  const double gathering = 0.5 * stroke.rate * stroke.rate / stroke.acceleration;
+  if (way < gathering) return kLag + std::sqrt(2.0 * way / stroke.acceleration);
+  return kLag + stroke.rate / stroke.acceleration + (way - gathering) / stroke.rate;
+}
+
+bool lifts_ball(const Foot& foot, const TableSpec& table, const Meeting& meeting) {
+  constexpr double kRise = 0.001;  // [m]
+  return meeting.ahead > foot.half_depth + table.ball_radius + kRise;
+}
+
+double stroke_speed(const Foot& foot, const TableSpec& table, const Meeting& meeting) {
+  constexpr double kSpeed = 0.110, kSoft = 0.090;  // [m/s] for the stroke's [rad/s]
+  constexpr double kSoftRate = 30.0;               // [rad/s]
+  constexpr double kPressed = 120.0;               // [1/m^2]
+  const double d = behind(foot, table, meeting.ahead);
+  return (meeting.rate < kSoftRate ? kSoft : kSpeed) * meeting.rate * (1.0 - kPressed * d * d);
+}
+
+double natural_slope(const Foot& foot, const TableSpec& table, const Meeting& meeting, double vy) {
+  const double d = behind(foot, table, meeting.ahead);
+  const double kept = 0.73 - d * (3.5 + 65.0 * d);
+  return kept * vy / stroke_speed(foot, table, meeting);
+}
+
+double foot_offset(const Foot& foot, const TableSpec& table, const Meeting& meeting, double slope) {
+  // An edge u beside the centre turns the ball off by 49/m u + 6.1e4/m^3 u^3, times more from
+  // above.
+  constexpr double kTurn = 49.0, kCubic = 6.1e4;
+  const double d = behind(foot, table, meeting.ahead);
+  const double steeper = 1.0 + d * d * (120.0 + 29000.0 * d * d);
+  const double turn = std::min(std::fabs(slope), kSteepest) / steeper;
+  if (std::fabs(slope) < kFlatSlope) return 0.0;
+  double u = turn / kTurn;
+  for (int step = 0; step < 3; ++step) {
+    u -= (u * (kTurn + kCubic * u * u) - turn) / (kTurn + 3.0 * kCubic * u * u);
+  }
+  return -std::copysign(foot.half_width + u, slope);
+}
+
+}  // namespace foosball
