@@ -278,15 +278,19 @@ vp::JointDrive joint_drive(const AxisDrive& d) {
 }  // namespace
 
 // The drives of a row whose men are all at their hand stay as they are until those of slide or hand
-// change.
+// change, which follow from where the row is and its target.
 void TableWorld::drive(int rod, const RodTarget& target) {
   const RodInertia& inertia = inertias_[rod];
   const RodState& now = this->rod(rod);
   RowDrive& row = driven_[rod];
-  const RowDrive before = row;
-  row = {slide_drive(table_.rods[rod], inertia, now, target),
-         angle_drive(inertia, now.angle, target), at_hand_[rod]};
-  if (row.at_hand && row == before) return;
+  const bool stays = row.at_hand && at_hand_[rod];
+  if (stays && row.now_slide == now.slide && row.now_angle == now.angle && row.target == target)
+    return;
+  const AxisDrive slide = slide_drive(table_.rods[rod], inertia, now, target);
+  const AxisDrive angle = angle_drive(inertia, now.angle, target);
+  const bool same = stays && row.slide == slide && row.hand == angle;
+  row = {target, now.slide, now.angle, slide, angle, at_hand_[rod]};
+  if (same) return;
   const std::span<const double> q = world_.coordinates(rods_[rod]);
   std::array<vp::JointDrive, kFirstMan + kMaxMenOnRod> drives;  // q.size() of them
   const vp::JointDrive hand = joint_drive(row.hand);
@@ -306,15 +310,19 @@ void TableWorld::read_rods() {
     const std::span<const double> q = world_.coordinates(rods_[rod]);
     const std::span<const double> v = world_.velocities(rods_[rod]);
     const RodSpec& spec = table_.rods[rod];
-    rod_states_[rod] = {q[kSlide], q[kTurn], v[kSlide], v[kTurn]};
+    const RodState hand{q[kSlide], q[kTurn], v[kSlide], v[kTurn]};
+    rod_states_[rod] = hand;
     at_hand_[rod] = true;
     for (int i = 0; i < spec.men; ++i) {
-      const int link = hinged ? kFirstMan + i : kTurn;
-      ManState& man = man_states_[rod][man_from_left(spec, i)];
-      man = {q[link], v[link]};
-      if (q[link] == q[kTurn] && v[link] == v[kTurn]) continue;
+      man_states_[rod][i] = {hand.angle, hand.angle_rate};
+      const int link = kFirstMan + i;
+      if (!hinged || (q[link] == hand.angle && v[link] == hand.angle_rate)) continue;
       at_hand_[rod] = false;
-      man.angle -= turns_ahead(q[link], q[kTurn]);
+    }
+    for (int i = 0; i < spec.men && !at_hand_[rod]; ++i) {
+      const int link = kFirstMan + i;
+      man_states_[rod][man_from_left(spec, i)] = {q[link] - turns_ahead(q[link], hand.angle),
+                                                  v[link]};
     }
   }
 }

@@ -126,11 +126,12 @@ class TableWorld {
   ManStates man_states_{};
   std::array<bool, kRods> at_hand_{};  // all men turn as the hand does, to the bit
   struct RowDrive {
+    RodTarget target;
+    double now_slide, now_angle;
     AxisDrive slide, hand;
-    bool at_hand = false;  // and the men have the hand's
-    bool operator==(const RowDrive&) const = default;
+    bool at_hand = false;  // and the men have the hand's; false: not known, as after restore()
   };
-  std::array<RowDrive, kRods> driven_{};  // as the world has them; none known after restore()
+  std::array<RowDrive, kRods> driven_{};  // as the world has them
   BallState ball_state_;                  // read after each change
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;

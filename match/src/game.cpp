@@ -77,10 +77,8 @@ class Game {
     foosball::RodTargets hands{};
     for (auto& player : players_) player->play(view, hands, foosball::kAllRods);
     foosball::TickInput input;
-    for (int rod = 0; rod < kRods; ++rod) {
-      tick_.rods[rod] = server::to_grid(hands[rod]);
-      input.rods[rod] = server::from_grid(tick_.rods[rod]);
-    }
+    put_on_grid(hands);
+    input.rods = on_grid_;
     input.commands = commands_;
     match_.step(input);
     for (const auto& player : players_) observer_.meant(player->passed(), desc_.layout);
@@ -95,6 +93,16 @@ class Game {
       if (event.kind == foosball::EventKind::match_won) return true;
     }
     return false;
+  }
+
+  // As a recording has the targets. Most hands are still: what stays is not put there again.
+  void put_on_grid(const foosball::RodTargets& hands) {
+    for (int rod = 0; rod < kRods; ++rod) {
+      if (hands[rod] == hands_[rod]) continue;
+      tick_.rods[rod] = server::to_grid(hands[rod]);
+      on_grid_[rod] = server::from_grid(tick_.rods[rod]);
+    }
+    hands_ = hands;
   }
 
   // Past the screens before play by commands, and past the ceremony as soon as the match allows it.
@@ -123,6 +131,7 @@ class Game {
   MemorySink sink_;
   std::optional<server::RecordSchedule<MemorySink>> record_;
   wire::JournalTick tick_;
+  foosball::RodTargets hands_{}, on_grid_{};  // of the last tick
   std::vector<Command> commands_;
 };
 

@@ -19,6 +19,7 @@ struct RodTarget {
   double slide_rate = 0.0;  // [m/s]
   double angle_rate = 0.0;  // [rad/s]
   bool live = false;
+  bool operator==(const RodTarget&) const = default;
 };
 
 // The slide of a row, and the angle of the hand that turns it: what a rod does.

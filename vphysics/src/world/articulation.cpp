@@ -177,20 +177,22 @@ void Articulation::compare_drives() {
 bool Articulation::settle_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
   if (!drives_are_compared_) compare_drives();
-  double impulse = 0.0, x_before = 0.0, v_before = 0.0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
+  double impulse = 0.0, x_before = 0.0, v_before = 0.0, v_after = 0.0;
+  const std::size_t n = v.size();
+  for (std::size_t i = 0; i < n; ++i) {
     JointDof& dof = dofs[i];
-    const double x = q[i];
-    const bool alike = driven_alike_[i] && v[i] == v_before && x == x_before;
+    const double x = q[i], speed = v[i];
+    const bool alike = driven_alike_[i] && speed == v_before && x == x_before;
     if (!alike) {
       x_before = x;
-      v_before = v[i];
+      v_before = speed;
       const Motor motor = motor_of(dof, h, x);
-      const double p = (motor.push - motor.gain * v[i]) / (1.0 + motor.gain * responses_[i]);
+      const double p = (motor.push - motor.gain * speed) / (1.0 + motor.gain * responses_[i]);
       impulse = std::clamp(p, -motor.most, motor.most);
+      v_after = speed + responses_[i] * impulse;
     }
     dof.drive_impulse = impulse;
-    v[i] += responses_[i] * impulse;
+    v[i] = v_after;
   }
   if (!remote) update_twists();
   return true;
@@ -443,8 +445,9 @@ bool Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& poin
 
 bool Articulation::in_range() const {
   double squares = 0.0;
-  for (const double x : q) squares += x * x;
-  for (const double x : v) squares += x * x;
+  const std::size_t n = v.size();
+  for (std::size_t i = 0; i < n; ++i) squares += q[i] * q[i] + v[i] * v[i];
+  for (std::size_t i = n; i < q.size(); ++i) squares += q[i] * q[i];
   if (squares <= kLargest * kLargest) return true;
   bool good = true;
   for (const double x : q) good &= vp::in_range(x);

@@ -269,6 +269,8 @@ struct World::Impl {
   // these have changed.
   std::vector<std::uint32_t> impact_body_list;
   bool impact_bodies_are_stale = true;
+  // Bodies have come or gone: what drift and forced have of others than those is not 0.
+  bool impact_scratch_is_stale = true;
   // Union over what meets links, or sensors that continuous bodies carry (find_discrete_pairs()).
   std::uint32_t discrete_categories = 0, discrete_masks = 0;
 

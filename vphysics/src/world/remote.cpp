@@ -51,7 +51,7 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
 void World::Impl::list_remote_articulations() {
   const bool few = !some_are_not && desc.sleep_after <= 0.0 && movers.size() <= kFewMovers;
   remote_bodies.assign(bodies.size(), 0);
-  impact_bodies_are_stale = true;
+  impact_bodies_are_stale = impact_scratch_is_stale = true;
   for (Articulation& art : articulations) {
     look_at(art);
     art.can_be_remote = few && can_be_remote(art);

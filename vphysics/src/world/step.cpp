@@ -86,18 +86,22 @@ void World::Impl::begin_impact_stage() {
   contacts.reserve(room);
   link_contacts.reserve(room);
   bodies_on_links.reserve(n);
-  drift.assign(n, {});
   bounds.resize(n);
   discrete_bounds.resize(n);
   movable.resize(n);
   motions.resize(n);
-  forced.assign(n, {});
   solver_bodies.resize(n);
   start_poses.resize(n);
   held.assign(n, 0);
   in_contact.assign(n, 0);
   as_swept.assign(n, 0);
+  if (impact_scratch_is_stale) {
+    impact_scratch_is_stale = false;
+    drift.assign(n, {});
+    forced.assign(n, {});
+  }
   for (const std::uint32_t i : impact_bodies()) {
+    drift[i] = forced[i] = {};
     if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
   }
 }
