@@ -20,9 +20,9 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x116a2a87e4d599c3u;
+constexpr std::uint64_t kGolden = 0x7e484655e079e672u;
 // Of players with levels.
-constexpr std::uint64_t kGoldenLevel = 0xd1bf364d15ed9417u;
+constexpr std::uint64_t kGoldenLevel = 0xe22db1afbb4e60e1u;
 
 struct Players {
   explicit Players(std::uint64_t seed, const char* player = "classic:0.9")

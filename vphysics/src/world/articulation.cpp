@@ -20,6 +20,14 @@ namespace {
 
 using detail::NodeKind;
 
+// A joint that comes to its motor's target does so ever more slowly, and would after some seconds
+// calculate with denormal numbers, which take a hundred times as long as others. Slower than this
+// [m/s], [rad/s] it stands: in the age of the universe it would go less than an atom's size.
+constexpr double kStanding = 1e-28;
+double standing_or(double speed) {
+  return std::fabs(speed) < kStanding ? 0.0 : speed;
+}
+
 // On its parent's axis, about or along it, and balanced on it.
 bool continues_axis(const detail::Node<double>& node) {
   constexpr double kTolerance = 1e-12;  // of rounding in how the joints' frames were put together
@@ -189,7 +197,7 @@ bool Articulation::settle_alone(double h) {
       const Motor motor = motor_of(dof, h, x);
       const double p = (motor.push - motor.gain * speed) / (1.0 + motor.gain * responses_[i]);
       impulse = std::clamp(p, -motor.most, motor.most);
-      v_after = speed + responses_[i] * impulse;
+      v_after = standing_or(speed + responses_[i] * impulse);
     }
     dof.drive_impulse = impulse;
     v[i] = v_after;
@@ -408,7 +416,7 @@ Articulation::Change Articulation::end_solve() {
   const bool moved = pushed(shift_);
   if (!moved && !pushed(velocity_)) return Change::none;
   factor_.to_velocities(velocity_);
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] += velocity_[i];
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = standing_or(v[i] + velocity_[i]);
   if (!moved) {
     update_twists();
     return Change::of_velocities;
