@@ -1,11 +1,16 @@
 #include "os/socket_address.h"
 
 #include <arpa/inet.h>
+#include <linux/sockios.h>
 #include <net/if.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <charconv>
 #include <cstring>
+
+#include "os/clock.h"
 
 namespace os {
 namespace {
@@ -109,6 +114,17 @@ std::string to_text(const SocketAddress& address) {
   const std::string host = address.host();
   const bool colons = host.find(':') != std::string::npos;
   return (colons ? "[" + host + "]" : host) + ":" + std::to_string(address.port());
+}
+
+bool unacknowledged(int tcp) {
+  int bytes = 0;
+  return ::ioctl(tcp, SIOCOUTQ, &bytes) == 0 && bytes > 0;
+}
+
+void finish_sending(int tcp, int patience_ms) {
+  const std::int64_t until_us = monotonic_us() + std::int64_t{1000} * patience_ms;
+  ::shutdown(tcp, SHUT_WR);  // the end is acknowledged at once
+  while (unacknowledged(tcp) && monotonic_us() < until_us) ::poll(nullptr, 0, 1);
 }
 
 SocketAddress local_address(int socket) {

@@ -141,8 +141,11 @@ wire::SealKey Server::Impl::random_key(const std::function<std::uint64_t()>& ran
 
 void Server::Impl::take_wish(const ControlEvent& event) {
   if (options.replay) return;
-  if (event.wish.kind == foosball::Command::Kind::pause && event.wish.value != 0) {
-    paused_by_watcher = event.client != 0 && !plays(event.client);
+  if (event.wish.kind == foosball::Command::Kind::pause) {
+    const bool pause = event.wish.value != 0;
+    if (pause) paused_by_watcher = event.client != 0 && !plays(event.client);
+    pause_outlasts_wait = waiting && pause;
+    if (waiting) return;  // it stands still already, until somebody is heard
   }
   next.commands.push_back(to_record(event.wish));
 }

@@ -95,6 +95,7 @@ struct Server::Impl {
   bool playing = false;                         // people have played since the logo was last seen
   bool stand_ins_told = false, offer_told = false;  // notices that stand
   bool waiting = false;                             // paused, for nobody is heard
+  bool pause_outlasts_wait = false;                 // somebody asked for one meanwhile
   bool paused_by_watcher = false;                   // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;

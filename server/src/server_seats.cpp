@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "server/match_record.h"
 #include "server_impl.h"
@@ -48,6 +49,7 @@ void Server::Impl::change_rods(ControlEvent& event) {
     input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
   if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&
       pause_is_abandoned()) {
+    pause_outlasts_wait = false;
     next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
   }
 }
@@ -72,6 +74,7 @@ void Server::Impl::dismiss(std::uint32_t client, bool put_out) {
   input.remove(client);
   broadcaster.remove(client);
   if (!options.replay && (played || clients.empty()) && pause_is_abandoned()) {
+    pause_outlasts_wait = false;
     next.commands.push_back(to_record({foosball::Command::Kind::pause, 0, 0}));
   }
 }
@@ -123,7 +126,7 @@ void Server::Impl::wait_for_players(bool in_match) {
   waiting = waits;
   notify(Topic::waiting, waits ? say<Said::waits_for_players>() : wire::Sentence(),
          "the match goes on, or is over");
-  if (play)
+  if (play && !std::exchange(pause_outlasts_wait, false))
     next.commands.push_back(
         to_record({foosball::Command::Kind::pause, 0, static_cast<std::uint8_t>(waits)}));
 }

@@ -76,6 +76,7 @@ void ProbeClient::leave() {
 
 void ProbeClient::say_goodbye() {
   say(wire::Bye{"done"});
+  if (connected()) os::finish_sending(tcp_, kPatienceMs);
   leave();
 }
 

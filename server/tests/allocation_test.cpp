@@ -144,7 +144,7 @@ TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
   };
   EXPECT_EQ(play(2).sum, 0) << "the computer fills her team";
   ann.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   const Taken stood_in = play(5);
   EXPECT_NE(table.log().find("the computer plays rods"), std::string::npos);
   EXPECT_LE(stood_in.ticks, 1) << "that tells all who plays";

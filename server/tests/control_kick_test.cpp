@@ -55,7 +55,7 @@ class Kicks : public testing::Test {
   void push(Guest& who, int rod) {
     const std::uint64_t wishes = table->counters().control.wishes;
     who.probe.say(wire::Wish{number(wire::WishKind::push), team_of(rod), 0});
-    ASSERT_TRUE(table.tick_until([&] { return table->counters().control.wishes > wishes; }));
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > wishes; }));
     table.tick(5);
   }
   foosball::Screen screen() { return table->match().view().screen; }
@@ -130,7 +130,7 @@ TEST_F(Kicks, AVoteAgainstWhoHasJustLeftOrNeverWasDoesNothing) {
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome);
   vote(a, c.client());
   c.probe.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   vote(b, c.client());
   vote(b, 999'999);
   EXPECT_EQ(kicked(), 0u);
@@ -143,13 +143,13 @@ TEST_F(Kicks, AVoteOutlastsAReconnectionWithTheTicketAndANewSeat) {
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
   vote(a, bad.client());
   bad.probe.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   Guest again{ProbeClient(table.port(), "127.0.0.5"), std::nullopt};
   ASSERT_TRUE(again.probe.prove("open sesame"));
   again.welcome = again.probe.resume(*bad.welcome);
   ASSERT_TRUE(again.welcome);
   again.probe.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   Guest anew = guest("127.0.0.5", 2);
   ASSERT_TRUE(anew.welcome);
   ASSERT_NE(anew.client(), bad.client());
@@ -163,7 +163,7 @@ TEST_F(Kicks, AVoteIsNotEscapedByComingBackToWatchAndTakingRodsThen) {
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
   vote(a, bad.client());
   bad.probe.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   Guest anew = guest("127.0.0.5", -1);
   ASSERT_TRUE(anew.welcome);
   claim(anew, RodSet(1u << 2), team_of(2));
@@ -219,7 +219,7 @@ TEST_F(Kicks, ANewcomerFromTheAddressIsNotToldToBeTheOneWhoLeft) {
   ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
   vote(a, bad.client());
   bad.probe.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   ASSERT_TRUE(guest("127.0.0.5", 2).welcome);
   std::string said;
   while (said.find("127.0.0.5 comes from the address of 127.0.0.5, who has left") ==
@@ -257,7 +257,7 @@ TEST_F(Kicks, WhoIsAwayIsPutOutTooAndTheSeatIsFree) {
   Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
   ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
   bad.probe.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   vote(a, bad.client());
   vote(b, bad.client());
   EXPECT_EQ(kicked(), 1u);

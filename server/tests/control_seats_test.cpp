@@ -90,7 +90,7 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
     return other.hear_a<wire::Pong>() && other.tuning();
   }));
   player->leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   again.resume(*before);
   ASSERT_TRUE(table.tick_until([&] { return table->counters().control.slow_dropped == 1; }));
   const std::string log = table.log();
@@ -115,7 +115,7 @@ TEST(Seat, IsFreeAtOnceAfterAGoodByeAndInTimeWithoutOne) {
   table.tick();
   ASSERT_EQ(table->clients(), 1);
   next.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
   EXPECT_TRUE(last.join(0));
 }

@@ -59,7 +59,7 @@ TEST(Control, GivesATeamToOneClientUntilItLeaves) {
   EXPECT_EQ(refusal->code, Code::team_taken);
 
   first.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   ProbeClient third(table.port());
   const auto welcome = third.join(0);
   ASSERT_TRUE(welcome);
@@ -242,7 +242,7 @@ TEST(Control, TakesNoMoreWishesOfAClientThanAHandCanMake) {
   EXPECT_GE(taken, 16u);
   EXPECT_LE(taken, 16u + earned);
   other.say(restart);  // another client's is not among them
-  EXPECT_TRUE(table.tick_until([&] { return table->counters().control.wishes > taken; }));
+  EXPECT_TRUE(table.wait_until([&] { return table->counters().control.wishes > taken; }));
 }
 
 // A match in play, as a local watcher starts it.
@@ -276,8 +276,11 @@ TEST(Control, AHostsPauseOutlastsThePlayers) {
   ASSERT_TRUE(host.join() && player.join(0));
   start_play(table, host);
   const auto paused = [&] { return table->match().view().paused; };
+  const std::uint64_t wishes = table->counters().control.wishes;
   host.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
-  ASSERT_TRUE(table.tick_until(paused));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > wishes; }));
+  table.tick(2);
+  ASSERT_TRUE(paused());
   player.say_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   table.tick(3);

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "probe_client.h"
 #include "server/server.h"
@@ -86,6 +87,16 @@ class Lockstep {
     while (!condition()) {
       if (std::chrono::steady_clock::now() > until) return false;
       tick();
+    }
+    return true;
+  }
+  // The same for what the other thread does by itself: no time passes meanwhile, however busy the
+  // machine is.
+  static bool wait_until(const std::function<bool()>& condition, int max_ms = 30000) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(max_ms);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      std::this_thread::yield();
     }
     return true;
   }

@@ -59,7 +59,7 @@ TEST(Absence, AMatchAgainstTheComputerReturnsToTheLogo) {
   for (const auto& wish : {wire::Wish{0, 0, 0}, wire::Wish{0, 0, 0}}) {
     const auto before = table->counters().control.wishes;
     player.say(wish);
-    ASSERT_TRUE(table.tick_until([&] { return table->counters().control.wishes > before; }));
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
     table.tick(10);
   }
   ASSERT_EQ(table->match().view().screen, foosball::Screen::selection);

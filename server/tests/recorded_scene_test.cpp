@@ -22,6 +22,7 @@ std::vector<Moment> record(const std::string& path, int seconds) {
     o.computer = {true, true};
     o.match.seed = 42;
     o.record = path;
+    o.overwrite = true;
   });
   std::size_t events = 0;
   for (int tick = 1; tick <= 1000 * seconds; ++tick) {

@@ -31,6 +31,12 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(table.tick_until(
         [&] { return table->match().view().screen == foosball::Screen::selection; }, 5000));
   }
+  void wish(ProbeClient& client, const wire::Wish& asked) {
+    const std::uint64_t before = table->counters().control.wishes;
+    client.say(asked);
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
+    table.tick(2);
+  }
   // Somebody whose hand is at the rods: heard every 100 ms of fake time.
   struct Hand {
     ProbeClient* client;
@@ -94,7 +100,7 @@ TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   begin_match(bob);
   lets_go(ann);
   ann.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   pass(RodDesk::kStandInAfterUs / 2);
   EXPECT_NE(source(bob, goalie), kComputer) << "a short gap is none";
   pass(RodDesk::kStandInAfterUs);
@@ -106,7 +112,7 @@ TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   const auto back = again.resume(*seat);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->rods, all0);
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.resumed == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.resumed == 1; }));
   pass(RodDesk::kStandInAfterUs / 2);
   EXPECT_EQ(source(bob, goalie), kComputer) << "the connection alone moves no rod";
   plays(again, *back);
@@ -218,7 +224,7 @@ TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
   ASSERT_TRUE(sit(ann, "Ann", 0) && watcher.join());
   begin_match(ann, 0);
   ann.say_goodbye();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   pass(RodDesk::kOfferUs);
   EXPECT_EQ(source(watcher, goalie), kNone);
 }
@@ -309,14 +315,42 @@ TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
   ann.say(wire::Wish{number(wire::WishKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
-  ann.say(wire::Wish{number(wire::WishKind::pause), 0, 1});
-  ASSERT_TRUE(table.tick_until([&] { return table->match().view().paused; }));
-  const Hand hand = hands.front();
+  hear_hands();
+  // Before the silence, and in the middle of it.
+  for (const bool silent_first : {false, true}) {
+    const Hand hand = hands.front();
+    const auto fall_silent = [&] {
+      lets_go(ann);
+      pass(RodDesk::kStandInAfterUs + 100'000);
+    };
+    if (silent_first) fall_silent();
+    EXPECT_EQ(table->match().view().paused, silent_first);
+    wish(ann, {number(wire::WishKind::pause), 0, 1});
+    if (!silent_first) fall_silent();
+    hands.push_back(hand);
+    pass(100'000);
+    EXPECT_TRUE(table->match().view().paused) << silent_first;
+    wish(ann, {number(wire::WishKind::pause), 0, 0});
+    pass(100'000);
+    EXPECT_FALSE(table->match().view().paused) << silent_first;
+  }
+}
+
+TEST_F(Alone, NobodyIsHeardSoNobodyGoesOn) {
+  ProbeClient ann(table.port());
+  const auto seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(seat);
+  plays(ann, *seat);
+  begin_match(ann, 0);
+  wish(ann, {number(wire::WishKind::push), 0, 0});
+  ASSERT_TRUE(
+      table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
+  hear_hands();
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 100'000);
-  hands.push_back(hand);
+  wish(ann, {number(wire::WishKind::pause), 0, 0});
   pass(100'000);
-  EXPECT_TRUE(table->match().view().paused);
+  EXPECT_TRUE(table->match().view().paused) << "the datagrams do not arrive";
 }
 
 class StandInResults : public StandIn {
@@ -330,7 +364,7 @@ class StandInResults : public StandIn {
     o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
   }
   explicit StandInResults(const std::function<void(ServerOptions&)>& change = rated)
-      : StandIn(change) {}
+      : StandIn((std::filesystem::remove(path()), change)) {}
 
   // Three people, one second of whose match is over.
   void begin_three() {
@@ -435,7 +469,7 @@ TEST_F(StandIn, IsNoneBeforeAMatch) {
   ProbeClient ann(table.port()), bob(table.port());
   ASSERT_TRUE(sit(ann, "Ann", 0) && sit(bob, "Bob", 1));
   ann.leave();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.lost == 1; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   pass(RodDesk::kStandInAfterUs + 100'000);
   EXPECT_NE(source(bob, goalie), kComputer);
 }

@@ -1,8 +1,6 @@
 #include "core/control_link.h"
 
-#include <linux/sockios.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -23,14 +21,7 @@ constexpr std::int64_t kListenEveryUs = 50'000;  // how soon a silence is notice
 constexpr std::size_t kMostNotices = 64;         // a stranger's topics must not fill the memory
 constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leave unread
 // How long the end waits for a good-bye to arrive: one that is lost is sent again after 200 ms.
-constexpr std::int64_t kGoodbyeUs = 500'000;
-
-// A connection that is closed with something unread is reset, and what has not arrived by then
-// never does.
-bool unacknowledged(int tcp) {
-  int bytes = 0;
-  return ::ioctl(tcp, SIOCOUTQ, &bytes) == 0 && bytes > 0;
-}
+constexpr int kGoodbyeMs = 500;
 
 }  // namespace
 
@@ -379,7 +370,7 @@ void ControlLink::flush(std::int64_t now_us) {
 void ControlLink::say_bye() {
   if (stage_ != Stage::joined && stage_ != Stage::greeting) return;
   queue(wire::Bye{"the window was closed"});
-  const std::int64_t until = os::monotonic_us() + kGoodbyeUs;
+  const std::int64_t until = os::monotonic_us() + std::int64_t{1000} * kGoodbyeMs;
   while (!out_.empty() && os::monotonic_us() < until) {
     const auto sent = ::send(tcp_.get(), out_.data(), out_.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno != EAGAIN && errno != EINTR) return;
@@ -387,8 +378,7 @@ void ControlLink::say_bye() {
     pollfd polled{tcp_.get(), POLLOUT, 0};
     if (!out_.empty()) ::poll(&polled, 1, 10);
   }
-  ::shutdown(tcp_.get(), SHUT_WR);
-  while (unacknowledged(tcp_.get()) && os::monotonic_us() < until) ::poll(nullptr, 0, 1);
+  os::finish_sending(tcp_.get(), static_cast<int>((until - os::monotonic_us()) / 1000));
 }
 
 }  // namespace client

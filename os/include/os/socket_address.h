@@ -60,6 +60,12 @@ SocketAddress loopback(std::uint16_t port);         // 127.0.0.1
 std::string to_text(const SocketAddress& address);  // "127.0.0.1:4242", "[::1]:4242"
 SocketAddress local_address(int socket);            // what it is bound to; none: nothing
 
+// Whether the peer's kernel has not acknowledged all that was sent. A connection that is closed
+// with something unread is reset, and what has not arrived by then never does.
+bool unacknowledged(int tcp);
+// Nothing more is sent: waits, before the end, until all that was has arrived, or so long.
+void finish_sending(int tcp, int patience_ms);
+
 struct HostPort {
   std::string host;  // empty: not given
   std::optional<std::uint16_t> port;
