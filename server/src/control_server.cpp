@@ -197,9 +197,12 @@ void ControlServer::make_room_at_the_door() {
     drop_oldest([](const auto& c) { return c->state == State::closing; });
   }
   if (greeting < options_.limits.greeting) return;
-  const auto most = std::ranges::max_element(crowd, {}, [](const auto& n) { return n.second; });
+  // Of networks with equally many the oldest of all goes: else it would be the same network's turn
+  // each time, and nobody from there would get in.
+  int most = 0;
+  for (const auto& [network, count] : crowd) most = std::max(most, count);
   drop_oldest([&](const auto& c) {
-    return c->state == State::greeting && c->peer().network() == most->first;
+    return c->state == State::greeting && crowd.at(c->peer().network()) == most;
   });
   count(Count::crowded_out);
 }
@@ -413,7 +416,9 @@ void ControlServer::say_goodbye() {
     }
   }
   const std::int64_t until = os::monotonic_us() + kGoodbyeUs;
-  const auto unsent = [](const auto& c) { return c->flush() && c->wants_to_send(); };
+  const auto unsent = [](const auto& c) {
+    return c->flush() && (c->wants_to_send() || os::unacknowledged(c->fd()));
+  };
   while (std::any_of(connections_.begin(), connections_.end(), unsent) &&
          os::monotonic_us() < until) {
     ::poll(nullptr, 0, 1);

@@ -27,11 +27,24 @@ constexpr std::size_t kMostSeats = wire::kMaxSeats;
 // Of a wish that was voted for.
 constexpr std::uint32_t kEverybody = 0;
 
-// A stranger's name, fit for a log.
+// A stranger's name, fit for a log and for others' screens: no control characters, and none that
+// cannot be seen or that turns the direction of what follows (U+200B to F, U+2028 to E, U+2060 to
+// F, U+FEFF), so that no name looks like another.
 std::string printable(const std::string& name) {
   std::string text = name.empty() ? "unnamed" : name;
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  const auto byte = [&](std::size_t at) {
+    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned a = byte(i), b = byte(i + 1), c = byte(i + 2);
+    const bool c1 = a == 0xc2 && b >= 0x80 && b < 0xa0;
+    const bool unseen =
+        (a == 0xe2 && b == 0x80 && ((c >= 0x8b && c <= 0x8f) || c >= 0xa8) && c <= 0xae) ||
+        (a == 0xe2 && b == 0x81 && c >= 0xa0 && c <= 0xaf) || (a == 0xef && b == 0xbb && c == 0xbf);
+    if (c1 || unseen) text.replace(i, c1 ? 2 : 3, "?");
   }
   return text;
 }

@@ -30,6 +30,55 @@ TEST(Door, ACrowdOfSlowConnectionsKeepsNobodyOut) {
   EXPECT_GE(table->counters().control.crowded_out, 400u);
 }
 
+// With one connection each the oldest goes, not always that of the same address.
+TEST(Door, ACrowdOfAddressesKeepsNoAddressOut) {
+  Lockstep table([](ServerOptions& o) { o.limits.greeting = 3; });
+  std::vector<ProbeClient> crowd;
+  for (const char* from : {"127.0.0.5", "127.0.0.6"}) crowd.emplace_back(table.port(), from);
+  ProbeClient first(table.port(), "127.0.0.2"), last(table.port(), "127.0.0.9");
+  crowd.emplace_back(table.port(), "127.0.0.7");  // two have gone for it and the last
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.crowded_out == 2; }));
+  EXPECT_TRUE(crowd[0].sees_close() && crowd[1].sees_close());
+  EXPECT_TRUE(first.join());
+  EXPECT_TRUE(last.join());
+}
+
+// Names reach the log, and others' screens: no control characters, nothing that is not seen.
+TEST(Door, NamesShowAllThatTheyHave) {
+  Lockstep table;
+  const std::pair<const char*, const char*> names[] = {
+      {"\x1b[2J\n", "?[2J?"},
+      {"\xc2\x9b"
+       "31m",
+       "?31m"},
+      {"\xe2\x80\x8b"
+       "Ann",
+       "?Ann"},
+      {"\xe2\x80\xae"
+       "nnA",
+       "?nnA"},
+      {"\xe2\x80\xa8", "?"},
+      {"\xe2\x81\xa6"
+       "a\xef\xbb\xbf",
+       "?a?"},
+      {"\xe2\x80", "??"},
+      {"J\xc3\xbcrgen \xea\xb9\x80\xe2\x80\x93", "J\xc3\xbcrgen \xea\xb9\x80\xe2\x80\x93"},
+  };
+  for (const auto& [given, shown] : names) {
+    ProbeClient client(table.port());
+    wire::Hello hello = client.hello();
+    hello.name = given;
+    ASSERT_TRUE(client.join(hello)) << shown;
+    client.say(wire::Ping{1});
+    ASSERT_TRUE(client.hear_a<wire::Pong>());
+    client.say(wire::Ping{2});  // behind the roster
+    ASSERT_TRUE(client.hear_a<wire::Pong>());
+    ASSERT_FALSE(client.roster().seats.empty());
+    EXPECT_EQ(client.roster().seats.back().name, shown);
+    client.say_goodbye();
+  }
+}
+
 TEST(Door, AHelloThatTricklesInIsCutOffAtItsDeadline) {
   Lockstep table([](ServerOptions& o) { o.limits.hello_us = 200'000; });
   ProbeClient slow(table.port());
@@ -48,7 +97,7 @@ TEST(Door, AHelloThatTricklesInIsCutOffAtItsDeadline) {
 TEST(Door, TheLogIsSparedACrowdsLines) {
   Lockstep table;
   for (int i = 0; i < 200; ++i) ProbeClient(table.port()).join();
-  ASSERT_TRUE(table.tick_until([&] { return table->counters().control.left == 200; }));
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 200; }));
   const std::string log = table.log();
   EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100);
 }
