@@ -55,7 +55,7 @@ Judgment judgment_of(int level, PlayStyle style) {
       break;
     case PlayStyle::passer:
       j.clear_power = 0.5;
-      j.pass_value = 0.45;
+      j.pass_value = 0.60;
       j.shot_bar = 0.35;
       break;
     case PlayStyle::gambler:

@@ -132,18 +132,27 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
       now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
   const bool soon = comes && ahead(now) < -judgment_.soon * now.velocity.x + 0.03;
   const double to = slide_for(guard_y);
-  if (soon) {
+  if (beside(now) && angle() > -kSoleAbove) {
+    goal_ = slide_.position();
+  } else if (soon) {
     if (std::fabs(to - goal_) > kClose) goal_ = to;
   } else if (std::fabs(now.velocity.y) < judgment_.calm) {
     follow(to);
   }
   constexpr double kBehind = -0.045;  // [m]
-  const double goal = level() + (ahead(now) < kBehind ? kLifted : 0.0);
+  const double goal = level() + (ahead(now) < kBehind || beside(now) ? kLifted : 0.0);
   if (goal < swing_.position()) {
     swing_back(goal, now, t.swing);
   } else {
     swing_.move(goal, t.swing);
   }
+}
+
+// A ball behind the feet, which would push it home if they came to it from the side: they go up
+// first.
+bool ComputerRod::beside(const Sighting& now) const {
+  constexpr double kFrom = -0.075, kTo = -0.012, kLow = 0.06;  // [m]
+  return ahead(now) > kFrom && ahead(now) < kTo && now.ball.z < kLow;
 }
 
 double ComputerRod::slide_for(double y, int* man_out) const {
@@ -218,9 +227,18 @@ void ComputerRod::step_aside(const Sighting& now) {
   }
   const double aside = lanes_.half_foot[team_] + table_->ball_radius + 0.018;  // [m]
   const double off = man_y(man) - now.ball.y;
-  const double side = aside * side_of(off == 0.0 ? -now.ball.y : off);
+  // A ball that rolls along behind the feet is let past: before it, they would never be clear.
+  constexpr double kRolls = 0.15, kMargin = 0.004;  // [m/s], [m]
+  const bool passes_behind = ahead(now) < -(foot_.half_depth + table_->ball_radius + kMargin);
+  const bool lets_past = passes_behind && std::fabs(now.velocity.y) > kRolls;
+  const double to = lets_past ? -now.velocity.y : off == 0.0 ? -now.ball.y : off;
+  const double side = aside * side_of(to);
   double goal = slide_.position() - off + side;
-  if (std::fabs(goal) > spec().slide_limit) goal -= 2.0 * side;
+  if (std::fabs(goal) > spec().slide_limit) {
+    // To the other side, but not through the ball, unless nothing else will come of it.
+    constexpr double kWaits = 0.5;  // [s]
+    goal = passes_behind || since_ > kWaits ? goal - 2.0 * side : slide_.position();
+  }
   goal_ = goal;
 }
 

@@ -232,5 +232,36 @@ TEST_F(RollingBall, ThatCreepsToTheGoalIsStoppedByTheGoalie) {
   EXPECT_LE(goals, 1) << "of " << kBalls;
 }
 
+// Men who came to it from the side with their feet down would push it home: the feet go up first.
+TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
+  int balls = 0, pushed = 0, goals = 0;
+  for (const double behind : {0.020, 0.030, 0.040, 0.050}) {
+    for (const double vy : {-0.7, -0.4, 0.4, 0.7}) {
+      for (const double y : {-0.12, -0.04, 0.04, 0.12}) {
+        ComputerPlayer home({.team = 0,
+                             .seed = static_cast<std::uint64_t>(++balls),
+                             .opens_match = false,
+                             .player = *parse_player("5")});
+        match = std::make_unique<Match>(*Match::create(desc));
+        start_by_commands();
+        shoot({table().rods[0].x - behind, y, 0.0174}, {0.02, vy, 0.0}, 1);
+        for (int tick = 0; tick < 900; ++tick) {
+          const double before = view().ball_velocity.x;
+          home.play(view(), input.rods);
+          step();
+          // From 0.13 s on it has seen the ball, and a hand is on the rod.
+          if (tick < 130) continue;
+          for (const Event& event : match->events()) {
+            pushed += event.kind == EventKind::man_hit && view().ball_velocity.x < before - 0.1;
+          }
+        }
+        goals += view().score[1];
+      }
+    }
+  }
+  std::printf("%d balls, pushed home %d times, %d goals\n", balls, pushed, goals);
+  EXPECT_LT(pushed, balls / 5);
+}
+
 }  // namespace
 }  // namespace foosball

@@ -102,7 +102,8 @@ class MatchTest : public testing::Test {
     change(state, *world);
     bytes.clear();
     save_match(desc, state, *world, bytes);
-    ASSERT_TRUE(match->restore(bytes));
+    const auto restored = match->restore(bytes);
+    ASSERT_TRUE(restored) << restored.error().message;
   }
   // A ball on its way, that two men have touched.
   void shoot(const vp::Vec3& from, const vp::Vec3& velocity, int toucher = 0) {
