@@ -181,7 +181,7 @@ double percentile(std::vector<double>& values, double share) {
 class MateForecast : public testing::TestWithParam<Layout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, MateForecast, testing::Values(Layout::paper, Layout::tournament));
 
-TEST_P(MateForecast, IsAsCloseAtATeamMatesFeetAsAtAnOpponents) {
+TEST_P(MateForecast, KnowsThatATeamMatesMenMove) {
   constexpr int kDelay = 80;  // ticks
   enum Whose { own_feet, mates, opponents };
   std::array<std::vector<double>, 3> off;  // [mm]
@@ -228,9 +228,9 @@ TEST_P(MateForecast, IsAsCloseAtATeamMatesFeetAsAtAnOpponents) {
       "an opponent's %.2f, %.1f\n",
       half[own_feet], most[own_feet], half[mates], most[mates], half[opponents], most[opponents]);
   EXPECT_LE(half[mates], half[opponents] + 0.5);
-  // 1.4 and 1.2 times an opponent's; a forecast in which a mate's men stand still is off by more
-  // than twice as much.
-  EXPECT_LE(most[mates], 1.6 * most[opponents]);
+  // 57 and 58 mm; a forecast in which a mate's men stand still is off by 108 and 120. An opponent's
+  // 90th percentile (12 to 72) tells how often he strikes, more than how well he is foreseen.
+  EXPECT_LE(most[mates], 80.0);
 }
 
 TEST(ComputerSight, LooksAnewAfterAnInterruption) {
