@@ -17,8 +17,6 @@
 
 namespace {
 
-using foosball::kTick;
-
 struct Options {
   std::string player = "5";
   int seconds = 60;

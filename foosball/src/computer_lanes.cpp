@@ -54,7 +54,8 @@ double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& v
   const double y = y_after(table, now.ball.y, slope, run);
   const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
   const double scores = within(inside, 0.004 + view.slope_error * run);
-  return men.cost + men.free * (scores + (1.0 - scores) * view.far_worth);
+  const double goal = now.goal_counts ? 1.0 : 0.0;
+  return men.cost + men.free * (scores * goal + (1.0 - scores) * view.far_worth);
 }
 
 }  // namespace foosball

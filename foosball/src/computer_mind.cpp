@@ -72,6 +72,7 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
   }
   guess_ball(now, tuning, forecast);
   if (now.ball_in_play && !was_in_play_) side_ = random_.unit() < 0.5 ? -1.0 : 1.0;
+  now.goal_counts = !is_fresh_serve(now);
   was_in_play_ = now.ball_in_play;
   hands_.pass_time();
   std::array<bool, 4> busy{};
@@ -87,6 +88,16 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
     }
   }
   note_strokes(now);
+}
+
+// Whether the ball is still at the midfield that served it: no second man has touched it.
+bool ComputerMind::is_fresh_serve(const Sighting& now) {
+  constexpr double kAtFeet = 0.06, kLeft = 0.10;  // of the axis [m]
+  const double ahead = std::fabs(now.ball.x - rods_[kMidfield].x());
+  if (!now.ball_in_play) return fresh_serve_ = false;
+  if (!was_in_play_) fresh_serve_ = ahead < kAtFeet && vp::norm(now.velocity) < 0.1;
+  if (ahead > kLeft) fresh_serve_ = false;
+  return fresh_serve_;
 }
 
 // The ball as it is expected to be now. What a stroke does to it is known before it is seen.

@@ -42,6 +42,7 @@ class ComputerMind {
  private:
   using Lines = std::array<int, 2>;  // the more urgent first
 
+  bool is_fresh_serve(const Sighting& now);
   void note_strokes(const Sighting& now);
   void guess_ball(Sighting& now, const Tuning& tuning, const std::optional<BallGuess>& forecast);
   Lines wanted_lines(const Sighting& now) const;
@@ -63,6 +64,7 @@ class ComputerMind {
   std::vector<ComputerRod> rods_;
   PlayedPass passed_;
   double side_ = 1.0;  // of the mouth that the defence covers
+  bool fresh_serve_ = false;
   bool was_in_play_ = false;
   bool own_serve_ = false;
 };

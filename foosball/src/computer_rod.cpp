@@ -20,7 +20,7 @@ constexpr double kFrom = -0.030, kTo = 0.058;
 constexpr double kScoopFrom = -0.062;    // a ball at rest behind the foot is scooped forward:
 constexpr double kScoopTo = -0.030;      // struck from above it would only be pinned, or fly back
 constexpr double kScoopBeside = 0.0115;  // by the foot's edge, so far beyond the foot [m],
-constexpr double kScoopLeast = 4.0, kScoopMost = 12.0;  // and so gently [rad/s];
+constexpr double kScoopLeast = 2.0, kScoopMost = 4.0;  // and so gently [rad/s];
 constexpr double kHookFrom = -0.042;  // one not so far behind goes off at a known slope
 struct Hook {
   double beside, rate;  // [m], [rad/s]
@@ -127,6 +127,7 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
   }
   if (can_control(now)) return begin_control(now, t, random);
   if (receives_ > 0 && ahead(now) < 0.02) return receive(now, t);
+  if (pinches(now)) return step_aside(now);
   // The nearer in time a ball that comes, the closer it is followed.
   const bool comes =
       now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
@@ -146,6 +147,12 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
   } else {
     swing_.move(goal, t.swing);
   }
+}
+
+// A ball that rests above the field is held between a man and a wall.
+bool ComputerRod::pinches(const Sighting& now) const {
+  constexpr double kHigh = 0.045, kNear = 0.060;  // [m]
+  return now.ball.z > kHigh && std::fabs(ahead(now)) < kNear && vp::norm(now.velocity) < 0.05;
 }
 
 // A ball behind the feet, which would push it home if they came to it from the side: they go up
@@ -326,9 +333,11 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   swing_.move(drawn, t.swing);
   if (ahead(now) < kScoopTo) return prepare_scoop(now, square, t, random);
   consider_lanes(now, t);
+  // A ball at the wall is met with a part of the foot.
+  const double limit = spec().slide_limit;
+  const double turn = slope_ - natural_slope(foot_, *table_, m, now.velocity.y);
   const double aim =
-      square + noise_ +
-      foot_offset(foot_, *table_, m, slope_ - natural_slope(foot_, *table_, m, now.velocity.y));
+      std::clamp(square + noise_ + foot_offset(foot_, *table_, m, turn), -limit, limit);
   constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: as if to play it elsewhere
   if (feints_ && since_ < pause_ + kFeintFor) {
     goal_ = aim - side_of(slope_) * kFeintStep;
@@ -348,7 +357,7 @@ void ComputerRod::wait_for_ball(const Sighting& now, const Meeting& m, double ai
   const bool over = left < -kSurely || left > 2.0 * kLead * std::fabs(vy) + kSurely;
   if (planted_ && over) planted_ = false;
   if (!planted_) {
-    goal_ = aim + kLead * vy;
+    goal_ = std::clamp(aim + kLead * vy, -spec().slide_limit, spec().slide_limit);
     planted_ = std::fabs(goal_ - slide_.position()) < std::max(0.001, 0.5 * t.aim_error);
   }
   if (since_ < pause_) return;
@@ -409,7 +418,7 @@ void ComputerRod::choose_hook(const Sighting& now, const Temperament& t, Random&
 void ComputerRod::scoop(const Temperament& t) {
   const bool hooks = pass_.rod >= 0;
   swing_.move(level(), {scoop_rate_, hooks ? t.strike.acceleration : t.swing.acceleration});
-  if (angle() <= -0.02 && since_ <= 0.5) return;
+  if (angle() <= -0.02 && since_ <= 1.0) return;
   if (hooks) {
     const double speed = kHookPower * power_ * t.strike.rate;
     sent_ = {speed, slope_ * speed, 0.0};
@@ -442,7 +451,7 @@ void ComputerRod::receive(const Sighting& now, const Temperament& t) {
 PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed,
                                  double slope_error, const Temperament& t) const {
   const Line line = spec().line;
-  constexpr double kAtRest = 0.25;  // [m/s]; a rolling ball keeps too much of its way
+  constexpr double kAtRest = 0.45;  // [m/s]; a faster ball keeps too much of its way
   if (line == Line::goalie || line == Line::attack || vp::norm(now.velocity) > kAtRest) return {};
   PassView view;
   view.lanes = lanes_;
@@ -452,7 +461,8 @@ PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed
   view.speed = speed;
   view.hand = t.slide.rate;
   view.sure = judgment_.pass_sure;
-  view.value = judgment_.pass_value;
+  constexpr double kFromServe = 0.4;  // where no shot may score yet
+  view.value = now.goal_counts ? judgment_.pass_value : std::max(kFromServe, judgment_.pass_value);
   return pass_along(*table_, now, view, slope);
 }
 

@@ -84,6 +84,7 @@ class ComputerRod {
   void swing_back(double goal, const Sighting& now, const AxisLimits& limits);
   bool ball_in_sweep(double goal, const Sighting& now) const;
   double approach() const;
+  bool pinches(const Sighting& now) const;
   bool beside(const Sighting& now) const;
   double clear(const Sighting& now) const;
   void step_aside(const Sighting& now);

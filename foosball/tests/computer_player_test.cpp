@@ -205,6 +205,33 @@ TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
   EXPECT_GT(moved, 1000);
 }
 
+// A goal straight from a serve is a foul (ITSF 4.2.2), and a side that nobody plays is no reason to
+// try it: the ball goes to a second man first.
+TEST(ComputerPlayer, ScoresAgainstAnAbsentSideWithoutFoulsFromItsServes) {
+  for (const Layout layout : {Layout::paper, Layout::tournament}) {
+    for (const char* level : {"3", "5"}) {
+      Match match = *Match::create({.layout = layout, .seed = 601, .rules = {}});
+      ComputerPlayer home({.team = 0, .seed = 1202, .player = *parse_player(level)});
+      TickInput input;
+      const Command confirms{Command::Kind::push, 1};
+      int goals = 0, fouls = 0;
+      for (int tick = 0; tick < 120000; ++tick) {
+        home.play(match.view(), input.rods);
+        const bool asked = match.view().screen == Screen::selection && !match.view().confirmed[1];
+        match.step({input.rods, std::span(&confirms, asked ? 1 : 0)});
+        for (const Event& event : match.events()) {
+          goals += event.kind == EventKind::goal ? 1 : 0;
+          fouls += event.kind == EventKind::foul && event.team == 0 ? 1 : 0;
+        }
+      }
+      std::printf("level %s, %s: %d goals, %d fouls in 2 minutes\n", level,
+                  layout == Layout::paper ? "paper" : "tournament", goals, fouls);
+      EXPECT_LE(fouls, 1);
+      EXPECT_GE(goals, std::string(level) == "5" ? 2 : 0);
+    }
+  }
+}
+
 class RollingBall : public MatchTest {
  protected:
   RollingBall() : MatchTest(Layout::paper) {}
