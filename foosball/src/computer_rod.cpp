@@ -133,7 +133,7 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
       now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
   const bool soon = comes && ahead(now) < -judgment_.soon * now.velocity.x + 0.03;
   const double to = slide_for(guard_y);
-  if (beside(now) && angle() > -kSoleAbove) {
+  if (is_behind_feet(now) && angle() > -kSoleAbove) {
     goal_ = slide_.position();
   } else if (soon) {
     if (std::fabs(to - goal_) > kClose) goal_ = to;
@@ -141,7 +141,7 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
     follow(to);
   }
   constexpr double kBehind = -0.045;  // [m]
-  const double goal = level() + (ahead(now) < kBehind || beside(now) ? kLifted : 0.0);
+  const double goal = level() + (ahead(now) < kBehind || is_behind_feet(now) ? kLifted : 0.0);
   if (goal < swing_.position()) {
     swing_back(goal, now, t.swing);
   } else {
@@ -155,11 +155,10 @@ bool ComputerRod::pinches(const Sighting& now) const {
   return now.ball.z > kHigh && std::fabs(ahead(now)) < kNear && vp::norm(now.velocity) < 0.05;
 }
 
-// A ball behind the feet, which would push it home if they came to it from the side: they go up
-// first.
-bool ComputerRod::beside(const Sighting& now) const {
-  constexpr double kFrom = -0.075, kTo = -0.012, kLow = 0.06;  // [m]
-  return ahead(now) > kFrom && ahead(now) < kTo && now.ball.z < kLow;
+// Feet that came to such a ball from the side would push it home: they go up first.
+bool ComputerRod::is_behind_feet(const Sighting& now) const {
+  constexpr double kFarthest = -0.075, kNearest = -0.012, kLow = 0.06;  // [m]
+  return ahead(now) > kFarthest && ahead(now) < kNearest && now.ball.z < kLow;
 }
 
 double ComputerRod::slide_for(double y, int* man_out) const {
@@ -346,8 +345,8 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   }
 }
 
-// A foot that slides as it strikes is where nobody can tell: it comes to rest ahead of a ball that
-// rolls along the rod, and strikes when the ball is there.
+// Where a foot that still slides will meet the ball is uncertain: it comes to rest ahead of a ball
+// that rolls along the rod, and strikes when the ball is there.
 void ComputerRod::wait_for_ball(const Sighting& now, const Meeting& m, double aim,
                                 const Temperament& t) {
   constexpr double kLead = 0.020;                     // [s]

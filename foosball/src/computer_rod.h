@@ -85,7 +85,7 @@ class ComputerRod {
   bool ball_in_sweep(double goal, const Sighting& now) const;
   double approach() const;
   bool pinches(const Sighting& now) const;
-  bool beside(const Sighting& now) const;
+  bool is_behind_feet(const Sighting& now) const;
   double clear(const Sighting& now) const;
   void step_aside(const Sighting& now);
   void follow(double goal);
