@@ -73,7 +73,7 @@ void Match::Impl::step(const TickInput& input) {
   events.clear();
   for (const Command& command : input.commands) apply(command);
   if (!(world->tuning() == state.tuning)) rebuild_world();
-  watch_idle(input.rods, !input.commands.empty());
+  watch_hands(input.rods, !input.commands.empty());
   if (!state.paused) {
     drive_rods(input.rods);
     if (state.ball_parked) world->park_ball();
@@ -149,24 +149,38 @@ void Match::Impl::drive_rods(const RodTargets& targets) {
   }
 }
 
-// A person's absence shows in the targets: a ball may push a rod that nobody holds.
-void Match::Impl::watch_idle(const RodTargets& hands, bool commanded) {
+// Absence shows in the targets: a ball may push a rod that nobody holds. Of a person who has left
+// the table, and of a side that lets the ball lie.
+void Match::Impl::watch_hands(const RodTargets& hands, bool commanded) {
   RodTargets held = hands;
   for (RodTarget& rod : held) rod.live = usable(rod);
+  const std::uint8_t moved = state.hands.update(held);
   std::uint8_t people = 0;
+  std::array<bool, kTeams> plays{};
   for (int rod = 0; rod < kRods; ++rod) {
-    const bool person = !state.attract && !state.computer[table().rods[rod].team];
+    const int team = table().rods[rod].team;
+    const bool person = !state.attract && !state.computer[team];
     people |= static_cast<std::uint8_t>((person ? 1u : 0u) << rod);
+    plays[team] = plays[team] || (moved >> rod & 1u) != 0;
   }
-  state.idle.update(held, people);
-  if (commanded || (people == 0 && state.screen != Screen::logo)) state.idle.reset();
-  const std::uint64_t idle = state.idle.ticks();
-  if (state.screen == Screen::logo) {
-    if (rules().attract_seconds > 0.0 && idle >= to_ticks(rules().attract_seconds)) show_match();
-  } else if (rules().idle_seconds > 0.0 && idle >= to_ticks(rules().idle_seconds)) {
-    state.paused = false;
-    enter(Screen::logo);
+  for (int team = 0; team < kTeams; ++team) {
+    if (state.ball_in_play && !state.paused) count_tick(state.absent_ticks[team]);
+    if (plays[team]) state.absent_ticks[team] = 0;
   }
+  count_tick(state.idle_ticks);
+  const bool away = people == 0 && state.screen != Screen::logo;
+  if (commanded || away || (moved & people) != 0) state.idle_ticks = 0;
+  leave_idle_screen();
+}
+
+// Where nobody is: at the logo a match is shown, every other screen returns to the logo.
+void Match::Impl::leave_idle_screen() {
+  const bool logo = state.screen == Screen::logo;
+  const double limit = logo ? rules().attract_seconds : rules().idle_seconds;
+  if (limit == 0.0 || state.idle_ticks < to_ticks(limit)) return;
+  if (logo) return show_match();
+  state.paused = false;
+  enter(Screen::logo);
 }
 
 // --- what is seen --------------------------------------------------------------------------------

@@ -34,6 +34,8 @@ struct Match::Impl {
   void step(const TickInput& input);
   void apply(const Command& command);
   void drive_rods(const RodTargets& targets);
+  void watch_hands(const RodTargets& hands, bool commanded);
+  void leave_idle_screen();
   void refresh_view();
   void refresh_match_view();
   vp::Expected<void> restore(std::span<const std::byte> bytes);
@@ -66,7 +68,6 @@ struct Match::Impl {
   void begin_training(int team);
   void ask_time_out(int team);
   void feed(int team, int value);
-  void watch_idle(const RodTargets& hands, bool commanded);
   void show_match();
   void read_gestures();
   void push(int team);

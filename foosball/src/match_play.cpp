@@ -162,6 +162,10 @@ void Match::Impl::judge_possession() {
   const BallState ball = world->ball();
   BallWatch::Sight sight{.ball = ball.pose.position(), .velocity = ball.velocity};
   sight.rods_in_reach = rods_in_reach(table(), view.bodies, sight.ball);
+  for (int team = 0; team < kTeams; ++team) {
+    sight.absent[team] =
+        mode() != Mode::training && state.absent_ticks[team] >= to_ticks(rules().still_seconds);
+  }
   sight.touched = state.touching.any() || (state.touch.any && state.touch.tick == state.tick);
   const auto verdict = state.watch.update(table(), rules(), sight);
   if (verdict == BallWatch::Verdict::alive) return;

@@ -7,7 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x36'30'4d'42'46'53;  // "SFBM06"
+constexpr std::uint64_t kMagic = 0x37'30'4d'42'46'53;  // "SFBM07"
 
 template <class Archive, class R>
 void visit_rules(Archive& archive, R& rules) {
@@ -55,7 +55,8 @@ bool consistent(const MatchDesc& desc, const MatchState& s) {
   // Counts of what began with the match.
 
   bool ok = s.screen_ticks <= s.tick && s.play_ticks <= s.tick &&
-            s.tally.set_ticks <= s.play_ticks && s.idle.ticks() <= s.tick;
+            s.tally.set_ticks <= s.play_ticks && s.idle_ticks <= s.tick &&
+            s.absent_ticks[0] <= s.tick && s.absent_ticks[1] <= s.tick;
   ok = ok && touch_ok(s.touch) && touch_ok(s.touch_of[0]) && touch_ok(s.touch_of[1]);
   // The ball is in one place, and in play where there is play.
   ok = ok && !(s.ball_in_play && (s.ball_parked || !plays)) && (plays || !s.paused);

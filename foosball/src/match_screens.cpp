@@ -165,7 +165,7 @@ void Match::Impl::enter(Screen screen) {
     state.attract = false;
     state.rung = 0;
     state.feed_man = -1;
-    state.idle.reset();
+    state.idle_ticks = 0;
   }
   reset_gestures();
   emit(EventKind::screen, 0, static_cast<double>(screen));
@@ -189,6 +189,7 @@ void Match::Impl::start_match() {
   }
   const int server = dice(kTeams);
   state.tally = {};
+  state.absent_ticks = {};
   state.last_server = server;
   state.first = server;
   state.last_shot = state.last_goal = {};

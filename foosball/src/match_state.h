@@ -6,7 +6,7 @@
 
 #include "foosball/match.h"
 #include "gestures.h"
-#include "idle_watch.h"
+#include "hand_watch.h"
 #include "referee.h"
 #include "spin_watch.h"
 #include "ticks.h"
@@ -83,7 +83,12 @@ struct MatchState {
   std::uint64_t screen_ticks = 0;
   std::uint64_t play_ticks = 0;
   int last_scorer = 0;
-  IdleWatch idle;
+
+  // The hands.
+  HandWatch hands;
+  std::uint64_t idle_ticks = 0;                      // since a person last moved a rod
+  std::array<std::uint64_t, kTeams> absent_ticks{};  // with the ball in play, since a hand of the
+                                                     // team, a person's or not, last moved a rod
 
   // The ball.
   bool ball_in_play = false;
@@ -171,7 +176,9 @@ void MatchState::visit(Archive& archive, Self& self) {
   archive.count(self.screen_ticks, kMaxTicks);
   archive.count(self.play_ticks, kMaxTicks);
   archive.choice(self.last_scorer, kTeams);
-  IdleWatch::visit(archive, self.idle);
+  HandWatch::visit(archive, self.hands);
+  archive.count(self.idle_ticks, kMaxTicks);
+  for (auto& ticks : self.absent_ticks) archive.count(ticks, kMaxTicks);
   visit_ball(archive, self);
   visit_stops(archive, self);
   for (int rod = 0; rod < kRods; ++rod) {

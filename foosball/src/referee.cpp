@@ -1,5 +1,6 @@
 #include "referee.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace foosball {
@@ -121,7 +122,10 @@ BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
   }
   const bool midfield = table.rods[rod_].line == Line::midfield;
   const double limit = midfield ? rules.possession_midfield_seconds : rules.possession_seconds;
-  const bool still = rules.still_seconds > 0.0 && seconds(ticks_untouched_) >= rules.still_seconds;
+  const bool absent = sight.absent[table.rods[rod_].team];
+  const double wait =
+      absent ? std::min(kAbsentStillSeconds, rules.still_seconds) : rules.still_seconds;
+  const bool still = rules.still_seconds > 0.0 && seconds(ticks_untouched_) >= wait;
   return still || seconds(ticks_possessed_) >= limit ? Verdict::held : Verdict::alive;
 }
 

@@ -67,10 +67,16 @@ class BallWatch {
     dead,  // out of everybody's reach (8)
     held,  // one rod has had it for too long (24), or it lies still within its reach
   };
+  // Of a team none of whose rods has been moved for rules.still_seconds of play: a ball that lies
+  // still within its reach waits only so long for it. Any motion of a rod brings the full time
+  // back.
+  static constexpr double kAbsentStillSeconds = 0.5;
+
   struct Sight {
     vp::Vec3 ball, velocity;
     std::uint8_t rods_in_reach = 0;
-    bool touched = false;  // by a man
+    bool touched = false;               // by a man
+    std::array<bool, kTeams> absent{};  // no rod of the team has been moved for rules.still_seconds
   };
 
   void reset(const vp::Vec3& ball);

@@ -103,10 +103,6 @@ const TableSpec& table_spec(Layout layout) {
   return kTables.at(static_cast<int>(layout));
 }
 
-double man_offset(const RodSpec& rod, int man) {
-  return (man - 0.5 * (rod.men - 1)) * rod.spacing;
-}
-
 int man_nearest(const RodSpec& rod, double y) {
   if (rod.men == 1) return 0;
   const double man = y / rod.spacing + 0.5 * (rod.men - 1);

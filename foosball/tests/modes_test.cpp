@@ -46,6 +46,44 @@ TEST(AbsentSide, LosesAMatchWithinAFewMinutes) {
   EXPECT_LT(two_goals, 300.0);
 }
 
+// Nobody plays on; team 0 keeps a hand moving, at a rod far from the ball.
+TEST_F(ModesTest, AStillBallWaitsLongerForASideThatMovesAnyRodThanForOneThatIsAway) {
+  start_by_commands();
+  double& slide = input.rods[rods_of_team(table(), 0)[0]].slide;
+  std::array<std::vector<double>, kTeams> waits;
+  double served = 0.0;
+  for (int tick = 0; tick < 50000; ++tick) {
+    if (tick % 500 == 0) slide = 0.02 - slide;
+    step();
+    for (const Event& event : events) {
+      if (event.kind == EventKind::serve) served = tick;
+      if (event.kind == EventKind::foul) waits[event.team].push_back((tick - served) * kTick);
+    }
+    events.clear();
+  }
+  ASSERT_GE(waits[0].size(), 2u);
+  ASSERT_GE(waits[1].size(), 3u);
+  for (const double wait : waits[0]) EXPECT_NEAR(wait, 5.0, 0.002);
+  // At its first serve it has not been away for five seconds.
+  for (std::size_t i = 1; i < waits[1].size(); ++i) EXPECT_NEAR(waits[1][i], 0.5, 0.002);
+}
+
+TEST_F(ModesTest, ASideThatIsBackHasTheFullTime) {
+  start_by_commands();
+  run(40.0);
+  ASSERT_GE(count(EventKind::foul), 10) << "both sides are away";
+  events.clear();
+  while (last(EventKind::serve) == nullptr) step();
+  const int server = last(EventKind::serve)->team;
+  events.clear();
+  run(0.3);
+  input.rods[rods_of_team(table(), server)[0]].slide = 0.02;
+  run(4.6);
+  EXPECT_EQ(count(EventKind::foul), 0);
+  run(0.2);
+  EXPECT_EQ(count(EventKind::foul), 1);
+}
+
 // --- a goal --------------------------------------------------------------------------------------
 
 TEST_F(ModesTest, AGoalNamesItsManAndTheSpeedOfTheBall) {

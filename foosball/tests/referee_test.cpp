@@ -114,7 +114,8 @@ struct Called {
 
 // What the watch calls first of a ball that moves as told, and when.
 template <class Path>
-Called call(const Rules& rules, Path path, int limit, bool touched = false) {
+Called call(const Rules& rules, Path path, int limit, bool touched = false,
+            std::array<bool, kTeams> absent = {}) {
   BallWatch watch;
   watch.reset(path(0));
   for (int tick = 1; tick <= limit; ++tick) {
@@ -122,6 +123,7 @@ Called call(const Rules& rules, Path path, int limit, bool touched = false) {
                            .velocity = (1.0 / kTick) * (path(tick) - path(tick - 1))};
     sight.rods_in_reach = rods_in_reach(table, built_in(1, 1), sight.ball);
     sight.touched = touched;
+    sight.absent = absent;
     const auto verdict = watch.update(table, rules, sight);
     if (verdict != BallWatch::Verdict::alive) return {verdict, tick};
   }
@@ -184,6 +186,16 @@ TEST(ArcadeStillBall, IsTakenAfterFiveSecondsUntouchedWithinReach) {
   const Called called = call(arcade_rules(), resting(-0.375, 0.0), 20000);
   EXPECT_EQ(called.verdict, BallWatch::Verdict::held);
   EXPECT_NEAR(called.tick, 5000, 1);
+}
+
+TEST(ArcadeStillBall, OfAnAbsentSideIsTakenAfterHalfASecond) {
+  const auto at_defence_of_0 = resting(-0.375, 0.0);
+  const Called absent = call(arcade_rules(), at_defence_of_0, 20000, false, {true, false});
+  EXPECT_EQ(absent.verdict, BallWatch::Verdict::held);
+  EXPECT_NEAR(absent.tick, 500, 1);
+  EXPECT_NEAR(call(arcade_rules(), at_defence_of_0, 20000, false, {false, true}).tick, 5000, 1);
+  EXPECT_NEAR(call(itsf_rules(), at_defence_of_0, 20000, false, {true, false}).tick, 15000, 1)
+      << "the ITSF's rules do not judge a ball that lies still";
 }
 
 }  // namespace

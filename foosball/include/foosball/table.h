@@ -80,7 +80,9 @@ const TableSpec& table_spec(Layout layout);
 double field_reach(const TableSpec& table, const CharacterBody& body);
 
 // y of a man on its rod at slide 0 [m]; 0 <= man < rod.men.
-double man_offset(const RodSpec& rod, int man);
+inline double man_offset(const RodSpec& rod, int man) {
+  return (man - 0.5 * (rod.men - 1)) * rod.spacing;
+}
 
 // The man whose place at slide 0 is nearest to y [m].
 int man_nearest(const RodSpec& rod, double y);

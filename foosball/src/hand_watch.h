@@ -1,5 +1,5 @@
-// Whether a person is at the table: a hand that has moved a rod within so many ticks. Rods that a
-// computer drives do not count.
+// Which rods their hands move. What a sensor's noise or a table that is leant on reaches is no
+// motion.
 #pragma once
 
 #include <array>
@@ -8,33 +8,30 @@
 #include <limits>
 
 #include "foosball/match.h"
-#include "ticks.h"
 
 namespace foosball {
 
-class IdleWatch {
+class HandWatch {
  public:
-  void reset() { ticks_ = 0; }
-  // One tick of the hands' targets. counts: bit i for a rod that a person may hold.
-  void update(const RodTargets& hands, std::uint8_t counts) {
-    count_tick(ticks_);
+  // One tick of the hands' targets, of which those that are not live count for nothing. Bit i: rod
+  // i has been moved since it was last said to be.
+  std::uint8_t update(const RodTargets& hands) {
+    unsigned moved = 0;
     for (int rod = 0; rod < kRods; ++rod) {
       const RodTarget& hand = hands[rod];
-      if (!hand.live || (counts >> rod & 1u) == 0) continue;
-      if (std::fabs(hand.slide - slide_[rod]) < kSlide &&
-          std::fabs(hand.angle - angle_[rod]) < kAngle) {
+      if (!hand.live || (std::fabs(hand.slide - slide_[rod]) < kSlide &&
+                         std::fabs(hand.angle - angle_[rod]) < kAngle)) {
         continue;
       }
       slide_[rod] = hand.slide;
       angle_[rod] = hand.angle;
-      ticks_ = 0;
+      moved |= 1u << rod;
     }
+    return static_cast<std::uint8_t>(moved);
   }
-  std::uint64_t ticks() const { return ticks_; }  // since a hand last moved a rod
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
-    archive.count(self.ticks_, kMaxTicks);
     for (int rod = 0; rod < kRods; ++rod) {
       archive.real(self.slide_[rod], -kAny, kAny);
       archive.real(self.angle_[rod], -kAny, kAny);
@@ -42,12 +39,10 @@ class IdleWatch {
   }
 
  private:
-  // What a sensor's noise or a table that is leant on does not reach.
   static constexpr double kSlide = 0.003;  // [m]
   static constexpr double kAngle = 0.05;   // [rad]
   static constexpr double kAny = std::numeric_limits<double>::max();
 
-  std::uint64_t ticks_ = 0;
   std::array<double, kRods> slide_{}, angle_{};
 };
 
