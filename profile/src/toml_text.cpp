@@ -67,11 +67,33 @@ std::string with_moved(std::string_view text, std::uint32_t first, std::uint32_t
   return moved;
 }
 
+// Each dot of a key (a.b.c) is a table within a table, and toml++ follows them by recursion: 20000
+// overflow a stack of 8 MiB. In numbers, strings and comments so many are no more use.
+constexpr std::size_t kMostDots = 2000;
+
+// The line in which the text has more than kMostDots dots; 0: nowhere. A row of dots counts as one:
+// in a key no two are neighbours.
+toml::source_index line_with_too_many_dots(std::string_view text) {
+  std::size_t dots = 0;
+  toml::source_index line = 1;
+  char before = 0;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    if (c == '.' && before != '.' && ++dots > kMostDots) return line;
+    before = c;
+  }
+  return 0;
+}
+
 }  // namespace
 
 toml::parse_result parse_toml(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (const auto line = line_with_too_many_dots(text); line != 0) {
+    return toml::parse_result(
+        toml::parse_error("more than 2000 dots", toml::source_region{{line, 1}, {line, 1}, {}}));
+  }
   return toml::parse(with_moved(text, kFirst, kLast, kMoved));
 }
 

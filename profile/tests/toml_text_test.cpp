@@ -36,6 +36,25 @@ TEST(TomlText, RefusesLettersOutsideOfStringsInTheirLine) {
   }
 }
 
+TEST(TomlText, RefusesKeysThatOverflowTheStack) {
+  std::string key = "a";
+  for (int i = 0; i < 30000; ++i) key += ".a";
+  for (const std::string& line :
+       {key + " = 1", "[" + key + "]", "[[" + key + "]]", "b = [{" + key + " = 1}]"}) {
+    const auto parsed = parse_toml("z = 2\n" + line + "\n");
+    ASSERT_FALSE(parsed) << line.substr(0, 20);
+    EXPECT_EQ(parsed.error().source().begin.line, 2u) << line.substr(0, 20);
+  }
+}
+
+TEST(TomlText, TakesDottedKeysAndDotsInCommentsAndNumbers) {
+  std::string text = "a.b.c = 0.5 # " + std::string(5000, '.') + "\n";
+  for (int i = 0; i < 500; ++i) text += "# A sentence. And 1.5 of another.\n";
+  const auto parsed = parse_toml(text);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed.table()["a"]["b"]["c"].value<double>(), 0.5);
+}
+
 TEST(TomlText, LeavesWhatIsNoUtf8ToTheParserWhichRefusesIt) {
   for (const std::string& bytes :
        std::vector<std::string>{"\x80", "\xC3", "\xC0\x80", "\xED\xA0\x80", "\xE2\x82",

@@ -15,7 +15,8 @@
 namespace profile {
 
 // toml::parse() of a text whose letters from U+0080 to U+FEFF are moved out of its way, to
-// U+F0080 and on, which is private use. Lines of errors are those of the text.
+// U+F0080 and on, which is private use. Lines of errors are those of the text. Keys of thousands of
+// parts, which overflow its stack, are an error.
 toml::parse_result parse_toml(std::string_view text);
 
 // A string, a key or a message of what parse_toml() returned, with the letters as they were.
