@@ -193,9 +193,20 @@ void ComputerRod::follow(double goal) {
 
 // Swings back to the goal, but only while no ball is in the sweep: else the men step aside first.
 void ComputerRod::swing_back(double goal, const Sighting& now, const AxisLimits& limits) {
-  if (!ball_in_sweep(goal, now)) return swing_.move(goal, limits);
+  if (!ball_in_sweep(goal, now)) {
+    return swing_.move(goal, {std::min(limits.rate, safe_rate(now)), limits.acceleration});
+  }
   swing_.move(swing_.position(), limits);
   step_aside(now);
+}
+
+// Where the ball is in doubt, a foot on its way back may meet it yet: so gently that it does not
+// send it home [rad/s].
+double ComputerRod::safe_rate(const Sighting& now) const {
+  constexpr double kSure = 0.01, kReach = 0.09, kHigh = 0.10;  // [m]
+  constexpr double kGently = 4.0, kFreely = 1e3;
+  const bool may_meet = ahead(now) < now.doubt && ahead(now) > -kReach - now.doubt;
+  return now.doubt > kSure && may_meet && now.ball.z < kHigh ? kGently : kFreely;
 }
 
 // Whether a foot on its way back to the goal could meet the ball from before it.

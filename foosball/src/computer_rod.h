@@ -82,6 +82,7 @@ class ComputerRod {
   void strike(const Temperament& t);
   void brake(const Temperament& t);
   void swing_back(double goal, const Sighting& now, const AxisLimits& limits);
+  double safe_rate(const Sighting& now) const;
   bool ball_in_sweep(double goal, const Sighting& now) const;
   double approach() const;
   bool pinches(const Sighting& now) const;

@@ -20,6 +20,7 @@ struct Sighting {
   std::array<double, kRods> slide{}, swing{};
   std::array<double, kRods> slide_rate{}, swing_rate{};  // [m/s], [rad/s]
   double age = 0.0;                                      // of what was seen of the rods [s]
+  double doubt = 0.0;  // how far off the ball may be: it is guessed on from where it was seen [m]
   // False after an own serve until a second man has touched the ball (ITSF 4.2.2): such a goal is a
   // foul.
   bool goal_counts = true;

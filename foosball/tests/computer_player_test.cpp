@@ -292,5 +292,37 @@ TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
   EXPECT_LT(pushed, balls / 5);
 }
 
+// A ball that has turned back behind the feet is elsewhere than those think who see it late: a foot
+// that is drawn back there must not send it home.
+TEST(ComputerPlayer, HardlyEverSwingsBackThroughABallThatItSeesLate) {
+  int swung = 0, minutes = 0;
+  for (const char* level : {"2", "3", "4"}) {
+    Rules endless;
+    endless.goals_to_win = endless.max_goals = kMaxScore;
+    Match match = *Match::create({.layout = Layout::paper, .seed = 81, .rules = endless});
+    ComputerPlayer home({.team = 0, .seed = 82, .player = *parse_player(level)});
+    ComputerPlayer away({.team = 1, .seed = 83, .player = *parse_player(level)});
+    const TableSpec& table = table_spec(Layout::paper);
+    TickInput input;
+    minutes += 4;
+    for (int tick = 0; tick < 240000; ++tick) {
+      home.play(match.view(), input.rods);
+      away.play(match.view(), input.rods);
+      const MatchView before = match.view();
+      match.step(input);
+      for (const Event& event : match.events()) {
+        if (event.kind != EventKind::man_hit) continue;
+        const double s = attack_sign(event.team);
+        const double foot =
+            -s * before.rods[event.rod].angle_rate * (table.rod_height - event.point.z);
+        const double gain = s * (match.view().ball_velocity.x - before.ball_velocity.x);
+        swung += foot < -0.5 && gain < -0.5 ? 1 : 0;
+      }
+    }
+  }
+  std::printf("%d times in %d minutes\n", swung, minutes);
+  EXPECT_LE(swung, 14) << "25 where feet were always drawn back at full speed";
+}
+
 }  // namespace
 }  // namespace foosball
