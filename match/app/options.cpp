@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <thread>
 
@@ -10,6 +11,7 @@
 #include "match/player.h"
 #include "profile/judgment_profile.h"
 #include "profile/tuning_profile.h"
+#include "server/option_checks.h"
 
 namespace app {
 namespace {
@@ -55,7 +57,8 @@ void read_files(std::vector<std::string>& names) {
 }
 
 struct Raw {
-  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning, vary;
+  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning, vary,
+              seed;
   bool report = false, balance = false, study = false, traits = false, passive = false;
   bool screen = false, train = false, matches_given = false;
   std::vector<std::string> sprt, round_robin;
@@ -71,14 +74,16 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
                  "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
   cli.add_option("--characters", raw.characters,
                  "folder of character files, in place of the built-in ones: docs/characters.md");
-  cli.add_option("--seed", o.seed, "of the first pair of matches; the next has the next");
+  cli.add_option("--seed", raw.seed, "of the first pair of matches; the next has the next")
+      ->check(server::check_seed);
   auto* passive = cli.add_flag("--passive", raw.passive,
                                "the same as --away idle: what an idle side makes of play");
   passive->excludes(away);
   auto* matches = cli.add_option("--matches", o.matches, "to play; in pairs, so an even number")
                       ->check(CLI::Range(2, 100'000'000));
   cli.add_option("--max-minutes", o.max_minutes, "a match is over after so much simulated time")
-      ->check(CLI::Range(0.05, 600.0));
+      ->check(CLI::Range(0.05, 600.0))
+      ->check(server::check_not_nan);
   cli.add_option("--jobs", o.jobs, "threads that play; as many as there are cores")
       ->check(CLI::Range(1, 1024));
   auto* report = cli.add_flag("--report", raw.report,
@@ -145,7 +150,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(4, 10'000));
   cli.add_option("--step", t.step,
                  "as a share of each range: of --screen; of --train, the first samples' deviation")
-      ->check(CLI::Range(0.01, 0.5));
+      ->check(CLI::Range(0.01, 0.5))
+      ->check(server::check_not_nan);
   cli.add_option("--validate", t.validation,
                  "matches of the trained player against --home in each layout, on new seeds")
       ->needs(train)
@@ -161,8 +167,11 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--elo0", o.elo0, "sequential test: H0, NEW is better by no more than this");
   cli.add_option("--elo1", o.elo1, "sequential test: H1, NEW is better by this");
   cli.add_option("--alpha", o.alpha, "share of wrong decisions for H1")
-      ->check(CLI::Range(1e-6, 0.5));
-  cli.add_option("--beta", o.beta, "share of wrong decisions for H0")->check(CLI::Range(1e-6, 0.5));
+      ->check(CLI::Range(1e-6, 0.5))
+      ->check(server::check_not_nan);
+  cli.add_option("--beta", o.beta, "share of wrong decisions for H0")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->check(server::check_not_nan);
   cli.add_option("--max-matches", o.max_matches, "a sequential test gives up after so many")
       ->check(CLI::Range(2, 100'000'000));
   cli.add_option("--record", o.record, "folder for a recording of each match, for foosball-replay")
@@ -201,6 +210,7 @@ std::string translate(Options& o, const Raw& raw) {
     if (!tuning) return tuning.error();
     o.tuning = *tuning;
   }
+  if (!raw.seed.empty()) o.seed = *server::parse_seed(raw.seed);
   o.players = {raw.home, raw.passive ? "idle" : raw.away};
   if (raw.report) o.mode = Mode::report;
   if (raw.balance) o.mode = Mode::balance;

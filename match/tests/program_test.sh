@@ -32,6 +32,11 @@ refuses '--matches' --matches many
 refuses 'not exist' --record "$folder/none"
 refuses 'choose a file' --checkpoint "$folder/none/file"
 refuses '--nonsense' --nonsense
+for seed in -1 18446744073709551616 1x; do refuses 'is no whole number from 0 to' --seed "$seed"; done
+refuses 'is no number' --max-minutes nan
+refuses 'is no number' --sprt idle classic --alpha nan
+refuses 'is no number' --sprt idle classic --beta nan
+refuses 'is no number' --train --home 5 --step nan
 printf 'gravity = 9.0\nhop_gain = true\n' >"$folder/garbage.toml"
 refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
 refuses 'cannot be read' --tuning "$folder/none.toml"

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -13,6 +12,7 @@
 #include "os/socket_address.h"
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
+#include "server/option_checks.h"
 
 namespace app {
 namespace {
@@ -69,18 +69,6 @@ std::string check_sets(const std::string& text) {
   return ok ? "" : "\"" + text + "\" is no odd number of sets from 1 to 17";
 }
 
-std::optional<std::uint64_t> parse_seed(const std::string& text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stopped_at, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stopped_at == end ? std::optional(value) : std::nullopt;
-}
-
-std::string check_seed(const std::string& text) {
-  return parse_seed(text) ? ""
-                          : "\"" + text + "\" is no whole number from 0 to 18446744073709551615";
-}
-
 // Today as the number that names a challenge, such as 20261122 (UTC).
 std::uint32_t today() {
   const auto now = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
@@ -98,6 +86,7 @@ struct Raw {
   std::string layout = "tournament", team0 = "human", team1 = "human", multicast, seed, tuning;
   std::string password_file, host_password_file;
   std::string characters, check_character;
+  bool checks_character = false;
   double seconds = 0.0, keep_seats = 30.0, recordings_gb = 2.0;
   int level = foosball::PlayerSpec{}.level;
   std::string style;
@@ -108,7 +97,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   const CLI::IsMember player({"human", "computer"});
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  cli.add_option("--seed", raw.seed, "of the match and the computer players")->check(check_seed);
+  cli.add_option("--seed", raw.seed, "of the match and the computer players")
+      ->check(server::check_seed);
   cli.add_option("--tuning", raw.tuning, "profile of tuning values, TOML; see --list-tuning");
   cli.add_flag("--list-tuning", raw.list_tuning, "print all tuning values as a profile");
   cli.add_option("--characters", raw.characters,
@@ -125,7 +115,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--sets", raw.sets, "best of so many: 1, 3, 5 ... 17")->check(check_sets);
   cli.add_option("--minutes", raw.minutes,
                  "of play, then whoever leads has won; a draw goes on to the next goal")
-      ->check(CLI::Range(0.1, 60.0));
+      ->check(CLI::Range(0.1, 60.0))
+      ->check(server::check_not_nan);
   cli.add_flag("--change-sides", raw.change_sides, "the players change sides between sets");
   cli.add_option(
          "--mode", raw.mode,
@@ -170,6 +161,7 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
          "--keep-seats", raw.keep_seats,
          "for so many seconds the rods of a player whose connection was lost are kept; 0: not")
       ->check(CLI::Range(0.0, 3600.0))
+      ->check(server::check_not_nan)
       ->capture_default_str();
   cli.add_flag("--mixed-teams", o.access.mixed_teams,
                "who joins from another machine may have rods of both teams");
@@ -202,6 +194,7 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--recordings-gb", raw.recordings_gb, "... and so many GiB")
       ->needs(recordings)
       ->check(CLI::Range(0.5, 1e4))
+      ->check(server::check_not_nan)
       ->capture_default_str();
   cli.add_flag("--fast", raw.fast, "replay as fast as it goes")->needs(replay);
   cli.add_option("--seconds", raw.seconds, "end after so much time of the match")
@@ -256,7 +249,7 @@ void translate(Options& o, const Raw& raw) {
     o.match = foosball::challenge_of(raw.date > 0 ? raw.date : today(), layout);
   }
   if (!raw.seed.empty() && o.match.mode != foosball::Mode::challenge)
-    o.match.seed = *parse_seed(raw.seed);
+    o.match.seed = *server::parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   const std::string player = std::to_string(raw.level);
   o.computer_player =
@@ -316,6 +309,7 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   add_run(cli, options, raw);
   try {
     cli.parse(argc, argv);
+    raw.checks_character = cli.get_option("--check-character")->count() > 0;
   } catch (const CLI::CallForHelp&) {
     return tl::unexpected(Leave{server::kExitOk, cli.help()});
   } catch (const CLI::ParseError& error) {
@@ -328,7 +322,7 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});
     options.match.tuning = *tuning;
   }
-  if (!raw.check_character.empty()) {
+  if (raw.checks_character) {
     const auto text = checked(raw.check_character);
     if (!text) return tl::unexpected(Leave{server::kExitUsage, text.error()});
     return tl::unexpected(Leave{server::kExitOk, *text});
