@@ -1,10 +1,14 @@
 #include "run.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cinttypes>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -41,6 +45,21 @@ bool write_text(const std::string& path, const std::string& text) {
   file << text;
   file.close();
   return static_cast<bool>(file);
+}
+
+// Why the file could not be written when all is played, asked before; empty: it can be.
+std::string objection_to_file(const std::string& path) {
+  if (path.empty() || path == "-") return {};
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    return "cannot write " + path + ": it is a folder";
+  const std::string folder = std::filesystem::path(path).parent_path();
+  const std::string asked = std::filesystem::exists(path, error) ? path
+                            : folder.empty()                     ? "."
+                                                                 : folder;
+  if (::access(asked.c_str(), W_OK) == 0) return {};
+  return "cannot write " + path + ": " + std::strerror(errno) +
+         "; choose a file in a folder that can be written";
 }
 
 void print_effort(const match::Effort& effort) {
@@ -99,6 +118,10 @@ int leave(const Leave& leave) {
 
 int run(const Options& options, const PlayAll& play_all) {
   end_on_signals();
+  for (const std::string* path : {&options.csv, &options.json, &options.write}) {
+    const std::string objection = objection_to_file(*path);
+    if (!objection.empty()) return fail(2, objection);
+  }
   std::optional<match::Training> training;
   if (options.mode == Mode::train) training.emplace(train_plan(options));
   const std::vector<match::SeriesDesc> plan = series_of(options);
@@ -148,9 +171,11 @@ int run(const Options& options, const PlayAll& play_all) {
     std::fputs(results.text.c_str(), stdout);
     print_effort(*effort);
   }
-  if (!write_text(options.csv, match::as_csv(results.figures)) ||
-      !write_text(options.json, match::as_json(results.figures))) {
-    return fail(1, "the results could not be written to the file");
+  if (!write_text(options.csv, match::as_csv(results.figures))) {
+    return fail(1, "the results could not be written to " + options.csv);
+  }
+  if (!write_text(options.json, match::as_json(results.figures))) {
+    return fail(1, "the results could not be written to " + options.json);
   }
   if (training && !options.write.empty() &&
       !write_text(options.write, profile::format_judgment(training->answer(), training->start()))) {

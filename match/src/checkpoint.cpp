@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -64,6 +65,13 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
     const std::string& path, const std::vector<SeriesDesc>& series, const std::string& plan) {
   const std::string subject = subject_of(series, plan);
   const std::string head = subject + "; game " + std::to_string(game_fingerprint(series));
+  // A pipe would wait for its reader, a device may have no end.
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return tl::unexpected("the checkpoint " + path +
+                          " is a folder, a pipe or a device: give another file");
+  }
   os::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
   if (!file) {
     return tl::unexpected("cannot open the checkpoint " + path + ": " + std::strerror(errno) +

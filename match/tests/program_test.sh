@@ -37,6 +37,14 @@ refuses 'is no number' --max-minutes nan
 refuses 'is no number' --sprt idle classic --alpha nan
 refuses 'is no number' --sprt idle classic --beta nan
 refuses 'is no number' --train --home 5 --step nan
+mkfifo "$folder/pipe"
+for path in "$folder" "$folder/pipe" /dev/null; do refuses 'give another file' --checkpoint "$path"; done
+# What cannot be written in the end is refused before hours of play.
+for path in "$folder" "$folder/none/file"; do
+  refuses "cannot write $path" --csv "$path"
+  refuses "cannot write $path" --json "$path"
+  refuses "cannot write $path" --train --home 5 --write "$path"
+done
 printf 'gravity = 9.0\nhop_gain = true\n' >"$folder/garbage.toml"
 refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
 refuses 'cannot be read' --tuning "$folder/none.toml"
