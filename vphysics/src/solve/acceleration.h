@@ -6,9 +6,9 @@
 // of both, the change that is left is least where
 //     minimize |f_k - df c|,   x_(k+1) = x_k + f_k - (dx + df) c
 // in the norm of energy: each row's change squared times its response. Impulses stay within their
-// bounds; cones of friction are kept by the rounds that follow. A sweep that changes more than
-// twice as much as the one before has changed what slides or touches: then the differences are
-// forgotten. Source: Walker and Ni 2011.
+// bounds; cones of friction are kept by the rounds that follow. Where the sweep after such a step
+// changes no less than the one before it, what slides or touches has changed: the step is taken
+// back, and the differences are forgotten. Source: Walker and Ni 2011.
 #pragma once
 
 #include <array>
