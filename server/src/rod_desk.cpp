@@ -156,16 +156,43 @@ bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_
   });
 }
 
-void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
-  const auto place = std::ranges::find(places_, client, &Place::client);
-  if (client == 0 || place == places_.end()) return;
-  const std::uint8_t rods = place->rods;
-  // Whose rods the computer plays already is not offered: the game would stop for it.
-  const bool offer = (rods & stand_ins_) == 0 && has_team_mate(client, rods, now_us);
-  seat(client, 0, now_us);
+// Whose rods the computer plays already is not offered: the game would stop for it.
+bool RodDesk::may_be_offered(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const {
+  return (rods & stand_ins_) == 0 && has_team_mate(client, rods, now_us);
+}
+
+void RodDesk::vacate(std::uint8_t rods, bool offer, std::int64_t now_us) {
   vacated_ |= rods;
   for (int rod = 0; rod < foosball::kRods; ++rod)
     if ((rods >> rod & 1) != 0) offered_until_us_[rod] = offer ? now_us + kOfferUs : now_us;
+}
+
+void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
+  change(client, 0, now_us);
+}
+
+// Of the client's rods those of a team of which it has none among the new ones.
+std::uint8_t RodDesk::given_up(std::uint32_t client, std::uint8_t rods) const {
+  const auto place = std::ranges::find(places_, client, &Place::client);
+  if (client == 0 || place == places_.end()) return 0;
+  std::array<std::uint8_t, foosball::kTeams> had{}, has{};
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const auto bit = static_cast<std::uint8_t>(1u << rod);
+    had[table_.rods[rod].team] |= place->rods & bit;
+    has[table_.rods[rod].team] |= rods & bit;
+  }
+  std::uint8_t given_up = 0;
+  for (int team = 0; team < foosball::kTeams; ++team)
+    if (has[team] == 0) given_up |= had[team];
+  return given_up;
+}
+
+RemoteSource* RodDesk::change(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) {
+  const std::uint8_t vacant = given_up(client, rods);
+  const bool offer = may_be_offered(client, vacant, now_us);
+  RemoteSource* source = seat(client, rods, now_us);
+  vacate(vacant, offer, now_us);
+  return source;
 }
 
 // The device that has the rod, else the client; as assign_all() has it.

@@ -35,6 +35,9 @@ class RodDesk {
   // The client has these rods, by bit, from now on, and no others; 0: none. Takes no memory.
   // Preconditions: no rod is another client's. Returns where its inputs go; null: it has no rod.
   RemoteSource* seat(std::uint32_t client, std::uint8_t rods, std::int64_t now_us);
+  // As seat(), for a client that is there: the rods of a team of which it keeps none are vacated,
+  // as if it had left.
+  RemoteSource* change(std::uint32_t client, std::uint8_t rods, std::int64_t now_us);
   RemoteSource* remote(std::uint32_t client);  // null: it has no rod
   // The client's connection is lost, and expected back; it is back.
   void lost(std::uint32_t client);
@@ -92,6 +95,9 @@ class RodDesk {
   bool gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
   void look_at_hands(bool in_match, bool in_play, std::int64_t now_us);
   std::uint8_t rods_of_gone(bool& somebody, std::int64_t now_us);
+  std::uint8_t given_up(std::uint32_t client, std::uint8_t rods) const;
+  bool may_be_offered(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const;
+  void vacate(std::uint8_t rods, bool offer, std::int64_t now_us);
   bool has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const;
   const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
@@ -107,7 +113,7 @@ class RodDesk {
   std::uint64_t seed_ = 0;
   int rung_ = -1;  // not on the ladder
   bool shown_ = false;
-  std::uint8_t vacated_ = 0;  // by who left in this match; nobody has taken them since
+  std::uint8_t vacated_ = 0;  // by who left in this match, or the team; nobody has taken them since
   std::array<std::int64_t, foosball::kRods> offered_until_us_{};
   std::uint8_t stand_ins_ = 0, offered_ = 0;
   HandWatch hand_watch_;         // by source: clients' places, then devices

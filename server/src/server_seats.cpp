@@ -42,9 +42,10 @@ void Server::Impl::change_rods(ControlEvent& event) {
   const auto client = std::ranges::find(clients, event.client, &Client::id);
   if (client == clients.end()) return;
   const std::uint8_t before = client->team;
+  remember_name(event.client);
   client->team = event.team;
   client->rods = event.rods;
-  RemoteSource* source = desk.seat(event.client, event.rods, tick_us);
+  RemoteSource* source = desk.change(event.client, event.rods, tick_us);
   if (!input.redirect(event.client, source) && source != nullptr && event.socket)
     input.add({event.client, event.token, event.input_key}, std::move(event.socket), *source);
   if (event.team == wire::kWatchOnly && before != event.team && !options.replay &&

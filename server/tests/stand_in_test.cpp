@@ -37,6 +37,12 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
     table.tick(2);
   }
+  void claim(ProbeClient& client, const wire::Claim& asked) {
+    client.say(asked);
+    client.say(wire::Ping{1});
+    ASSERT_TRUE(client.hear_a<wire::Pong>());
+    table.tick(3);
+  }
   // Somebody whose hand is at the rods: heard every 100 ms of fake time.
   struct Hand {
     ProbeClient* client;
@@ -83,6 +89,7 @@ class StandIn : public testing::Test {
 
   std::vector<Hand> hands;
   const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet all1 = rods_of_team(foosball::MatchDesc{}.layout, 1);
   const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
   const int goalie = std::countr_zero(one);
   static constexpr auto kClient = number(wire::RodSource::client),
@@ -217,6 +224,58 @@ TEST_F(StandIn, PlaysAtOnceForTheLastOfATeam) {
   table.tick(3);
   EXPECT_EQ(source(bob, goalie), kComputer);
   EXPECT_TRUE(table.tick_until([&] { return table->match().view().computer[0]; }));
+}
+
+// Whoever stays is to have a match, however the other went: to watch, or to the other team.
+TEST_F(StandIn, PlaysForOneWhoGivesTheRodsUpUntilTheyAreTakenAgain) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto opponent = sit(bob, "Bob", 1);
+  ASSERT_TRUE(opponent && sit(ann, "Ann", 0));
+  plays(bob, *opponent);
+  begin_match(bob);
+  claim(ann, {0, wire::kWatchOnly});
+  EXPECT_EQ(source(bob, goalie), kComputer);
+  EXPECT_TRUE(logged("for Ann"));
+  claim(ann, {one, 0});
+  EXPECT_NE(source(bob, goalie), kComputer) << "she has it again";
+  EXPECT_EQ(source(bob, std::countr_zero(rest)), kComputer);
+}
+
+TEST_F(StandIn, PlaysForOneWhoChangesSides) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto opponent = sit(bob, "Bob", 1, RodSet(all1 & (all1 - 1)));
+  ASSERT_TRUE(opponent && sit(ann, "Ann", 0));
+  plays(bob, *opponent);
+  begin_match(bob);
+  claim(ann, {RodSet(all1 & -all1), 1});
+  EXPECT_EQ(source(bob, goalie), kComputer);
+}
+
+TEST_F(StandIn, OffersTheRodsThatAreGivenUpToTheTeamMateFirst) {
+  ProbeClient ann(table.port()), bob(table.port()), carl(table.port());
+  const auto mate = sit(bob, "Bob", 0, rest), opponent = sit(carl, "Carl", 1);
+  ASSERT_TRUE(mate && opponent && sit(ann, "Ann", 0, one));
+  plays(bob, *mate);
+  plays(carl, *opponent);
+  begin_match(carl);
+  ann.say(wire::Claim{0, wire::kWatchOnly});
+  EXPECT_TRUE(logged("free to the team for 10 s, then the computer's: rods 1 for Ann"));
+  EXPECT_EQ(source(carl, goalie), kNone);
+  pass(RodDesk::kOfferUs + 1'000'000);
+  EXPECT_EQ(source(carl, goalie), kComputer);
+}
+
+// Fewer rods of the team are a choice, not a way out of it.
+TEST_F(StandIn, LeavesRodsAloneThatOneDoesNotWantWhoPlaysOn) {
+  ProbeClient ann(table.port()), bob(table.port());
+  const auto opponent = sit(bob, "Bob", 1), seat = sit(ann, "Ann", 0);
+  ASSERT_TRUE(opponent && seat);
+  plays(bob, *opponent);
+  plays(ann, *seat);
+  begin_match(bob);
+  claim(ann, {rest, 0});
+  pass(RodDesk::kOfferUs + 1'000'000);
+  EXPECT_EQ(source(bob, goalie), kNone);
 }
 
 TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
