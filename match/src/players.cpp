@@ -159,6 +159,9 @@ Made make_computer(const PlayerDesc& desc) {
 }
 
 Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
+  // Of itself any number of times, it would overflow the stack.
+  if (argument.starts_with("one-rod"))
+    return tl::unexpected(std::string("one-rod is of another player: give one such as one-rod:2"));
   auto inner = make_player({argument.empty() ? "classic" : argument, desc.team, desc.seed});
   if (!inner) return inner;
   return std::make_unique<OneRod>(desc.team, std::move(*inner));

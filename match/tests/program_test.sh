@@ -23,6 +23,7 @@ refuses() {
   grep -q -- "$sentence" "$folder/err" || fail "$*: said $(cat "$folder/err")"
 }
 refuses 'is no player: give one of' --home nobody
+refuses 'one-rod is of another player' --home one-rod:one-rod:1
 refuses 'a skill is a number from 0 to 1' --away classic:1.5
 refuses 'paper' --layout square
 refuses 'excludes' --sprt classic idle --report
