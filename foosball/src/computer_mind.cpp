@@ -116,6 +116,7 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning,
     }
   }
   constexpr double kMostDoubt = 0.05;  // [m]
+  now.guessed = !forecast;
   now.doubt = forecast ? 0.0 : std::min(kMostDoubt, age * vp::norm(ball.velocity));
   ball = forecast ? *forecast : advance(model_, tuning, now, ball, age);
   now.ball = ball.position;

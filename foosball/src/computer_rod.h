@@ -68,7 +68,8 @@ class ComputerRod {
                     const Temperament& t) const;
   void go_behind(const Sighting& now, double square, double drawn, const Temperament& t);
   void prepare_scoop(const Sighting& now, double square, const Temperament& t, Random& random);
-  void choose_hook(const Sighting& now, const Temperament& t, Random& random);
+  bool can_stand_beside(double square, double side, double beside) const;
+  void choose_hook(const Sighting& now, double square, const Temperament& t, Random& random);
   void scoop(const Temperament& t);
   void receive(const Sighting& now, const Temperament& t);
   PassPlan pass_worth(const Sighting& now, double slope, double speed, double slope_error,
@@ -101,8 +102,9 @@ class ComputerRod {
   Judgment judgment_;
   LaneView lanes_;
   HandAxis slide_, swing_;
-  double goal_ = 0.0;    // where the hand brings the slide [m]
-  double turned_ = 0.0;  // since the slide last turned round [s]
+  double goal_ = 0.0;        // where the hand brings the slide [m]
+  double turned_ = 0.0;      // since the slide last turned round [s]
+  double stroke_ago_ = 1e9;  // since a foot last swung at the ball [s]
   Act act_ = Act::watch;
   double since_ = 0.0;                // in this act [s]
   int man_ = 0;                       // with the ball

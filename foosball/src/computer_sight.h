@@ -20,7 +20,9 @@ struct Sighting {
   std::array<double, kRods> slide{}, swing{};
   std::array<double, kRods> slide_rate{}, swing_rate{};  // [m/s], [rad/s]
   double age = 0.0;                                      // of what was seen of the rods [s]
-  double doubt = 0.0;  // how far off the ball may be: it is guessed on from where it was seen [m]
+  // The ball is not simulated but guessed on from where it was seen; how far off it may be [m].
+  bool guessed = false;
+  double doubt = 0.0;
   // False after an own serve until a second man has touched the ball (ITSF 4.2.2): such a goal is a
   // foul.
   bool goal_counts = true;
@@ -32,6 +34,11 @@ constexpr double team_slide(int team, double slide) {
 }
 constexpr double team_swing(int team, double angle) {
   return -attack_sign(team) * angle;
+}
+
+// 1 or -1; the same for either zero, which a mirrored match may have exchanged.
+constexpr double side_of(double value) {
+  return value < 0.0 ? -1.0 : 1.0;
 }
 
 // The angle [rad] less its full turns; most have none, and the remainder is slow.

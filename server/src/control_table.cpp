@@ -484,11 +484,12 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish)
 }
 
 // One machine, one vote, however many seats it has: more connections are no more people. Those who
-// are away do not vote, and nobody waits for them.
+// are away do not vote, and nobody waits for them, but before a match ends without a result.
 bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
-    if ((s.plays() || s.role == wire::Role::host) && !s.away()) voters.push_back(s.owner());
+    const bool counts = !s.away() || wish.kind == foosball::Command::Kind::restart;
+    if ((s.plays() || s.role == wire::Role::host) && counts) voters.push_back(s.owner());
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());

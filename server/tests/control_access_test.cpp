@@ -214,6 +214,31 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
 }
 
+// A match that is begun anew has no result: the one who is losing it waits for the other.
+TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
+  Lockstep table([](ServerOptions& o) {
+    want_password(o);
+    o.limits.seat_kept_us = 30'000'000;
+  });
+  ProbeClient first(table.port()), second(table.port(), "127.0.0.2");
+  ASSERT_TRUE(first.prove("open sesame") && first.join(0));
+  ASSERT_TRUE(second.prove("open sesame") && second.join(1));
+  const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
+  first.say(wire::Wish{push, 0, 0});
+  ASSERT_TRUE(table.tick_until(
+      [&] { return table->match().view().screen == foosball::Screen::selection; }));
+  second.leave();
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
+  first.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
+  std::string told;
+  for (int notice = 0; notice < 2 && told.find("votes") == std::string::npos; ++notice) {
+    told = notice_of(first);
+  }
+  EXPECT_NE(told.find("1 of 2 votes"), std::string::npos) << told;
+  table.tick(5);
+  EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
+}
+
 TEST(Votes, AGuestWithSeveralSeatsHasOneVote) {
   Lockstep table(want_password);
   std::vector<std::unique_ptr<ProbeClient>> greedy;

@@ -36,7 +36,7 @@ struct Tuning {
   double hand_torque = 14.0;
   double slide_rate = 8.0;
   double turn_rate = 150.0;
-  double serve_ahead = -0.037;
+  double serve_ahead = -0.030;
   double restart_ahead = 0.034;
 
   bool operator==(const Tuning&) const = default;
