@@ -207,7 +207,7 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
   Seat seat;
   seat.client = ++last_client_;
   seat.ticket = options_.random();
-  seat.name = printable(hello.name);
+  seat.name = seats_.name_for(printable(hello.name), connection.peer(), hello.team);
   seat.team = hello.team;
   seat.rods = rods;
   seat.role = connection.role;

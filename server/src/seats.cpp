@@ -52,6 +52,28 @@ int Seats::of_machine(const os::SocketAddress& peer) const {
       seats_, [key = peer.machine()](const Seat& s) { return s.peer.machine() == key; }));
 }
 
+std::string Seats::name_for(const std::string& wanted, const os::SocketAddress& peer,
+                            std::uint8_t team) const {
+  constexpr std::string_view kComputer = "computer";
+  const auto is_free = [&](const std::string& name) {
+    return std::ranges::none_of(seats_, [&](const Seat& s) {
+      return s.name == name && (s.peer.network() != peer.network() || s.team != team);
+    });
+  };
+  const bool computers = wanted.starts_with(kComputer);
+  if (!computers && is_free(wanted)) return wanted;
+  for (int number = computers ? 1 : 2;; ++number) {
+    const std::string tail = " (" + std::to_string(number) + ")";
+    std::string name = wanted.substr(0, wire::kMaxName - tail.size());
+    // No part of a letter stays: what follows its first byte is 10xxxxxx.
+    while (name.size() < wanted.size() && !name.empty() &&
+           (static_cast<unsigned char>(wanted[name.size()]) & 0xC0u) == 0x80u) {
+      name.pop_back();
+    }
+    if (is_free(name + tail)) return name + tail;
+  }
+}
+
 int Seats::of_network(const os::SocketAddress& peer) const {
   return static_cast<int>(std::ranges::count_if(
       seats_, [key = peer.network()](const Seat& s) { return s.peer.network() == key; }));

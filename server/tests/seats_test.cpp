@@ -101,6 +101,41 @@ TEST_F(SeatsTest, AreCountedByMachineAndByNetwork) {
   EXPECT_EQ(seats.of_machine(peer("192.0.2.2")), 0);
 }
 
+// Results and ratings go by names: two who call themselves alike are two.
+TEST_F(SeatsTest, NoTwoPeopleHaveOneName) {
+  const auto near = *os::parse_address("192.168.0.7", 1);
+  const auto far = *os::parse_address("192.168.0.8", 1);
+  EXPECT_EQ(seats.name_for("player", near, 0), "player");
+  Seat first = seat_of(1, 0, all0);
+  first.name = "player";
+  first.peer = near;
+  seats.add(first);
+  EXPECT_EQ(seats.name_for("player", near, 0), "player") << "the same one, at another window";
+  EXPECT_EQ(seats.name_for("player", near, 1), "player (2)") << "nobody plays against himself";
+  EXPECT_EQ(seats.name_for("player", far, 0), "player (2)");
+  Seat second = seat_of(2, 1, all1);
+  second.name = "player (2)";
+  second.peer = far;
+  seats.add(second);
+  EXPECT_EQ(seats.name_for("player", far, 0), "player (3)");
+  EXPECT_EQ(seats.name_for("computer 5", far, 0), "computer 5 (1)") << "a computer player's";
+}
+
+TEST_F(SeatsTest, ANameWithANumberBehindItIsNoLongerThanANameMayBeAndHasWholeLetters) {
+  const auto near = *os::parse_address("192.168.0.7", 1);
+  const auto far = *os::parse_address("192.168.0.8", 1);
+  std::string longest;
+  while (longest.size() + 3 <= wire::kMaxName) longest += "\u20ac";  // three bytes
+  Seat first = seat_of(1, 0, all0);
+  first.name = longest;
+  first.peer = near;
+  seats.add(first);
+  const std::string name = seats.name_for(longest, far, 0);
+  EXPECT_LE(name.size(), wire::kMaxName);
+  ASSERT_TRUE(name.ends_with(" (2)"));
+  EXPECT_EQ((name.size() - 4) % 3, 0u);
+}
+
 TEST_F(SeatsTest, ATicketFindsItsSeatAndZeroNone) {
   seats.add(seat_of(1, 0, all0));
   EXPECT_EQ(seats.find_ticket(1001)->client, 1u);
