@@ -1,7 +1,6 @@
 #include "computer_rod.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace foosball {

@@ -154,7 +154,7 @@ void Match::Impl::drive_rods(const RodTargets& targets) {
 void Match::Impl::watch_hands(const RodTargets& hands, bool commanded) {
   RodTargets held = hands;
   for (RodTarget& rod : held) rod.live = usable(rod);
-  const std::uint8_t moved = state.hands.update(held);
+  const std::uint8_t moved = state.moved_rods.update(held);
   std::uint8_t people = 0;
   std::array<bool, kTeams> plays{};
   for (int rod = 0; rod < kRods; ++rod) {

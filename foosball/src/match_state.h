@@ -6,7 +6,7 @@
 
 #include "foosball/match.h"
 #include "gestures.h"
-#include "hand_watch.h"
+#include "moved_rods.h"
 #include "referee.h"
 #include "spin_watch.h"
 #include "ticks.h"
@@ -85,7 +85,7 @@ struct MatchState {
   int last_scorer = 0;
 
   // The hands.
-  HandWatch hands;
+  MovedRods moved_rods;
   std::uint64_t idle_ticks = 0;                      // since a person last moved a rod
   std::array<std::uint64_t, kTeams> absent_ticks{};  // with the ball in play, since a hand of the
                                                      // team, a person's or not, last moved a rod
@@ -176,7 +176,7 @@ void MatchState::visit(Archive& archive, Self& self) {
   archive.count(self.screen_ticks, kMaxTicks);
   archive.count(self.play_ticks, kMaxTicks);
   archive.choice(self.last_scorer, kTeams);
-  HandWatch::visit(archive, self.hands);
+  MovedRods::visit(archive, self.moved_rods);
   archive.count(self.idle_ticks, kMaxTicks);
   for (auto& ticks : self.absent_ticks) archive.count(ticks, kMaxTicks);
   visit_ball(archive, self);

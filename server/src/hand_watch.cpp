@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foosball/rod_motion.h"
+
 namespace server {
 namespace {
 
@@ -30,8 +32,8 @@ void HandWatch::look(std::size_t source, const cabinet::RodInputs& rods, std::in
     Rod& rod = sources_[source][i];
     if (now.status != cabinet::RodStatus::live) continue;
     rod.live_us = now_us;
-    const bool moved =
-        std::fabs(now.slide - rod.slide) > kSlide || std::fabs(now.angle - rod.angle) > kAngle;
+    const bool moved = std::fabs(now.slide - rod.slide) > foosball::kLeastHandSlide ||
+                       std::fabs(now.angle - rod.angle) > foosball::kLeastHandTurn;
     if (!moved) continue;
     rod.slide = now.slide;
     rod.angle = now.angle;

@@ -12,10 +12,6 @@ namespace server {
 
 class HandWatch {
  public:
-  // What a sensor's noise or a table that is leant on does not reach, as foosball's idle watch has
-  // it.
-  static constexpr double kSlide = 0.003, kAngle = 0.05;  // [m], [rad]
-
   void resize(std::size_t sources) { sources_.resize(sources); }  // takes memory
   // As if every rod of the source had just been moved.
   void restart(std::size_t source, std::int64_t now_us, std::int64_t play_us);

@@ -52,17 +52,26 @@ int Seats::of_machine(const os::SocketAddress& peer) const {
       seats_, [key = peer.machine()](const Seat& s) { return s.peer.machine() == key; }));
 }
 
+namespace {
+
+// What results call those who are no person with a name: "computer 5", "cabinet", "nobody".
+bool is_name_of_results(std::string_view name) {
+  return name == "cabinet" || name == "nobody" || name == "computer" ||
+         name.starts_with("computer ");
+}
+
+}  // namespace
+
 std::string Seats::name_for(const std::string& wanted, const os::SocketAddress& peer,
                             std::uint8_t team) const {
-  constexpr std::string_view kComputer = "computer";
   const auto is_free = [&](const std::string& name) {
     return std::ranges::none_of(seats_, [&](const Seat& s) {
       return s.name == name && (s.peer.network() != peer.network() || s.team != team);
     });
   };
-  const bool computers = wanted.starts_with(kComputer);
-  if (!computers && is_free(wanted)) return wanted;
-  for (int number = computers ? 1 : 2;; ++number) {
+  const bool reserved = is_name_of_results(wanted);
+  if (!reserved && is_free(wanted)) return wanted;
+  for (int number = reserved ? 1 : 2;; ++number) {
     const std::string tail = " (" + std::to_string(number) + ")";
     std::string name = wanted.substr(0, wire::kMaxName - tail.size());
     // No part of a letter stays: what follows its first byte is 10xxxxxx.

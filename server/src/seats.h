@@ -59,7 +59,9 @@ class Seats {
   int of_machine(const os::SocketAddress& peer) const;
   // The name for somebody of this team who comes from there: the one that is wanted, or with a
   // number behind it where another is here under it, of another machine or of the other team, or
-  // where it is a computer player's. Results and ratings go by names.
+  // where
+  // results have it for who is no person with a name (computer, cabinet, nobody). Results and
+  // ratings go by names.
   std::string name_for(const std::string& wanted, const os::SocketAddress& peer,
                        std::uint8_t team) const;
   int of_network(const os::SocketAddress& peer) const;

@@ -214,7 +214,7 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
 }
 
-// A match that is begun anew has no result: the one who is losing it waits for the other.
+// A restart leaves the match without a result: the one who is losing it needs the other's vote.
 TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
   Lockstep table([](ServerOptions& o) {
     want_password(o);

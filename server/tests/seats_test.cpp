@@ -118,7 +118,9 @@ TEST_F(SeatsTest, NoTwoPeopleHaveOneName) {
   second.peer = far;
   seats.add(second);
   EXPECT_EQ(seats.name_for("player", far, 0), "player (3)");
-  EXPECT_EQ(seats.name_for("computer 5", far, 0), "computer 5 (1)") << "a computer player's";
+  for (const std::string name : {"computer 5", "cabinet", "nobody"})
+    EXPECT_EQ(seats.name_for(name, far, 0), name + " (1)") << "stands for no person in results";
+  EXPECT_EQ(seats.name_for("computerfan", far, 0), "computerfan");
 }
 
 TEST_F(SeatsTest, ANameWithANumberBehindItIsNoLongerThanANameMayBeAndHasWholeLetters) {

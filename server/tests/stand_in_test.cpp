@@ -69,6 +69,17 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(
         table.tick_until([&] { return table->counters().input.accepted == heard + hands.size(); }));
   }
+  // Ann has team 0, Bob team 1, and both are heard. Returns her welcome; none: it went wrong.
+  auto play_both(ProbeClient& ann, ProbeClient& bob) {
+    auto seat = sit(ann, "Ann", 0);
+    const auto opponent = sit(bob, "Bob", 1);
+    if (!seat || !opponent) seat.reset();
+    if (seat) {
+      plays(ann, *seat);
+      plays(bob, *opponent);
+    }
+    return seat;
+  }
   // Fake time: that of the ticks.
   void pass(std::int64_t us) {
     for (constexpr std::int64_t kEveryUs = 100'000; us > 0; us -= kEveryUs) {
@@ -100,10 +111,8 @@ class StandIn : public testing::Test {
 
 TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   ProbeClient ann(table.port()), bob(table.port());
-  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
-  ASSERT_TRUE(seat && opponent);
-  plays(ann, *seat);
-  plays(bob, *opponent);
+  const auto seat = play_both(ann, bob);
+  ASSERT_TRUE(seat);
   begin_match(bob);
   lets_go(ann);
   ann.leave();
@@ -141,10 +150,7 @@ TEST_F(StandIn, PlaysForOneWhoHasNeverSentAnything) {
 
 TEST_F(StandIn, PlaysForNobodyWhereAllAreSilent) {
   ProbeClient ann(table.port()), bob(table.port()), watcher(table.port());
-  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
-  ASSERT_TRUE(seat && opponent && watcher.join());
-  plays(ann, *seat);
-  plays(bob, *opponent);
+  ASSERT_TRUE(play_both(ann, bob) && watcher.join());
   begin_match(bob);
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 100'000);
@@ -268,10 +274,7 @@ TEST_F(StandIn, OffersTheRodsThatAreGivenUpToTheTeamMateFirst) {
 // Fewer rods of the team are a choice, not a way out of it.
 TEST_F(StandIn, LeavesRodsAloneThatOneDoesNotWantWhoPlaysOn) {
   ProbeClient ann(table.port()), bob(table.port());
-  const auto opponent = sit(bob, "Bob", 1), seat = sit(ann, "Ann", 0);
-  ASSERT_TRUE(opponent && seat);
-  plays(bob, *opponent);
-  plays(ann, *seat);
+  ASSERT_TRUE(play_both(ann, bob));
   begin_match(bob);
   claim(ann, {rest, 0});
   pass(RodDesk::kOfferUs + 1'000'000);
@@ -290,10 +293,7 @@ TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
 
 TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
   ProbeClient ann(table.port()), bob(table.port());
-  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
-  ASSERT_TRUE(seat && opponent);
-  plays(ann, *seat);
-  plays(bob, *opponent);
+  ASSERT_TRUE(play_both(ann, bob));
   begin_match(bob);
   EXPECT_EQ(source(bob, goalie), kClient);
   const Hand hand = hands.front();
@@ -307,10 +307,7 @@ TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
 
 TEST_F(StandIn, PlaysForOneWhoIsThereAndMovesNothingInPlay) {
   ProbeClient ann(table.port()), bob(table.port());
-  const auto seat = sit(ann, "Ann", 0), opponent = sit(bob, "Bob", 1);
-  ASSERT_TRUE(seat && opponent);
-  plays(ann, *seat);
-  plays(bob, *opponent);
+  ASSERT_TRUE(play_both(ann, bob));
   hands[1].moves = true;
   begin_match(bob);
   for (ProbeClient* client : {&ann, &bob}) {

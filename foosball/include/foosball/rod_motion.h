@@ -22,6 +22,11 @@ struct RodTarget {
   bool operator==(const RodTarget&) const = default;
 };
 
+// A hand has moved its rod where the target is off by so much: what a sensor's noise or a table
+// that is leant on does not reach.
+inline constexpr double kLeastHandSlide = 0.003;  // [m]
+inline constexpr double kLeastHandTurn = 0.05;    // [rad]
+
 // The slide of a row, and the angle of the hand that turns it: what a rod does.
 struct RodState {
   double slide, angle, slide_rate, angle_rate;  // as simulated [m, rad, m/s, rad/s]

@@ -1,5 +1,4 @@
-// Which rods their hands move. What a sensor's noise or a table that is leant on reaches is no
-// motion.
+// Which rods their hands move.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace foosball {
 
-class HandWatch {
+class MovedRods {
  public:
   // One tick of the hands' targets, of which those that are not live count for nothing. Bit i: rod
   // i has been moved since it was last said to be.
@@ -19,8 +18,8 @@ class HandWatch {
     unsigned moved = 0;
     for (int rod = 0; rod < kRods; ++rod) {
       const RodTarget& hand = hands[rod];
-      if (!hand.live || (std::fabs(hand.slide - slide_[rod]) < kSlide &&
-                         std::fabs(hand.angle - angle_[rod]) < kAngle)) {
+      if (!hand.live || (std::fabs(hand.slide - slide_[rod]) < kLeastHandSlide &&
+                         std::fabs(hand.angle - angle_[rod]) < kLeastHandTurn)) {
         continue;
       }
       slide_[rod] = hand.slide;
@@ -39,8 +38,6 @@ class HandWatch {
   }
 
  private:
-  static constexpr double kSlide = 0.003;  // [m]
-  static constexpr double kAngle = 0.05;   // [rad]
   static constexpr double kAny = std::numeric_limits<double>::max();
 
   std::array<double, kRods> slide_{}, angle_{};
