@@ -142,6 +142,13 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
   }
 }
 
+bool ProbeClient::catch_up() {
+  for (int i = 0; i < 2; ++i) {
+    if (!say(wire::Ping{}) || !hear_a<wire::Pong>()) return false;
+  }
+  return true;
+}
+
 std::optional<wire::Welcome> ProbeClient::join(std::uint8_t team, std::uint8_t rods) {
   wire::Hello wanted = hello(team);
   wanted.rods = rods;

@@ -53,6 +53,10 @@ class ProbeClient {
     }
     return std::nullopt;
   }
+  // Until all that the server tells of what this client has said is heard, a Roster too. Two pings:
+  // a Roster goes out at the end of a pass, behind the answers to what was read in it. False when
+  // the server has closed.
+  bool catch_up();
   // Hello and its answer.
   std::optional<wire::Welcome> join(std::uint8_t team = wire::kWatchOnly, std::uint8_t rods = 0);
   std::optional<wire::Welcome> join(const wire::Hello& hello);

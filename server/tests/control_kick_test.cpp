@@ -37,17 +37,14 @@ class Kicks : public testing::Test {
   }
   void vote(Guest& voter, std::uint32_t against) {
     voter.probe.say(wire::Kick{against});
-    voter.probe.say(wire::Ping{1});
-    voter.probe.hear_a<wire::Pong>();
+    voter.probe.catch_up();
   }
   void claim(Guest& who, RodSet rods, int team) {
     who.probe.say(wire::Claim{rods, static_cast<std::uint8_t>(team)});
-    who.probe.say(wire::Ping{1});
-    who.probe.hear_a<wire::Pong>();
+    who.probe.catch_up();
   }
   RodSet rods_of(Guest& who) {
-    who.probe.say(wire::Ping{1});
-    who.probe.hear_a<wire::Pong>();
+    who.probe.catch_up();
     for (const wire::Seat& seat : who.probe.roster().seats)
       if (seat.client == who.client()) return seat.rods;
     return 0;
@@ -82,8 +79,7 @@ TEST_F(Kicks, MoreThanHalfOfTheOthersPutAPlayerOutWhoMayWatchAndPlaysTheNextMatc
   Guest watcher = guest("127.0.0.5", -1);
   ASSERT_TRUE(watcher.welcome);
   watcher.probe.say(wire::Claim{RodSet(1u << 3), team_of(3)});
-  watcher.probe.say(wire::Ping{1});
-  EXPECT_TRUE(watcher.probe.hear_a<wire::Pong>());
+  EXPECT_TRUE(watcher.probe.catch_up());
   for (const wire::Seat& seat : watcher.probe.roster().seats)
     EXPECT_TRUE(seat.client != watcher.client() || seat.rods == 0);
   EXPECT_TRUE(guest("127.0.0.6", 3).welcome) << "somebody else may have the rod";
@@ -272,8 +268,7 @@ TEST_F(Kicks, AFloodOfVotesIsOneVoteAndTheTableHearsLittleOfIt) {
         d = guest("127.0.0.5", 3);
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome && d.welcome);
   for (int i = 0; i < 500; ++i) a.probe.say(wire::Kick{i % 2 == 0 ? d.client() : c.client()});
-  a.probe.say(wire::Ping{1});
-  ASSERT_TRUE(a.probe.hear_a<wire::Pong>());
+  ASSERT_TRUE(a.probe.catch_up());
   EXPECT_EQ(kicked(), 0u);
   b.probe.say(wire::Ping{2});
   int notices = 0;

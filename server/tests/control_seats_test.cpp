@@ -85,10 +85,7 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   ProbeClient other(table.port()), again(table.port());
   ASSERT_TRUE(before && other.join(1));
   // What comes back is sent the tuning too, once the tick has told it.
-  ASSERT_TRUE(table.tick_until([&] {
-    other.say(wire::Ping{1});
-    return other.hear_a<wire::Pong>() && other.tuning();
-  }));
+  ASSERT_TRUE(table.tick_until([&] { return other.catch_up() && other.tuning(); }));
   player->leave();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   again.resume(*before);
@@ -190,15 +187,13 @@ TEST(Rods, AreClaimedAndGivenUpWhileTheGameGoesOnAndAllAreTold) {
   ProbeClient first(table.port()), second(table.port());
   ASSERT_TRUE(first.join(0));
   first.say(wire::Claim{one});
-  first.say(wire::Ping{1});
-  ASSERT_TRUE(first.hear_a<wire::Pong>());
+  ASSERT_TRUE(first.catch_up());
   const auto joined = second.join(0);
   ASSERT_TRUE(joined);
   EXPECT_EQ(joined->rods, rest);
   second.say(wire::Claim{all0});
   EXPECT_NE(notice_of(second).find("are taken"), std::string::npos);
-  first.say(wire::Ping{2});
-  ASSERT_TRUE(first.hear_a<wire::Pong>());
+  ASSERT_TRUE(first.catch_up());
   ASSERT_EQ(first.roster().seats.size(), 2u);
   EXPECT_EQ(first.roster().seats[0].rods, one);
   EXPECT_EQ(first.roster().seats[1].rods, rest);
@@ -212,8 +207,7 @@ TEST(Rods, AreGivenUpToWatchAndTakenAgainOnTheOtherTeam) {
   ASSERT_TRUE(welcome);
   const auto claim = [&](wire::Claim asked) {
     client.say(asked);
-    client.say(wire::Ping{1});
-    return client.hear_a<wire::Pong>() && client.roster().seats.size() == 1;
+    return client.catch_up() && client.roster().seats.size() == 1;
   };
   ASSERT_TRUE(claim({0, wire::kWatchOnly}));
   EXPECT_EQ(client.roster().seats[0].rods, 0);
@@ -240,8 +234,7 @@ TEST(Rods, AWatcherTakesOneAndIsHeard) {
   ASSERT_TRUE(welcome);
   const RodSet one = 1;
   client.say(wire::Claim{one, 0});
-  client.say(wire::Ping{1});
-  ASSERT_TRUE(client.hear_a<wire::Pong>());
+  ASSERT_TRUE(client.catch_up());
   ASSERT_EQ(client.roster().seats.at(0).rods, one);
   table.tick();
   wire::InputDatagram input{.session = welcome->session, .token = welcome->token, .sequence = 9};
@@ -277,9 +270,7 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   const auto all_told = [&](double gravity) {
     for (ProbeClient* client : {&host, &second, &watcher}) {
       const bool told = table.tick_until([&] {
-        client->say(wire::Ping{1});
-        return client->hear_a<wire::Pong>() && client->tuning() &&
-               client->tuning()->values[0] == gravity;
+        return client->catch_up() && client->tuning() && client->tuning()->values[0] == gravity;
       });
       if (!told) return false;
     }
@@ -303,8 +294,7 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   EXPECT_EQ(table->match().view().tuning.gravity, 10.0);
   ProbeClient late(table.port());
   ASSERT_TRUE(late.join());
-  late.say(wire::Ping{1});
-  ASSERT_TRUE(late.hear_a<wire::Pong>());
+  ASSERT_TRUE(late.catch_up());
   ASSERT_TRUE(late.tuning());
   EXPECT_EQ(late.tuning()->values[0], 10.0);
 }

@@ -39,8 +39,7 @@ class StandIn : public testing::Test {
   }
   void claim(ProbeClient& client, const wire::Claim& asked) {
     client.say(asked);
-    client.say(wire::Ping{1});
-    ASSERT_TRUE(client.hear_a<wire::Pong>());
+    ASSERT_TRUE(client.catch_up());
     table.tick(3);
   }
   // Somebody whose hand is at the rods: heard every 100 ms of fake time.
@@ -174,8 +173,7 @@ TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
   EXPECT_TRUE(logged("free to the team for 10 s, then the computer's: rods 1 for Ann"));
   EXPECT_EQ(source(carl, goalie), kNone);
   bob.say(wire::Claim{all0});
-  bob.say(wire::Ping{1});
-  ASSERT_TRUE(bob.hear_a<wire::Pong>());
+  ASSERT_TRUE(bob.catch_up());
   table.tick(2);
   EXPECT_TRUE(logged("no rods are offered any more"));
   pass(RodDesk::kOfferUs + 1'000'000);
