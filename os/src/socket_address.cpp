@@ -75,6 +75,10 @@ std::string SocketAddress::network() const {
   return machine().substr(0, kPrefixBytes);
 }
 
+std::string SocketAddress::owner(const SocketAddress& heard_at) const {
+  return network() == heard_at.network() ? machine() : network();
+}
+
 std::string SocketAddress::host() const {
   char text[INET6_ADDRSTRLEN] = "?";
   if (const auto v4 = as_ipv4(*this)) {

@@ -113,6 +113,19 @@ TEST(SocketAddress, MachinesOfOneNetworkAreToldApartAndLinkLocalOnesAreNoNetwork
   EXPECT_NE(SocketAddress(on_second).machine(), lan.machine()) << "of another interface";
 }
 
+TEST(SocketAddress, AnOwnerHasOneAddressOrANetworkAndANeighbourIsNotAllOfTheLan) {
+  const auto owner = [](const char* address, const char* heard_at) {
+    return parse_address(address, 4242)->owner(*parse_address(heard_at, 17));
+  };
+  const char *far = "2001:db8:1:2::1", *farther = "2001:db8:1:2:ffff:ffff:ffff:ffff";
+  EXPECT_EQ(owner(far, "2001:db8::1"), owner(farther, "2001:db8::1"));
+  EXPECT_NE(owner(far, "2001:db8::1"), owner("2001:db8:1:3::1", "2001:db8::1"));
+  EXPECT_NE(owner(far, "2001:db8:1:2::7"), owner(farther, "2001:db8:1:2::7"));
+  EXPECT_NE(owner("192.0.2.1", "192.0.2.7"), owner("192.0.2.2", "192.0.2.7"));
+  EXPECT_EQ(owner("192.0.2.1", "192.0.2.7"), owner("::ffff:192.0.2.1", "::ffff:192.0.2.7"));
+  EXPECT_NE(owner("fe80::1", "fe80::7"), owner("fe80::2", "fe80::7"));
+}
+
 TEST(SocketAddress, OfASocketIsWhereItIsBound) {
   const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const SocketAddress any = loopback(0);

@@ -31,7 +31,7 @@ wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target
   if (target->client == voter.client) return say<Said::target_is_you>();
   if (!target->plays() && !kicks_.open_against(target->client)) return say<Said::target_watches>();
   if (target->role == wire::Role::host) return say<Said::target_is_host>();
-  if (!host && target->owner() == voter.owner()) return say<Said::target_at_your_address>();
+  if (!host && target->owner == voter.owner) return say<Said::target_at_your_address>();
   return {};
 }
 
@@ -48,12 +48,12 @@ void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& k
   if (voter->role == wire::Role::host) return put_out(*target, true);
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
-    if (s.plays() && !s.away() && s.owner() != target->owner()) voters.push_back(s.owner());
+    if (s.plays() && !s.away() && s.owner != target->owner) voters.push_back(s.owner);
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
   if (voters.size() < KickVotes::kFewest) return refuse_it(say<Said::one_alone>());
-  const auto count = kicks_.cast(voter->owner(), {target->client, target->name, target->owner()},
+  const auto count = kicks_.cast(voter->owner, {target->client, target->name, target->owner},
                                  voters, os::monotonic_us());
   if (!count.taken) return refuse_it(say<Said::vote_just_begun>());
   if (count.passed()) return put_out(*target, false);
@@ -69,7 +69,7 @@ void ControlServer::put_out(Seat& seat, bool by_host) {
   const std::uint32_t client = seat.client;
   seat.put_out = true;
   count(Count::kicked);
-  kicks_.put_out(seat.owner(), os::monotonic_us());
+  kicks_.put_out(seat.owner, os::monotonic_us());
   kicks_.close(client);
   log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) + " is put out by " +
                              (by_host ? "the host" : "the players"));
@@ -84,13 +84,12 @@ void ControlServer::put_out(Seat& seat, bool by_host) {
 }
 
 // Empty: who comes from there, and is this client (0: none yet), may have rods.
-wire::Sentence ControlServer::why_out(const os::SocketAddress& peer, wire::Role role,
+wire::Sentence ControlServer::why_out(const std::string& owner, wire::Role role,
                                       std::uint32_t client) const {
   if (role == wire::Role::host) return {};
-  const std::int64_t out_us = kicks_.out_us(peer.network(), os::monotonic_us());
+  const std::int64_t out_us = kicks_.out_us(owner, os::monotonic_us());
   if (out_us > 0) return say<Said::address_put_out>(minutes(out_us));
-  if (kicks_.open_against_another(peer.network(), client, here()))
-    return say<Said::vote_at_your_address>();
+  if (kicks_.open_against_another(owner, client, here())) return say<Said::vote_at_your_address>();
   return {};
 }
 
@@ -112,7 +111,7 @@ void ControlServer::watch_kicks(std::int64_t now_us) {
 // Who leaves and joins anew, to watch or to play, is the one that the vote is about; so is whoever
 // else comes from that address meanwhile.
 void ControlServer::carry_vote_over(const Seat& newcomer) {
-  const auto before = kicks_.carry_over({newcomer.client, newcomer.name, newcomer.owner()}, here());
+  const auto before = kicks_.carry_over({newcomer.client, newcomer.name, newcomer.owner}, here());
   if (!before) return;
   clear_notice(wire::kKickTopics + before->client, "the vote goes on");
   tell(wire::Notice::Level::info, wire::kKickTopics + newcomer.client,

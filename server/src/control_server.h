@@ -56,7 +56,7 @@ struct ControlEvent {
   std::uint8_t team = wire::kWatchOnly;         // joined, rods
   RodSet rods = 0;                              // joined, back, rods: all that it has
   std::uint64_t token = 0;                      // joined, back, rods
-  std::array<char, wire::kMaxName + 1> name{};  // joined: what it calls itself, ended by a zero
+  std::array<char, wire::kMaxName + 1> name{};  // joined, rods: ended by a zero
   wire::SealKey input_key{}, snapshot_key{};
   os::FileDescriptor socket;   // joined, back, rods: of who has rods for the first time
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
@@ -167,6 +167,7 @@ class ControlServer {
   void greet(ControlConnection& connection, const wire::Hello& hello);
   bool resume(ControlConnection& connection, const wire::Hello& hello);
   bool admit_to_table(ControlConnection& connection, const wire::Hello& hello, RodSet& rods);
+  static std::string owner_of(const ControlConnection& connection);
   void hear_out_leavers(RodSet wanted);
   void join(ControlConnection& connection, const wire::Hello& hello, RodSet rods);
   bool welcome(ControlConnection& connection, Seat& seat, ControlEvent::Kind kind,
@@ -180,8 +181,7 @@ class ControlServer {
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
   wire::Sentence why_not_kick(const Seat& voter, const Seat* target) const;
   void put_out(Seat& seat, bool by_host);
-  wire::Sentence why_out(const os::SocketAddress& peer, wire::Role role,
-                         std::uint32_t client) const;
+  wire::Sentence why_out(const std::string& owner, wire::Role role, std::uint32_t client) const;
   KickVotes::Here here() const;
   void watch_kicks(std::int64_t now_us);
   void carry_vote_over(const Seat& newcomer);

@@ -8,6 +8,7 @@
 #include "socket.h"
 #include "wire/limits.h"
 #include "wire/snapshot.h"
+#include "wire/text.h"
 #include "wish_rules.h"
 
 namespace server {
@@ -26,28 +27,6 @@ constexpr std::uint32_t kClaimTopic = 300;
 constexpr std::size_t kMostSeats = wire::kMaxSeats;
 // Of a wish that was voted for.
 constexpr std::uint32_t kEverybody = 0;
-
-// A stranger's name, fit for a log and for others' screens: no control characters, and none that
-// cannot be seen or that turns the direction of what follows (U+200B to F, U+2028 to E, U+2060 to
-// F, U+FEFF), so that no name looks like another.
-std::string printable(const std::string& name) {
-  std::string text = name.empty() ? "unnamed" : name;
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  const auto byte = [&](std::size_t at) {
-    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const unsigned a = byte(i), b = byte(i + 1), c = byte(i + 2);
-    const bool c1 = a == 0xc2 && b >= 0x80 && b < 0xa0;
-    const bool unseen =
-        (a == 0xe2 && b == 0x80 && ((c >= 0x8b && c <= 0x8f) || c >= 0xa8) && c <= 0xae) ||
-        (a == 0xe2 && b == 0x81 && c >= 0xa0 && c <= 0xaf) || (a == 0xef && b == 0xbb && c == 0xbf);
-    if (c1 || unseen) text.replace(i, c1 ? 2 : 3, "?");
-  }
-  return text;
-}
 
 std::uint32_t vote_topic(const foosball::Command& wish) {
   return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
@@ -134,7 +113,8 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
     other->close_softly(0);
   }
   seat->peer = connection.peer();
-  kicks_.moved(seat->client, seat->owner());
+  seat->owner = owner_of(connection);
+  kicks_.moved(seat->client, seat->owner);
   const bool was_away = seat->away();
   if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) {
     if (!was_away) lose_seat(seat->client);  // its old connection is gone: the time of grace begins
@@ -171,7 +151,7 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
     return false;
   }
   if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
-  if (const wire::Sentence why = why_out(peer, connection.role, 0); !why.empty()) {
+  if (const wire::Sentence why = why_out(owner_of(connection), connection.role, 0); !why.empty()) {
     refuse(connection, wire::Refusal::Code::not_allowed, why);
     return false;
   }
@@ -193,6 +173,10 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
   return false;
 }
 
+std::string ControlServer::owner_of(const ControlConnection& connection) {
+  return connection.peer().owner(os::local_address(connection.fd()));
+}
+
 // Whoever has left and is not known to have: his rods are free.
 void ControlServer::hear_out_leavers(RodSet wanted) {
   for (std::size_t i = 0; i < connections_.size(); ++i) {
@@ -207,7 +191,9 @@ void ControlServer::join(ControlConnection& connection, const wire::Hello& hello
   Seat seat;
   seat.client = ++last_client_;
   seat.ticket = options_.random();
-  seat.name = seats_.name_for(printable(hello.name), connection.peer(), hello.team);
+  seat.owner = owner_of(connection);
+  seat.wanted_name = wire::clean_name(hello.name);
+  seat.name = seats_.name_for(seat, hello.team);
   seat.team = hello.team;
   seat.rods = rods;
   seat.role = connection.role;
@@ -309,7 +295,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   };
   if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
   if (connection.role == wire::Role::watcher) return refuse_it(say<Said::joined_to_watch>());
-  const wire::Sentence out = why_out(connection.peer(), connection.role, seat->client);
+  const wire::Sentence out = why_out(seat->owner, connection.role, seat->client);
   if (!out.empty() && (claim.rods & ~seat->rods) != 0) return refuse_it(out);
   const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
   auto grant = Seats::Grant{Seats::Grant::Kind::granted, 0, {}};
@@ -325,14 +311,17 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
     if (!event.socket) return refuse_it(say<Said::no_socket_left>());
     seat->has_socket = true;
   }
+  const std::uint8_t team_now = grant.rods != 0 ? team : wire::kWatchOnly;
+  if (team_now != seat->team) seat->name = seats_.name_for(*seat, team_now);
   seat->rods = grant.rods;
-  seat->team = grant.rods != 0 ? team : wire::kWatchOnly;
+  seat->team = team_now;
   const bool only_watches = grant.rods == 0 && connection.role == wire::Role::player;
   seat->role = only_watches ? wire::Role::watcher : connection.role;
   event.client = seat->client;
   event.team = seat->team;
   event.rods = seat->rods;
   event.token = seat->ticket;
+  seat->name.copy(event.name.data(), event.name.size() - 1);
   event.input_key = seat->input_key;
   untold_.push_back(std::move(event));
   tell_tick();
@@ -405,8 +394,7 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
     return;
   }
   const Seat* seat = seats_.find(connection.client);
-  const foosball::Command wish{static_cast<foosball::Command::Kind>(asked.kind), asked.team,
-                               asked.value, asked.amount};
+  const foosball::Command wish = command_of(asked);
   // Several people at one client may play rods of both teams.
   const bool plays_it =
       seat != nullptr && (seat->rods & rods_of_team(options_.layout, wish.team)) != 0;
@@ -489,11 +477,11 @@ bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish)
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
     const bool counts = !s.away() || wish.kind == foosball::Command::Kind::restart;
-    if ((s.plays() || s.role == wire::Role::host) && counts) voters.push_back(s.owner());
+    if ((s.plays() || s.role == wire::Role::host) && counts) voters.push_back(s.owner);
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
-  const auto votes = votes_.cast(seat.owner(), wish, voters, os::monotonic_us());
+  const auto votes = votes_.cast(seat.owner, wish, voters, os::monotonic_us());
   if (votes.passed()) {
     clear_notice(vote_topic(wish), "agreed");
     return hand_on(kEverybody, wish);

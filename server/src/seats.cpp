@@ -62,11 +62,11 @@ bool is_name_of_results(std::string_view name) {
 
 }  // namespace
 
-std::string Seats::name_for(const std::string& wanted, const os::SocketAddress& peer,
-                            std::uint8_t team) const {
+std::string Seats::name_for(const Seat& seat, std::uint8_t team) const {
+  const std::string& wanted = seat.wanted_name;
   const auto is_free = [&](const std::string& name) {
     return std::ranges::none_of(seats_, [&](const Seat& s) {
-      return s.name == name && (s.peer.network() != peer.network() || s.team != team);
+      return s.client != seat.client && s.name == name && (s.owner != seat.owner || s.team != team);
     });
   };
   const bool reserved = is_name_of_results(wanted);

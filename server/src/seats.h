@@ -24,11 +24,13 @@ std::string to_text(RodSet rods);                                 // "1, 2 and 4
 struct Seat {
   std::uint32_t client = 0;  // counts up, never used twice
   std::uint64_t ticket = 0;  // the client's secret
-  std::string name;
+  std::string wanted_name;   // the one that was asked for: wire::clean_name()
+  std::string name;          // Seats::name_for()
   std::uint8_t team = wire::kWatchOnly;
   RodSet rods = 0;
   wire::Role role = wire::Role::watcher;
   os::SocketAddress peer;
+  std::string owner;                // os::SocketAddress::owner() of peer
   std::uint16_t udp_port = 0;       // where it listens for snapshots
   wire::SealKey input_key{};        // of its inputs
   bool has_socket = false;          // the tick has one for its inputs
@@ -39,10 +41,6 @@ struct Seat {
 
   bool away() const { return away_since_us >= 0; }
   bool plays() const { return rods != 0; }
-  // Whose vote it is, and who is put out: a machine has one, and so has an owner of an IPv6 network
-  // with its 2^64 addresses. Behind one IPv4 address, or in one such network, several people share
-  // it.
-  std::string owner() const { return peer.network(); }
 };
 
 class Seats {
@@ -57,13 +55,11 @@ class Seats {
   Seat& add(Seat seat) { return seats_.emplace_back(std::move(seat)); }
   void remove(std::uint32_t client);
   int of_machine(const os::SocketAddress& peer) const;
-  // The name for somebody of this team who comes from there: the one that is wanted, or with a
-  // number behind it where another is here under it, of another machine or of the other team, or
-  // where
-  // results have it for who is no person with a name (computer, cabinet, nobody). Results and
+  // The name of who has this seat, or is to have it, in this team: the one that is wanted, or with
+  // a number behind it where another is here under it, of another owner or of another team, or
+  // where results have it for who is no person with a name (computer, cabinet, nobody). Results and
   // ratings go by names.
-  std::string name_for(const std::string& wanted, const os::SocketAddress& peer,
-                       std::uint8_t team) const;
+  std::string name_for(const Seat& seat, std::uint8_t team) const;
   int of_network(const os::SocketAddress& peer) const;
 
   struct Grant {

@@ -43,6 +43,7 @@ void Server::Impl::change_rods(ControlEvent& event) {
   if (client == clients.end()) return;
   const std::uint8_t before = client->team;
   remember_name(event.client);
+  client->name = event.name;
   client->team = event.team;
   client->rods = event.rods;
   RemoteSource* source = desk.change(event.client, event.rods, tick_us);

@@ -35,6 +35,13 @@ bool well_formed(const wire::Wish& wish) {
   return false;
 }
 
+foosball::Command command_of(const wire::Wish& wish) {
+  using Kind = foosball::Command::Kind;
+  const auto kind = static_cast<Kind>(wish.kind);
+  const bool without_value = kind == Kind::push || kind == Kind::restart || kind == Kind::time_out;
+  return {kind, wish.team, without_value ? std::uint8_t{0} : wish.value, wish.amount};
+}
+
 Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& wish) {
   using Kind = foosball::Command::Kind;
   // Tuning changes the game of all: the host decides.

@@ -247,6 +247,32 @@ TEST(Rods, AWatcherTakesOneAndIsHeard) {
   EXPECT_GT(table->match().view().rods[0].slide, 0.03);
 }
 
+// Two clients of one machine under one name are one person, but not against each other.
+TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
+  Lockstep table;
+  const auto layout = foosball::MatchDesc{}.layout;
+  const RodSet all0 = rods_of_team(layout, 0), one = RodSet(all0 & -all0);
+  const RodSet all1 = rods_of_team(layout, 1);
+  ProbeClient first(table.port()), second(table.port());
+  ASSERT_TRUE(first.join(0, one) && second.join(0, RodSet(all0 & ~one)));
+  const auto names = [&] {
+    EXPECT_TRUE(first.catch_up());
+    std::vector<std::string> found;
+    for (const wire::Seat& seat : first.roster().seats) found.push_back(seat.name);
+    return found;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(), (Names{"probe", "probe"}));
+  second.say(wire::Claim{all1, 1});
+  ASSERT_TRUE(second.catch_up());
+  EXPECT_EQ(names(), (Names{"probe", "probe (2)"}));
+  first.say_goodbye();
+  ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
+  second.say(wire::Claim{all0, 0});
+  ASSERT_TRUE(second.catch_up());
+  EXPECT_EQ(second.roster().seats.at(0).name, "probe");
+}
+
 TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {
   Lockstep table;
   ProbeClient client(table.port());

@@ -27,6 +27,16 @@ TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
   EXPECT_FALSE(formed(Kind::feed, foosball::kFeedValues));
 }
 
+// Else each value would be a question of its own, and its votes would not add up.
+TEST(WishRules, AValueThatMeansNothingMakesNoOtherWishOfIt) {
+  for (const Kind kind : {Kind::restart, Kind::push, Kind::time_out}) {
+    const wire::Wish wish{static_cast<std::uint8_t>(kind), 1, 7};
+    ASSERT_TRUE(well_formed(wish));
+    EXPECT_EQ(command_of(wish).value, 0);
+  }
+  EXPECT_EQ(command_of({static_cast<std::uint8_t>(Kind::pause), 0, 1}).value, 1);
+}
+
 TEST(WishRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
   for (const auto kind : {Kind::push, Kind::choose_character, Kind::pause, Kind::restart}) {
     EXPECT_EQ(rule(wire::Role::host, wire::kWatchOnly, {kind, 1, 0}), Ruling::yes);

@@ -13,8 +13,8 @@
 #include "bits.h"
 #include "crc32.h"
 #include "quantise.h"
-#include "text.h"
 #include "wire/description.h"
+#include "wire/text.h"
 
 namespace wire {
 

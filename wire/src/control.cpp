@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "control_generated.h"
-#include "text.h"
 #include "wire/limits.h"
+#include "wire/text.h"
 
 namespace wire {
 namespace {

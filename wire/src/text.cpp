@@ -1,6 +1,9 @@
-#include "text.h"
+#include "wire/text.h"
 
+#include <algorithm>
 #include <cstdint>
+
+#include "wire/control.h"
 
 namespace wire {
 namespace {
@@ -41,6 +44,36 @@ bool is_control(std::uint32_t character) {
   return character < 0x20 || (character >= 0x7F && character < 0xA0);
 }
 
+struct Range {
+  std::uint32_t first, last;
+};
+
+bool is_in(const auto& ranges, std::uint32_t character) {
+  return std::ranges::any_of(
+      ranges, [=](const Range& r) { return character >= r.first && character <= r.last; });
+}
+
+// Default_Ignorable_Code_Point of Unicode 15 (DerivedCoreProperties.txt), and U+2028, U+2029,
+// U+2800.
+bool is_unseen(std::uint32_t character) {
+  static constexpr Range kUnseen[] = {
+      {0xAD, 0xAD},       {0x34F, 0x34F},     {0x61C, 0x61C},   {0x115F, 0x1160},
+      {0x17B4, 0x17B5},   {0x180B, 0x180F},   {0x200B, 0x200F}, {0x2028, 0x202E},
+      {0x2060, 0x206F},   {0x2800, 0x2800},   {0x3164, 0x3164}, {0xFE00, 0xFE0F},
+      {0xFEFF, 0xFEFF},   {0xFFA0, 0xFFA0},   {0xFFF0, 0xFFF8}, {0x1BCA0, 0x1BCA3},
+      {0x1D173, 0x1D17A}, {0xE0000, 0xE0FFF},
+  };
+  return is_in(kUnseen, character);
+}
+
+// Space_Separator (Zs).
+bool is_space(std::uint32_t character) {
+  static constexpr Range kSpaces[] = {{0x20, 0x20},     {0xA0, 0xA0},     {0x1680, 0x1680},
+                                      {0x2000, 0x200A}, {0x202F, 0x202F}, {0x205F, 0x205F},
+                                      {0x3000, 0x3000}};
+  return is_in(kSpaces, character);
+}
+
 }  // namespace
 
 std::string clean_text(std::string_view text, std::size_t max_bytes) {
@@ -57,6 +90,23 @@ std::string clean_text(std::string_view text, std::size_t max_bytes) {
 
 bool is_clean_text(std::string_view text, std::size_t max_bytes) {
   return text.size() <= max_bytes && clean_text(text, max_bytes) == text;
+}
+
+std::string clean_name(std::string_view name) {
+  const std::string text = clean_text(name, kMaxName);
+  std::string clean;
+  for (std::size_t at = 0, length = 0; at < text.size(); at += length) {
+    const std::string_view rest = std::string_view(text).substr(at);
+    const std::uint32_t character = first_character(rest, length);
+    if (is_unseen(character)) continue;
+    if (!is_space(character)) {
+      clean += rest.substr(0, length);
+    } else if (!clean.empty() && clean.back() != ' ') {
+      clean += ' ';
+    }
+  }
+  if (!clean.empty() && clean.back() == ' ') clean.pop_back();
+  return clean.empty() ? "unnamed" : clean;
 }
 
 }  // namespace wire

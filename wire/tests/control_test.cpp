@@ -4,8 +4,8 @@
 
 #include "control_generated.h"
 #include "samples.h"
-#include "text.h"
 #include "wire/limits.h"
+#include "wire/text.h"
 
 namespace wire {
 namespace {
@@ -270,6 +270,35 @@ TEST(CleanText, IsIdempotent) {
     const std::string clean = clean_text(text, cap);
     EXPECT_LE(clean.size(), cap);
     EXPECT_TRUE(is_clean_text(clean, cap));
+  }
+}
+
+TEST(CleanName, IsWhatOthersSee) {
+  const std::pair<std::string, std::string> names[] = {
+      {"", "unnamed"},
+      {"\u200b\ufeff \u3164", "unnamed"},
+      {"An\u200bn", "Ann"},
+      {"\u00adAnn\ufe0f", "Ann"},
+      {"\u202ennA", "nnA"},
+      {"a\U000e0041\u2800b", "ab"},
+      {"  Ann\u00a0\u2003 Lee ", "Ann Lee"},
+      {"J\u00fcrgen \uae40\u2013", "J\u00fcrgen \uae40\u2013"},
+      {"\U0001f469\u200d\U0001f680", "\U0001f469\U0001f680"},
+      {"\x1b[2J\n", "?[2J?"},
+      {"\xff", "?"},
+  };
+  for (const auto& [given, shown] : names) EXPECT_EQ(clean_name(given), shown);
+}
+
+TEST(CleanName, IsIdempotentAndNoLongerThanANameMayBe) {
+  std::mt19937_64 random(33);
+  for (int i = 0; i < 10'000; ++i) {
+    std::string name(random() % 80, ' ');
+    for (char& c : name) c = static_cast<char>(random() % 3 == 0 ? random() : ' ' + random() % 90);
+    const std::string clean = clean_name(name);
+    EXPECT_LE(clean.size(), kMaxName);
+    EXPECT_TRUE(is_clean_text(clean, kMaxName));
+    EXPECT_EQ(clean_name(clean), clean);
   }
 }
 

@@ -36,6 +36,10 @@ class SocketAddress {
   // bits. Link-local addresses (fe80::/10) share those 64 bits on every LAN: there it is the
   // machine.
   std::string network() const;
+  // Key of one who may have several addresses, whoever has one vote, for instance: the network, but
+  // of who shares the 64 bits of the address that he is heard at, a neighbour on the LAN, the
+  // machine.
+  std::string owner(const SocketAddress& heard_at) const;
   std::string host() const;  // "127.0.0.1", "::1"
 
   const sockaddr_in& ipv4() const { return v4_; }   // precondition: !is_ipv6()
