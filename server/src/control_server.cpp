@@ -25,6 +25,10 @@ constexpr std::int64_t kAcceptPauseUs = 100'000;
 // Lines that strangers cause in the log: so many at once, then one a second.
 constexpr int kLinesAtOnce = 20;
 constexpr std::int64_t kLineEveryUs = 1'000'000;
+// Rosters to all: so many at once, then one in so long, with all that has changed meanwhile. Each
+// one who comes and goes changes it.
+constexpr int kRostersAtOnce = 32;
+constexpr std::int64_t kRosterEveryUs = 50'000;
 // Told to go, and not gone yet.
 constexpr std::size_t kMostClosing = 64;
 
@@ -36,6 +40,7 @@ ControlServer::ControlServer(ControlOptions options, os::FileDescriptor listener
       listener_(std::move(listener)),
       wake_(std::move(wake)),
       seats_(options_.layout, options_.access.mixed_teams),
+      roster_limit_(kRostersAtOnce, kRosterEveryUs),
       log_limit_(kLinesAtOnce, kLineEveryUs),
       thread_([this] { run(); }) {}
 
@@ -121,7 +126,7 @@ void ControlServer::run() {
       }
     }
     watch_seats();
-    if (std::exchange(roster_changed_, false)) send_roster();
+    if (roster_changed_ && roster_limit_.take(os::monotonic_us())) send_roster();
     drop_those_who_do_not_read();
     std::erase_if(connections_, [](const auto& c) { return c->state == State::dead; });
     tell_tick();
@@ -138,6 +143,7 @@ void ControlServer::wait() {
   const bool waiting =
       votes_.any() || kicks_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
   if (waiting) until = std::min(until, now + kLookAtSeatsUs);
+  if (roster_changed_) until = std::min(until, now + kRosterEveryUs);
   polled_.clear();
   polled_.push_back({wake_.get(), POLLIN, 0});
   polled_.push_back({accepting ? listener_.get() : -1, POLLIN, 0});

@@ -212,6 +212,7 @@ class ControlServer {
   std::uint32_t last_client_ = 0;
   std::int64_t accept_after_us_ = 0;
   bool roster_changed_ = false;
+  RateLimit roster_limit_;
   RateLimit log_limit_;
   std::uint64_t unsaid_ = 0;  // lines that the log was spared
 

@@ -101,11 +101,16 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
   }
 }
 
-// True when the client has its seat again. A ticket of a seat that is gone counts as none.
+// True when the client has its seat again, or is refused. A ticket of a seat that is gone counts as
+// none.
 bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hello) {
   if (hello.session != options_.session) return false;
   Seat* seat = seats_.find_ticket(hello.ticket);
   if (seat == nullptr) return false;
+  if (!seat->resumes.take(os::monotonic_us())) {
+    refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
+    return true;
+  }
   // The connection before may look alive still: the cable was drawn, the address is another.
   for (auto& other : connections_) {
     if (other->client != seat->client) continue;
@@ -379,6 +384,7 @@ void ControlServer::watch_seats() {
 }
 
 void ControlServer::send_roster() {
+  roster_changed_ = false;
   const wire::Roster roster = seats_.roster();
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, roster);

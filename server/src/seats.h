@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "door.h"
 #include "foosball/table.h"
 #include "os/socket_address.h"
 #include "wire/control.h"
@@ -22,6 +23,10 @@ RodSet rods_of_team(foosball::Layout layout, std::uint8_t team);  // none of wir
 std::string to_text(RodSet rods);                                 // "1, 2 and 4", counted from 1
 
 struct Seat {
+  // Each is news to all: of two clients with one ticket each takes the seat from the other.
+  static constexpr int kResumesAtOnce = 8;
+  static constexpr std::int64_t kResumeEveryUs = 1'000'000;
+
   std::uint32_t client = 0;  // counts up, never used twice
   std::uint64_t ticket = 0;  // the client's secret
   std::string wanted_name;   // the one that was asked for: wire::clean_name()
@@ -30,13 +35,14 @@ struct Seat {
   RodSet rods = 0;
   wire::Role role = wire::Role::watcher;
   os::SocketAddress peer;
-  std::string owner;                // os::SocketAddress::owner() of peer
-  std::uint16_t udp_port = 0;       // where it listens for snapshots
-  wire::SealKey input_key{};        // of its inputs
-  bool has_socket = false;          // the tick has one for its inputs
-  std::uint32_t asked_match = 0;    // the questionnaire's; 0: not asked yet
-  RodSet asked_rods = 0;            // whose players have not answered it
-  bool put_out = false;             // by others
+  std::string owner;              // os::SocketAddress::owner() of peer
+  std::uint16_t udp_port = 0;     // where it listens for snapshots
+  wire::SealKey input_key{};      // of its inputs
+  bool has_socket = false;        // the tick has one for its inputs
+  std::uint32_t asked_match = 0;  // the questionnaire's; 0: not asked yet
+  RodSet asked_rods = 0;          // whose players have not answered it
+  bool put_out = false;           // by others
+  RateLimit resumes{kResumesAtOnce, kResumeEveryUs};
   std::int64_t away_since_us = -1;  // not negative: lost then, and not back yet
 
   bool away() const { return away_since_us >= 0; }

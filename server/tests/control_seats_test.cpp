@@ -61,6 +61,34 @@ TEST(Seat, IsTakenAgainThoughTheServerHasNotNoticedTheLoss) {
   EXPECT_EQ(table->clients(), 1);
 }
 
+// Two clients with one ticket would take it from each other for ever, to everybody's news.
+TEST(Seat, IsNotTakenAgainHundredsOfTimesASecond) {
+  Lockstep table(keep_seats);
+  auto holder = std::make_unique<ProbeClient>(table.port());
+  const auto ticket = holder->join(0);
+  ASSERT_TRUE(ticket);
+  int taken = 0;
+  bool refused = false;
+  while (!refused && taken < 1000) {
+    auto thief = std::make_unique<ProbeClient>(table.port());
+    wire::Hello hello = thief->hello(0);
+    hello.session = ticket->session;
+    hello.ticket = ticket->token;
+    ASSERT_TRUE(thief->say(hello));
+    const auto answer = thief->hear();
+    ASSERT_TRUE(answer);
+    refused = std::holds_alternative<wire::Refusal>(*answer);
+    if (refused) break;
+    ++taken;
+    holder = std::move(thief);
+    table.tick();
+  }
+  EXPECT_TRUE(refused);
+  EXPECT_GE(taken, Seat::kResumesAtOnce);
+  table.tick();
+  EXPECT_TRUE(holder->catch_up()) << "who has it keeps it";
+}
+
 // Who comes back and does not read goes again, in the middle of being told so.
 TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   const std::string name(40, 'n');
