@@ -22,6 +22,13 @@ std::string clock_text(double seconds) {
   return text;
 }
 
+// A series may be decided before its last match.
+bool ends_early(const match::Schedule& schedule) {
+  return std::ranges::any_of(schedule.series(), [](const match::Series& series) {
+    return series.desc().test || series.desc().band;
+  });
+}
+
 // Of the one series with a test, how near it is to its bounds.
 std::string test_text(const match::Schedule& schedule) {
   if (schedule.series().size() != 1 || !schedule.series()[0].desc().test) return {};
@@ -52,7 +59,7 @@ void Progress::show(const match::Schedule& schedule, const match::Effort& effort
   const double played =
       static_cast<double>(std::max<std::uint64_t>(1, done - std::min(done, known_)));
   const double left = seconds / played * static_cast<double>(all - done);
-  const bool tested = !test_text(schedule).empty();
+  const char* bound = ends_early(schedule) ? "at most " : "";
   const double share = static_cast<double>(done) / static_cast<double>(all);
   if (terminal_) {
     constexpr int kWidth = 30;
@@ -60,9 +67,10 @@ void Progress::show(const match::Schedule& schedule, const match::Effort& effort
     std::fprintf(stderr, "\r[%s%s] ", std::string(static_cast<std::size_t>(full), '=').c_str(),
                  std::string(static_cast<std::size_t>(kWidth - full), ' ').c_str());
   }
-  std::fprintf(stderr, "%llu of %s%llu matches, %s left%s%s", static_cast<unsigned long long>(done),
-               tested ? "at most " : "", static_cast<unsigned long long>(all),
-               clock_text(left).c_str(), test_text(schedule).c_str(), terminal_ ? "\033[K" : "\n");
+  std::fprintf(stderr, "%llu of %s%llu matches, %s%s left%s%s",
+               static_cast<unsigned long long>(done), bound, static_cast<unsigned long long>(all),
+               bound, clock_text(left).c_str(), test_text(schedule).c_str(),
+               terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);
   drawn_ = terminal_;
 }
