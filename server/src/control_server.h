@@ -186,8 +186,8 @@ class ControlServer {
   void watch_kicks(std::int64_t now_us);
   void carry_vote_over(const Seat& newcomer);
 
-  bool put_to_vote(const Seat& seat, const foosball::Command& wish);
-  bool hand_on(std::uint32_t client, const foosball::Command& wish);
+  bool put_to_vote(const Seat& seat, const foosball::Command& command);
+  bool hand_on(std::uint32_t client, const foosball::Command& command);
   void lose_seat(std::uint32_t client);
   void give_up_seat(std::uint32_t client);
   void watch_seats();

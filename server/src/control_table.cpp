@@ -400,15 +400,16 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
     return;
   }
   const Seat* seat = seats_.find(connection.client);
-  const foosball::Command wish = command_of(asked);
+  const foosball::Command command = command_of(asked);
   // Several people at one client may play rods of both teams.
   const bool plays_it =
-      seat != nullptr && (seat->rods & rods_of_team(options_.layout, wish.team)) != 0;
-  const Ruling ruling =
-      seat != nullptr ? rule(seat->role, plays_it ? wish.team : seat->team, wish) : Ruling::no;
+      seat != nullptr && (seat->rods & rods_of_team(options_.layout, command.team)) != 0;
+  const Ruling ruling = seat != nullptr
+                            ? rule(seat->role, plays_it ? command.team : seat->team, command)
+                            : Ruling::no;
   const bool taken =
       ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
-      (ruling == Ruling::yes ? hand_on(seat->client, wish) : put_to_vote(*seat, wish));
+      (ruling == Ruling::yes ? hand_on(seat->client, command) : put_to_vote(*seat, command));
   count(taken ? Count::wishes : Count::wishes_dropped);
 }
 
@@ -466,12 +467,12 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
   tell_tick();
 }
 
-bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish) {
+bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& command) {
   if (untold_.size() > kMostUntold) return false;
   ControlEvent event;
   event.kind = ControlEvent::Kind::wish;
   event.client = client;
-  event.wish = wish;
+  event.wish = command;
   untold_.push_back(std::move(event));
   tell_tick();
   return true;
@@ -479,21 +480,21 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& wish)
 
 // One machine, one vote, however many seats it has: more connections are no more people. Those who
 // are away do not vote, and nobody waits for them, but before a match ends without a result.
-bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& wish) {
+bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& command) {
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {
-    const bool counts = !s.away() || wish.kind == foosball::Command::Kind::restart;
+    const bool counts = !s.away() || command.kind == foosball::Command::Kind::restart;
     if ((s.plays() || s.role == wire::Role::host) && counts) voters.push_back(s.owner);
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
-  const auto votes = votes_.cast(seat.owner, wish, voters, os::monotonic_us());
+  const auto votes = votes_.cast(seat.owner, command, voters, os::monotonic_us());
   if (votes.passed()) {
-    clear_notice(vote_topic(wish), "agreed");
-    return hand_on(kEverybody, wish);
+    clear_notice(vote_topic(command), "agreed");
+    return hand_on(kEverybody, command);
   }
-  tell(wire::Notice::Level::info, vote_topic(wish),
-       asks_for(wish, seat.name, votes.votes, votes.needed));
+  tell(wire::Notice::Level::info, vote_topic(command),
+       asks_for(command, seat.name, votes.votes, votes.needed));
   return true;
 }
 

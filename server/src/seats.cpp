@@ -69,6 +69,7 @@ std::string Seats::name_for(const Seat& seat, std::uint8_t team) const {
       return s.client != seat.client && s.name == name && (s.owner != seat.owner || s.team != team);
     });
   };
+  if (!seat.name.empty() && is_free(seat.name)) return seat.name;
   const bool reserved = is_name_of_results(wanted);
   if (!reserved && is_free(wanted)) return wanted;
   for (int number = reserved ? 1 : 2;; ++number) {

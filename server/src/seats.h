@@ -61,10 +61,10 @@ class Seats {
   Seat& add(Seat seat) { return seats_.emplace_back(std::move(seat)); }
   void remove(std::uint32_t client);
   int of_machine(const os::SocketAddress& peer) const;
-  // The name of who has this seat, or is to have it, in this team: the one that is wanted, or with
-  // a number behind it where another is here under it, of another owner or of another team, or
-  // where results have it for who is no person with a name (computer, cabinet, nobody). Results and
-  // ratings go by names.
+  // The name of who has this seat, or is to have it, in this team: the one that it has, else the
+  // one that is wanted, or that with a number behind it where another is here under it, of another
+  // owner or of another team, or where results have it for who is no person with a name (computer,
+  // cabinet, nobody). Results and ratings go by names, so that nobody has another one without need.
   std::string name_for(const Seat& seat, std::uint8_t team) const;
   int of_network(const os::SocketAddress& peer) const;
 

@@ -35,11 +35,11 @@ bool well_formed(const wire::Wish& wish) {
   return false;
 }
 
-foosball::Command command_of(const wire::Wish& wish) {
+foosball::Command command_of(const wire::Wish& request) {
   using Kind = foosball::Command::Kind;
-  const auto kind = static_cast<Kind>(wish.kind);
+  const auto kind = static_cast<Kind>(request.kind);
   const bool without_value = kind == Kind::push || kind == Kind::restart || kind == Kind::time_out;
-  return {kind, wish.team, without_value ? std::uint8_t{0} : wish.value, wish.amount};
+  return {kind, request.team, without_value ? std::uint8_t{0} : request.value, request.amount};
 }
 
 Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& wish) {

@@ -13,7 +13,7 @@ namespace server {
 bool well_formed(const wire::Wish& wish);
 // What it asks of the match. Precondition: well_formed(). A kind that takes no value has none, so
 // that all who ask for it ask one question.
-foosball::Command command_of(const wire::Wish& wish);
+foosball::Command command_of(const wire::Wish& request);
 
 // What becomes of a well-formed wish: a host's and one for the own team is done, what concerns both
 // teams is put to the vote, a watcher has none.

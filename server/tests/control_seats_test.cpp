@@ -298,7 +298,7 @@ TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   second.say(wire::Claim{all0, 0});
   ASSERT_TRUE(second.catch_up());
-  EXPECT_EQ(second.roster().seats.at(0).name, "probe");
+  EXPECT_EQ(second.roster().seats.at(0).name, "probe (2)") << "not the one who has left";
 }
 
 TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {

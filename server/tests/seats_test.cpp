@@ -127,6 +127,8 @@ TEST_F(SeatsTest, NoTwoPeopleHaveOneName) {
   seats.add(second);
   EXPECT_EQ(seats.name_for(far, 0), "player (3)");
   EXPECT_EQ(seats.name_for(first, 1), "player") << "who changes sides keeps it where it is free";
+  seats.remove(1);
+  EXPECT_EQ(seats.name_for(second, 0), "player (2)") << "nor is he the one who has left";
   for (const std::string name : {"computer 5", "cabinet", "nobody"})
     EXPECT_EQ(seats.name_for(asks_for(name, "far"), 0), name + " (1)")
         << "stands for no person in results";

@@ -28,11 +28,11 @@ TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
 }
 
 // Else each value would be a question of its own, and its votes would not add up.
-TEST(WishRules, AValueThatMeansNothingMakesNoOtherWishOfIt) {
+TEST(WishRules, AValueThatMeansNothingMakesNoOtherRequestOfIt) {
   for (const Kind kind : {Kind::restart, Kind::push, Kind::time_out}) {
-    const wire::Wish wish{static_cast<std::uint8_t>(kind), 1, 7};
-    ASSERT_TRUE(well_formed(wish));
-    EXPECT_EQ(command_of(wish).value, 0);
+    const wire::Wish request{static_cast<std::uint8_t>(kind), 1, 7};
+    ASSERT_TRUE(well_formed(request));
+    EXPECT_EQ(command_of(request).value, 0);
   }
   EXPECT_EQ(command_of({static_cast<std::uint8_t>(Kind::pause), 0, 1}).value, 1);
 }
