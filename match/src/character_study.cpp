@@ -150,9 +150,9 @@ std::vector<Figure> varied_figures(const VariedNumber& varied, const std::vector
   std::vector<Figure> all;
   std::vector<double> values, scores;
   const auto& field = foosball::kBodyFields[varied.field];
-  const std::string section = character_of(series[0]).name + " against all others, by " +
-                              field.name +
-                              (*field.unit ? std::string(" [") + field.unit + "]" : "");
+  const std::string section =
+      character_of(series[0]).name + " against all others, by " + field.name +
+      (*field.unit ? std::string(" [") + field.unit + "]" : "") + "; +- one standard error";
   for (std::size_t step = 0; step < series.size(); ++step) {
     values.push_back(varied.value(static_cast<int>(step)));
     scores.push_back(100.0 * mean_score(series[step].pairs()));
@@ -160,8 +160,11 @@ std::vector<Figure> varied_figures(const VariedNumber& varied, const std::vector
                    scores.back(), "% points", "", Figure::Judgment::none,
                    100.0 * score_error(series[step].pairs())});
   }
-  all.push_back({section, std::string("value for half of the points, by a line"),
-                 balanced_value(values, scores), field.unit, "", Figure::Judgment::none});
+  const double balanced = balanced_value(values, scores);
+  const bool outside = balanced < values.front() || balanced > values.back();
+  all.push_back({section,
+                 std::string("for half of the points, by a line") + (outside ? ", outside" : ""),
+                 balanced, field.unit, "", Figure::Judgment::none});
   return all;
 }
 

@@ -20,7 +20,11 @@ std::string format(double value) {
   if (std::isnan(value)) return "-";
   char text[40];
   const double size = std::fabs(value);
-  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
+  const char* digits = size >= 100.0                ? "%.0f"
+                       : size >= 10.0               ? "%.1f"
+                       : size >= 0.1 || size == 0.0 ? "%.2f"
+                                                    : "%.3g";  // a length in metres
+  std::snprintf(text, sizeof text, digits, value);
   return text;
 }
 

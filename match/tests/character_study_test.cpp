@@ -65,11 +65,10 @@ TEST(VariedNumber, ChangesThatOfOneCharacterAlone) {
   EXPECT_EQ(opponents, (std::set<int>{0, 2, 3, 4, 5}));
 }
 
-TEST(VariedNumber, HasItsBalanceWhereTheLineThroughThePointsMeetsAHalf) {
-  VariedNumber varied{.character = 0, .field = 6, .low = 0.04, .high = 0.08, .steps = 2};
+// Twenty matches at each value, of which the character wins the given share.
+std::vector<Series> played(const VariedNumber& varied, std::initializer_list<int> tenths) {
   std::vector<Series> series;
-  // 40 % of the points at 0.04, 60 % at 0.08.
-  for (const int wins : {4, 6}) {
+  for (const int wins : tenths) {
     SeriesDesc desc = varied_series({}, varied)[0];
     desc.max_games = 20;
     series.emplace_back(desc);
@@ -80,11 +79,28 @@ TEST(VariedNumber, HasItsBalanceWhereTheLineThroughThePointsMeetsAHalf) {
       series.back().take(result);
     }
   }
-  const auto figures = varied_figures(varied, series);
+  return series;
+}
+
+TEST(VariedNumber, HasItsBalanceWhereTheLineThroughThePointsMeetsAHalf) {
+  const VariedNumber varied{.character = 0, .field = 6, .low = 0.04, .high = 0.08, .steps = 2};
+  const auto figures = varied_figures(varied, played(varied, {4, 6}));
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_NEAR(figures[0].value, 40.0, 1e-9);
   EXPECT_NEAR(figures[1].value, 60.0, 1e-9);
   EXPECT_NEAR(figures[2].value, 0.06, 1e-9);
+  // Printed as what can go into a file, and not as "0.06" of anything from 0.055 to 0.065.
+  const VariedNumber wide{.character = 0, .field = 6, .low = 0.04, .high = 0.084, .steps = 2};
+  EXPECT_NE(as_table(varied_figures(wide, played(wide, {4, 6}))).find(" 0.062 "),
+            std::string::npos);
+}
+
+TEST(VariedNumber, SaysThatAValueLiesOutsideOfWhatWasPlayed) {
+  const VariedNumber varied{.character = 0, .field = 6, .low = 0.04, .high = 0.08, .steps = 2};
+  EXPECT_NE(varied_figures(varied, played(varied, {6, 7}))[2].name.find("outside"),
+            std::string::npos);
+  EXPECT_EQ(varied_figures(varied, played(varied, {4, 6}))[2].name.find("outside"),
+            std::string::npos);
 }
 
 TEST(Traits, AreMeasuredOfEachCharacterAgainstItself) {
