@@ -14,6 +14,7 @@
 
 #include "profile/toml_text.h"
 #include "wire/read_file.h"
+#include "wire/text.h"
 
 namespace characters {
 namespace {
@@ -92,7 +93,7 @@ Problem take_numbers(const toml::table& table, const std::string& section, const
         node.is_number() ? node.template value<double>() : std::nullopt;
     if (!value || !foosball::in_range(*field, *value)) {
       return at(file, node.source(),
-                fmt::format("{} must be a number from {}; {}", field->name, range_of(*field),
+                fmt::format("{} must be a number from {}. {}", field->name, range_of(*field),
                             field->meaning));
     }
     values.*field->value = *value;
@@ -100,22 +101,11 @@ Problem take_numbers(const toml::table& table, const std::string& section, const
   return {};
 }
 
-// Of UTF-8, which TOML is: below U+0020, U+007F, or U+0080 to U+009F.
-bool has_control(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-    if (byte(i) < 0x20 || byte(i) == 0x7F) return true;
-    if (byte(i) == 0xC2 && i + 1 < text.size() && byte(i + 1) < 0xA0) return true;
-  }
-  return false;
-}
-
 Problem take_text(const toml::node& node, const char* name, std::size_t least, std::size_t most,
                   std::string_view file, std::string& text) {
   const auto parsed = node.value<std::string_view>();
   const auto value = parsed ? std::optional(profile::as_written(*parsed)) : std::nullopt;
-  const bool fits =
-      value && value->size() >= least && value->size() <= most && !has_control(*value);
+  const bool fits = value && value->size() >= least && wire::is_clean_text(*value, most);
   if (!fits) {
     return at(file, node.source(),
               fmt::format("{} must be a text of {} to {} bytes on one line; write {} = \"...\"",
@@ -123,6 +113,17 @@ Problem take_text(const toml::node& node, const char* name, std::size_t least, s
   }
   text = *value;
   return {};
+}
+
+// On every screen, in lists and in front of goals: as plain as a player's.
+Problem take_name(const toml::node& node, std::string_view file, std::string& name) {
+  const Problem problem = take_text(node, "name", 1, foosball::kMaxCharacterName, file, name);
+  if (problem || wire::clean_name(name) == name) return problem;
+  return at(
+      file, node.source(),
+      fmt::format("name must have a letter, single spaces within and nothing that is not seen; "
+                  "write name = \"{}\"",
+                  wire::clean_name(name)));
 }
 
 // "#rrggbb"
@@ -201,7 +202,7 @@ Problem take_all(const toml::table& file_table, std::string_view file, Character
   for (const auto& [key, node] : file_table) {
     Problem problem;
     if (key == "name") {
-      problem = take_text(node, "name", 1, foosball::kMaxCharacterName, file, c.name);
+      problem = take_name(node, file, c.name);
     } else if (key == "specialty") {
       problem =
           take_text(node, "specialty", 0, foosball::kMaxCharacterSpecialty, file, c.specialty);

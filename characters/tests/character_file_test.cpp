@@ -131,6 +131,23 @@ TEST(CharacterFile, NamesTheLineAndTheNearestNameOfWhatItDoesNotKnow) {
   }
 }
 
+TEST(CharacterFile, RefusesANameThatDoesNotLookAsItIsWritten) {
+  const struct {
+    const char *name, *shown;
+  } kCases[] = {{"   ", "unnamed"},
+                {" keeper", "keeper"},
+                {"the  wall", "the wall"},
+                {"\u202Eevil", "evil"},
+                {"aver\u200Bage", "average"}};
+  for (const auto& c : kCases) {
+    const std::string error = error_of(std::string("name = \"") + c.name + "\"\n");
+    EXPECT_TRUE(says(error, "mine.toml:1: name must have a letter")) << error;
+    EXPECT_TRUE(says(error, std::string("write name = \"") + c.shown + "\"")) << error;
+  }
+  EXPECT_EQ(error_of("name = \"\uD55C\uAD6D \uC120\uC218 \u26BD\"\n"), "");
+  EXPECT_EQ(error_of("name = \"average\"\r\n"), "");
+}
+
 TEST(CharacterFile, RefusesTextsColoursAndChoicesThatAreNone) {
   const std::string name = "name = \"x\"\n";
   for (const char* bad : {"name = 7", "name = \"\"", "name = \"a\\nb\"", "name = \"\\u0085\"",
