@@ -145,14 +145,16 @@ bool run(sqlite3* database, const std::string& sql) {
   return sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
 }
 
-// Rolled back unless it is committed.
+// Rolled back unless it is committed. A rollback hides the error that led to it: ask for that
+// first.
 class Transaction {
  public:
   explicit Transaction(sqlite3* database) : database_(database) {
     begun_ = run(database, "BEGIN IMMEDIATE");
   }
   ~Transaction() {
-    if (begun_) run(database_, "ROLLBACK");
+    // SQLite itself has rolled back what a full disk cut off.
+    if (begun_ && sqlite3_get_autocommit(database_) == 0) run(database_, "ROLLBACK");
   }
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
@@ -190,23 +192,29 @@ std::string what_is_wrong(sqlite3* database) {
       return "the file cannot be written; check its permissions";
     case SQLITE_FULL:
       return "the disk is full; make room";
+    case SQLITE_IOERR:
+      return "the file cannot be read or written to its end; check the disk, and limits on files";
     default:
       return std::string(sqlite3_errmsg(database));
   }
 }
 
-// All steps within one transaction: a program that dies on the way leaves the old version.
-bool migrate(sqlite3* database, int from) {
+// All steps within one transaction: a program that dies on the way leaves the old version. What
+// went wrong, if anything did.
+std::optional<std::string> migrate(sqlite3* database, int from) {
   Transaction transaction(database);
-  if (!transaction.begun()) return false;
-  // Another program may have done it since.
-  from = static_cast<int>(pragma(database, "user_version").value_or(from));
-  for (int version = from; version < kSchemaVersion; ++version) {
-    if (!run(database, kMigrations[version])) return false;
-  }
-  return run(database, "PRAGMA application_id = " + std::to_string(kApplicationId)) &&
-         run(database, "PRAGMA user_version = " + std::to_string(kSchemaVersion)) &&
-         transaction.commit();
+  const auto steps = [&] {
+    // Another program may have done it since.
+    from = static_cast<int>(pragma(database, "user_version").value_or(from));
+    for (int version = from; version < kSchemaVersion; ++version) {
+      if (!run(database, kMigrations[version])) return false;
+    }
+    return run(database, "PRAGMA application_id = " + std::to_string(kApplicationId)) &&
+           run(database, "PRAGMA user_version = " + std::to_string(kSchemaVersion)) &&
+           transaction.commit();
+  };
+  if (transaction.begun() && steps()) return std::nullopt;
+  return what_is_wrong(database);
 }
 
 std::optional<std::string> problem_with_file(const std::string& path, Access access) {
@@ -258,9 +266,12 @@ tl::expected<Store, std::string> Store::open(const std::string& path, Access acc
   if (access == Access::create) {
     const bool ready = run(opened, "PRAGMA journal_mode = WAL") &&
                        run(opened, "PRAGMA synchronous = NORMAL") &&
-                       run(opened, "PRAGMA foreign_keys = ON") &&
-                       (*version == kSchemaVersion || migrate(opened, static_cast<int>(*version)));
+                       run(opened, "PRAGMA foreign_keys = ON");
     if (!ready) return refused(what_is_wrong(opened));
+    if (*version < kSchemaVersion) {
+      if (const auto problem = migrate(opened, static_cast<int>(*version)))
+        return refused(*problem);
+    }
     return Store(path, std::move(database), kSchemaVersion);
   }
   return Store(path, std::move(database), static_cast<int>(*version));

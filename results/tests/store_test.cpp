@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -88,6 +90,21 @@ TEST_F(StoreTest, AddsABatchWholeOrNotAtAll) {
   ASSERT_FALSE(failed);
   EXPECT_NE(failed.error().find("as a disk that fills"), std::string::npos) << failed.error();
   EXPECT_EQ(store.matches({}).value().size(), 40u) << "nothing of the second";
+}
+
+// A limit on the file's size stands for a disk that fills while the tables are made.
+TEST_F(StoreTest, SaysThatItIsTheDiskThatFailed) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{8192, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const auto failed = Store::open(path_, Access::create);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, ignored);
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().find("check the disk"), std::string::npos) << failed.error();
+  EXPECT_TRUE(Store::open(path_, Access::create)) << "once there is room";
 }
 
 TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
