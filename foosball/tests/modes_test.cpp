@@ -17,11 +17,12 @@ class ModesTest : public MatchTest {
 // --- an absent side ------------------------------------------------------------------------------
 
 // Found by a reviewer: 2 goals in 47 minutes, the ball at rest for 98.6 % of the time.
-// Seconds of play until the side that is there has won, or the limit.
-double until_won(Layout layout, Rules rules, int absent, double limit) {
+// Seconds of play until the side that is there has won, or the limit. seed: of the match and of the
+// player.
+double until_won(Layout layout, Rules rules, int absent, double limit, std::uint64_t seed) {
   rules.idle_seconds = 0.0;
-  Match match = *Match::create({.layout = layout, .seed = 3, .rules = rules});
-  ComputerPlayer player({.team = 1 - absent, .seed = 5, .player = *parse_player("classic:0.9")});
+  Match match = *Match::create({.layout = layout, .seed = seed, .rules = rules});
+  ComputerPlayer player({.team = 1 - absent, .seed = seed, .player = *parse_player("classic:0.9")});
   TickInput input;
   const Command confirm{Command::Kind::push, static_cast<std::uint8_t>(absent)};
   while (match.view().play_seconds < limit) {
@@ -39,8 +40,12 @@ double until_won(Layout layout, Rules rules, int absent, double limit) {
 TEST(AbsentSide, LosesAMatchWithinAFewMinutes) {
   Rules itsf = itsf_rules(1);
   itsf.goals_to_win = 2;
-  const double arcade = until_won(Layout::tournament, arcade_rules(), 1, 300.0);
-  const double two_goals = until_won(Layout::paper, itsf, 0, 300.0);
+  constexpr int kMatches = 8;  // one alone is luck: two goals after 15 to 403 s
+  double arcade = 0.0, two_goals = 0.0;
+  for (std::uint64_t seed = 1; seed <= kMatches; ++seed) {
+    arcade += until_won(Layout::tournament, arcade_rules(), 1, 900.0, seed) / kMatches;
+    two_goals += until_won(Layout::paper, itsf, 0, 900.0, seed) / kMatches;
+  }
   std::printf("won after %.0f s; two goals by the ITSF's rules after %.0f s\n", arcade, two_goals);
   EXPECT_LT(arcade, 300.0);
   EXPECT_LT(two_goals, 300.0);
