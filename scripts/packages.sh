@@ -23,6 +23,7 @@ build  liburdfdom-dev        robots' descriptions, URDF: the engine's optional p
 build  libtinyxml2-dev       XML of these, with the lines of what is wrong
 build  libtbb-dev            oneTBB: steps of the engine by several threads, its optional part
 build  nlohmann-json3-dev    JSON, the calibration file
+build  libeigen3-dev         normal equations of a calibration; matrices that the tests compare with
 build  libsqlite3-dev        SQLite, the file of results
 build  libglfw3-dev          the window, its keys and mouse
 build  libsdl2-dev           gamepads, by events
@@ -53,7 +54,6 @@ check  systemd               verifies the service that the package installs
 check  xdotool               keys and mouse for the test that watches a recording
 check  libgtest-dev          the tests
 check  libgmock-dev          matchers in the tests
-check  libeigen3-dev         6x6 matrices that the tests compare with
 check  libopenmpi-dev        space-foosball-match-mpi, matches over a cluster, is built where MPI is
 check  openmpi-bin           mpirun: its test, on ranks of this machine
 check  librapidcheck-dev     property tests

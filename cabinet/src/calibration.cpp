@@ -1,10 +1,13 @@
 // The calibration file, JSON; its schema is in docs/cabinet.md.
 #include "cabinet/calibration.h"
 
+#include "calibration_check.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -19,7 +22,7 @@ namespace {
 using nlohmann::json;
 using Failure = std::optional<std::string>;  // what is wrong and what to do
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 1 had no gains and no dead band
 // Eight rods are 2 KiB; what is far longer is another file.
 constexpr std::size_t kMostBytes = 64 * 1024;
 // Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
@@ -28,15 +31,26 @@ constexpr double kLeastMetres = 1e-3 / 472 / 4, kMostMetres = 1e-3 * 4;
 // Sine of the angle between the two rows (1 for a square sensor): below this slide and spin can not
 // be told apart.
 constexpr double kLeastSine = 0.01;
+// Of an eccentric rod. Half is a rod that comes a third closer and goes as far away: it would
+// grind.
+constexpr double kMostGain = 0.5;
+constexpr double kMostDeadBand = 4000;  // [counts / s] 50 mm/s at 78.7 counts/mm
+// Counts that are further apart belong to two motions, the second of which has just begun.
+constexpr double kLongestMotion = 0.05;  // [s] ten reports of a PS/2 mouse
 
 const char* const kSlideKey = "slide_m_per_count";
 const char* const kAngleKey = "angle_rad_per_count";
+const char* const kSlideGainKey = "slide_gain";
+const char* const kSpinGainKey = "spin_gain";
+const char* const kDeadBandKey = "dead_band_counts_per_s";
 
 std::string millimetres(double metres) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g mm", metres * 1e3);
   return text.data();
 }
+
+}  // namespace
 
 Failure check_rod(const RodCalibration& rod) {
   const double slide = std::hypot(rod.m[0][0], rod.m[0][1]);
@@ -56,8 +70,19 @@ Failure check_rod(const RodCalibration& rod) {
            " are possible; write metres and radians per count, as in "
            "cabinet/calibration.example.json";
   }
+  for (const auto& gain : {rod.slide_gain, rod.spin_gain}) {
+    if (!(std::hypot(gain[0], gain[1]) <= kMostGain)) {
+      return "has a gain above 0.5 in a turn, which no eccentric rod has; mount the sensor so that "
+             "its distance stays the same while the rod turns, and calibrate it again";
+    }
+  }
+  if (!(rod.dead_band >= 0 && rod.dead_band <= kMostDeadBand)) {
+    return "has a dead band out of 0 to 4000 counts a second; calibrate it again";
+  }
   return {};
 }
+
+namespace {
 
 Failure check(const Calibration& calibration) {
   for (int rod = 0; rod < kRods; ++rod) {
@@ -80,12 +105,33 @@ Failure read_row(const json& rod, const char* key, double (&row)[2]) {
   return {};
 }
 
+// Of a rod of version 2; what is left out is zero.
+Failure read_corrections(const json& rod, RodCalibration& calibration) {
+  Failure wrong;
+  if (rod.contains(kSlideGainKey)) wrong = read_row(rod, kSlideGainKey, calibration.slide_gain);
+  if (!wrong && rod.contains(kSpinGainKey)) {
+    wrong = read_row(rod, kSpinGainKey, calibration.spin_gain);
+  }
+  const auto band = rod.find(kDeadBandKey);
+  if (wrong || band == rod.end()) return wrong;
+  if (!band->is_number()) {
+    return std::string("has a \"") + kDeadBandKey + "\" that is no number; write 0 or leave it out";
+  }
+  calibration.dead_band = band->get<double>();
+  return {};
+}
+
 Failure read_json(const json& file, Calibration& calibration) {
   if (!file.is_object()) return "is not a calibration; see cabinet/calibration.example.json";
   const auto version = file.find("version");
-  if (version == file.end() || *version != kVersion) {
-    return "has no \"version\": 1; write it with this program or see "
+  if (version == file.end() || !version->is_number_integer() || *version < 1) {
+    return "has no \"version\": 2; write it with this program or see "
            "cabinet/calibration.example.json";
+  }
+  if (*version > kVersion) {
+    return "is of version " + version->dump() +
+           ", this program reads up to 2; calibrate again, or "
+           "take a newer program";
   }
   const auto rods = file.find("rods");
   const std::size_t count = rods != file.end() && rods->is_array() ? rods->size() : 0;
@@ -99,6 +145,7 @@ Failure read_json(const json& file, Calibration& calibration) {
     if (!rod.is_object()) wrong = "is not an object; see cabinet/calibration.example.json";
     if (!wrong) wrong = read_row(rod, kSlideKey, calibration.rods[i].m[0]);
     if (!wrong) wrong = read_row(rod, kAngleKey, calibration.rods[i].m[1]);
+    if (!wrong && *version > 1) wrong = read_corrections(rod, calibration.rods[i]);
     if (wrong) return "(rod " + std::to_string(i) + ") " + *wrong;
   }
   return check(calibration);
@@ -156,6 +203,24 @@ bool write_whole(int fd, const std::string& text) {
 
 }  // namespace
 
+RodMotion RodIntegrator::add(double slide_counts, double spin_counts, double seconds,
+                             double angle) {
+  double counts[2] = {slide_counts, spin_counts};
+  for (int axis = 0; axis < 2; ++axis) {
+    still_[axis] = std::min(still_[axis] + seconds, kLongestMotion);
+    if (counts[axis] == 0) continue;
+    counts[axis] += (counts[axis] > 0 ? 1 : -1) * calibration_.dead_band * still_[axis];
+    still_[axis] = 0;
+  }
+  const auto& m = calibration_.m;
+  const double along = m[0][0] * counts[0] + m[0][1] * counts[1];
+  const double around = m[1][0] * counts[0] + m[1][1] * counts[1];
+  const double middle = angle + 0.5 * around;
+  const double c = std::cos(middle), s = std::sin(middle);
+  return {(1 + calibration_.slide_gain[0] * c + calibration_.slide_gain[1] * s) * along,
+          (1 + calibration_.spin_gain[0] * c + calibration_.spin_gain[1] * s) * around};
+}
+
 Calibration nominal_calibration(double counts_per_mm, double rod_diameter) {
   const double metres = 1e-3 / counts_per_mm;
   Calibration calibration{};
@@ -205,8 +270,11 @@ tl::expected<void, std::string> save_calibration(const Calibration& calibration,
   }
   json file{{"version", kVersion}, {"rods", json::array()}};
   for (const RodCalibration& rod : calibration.rods) {
-    file["rods"].push_back(
-        json{{kSlideKey, {rod.m[0][0], rod.m[0][1]}}, {kAngleKey, {rod.m[1][0], rod.m[1][1]}}});
+    file["rods"].push_back(json{{kSlideKey, {rod.m[0][0], rod.m[0][1]}},
+                                {kAngleKey, {rod.m[1][0], rod.m[1][1]}},
+                                {kSlideGainKey, {rod.slide_gain[0], rod.slide_gain[1]}},
+                                {kSpinGainKey, {rod.spin_gain[0], rod.spin_gain[1]}},
+                                {kDeadBandKey, rod.dead_band}});
   }
   const std::string beside = path + ".new";
   {

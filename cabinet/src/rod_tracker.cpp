@@ -57,13 +57,18 @@ template <std::size_t... I>
 std::array<RateFilter, kRods> make_filters(std::index_sequence<I...>) {
   return {((void)I, RateFilter(kReportUs, kRateHoldUs))...};
 }
+template <std::size_t... I>
+std::array<RodIntegrator, kRods> make_integrators(const Calibration& calibration,
+                                                  std::index_sequence<I...>) {
+  return {RodIntegrator(calibration.rods[I])...};
+}
 
 }  // namespace
 
 RodTracker::RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit)
-    : calibration_(calibration),
-      slide_limit_(slide_limit),
+    : slide_limit_(slide_limit),
       longest_gap_us_(longest_gap_us(calibration)),
+      integrators_(make_integrators(calibration, std::make_index_sequence<kRods>())),
       rates_(make_filters(std::make_index_sequence<kRods>())) {}
 
 bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const {
@@ -127,22 +132,20 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
     based_[rod] = false;
     return;
   }
-  double d_slide = 0, d_angle = 0;
+  RodMotion moved{0, 0};
   if (based_[rod]) {
-    const double slide_counts = increment(last_.slide[rod], frame.slide[rod]);
-    const double spin_counts = increment(last_.spin[rod], frame.spin[rod]);
-    const auto& m = calibration_.rods[rod].m;
-    d_slide = m[0][0] * slide_counts + m[0][1] * spin_counts;
-    d_angle = m[1][0] * slide_counts + m[1][1] * spin_counts;
+    moved = integrators_[rod].add(increment(last_.slide[rod], frame.slide[rod]),
+                                  increment(last_.spin[rod], frame.spin[rod]),
+                                  elapsed_us(last_, frame) * 1e-6, input.angle);
   }
   based_[rod] = true;
 
-  rates_[rod].update(d_slide, d_angle, clock_us_);
-  input.slide += d_slide;
+  rates_[rod].update(moved.slide, moved.angle, clock_us_);
+  input.slide += moved.slide;
   if (slide_limit_[rod] > 0) {
     input.slide = std::clamp(input.slide, -slide_limit_[rod], slide_limit_[rod]);
   }
-  input.angle += d_angle;
+  input.angle += moved.angle;
   input.slide_rate = rates_[rod].slide_rate();
   input.angle_rate = rates_[rod].angle_rate();
   input.time_us = now_us;

@@ -35,9 +35,9 @@ class RodTracker {
   bool starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us);
   void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us);
 
-  Calibration calibration_;
   std::array<double, kRods> slide_limit_;
   std::int64_t longest_gap_us_;  // over which counts are trusted
+  std::array<RodIntegrator, kRods> integrators_;
   RodInputs rods_{};
   std::array<RateFilter, kRods> rates_;
   wire::DeviceFrame last_{};

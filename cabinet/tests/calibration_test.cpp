@@ -55,10 +55,17 @@ TEST(Calibration, SavedAndLoadedIsTheSameToTheBit) {
   Calibration calibration = nominal_calibration(39.37, 0.0163);
   calibration.rods[3].m[0][1] = -1.0 / 3 * 1e-6;
   calibration.rods[3].m[1][0] = 0.1 * calibration.rods[3].m[1][1];
+  calibration.rods[3].slide_gain[1] = -0.03;
+  calibration.rods[3].spin_gain[0] = 0.05;
+  calibration.rods[3].dead_band = 12.5;
   const auto saved = save_calibration(calibration, folder.file());
   ASSERT_TRUE(saved.has_value()) << saved.error();
   const auto loaded = load_calibration(folder.file());
   ASSERT_TRUE(loaded.has_value()) << loaded.error();
+  EXPECT_EQ(loaded->rods[3].slide_gain[1], -0.03);
+  EXPECT_EQ(loaded->rods[3].spin_gain[0], 0.05);
+  EXPECT_EQ(loaded->rods[3].dead_band, 12.5);
+  EXPECT_EQ(loaded->rods[4].slide_gain[1], 0);
   for (int rod = 0; rod < kRods; ++rod) {
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) {
@@ -83,6 +90,20 @@ TEST(Calibration, AMirroredSensorIsFine) {
 TEST(Calibration, TheCoarsestAndTheFinestSensorAreFine) {
   EXPECT_EQ(complaint(file_json(rod_json("[0.001, 0]", "[0, 0.125]"))), "");
   EXPECT_EQ(complaint(file_json(rod_json("[2.1e-6, 0]", "[0, 2.6e-4]"))), "");
+}
+
+// One of version 2 with more of rod 5.
+std::string corrected(const std::string& more) {
+  std::string text = file_json(kGoodRod.substr(0, kGoodRod.size() - 1) + ", " + more + "}");
+  return text.replace(text.find("\"version\": 1"), 12, "\"version\": 2");
+}
+
+TEST(Calibration, AFileOfBeforeIsRead) {
+  const auto before = parse_calibration(file_json(), "c.json");
+  ASSERT_TRUE(before.has_value()) << before.error();
+  EXPECT_EQ(before->rods[5].slide_gain[0], 0);
+  EXPECT_EQ(before->rods[5].dead_band, 0);
+  EXPECT_EQ(complaint(corrected(R"("slide_gain": [0.03, 0.01])")), "");  // the rest is zero
 }
 
 struct BadFile {
@@ -111,8 +132,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Nested", std::string(60'000, '['), "is not JSON"},
         BadFile{"Long", std::string(70'000, ' ') + "{}", "is longer than 64 KiB"},
         BadFile{"Array", "[1]", "is not a calibration"},
-        BadFile{"NoVersion", R"({"rods": []})", "has no \"version\": 1"},
-        BadFile{"OtherVersion", R"({"version": 2, "rods": []})", "has no \"version\": 1"},
+        BadFile{"NoVersion", R"({"rods": []})", "has no \"version\": 2"},
+        BadFile{"LaterVersion", R"({"version": 3, "rods": []})", "is of version 3"},
+        BadFile{"VersionIsWord", R"({"version": "2", "rods": []})", "has no \"version\": 2"},
+        BadFile{"GainIsOneNumber", corrected(R"("slide_gain": [0.03])"),
+                "(rod 5) has no \"slide_gain\" of two numbers"},
+        BadFile{"GainIsTooLarge", corrected(R"("spin_gain": [0.4, 0.4])"),
+                "(rod 5) has a gain above 0.5"},
+        BadFile{"DeadBandIsWord", corrected(R"("dead_band_counts_per_s": "no")"),
+                "(rod 5) has a \"dead_band_counts_per_s\" that is no number"},
+        BadFile{"DeadBandIsNegative", corrected(R"("dead_band_counts_per_s": -1)"),
+                "(rod 5) has a dead band out of 0 to 4000"},
         BadFile{"NoRods", R"({"version": 1})", "has 0 rods instead of 8"},
         BadFile{"SevenRods", file_json(kGoodRod, 7), "has 7 rods instead of 8"},
         BadFile{"NineRods", file_json(kGoodRod, 9), "has 9 rods instead of 8"},

@@ -225,6 +225,24 @@ TEST(RodTracker, UndoesATiltedSensor) {
   EXPECT_NEAR(t.rod(4).angle, 0.0, 0.015);  // a count
 }
 
+// An eccentric rod of which the sensor counts 4 % more while the feet hang down, and 4 % less while
+// they are up: 40 mm each, and half a turn between them.
+TEST(RodTracker, UndoesAnEccentricRod) {
+  Calibration calibration = nominal_calibration();
+  calibration.rods[4].slide_gain[0] = -0.04;
+  Tracked t;
+  t.tracker = RodTracker(calibration, {});
+  t.take(t.device.frame());
+  t.device.slide[4] = 333;  // 320 / 0.96
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(4).slide, 0.04, 1e-4);
+  t.device.spin[4] = 201;  // half a turn
+  t.take(t.device.frame());
+  t.device.slide[4] += 308;  // 320 / 1.04
+  t.take(t.device.frame());
+  EXPECT_NEAR(t.rod(4).slide, 0.08, 1e-4);
+}
+
 TEST(RodTracker, TheEndStopTakesOutDrift) {
   Tracked t;
   std::array<double, kRods> limit{};

@@ -1,4 +1,4 @@
-// From a sensor's counts to metres and radians: a linear map for each rod, read from a JSON file.
+// From a sensor's counts to metres and radians, for each rod, read from a JSON file.
 #pragma once
 
 #include <array>
@@ -12,11 +12,35 @@ namespace cabinet {
 
 constexpr double kRodRadius = 0.008;  // [m] of the table's rods, on which the sensors look
 
-// d_slide = m[0][0] d_counts_slide + m[0][1] d_counts_spin   [m / count]
-// d_angle = m[1][0] d_counts_slide + m[1][1] d_counts_spin   [rad / count]
-// Off-diagonal terms undo a tilted sensor. The map acts on increments of the wrapping counts.
+// An increment of the counts c = (slide, spin) moves the rod by
+//   d_slide = (1 + slide_gain . (cos angle, sin angle)) m[0] . c
+//   d_angle = (1 + spin_gain  . (cos angle, sin angle)) m[1] . c
+// with the angle in the middle of the increment. Off-diagonal terms of m undo a sensor that is
+// mounted askew. The gains undo an eccentric rod, whose surface comes closer to the sensor and
+// moves away once a turn: the sensor counts more of a surface that is closer, and a point further
+// from the axis moves more in a turn. The dead band undoes what a sensor loses of a slow motion.
 struct RodCalibration {
-  double m[2][2];
+  double m[2][2];                 // [m / count], [rad / count]
+  double slide_gain[2] = {0, 0};  // of angle 0 (feet down) and of a quarter turn
+  double spin_gain[2] = {0, 0};
+  double dead_band = 0;  // [counts / s] seen of no motion, and lacking of any that is faster
+};
+
+struct RodMotion {
+  double slide, angle;  // [m], [rad]
+};
+
+// Takes the counts of one rod through its calibration.
+class RodIntegrator {
+ public:
+  explicit RodIntegrator(const RodCalibration& calibration) : calibration_(calibration) {}
+
+  // seconds: since the call before; angle: of the rod before the increment [rad].
+  RodMotion add(double slide_counts, double spin_counts, double seconds, double angle);
+
+ private:
+  RodCalibration calibration_;
+  double still_[2] = {0, 0};  // [s] since either axis had a count
 };
 
 struct Calibration {

@@ -1,0 +1,155 @@
+// A sensor on a rod as mechanics and optics have it, and a person's hand on that rod. Nothing of it
+// is taken from what it tests: displacements of the surface are taken through the lens, step by
+// step.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "cabinet/calibration_fit.h"
+
+namespace cabinet_test {
+
+struct Mount {
+  double counts_per_mm = 8;
+  double rod_radius = 0.008;        // [m]
+  double tilt = 0;                  // [rad] about the line of sight
+  double lean = 0;                  // [rad] of the line of sight from the surface's normal
+  double lean_towards = 0;          // [rad] from along the rod
+  double scale = 1;                 // of the counts
+  double eccentricity = 0;          // [m] of the rod's surface from its bearings
+  double towards = 0;               // [rad] angle of the rod at which it is closest to the sensor
+  double optical_distance = 0.005;  // [m] of the lens from the surface; magnification is inverse
+  double dead_band = 0;             // [counts / s]
+  double noise = 0;                 // relative, of each report
+};
+
+// The truth, and what the sensor says of it.
+class SimulatedRod {
+ public:
+  static constexpr double kStep = 1e-3;  // [s]
+  static constexpr int kReport = 5;      // steps: 200 reports a second
+
+  SimulatedRod(const Mount& mount, std::uint32_t seed) : mount_(mount), random_(seed) {
+    for (double& part : left_) part = between(0, 1);
+  }
+
+  double slide = 0, angle = 0;
+  std::vector<cabinet::CountIncrement> increments;
+
+  void step(double to_slide, double to_angle) {
+    const double middle = 0.5 * (angle + to_angle) - mount_.towards;
+    const double closer = mount_.eccentricity * std::cos(middle);
+    double x = to_slide - slide;
+    double y = (mount_.rod_radius + closer) * (to_angle - angle);
+    const double lx = std::cos(mount_.lean_towards), ly = std::sin(mount_.lean_towards);
+    const double foreshortened = (1 - std::cos(mount_.lean)) * (x * lx + y * ly);
+    x -= foreshortened * lx;
+    y -= foreshortened * ly;
+    const double counts = mount_.counts_per_mm * 1e3 * mount_.scale * mount_.optical_distance /
+                          (mount_.optical_distance - closer);
+    const double c = std::cos(mount_.tilt), s = std::sin(mount_.tilt);
+    seen_[0] += counts * (c * x + s * y);
+    seen_[1] += counts * (c * y - s * x);
+    slide = to_slide;
+    angle = to_angle;
+    if (++steps_ % kReport == 0) report();
+  }
+
+  // At the speed of a hand that starts and ends at rest; so many seconds.
+  void move(double to_slide, double to_angle, double seconds) {
+    const double from_slide = slide, from_angle = angle;
+    const int n = std::max(1, static_cast<int>(std::lround(seconds / kStep)));
+    for (int i = 1; i <= n; ++i) {
+      const double t = static_cast<double>(i) / n, ease = t * t * (3 - 2 * t);
+      step(std::lerp(from_slide, to_slide, ease), std::lerp(from_angle, to_angle, ease));
+    }
+  }
+  void rest(double seconds) { move(slide, angle, seconds); }
+
+  double draw(double deviation) { return std::normal_distribution<double>(0, deviation)(random_); }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+ private:
+  void report() {
+    std::int16_t told[2];
+    for (int axis = 0; axis < 2; ++axis) {
+      double c = seen_[axis] * (mount_.noise > 0 ? 1 + draw(mount_.noise) : 1.0);
+      c = std::copysign(std::max(std::abs(c) - mount_.dead_band * kStep * kReport, 0.0), c);
+      left_[axis] += c;
+      told[axis] = static_cast<std::int16_t>(std::floor(left_[axis]));
+      left_[axis] -= told[axis];
+      seen_[axis] = 0;
+    }
+    increments.push_back({told[0], told[1], static_cast<float>(kStep * kReport)});
+  }
+
+  Mount mount_;
+  std::mt19937 random_;
+  double seen_[2] = {0, 0}, left_[2] = {0, 0};  // [counts] since, and before, the last report
+  int steps_ = 0;
+};
+
+// The run that docs/cabinet.md asks for, by a hand that marks to 0.1 mm and 1.5 degrees: with the
+// feet down, strokes to both stops; then at each eighth of a turn there and back; then turns at a
+// stop, both ways.
+struct RunDesc {
+  double reach = 0.1;  // [m] of the rod from the middle to each stop
+  double stop_error = 1e-4, angle_error = 0.026;
+  int eighths = 8, turns = 5;
+};
+
+inline cabinet::CalibrationRun calibration_run(SimulatedRod& rod, const RunDesc& desc = {}) {
+  using Kind = cabinet::CalibrationMark::Kind;
+  cabinet::CalibrationRun run;
+  const auto at_stop = [&](double side) {
+    run.marks.push_back({rod.increments.size(), Kind::slide, side * desc.reach});
+  };
+  const auto feet_down = [&](int turns) {
+    run.marks.push_back({rod.increments.size(), Kind::angle, turns * 2 * M_PI});
+  };
+  const auto stop = [&](double side) {
+    return side * (desc.reach + std::abs(rod.draw(desc.stop_error)));
+  };
+  const auto down = [&](int turns) { return turns * 2 * M_PI + rod.draw(desc.angle_error); };
+
+  rod.move(stop(-1), rod.draw(desc.angle_error), 1);
+  rod.rest(0.3);
+  at_stop(-1);
+  feet_down(0);
+  for (int stroke = 0; stroke < 8; ++stroke) {
+    const double side = stroke % 2 == 0 ? 1 : -1;
+    rod.move(stop(side), down(0), stroke % 4 < 2 ? 0.5 : 3);  // fast, then slowly
+    rod.rest(0.3);
+    at_stop(side);
+    feet_down(0);
+  }
+  for (int eighth = 1; eighth < desc.eighths; ++eighth) {
+    rod.move(rod.slide, eighth * M_PI / 4 + rod.draw(0.1), 0.5);
+    for (const double side : {1.0, -1.0}) {
+      rod.move(stop(side), rod.angle + rod.draw(0.1), rod.between(0.3, 1.5));
+      rod.rest(0.2);
+      at_stop(side);
+    }
+  }
+  int turns = desc.eighths > 4 ? 1 : 0;
+  rod.move(stop(-1), down(turns), 0.5);
+  rod.rest(0.3);
+  at_stop(-1);
+  feet_down(turns);
+  for (const int by : {desc.turns, -desc.turns, desc.turns, -desc.turns}) {
+    turns += by;
+    rod.move(stop(-1), down(turns), 0.5 * std::abs(by) + 0.1);
+    rod.rest(0.3);
+    at_stop(-1);
+    feet_down(turns);
+  }
+  run.increments = rod.increments;
+  return run;
+}
+
+}  // namespace cabinet_test
