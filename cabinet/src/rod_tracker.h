@@ -33,7 +33,9 @@ class RodTracker {
  private:
   bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const;
   bool starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us);
-  void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us);
+  RodMotion motion(int rod, const wire::DeviceFrame& frame, SourceCounters& counters);
+  void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us,
+               SourceCounters& counters);
 
   std::array<double, kRods> slide_limit_;
   std::int64_t longest_gap_us_;  // over which counts are trusted

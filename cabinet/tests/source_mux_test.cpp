@@ -176,15 +176,16 @@ TEST(SourceMux, AHeldRodDoesNotFade) {
 
 TEST(SourceMux, PollsEachSourceOnceAndSumsTheirCounters) {
   Bench b;
-  b.cabinet.counts = {1, 2, 3, 4, 5, 6, 7};
-  b.client.counts = {10, 20, 30, 40, 50, 60, 70};
+  b.cabinet.counts = {1, 2, 3, 4, 5, 6, 7, 8};
+  b.client.counts = {10, 20, 30, 40, 50, 60, 70, 80};
   b.step(3);
   EXPECT_EQ(b.cabinet.polls, 3);
   EXPECT_EQ(b.computer.polls, 3);
   const SourceCounters& sum = b.mux.counters();
   EXPECT_EQ(sum.frames, 11u);
   EXPECT_EQ(sum.lost, 33u);
-  EXPECT_EQ(sum.line_errors, 77u);
+  EXPECT_EQ(sum.impossible, 77u);
+  EXPECT_EQ(sum.line_errors, 88u);
   EXPECT_EQ(b.mux.source(b.of_client).name(), "fake");
 }
 

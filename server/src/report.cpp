@@ -91,6 +91,7 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"device_stale", number(devices.stale)},
       {"device_reopened", number(devices.reopened)},
       {"device_overflows", number(devices.overflows)},
+      {"device_impossible", number(devices.impossible)},
       {"device_line_errors", number(devices.line_errors)},
   };
 }
@@ -104,8 +105,9 @@ std::string line(const DeviceCounters& device) {
   const cabinet::SourceCounters& c = device.counters;
   return fmt::format(
       "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, "
-      "{} errors on the sensors' lines",
-      device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.line_errors);
+      "{} motions that no rod can make, {} errors on the sensors' lines",
+      device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.impossible,
+      c.line_errors);
 }
 
 bool ends_with_csv(const std::string& path) {

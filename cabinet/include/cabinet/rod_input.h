@@ -33,6 +33,7 @@ struct SourceCounters {
   std::uint64_t stale = 0;        // older than one already accepted
   std::uint64_t reopened = 0;     // times the device came back
   std::uint64_t overflows = 0;    // reports in which a sensor said it had moved too far to tell
+  std::uint64_t impossible = 0;   // increments of a rod that no rod can make: dropped
   std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
 
   friend SourceCounters operator+(const SourceCounters& a, const SourceCounters& b) {
@@ -42,6 +43,7 @@ struct SourceCounters {
             a.stale + b.stale,
             a.reopened + b.reopened,
             a.overflows + b.overflows,
+            a.impossible + b.impossible,
             a.line_errors + b.line_errors};
   }
 };
