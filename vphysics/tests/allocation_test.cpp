@@ -275,6 +275,30 @@ TEST(Step, WithContinuousBodiesOfAnyShapeAllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
+// A world's first contact may come long after its first step: a ball that is served late.
+TEST(Step, WithTheFirstContactOfAContinuousBodyAllocatesNothing) {
+  const Shape ball = Sphere{0.05}, box = Box{{0.1, 0.1, 0.1}}, rod = Capsule{0.05, 0.2};
+  for (const Shape& shape : {ball, box, rod}) {
+    World world;
+    add_fixed(world, Box{{6, 6, 0.5}}, {}, SE3(Vec3{0, 0, -0.5}));
+    add_dynamic(world, {.shape = shape,
+                        .material = {0.4, 0.5},
+                        .pose = SE3(Vec3{0.1, 0.2, 3.0}),
+                        .continuous = true});
+    long during = 0, hits = 0;
+    for (int i = 0; i < 1200; ++i) {
+      const long before = g_allocations;
+      const auto status = world.step(0.001);
+      if (i >= 300) during += g_allocations - before;
+      hits += static_cast<long>(world.contact_events().size());
+      ASSERT_TRUE(status);
+      ASSERT_TRUE(hits == 0 || i >= 300) << "the ground is too near";
+    }
+    EXPECT_GT(hits, 0);
+    EXPECT_EQ(during, 0);
+  }
+}
+
 // What goes back again and again, as look-ahead does, takes no memory for it: the world and what it
 // has read change places.
 TEST(Restore, AllocatesNothingOnceWarm) {

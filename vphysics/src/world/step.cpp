@@ -76,6 +76,9 @@ void World::Impl::begin_step(double dt) {
 }
 
 void World::Impl::begin_impact_stage() {
+  // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
+  // whenever it comes, allocates nothing.
+  constexpr std::size_t kManifoldsOfPair = 64;
   const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + destroyed_pairs.size();
   body_pairs.reserve(room);
   discrete_pairs.reserve(room);
@@ -85,6 +88,7 @@ void World::Impl::begin_impact_stage() {
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   link_contacts.reserve(room);
+  manifolds.reserve(kManifoldsOfPair);
   bodies_on_links.reserve(n);
   bounds.resize(n);
   discrete_bounds.resize(n);
