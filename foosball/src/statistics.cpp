@@ -107,6 +107,7 @@ void StatisticsObserver::observe(const MatchView& view, std::span<const Event> e
   note_events(view, events);
   in_play_ = view.ball_in_play;
   velocity_before_ = view.ball_velocity;
+  men_before_ = view.men;
 }
 
 void StatisticsObserver::abandon() {
@@ -250,9 +251,11 @@ void StatisticsObserver::watch_hands(const MatchView& view, const RodTargets& ta
     if (moves) ++moving[table.rods[i].team];
     ++totals_.hand_ticks[i];
     if (!rod.followed) {
-      rod = {{hand.slide, 0}, {hand.angle, 0}, state.angle, {state.angle, 0}, true};
+      rod = {{hand.slide, 0}, {hand.angle, 0}, state.angle, {state.angle, 0}, true, hand.angle};
       continue;
     }
+    rod.hand_angle_rate = (hand.angle - rod.hand_angle) / kTick;
+    rod.hand_angle = hand.angle;
     if (rod.slide.update(hand.slide, kSlideHysteresis)) ++totals_.slide_reversals[i];
     if (rod.swing.update(hand.angle, kSwingHysteresis)) ++totals_.swing_reversals[i];
     if (rod.spin.update(state.angle, kSpinHysteresis)) rod.spin_from = state.angle;
@@ -317,7 +320,9 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
   const vp::Vec3 foot{state.angle_rate * dz, state.slide_rate, -state.angle_rate * dx};
   const double speed = vp::norm(view.ball_velocity);
   touch_.departure_vx = view.ball_velocity.x;
-  touch_.drive = std::max(touch_.drive, -attack_sign(touch_.team) * foot.x);
+  // What the ball does to a foot that stands is no swing.
+  const double swung = same ? rods_[rod].hand_angle_rate : men_before_[rod][man].angle_rate;
+  touch_.drive = std::max(touch_.drive, -attack_sign(touch_.team) * swung * dz);
   if (speed > 0.0) touch_.stroke = std::max(touch_.stroke, dot(foot, view.ball_velocity) / speed);
   rods_[rod].spin_from = view.rods[rod].angle;
 }

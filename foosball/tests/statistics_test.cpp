@@ -54,12 +54,19 @@ struct Script {
   }
   // A man of the rod sends the ball off; foot: his velocity along x there.
   void hit(int rod, int man, double foot, const Vec3& velocity) {
+    const double angle_rate = foot / (table().ball_radius - table().rod_height);
+    view.rods[rod].angle_rate = angle_rate;
+    tick();
+    meet(rod, man, angle_rate, velocity);
+    view.rods[rod].angle_rate = 0.0;
+  }
+  // The same in the tick of the contact; before it the rod turns as the view has it.
+  void meet(int rod, int man, double angle_rate, const Vec3& velocity) {
     view.ball_position = {table().rods[rod].x, 0.075, table().ball_radius};
-    view.rods[rod].angle_rate = foot / (table().ball_radius - table().rod_height);
+    view.rods[rod].angle_rate = angle_rate;
     view.ball_velocity = velocity;
     event(EventKind::man_hit, table().rods[rod].team, rod, man);
     tick();
-    view.rods[rod].angle_rate = 0.0;
   }
   void goal(int team) {
     ++view.score[team];
@@ -94,6 +101,20 @@ TEST(Statistics, AStillFootOrOneThatOnlySlowsTheShotDeflectsIt) {
     EXPECT_EQ(script.totals().own_goals_swing, (PerTeam{0, 0}));
     EXPECT_EQ(script.totals().own_goals_deflected, (PerTeam{1, 0}));
   }
+}
+
+// A foot that hangs is knocked back by the ball that comes off it.
+TEST(Statistics, AFootThatIsMovedByTheBallDoesNotSwing) {
+  Script script;
+  script.serve(0);
+  script.view.ball_velocity = {2.0, 0.0, 0.0};  // from behind
+  script.tick();
+  constexpr double kKnockedBack = 10.0;  // [rad/s]
+  script.meet(rod_of(0, Line::attack), 0, kKnockedBack, {-2.0, 0.0, 0.0});
+  script.tick(10);
+  script.goal(1);
+  EXPECT_EQ(script.totals().own_goals_swing, (PerTeam{0, 0}));
+  EXPECT_EQ(script.totals().own_goals_deflected, (PerTeam{1, 0}));
 }
 
 TEST(Statistics, AShotOnTargetThatGoesInOffADefenderIsTheShootersGoal) {

@@ -147,7 +147,8 @@ class StatisticsObserver {
     double arrival_vx = 0.0;            // ball's, before [m/s]
     double arrival_speed = 0.0;         // [m/s]
     double departure_vx = 0.0;          // ball's, so far [m/s]
-    double drive = 0.0;                 // the foot's largest velocity towards its own goal [m/s]
+    double drive = 0.0;                 // the foot's velocity towards its own goal as it came to
+                                        // the ball, or the most that the hand gave it since [m/s]
     bool faced_shot = false;            // it met a shot on target of the other team
     double stroke = 0.0;                // the foot's largest speed along the ball's way out [m/s]
   };
@@ -162,6 +163,8 @@ class StatisticsObserver {
     double spin_from = 0.0;  // angle at the last touch, turn or change of direction [rad]
     Reversals spin;
     bool followed = false;
+    double hand_angle = 0.0;       // the last target [rad]
+    double hand_angle_rate = 0.0;  // its change in this tick [rad/s]
   };
   struct Shot {
     int team = -1;  // -1: none under way
@@ -193,8 +196,9 @@ class StatisticsObserver {
   int server_ = -1;        // of the last serve from a midfield
   std::array<Rod, kRods> rods_{};
 
-  bool in_play_ = false;  // the ball, in the tick before
-  vp::Vec3 velocity_before_;
+  bool in_play_ = false;      // the ball, in the tick before
+  vp::Vec3 velocity_before_;  // of the ball in the last tick [m/s]
+  ManStates men_before_{};    // in the last tick
   Touch touch_, previous_touch_;
   bool touched_now_ = false;
   std::uint64_t rally_changes_ = 0;
