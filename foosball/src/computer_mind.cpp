@@ -115,9 +115,8 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning,
       sent_ticks_ = -1;
     }
   }
-  constexpr double kMostDoubt = 0.05;  // [m]
   now.guessed = !forecast;
-  now.doubt = forecast ? 0.0 : std::min(kMostDoubt, age * vp::norm(ball.velocity));
+  now.doubt = forecast ? 0.0 : age * vp::norm(ball.velocity);
   ball = forecast ? *forecast : advance(model_, tuning, now, ball, age);
   now.ball = ball.position;
   now.velocity = ball.velocity;

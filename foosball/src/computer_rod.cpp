@@ -50,6 +50,7 @@ void ComputerRod::adopt(double slide, double swing) {
 void ComputerRod::rest() {
   struck_ = false;
   receives_ = 0;
+  stroke_ago_ = 1e9;
   adopt(slide_.position(), swing_.position());
 }
 
@@ -78,7 +79,7 @@ void ComputerRod::play(const Sighting& now, double guard_y, const Temperament& t
       brake(t);
       break;
     case Act::scoop:
-      scoop(t);
+      scoop(now, t);
       break;
   }
   goal_ = std::clamp(goal_, -spec().slide_limit, spec().slide_limit);
@@ -160,7 +161,10 @@ void ComputerRod::follow(double goal) {
 // --- the foot and the ball -----------------------------------------------------------------------
 
 // Swings back to the goal, but only while no ball is in the sweep: else the men step aside first.
+// After a stroke the foot stays where it is until the player has seen what became of the ball: one
+// that was missed would be taken home.
 void ComputerRod::swing_back(double goal, const Sighting& now, const AxisLimits& limits) {
+  if (now.guessed && stroke_ago_ < now.age) return swing_.move(swing_.position(), limits);
   if (!ball_in_sweep(goal, now)) {
     return swing_.move(goal, {std::min(limits.rate, safe_rate(now)), limits.acceleration});
   }
@@ -169,14 +173,18 @@ void ComputerRod::swing_back(double goal, const Sighting& now, const AxisLimits&
 }
 
 // Where the ball is in doubt, a foot on its way back may meet it yet: so gently that it does not
-// send it home [rad/s]. What the last stroke did to it is in doubt until it can be seen.
+// send it home [rad/s].
 double ComputerRod::safe_rate(const Sighting& now) const {
   constexpr double kSure = 0.01, kReach = 0.09, kHigh = 0.10;  // [m]
   constexpr double kGently = 3.0, kFreely = 1e3;
-  const bool unseen = now.guessed && stroke_ago_ < now.age;
+  // A slow ball may have turned round. Before a fast one feet must be up in time.
+  constexpr double kSlow = 1.5;                               // [m/s]
+  constexpr double kDoubtOfSlow = 0.20, kDoubtOfFast = 0.05;  // at most [m]
+  const bool slow = vp::norm(now.velocity) < kSlow;
+  const double doubt = std::min(now.doubt, slow ? kDoubtOfSlow : kDoubtOfFast);
   const double foot = kFoot * std::clamp(angle(), 0.0, 1.0);  // ahead of the axis [m]
-  const bool may_meet = ahead(now) < foot + now.doubt && ahead(now) > -kReach - now.doubt;
-  return (unseen || now.doubt > kSure) && may_meet && now.ball.z < kHigh ? kGently : kFreely;
+  const bool may_meet = ahead(now) < foot + doubt && ahead(now) > -kReach - doubt;
+  return doubt > kSure && may_meet && now.ball.z < kHigh ? kGently : kFreely;
 }
 
 // Whether a foot on its way back to the goal could meet the ball from before it.

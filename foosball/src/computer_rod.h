@@ -70,7 +70,8 @@ class ComputerRod {
   void prepare_scoop(const Sighting& now, double square, const Temperament& t, Random& random);
   bool can_stand_beside(double square, double side, double beside) const;
   void choose_hook(const Sighting& now, double square, const Temperament& t, Random& random);
-  void scoop(const Temperament& t);
+  double beside_ball(double square) const;
+  void scoop(const Sighting& now, const Temperament& t);
   void receive(const Sighting& now, const Temperament& t);
   PassPlan pass_worth(const Sighting& now, double slope, double speed, double slope_error,
                       const Temperament& t) const;

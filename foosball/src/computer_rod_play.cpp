@@ -175,8 +175,13 @@ void ComputerRod::prepare_scoop(const Sighting& now, double square, const Temper
   if (scoop_side_ == 0.0 || !can_stand_beside(square, scoop_side_, scoop_beside_)) {
     choose_hook(now, square, t, random);
   }
-  goal_ = square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + scoop_beside_);
+  goal_ = beside_ball(square);
   if (std::fabs(goal_ - slide_.position()) < 0.002 && since_ >= pause_) enter(Act::scoop);
+}
+
+// The slide at which the chosen edge of the foot passes the ball.
+double ComputerRod::beside_ball(double square) const {
+  return square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + scoop_beside_);
 }
 
 bool ComputerRod::can_stand_beside(double square, double side, double beside) const {
@@ -216,8 +221,10 @@ void ComputerRod::choose_hook(const Sighting& now, double square, const Temperam
   }
 }
 
-void ComputerRod::scoop(const Temperament& t) {
+// It goes with a ball that rolls along the rod: one that rolled beneath the foot would be pinned.
+void ComputerRod::scoop(const Sighting& now, const Temperament& t) {
   const bool hooks = pass_.rod >= 0;
+  goal_ = beside_ball(now.ball.y - man_offset(spec(), man_));
   swing_.move(level(), {scoop_rate_, hooks ? t.strike.acceleration : t.swing.acceleration});
   stroke_ago_ = 0.0;
   if (angle() <= -0.02 && since_ <= 1.0) return;

@@ -292,6 +292,37 @@ TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
   EXPECT_LT(pushed, balls / 5);
 }
 
+// A foot that comes down to scoop such a ball goes with it, and does not land on it.
+TEST_F(RollingBall, BehindTheFeetIsNotPinnedByTheFootThatScoopsIt) {
+  int balls = 0, pinned = 0;
+  for (const double behind : {0.035, 0.042, 0.049, 0.056}) {
+    for (const double vy : {-0.16, -0.10, 0.10, 0.16}) {
+      for (const double y : {-0.10, 0.0, 0.10}) {
+        ComputerPlayer home({.team = 0,
+                             .seed = static_cast<std::uint64_t>(++balls),
+                             .opens_match = false,
+                             .player = *parse_player("2")});
+        match = std::make_unique<Match>(*Match::create(desc));
+        start_by_commands();
+        shoot({table().rods[1].x - behind, y, 0.0174}, {0.0, vy, 0.0}, 1);
+        int held = 0;  // ticks in which the ball keeps a man from where his hand has him
+        for (int tick = 0; tick < 1500; ++tick) {
+          home.play(view(), input.rods);
+          step();
+          double off = 0.0;
+          for (int man = 0; man < table().rods[1].men; ++man) {
+            off = std::max(off, std::fabs(view().men[1][man].angle - view().rods[1].angle));
+          }
+          held += off > 0.3;
+        }
+        pinned += held > 200;
+      }
+    }
+  }
+  std::printf("%d balls, %d pinned\n", balls, pinned);
+  EXPECT_LE(pinned, balls / 8);
+}
+
 // A ball that has turned back behind the feet is elsewhere than those think who see it late: a foot
 // that is drawn back there must not send it home.
 TEST(ComputerPlayer, HardlyEverSwingsBackThroughABallThatItSeesLate) {

@@ -20,9 +20,9 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0xf5ddd20f23555e50u;
+constexpr std::uint64_t kGolden = 0xc4ada9cdc518254fu;
 // Of players with levels.
-constexpr std::uint64_t kGoldenLevel = 0x31e4fbdb603c4328u;
+constexpr std::uint64_t kGoldenLevel = 0xa2637342e224a14bu;
 
 struct Players {
   explicit Players(std::uint64_t seed, const char* player = "classic:0.9")
