@@ -66,7 +66,9 @@ LAYERS = {
     'foosball/include/foosball/assists.h': 'table',
     'foosball/include/foosball/character.h': 'table',
     'foosball/include/foosball/judgment.h': 'table',
+    'foosball/include/foosball/play_style.h': 'table',
     'foosball/include/foosball/rod_motion.h': 'table',
+    'foosball/include/foosball/rules.h': 'table',
     'foosball/include/foosball/table.h': 'table',
     'foosball/include/foosball/tuning.h': 'table',
     'tools/': 'tools',
@@ -106,7 +108,7 @@ MAY_USE = {
     'server': {ENGINE_FACE, 'profile', 'characters', 'os', 'results', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand'},
     # Plays and records matches as the server does, without its sockets.
     'match': {ENGINE_FACE, 'profile', 'characters', 'os', 'table', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server', 'results'},
-    # The client draws from snapshots only: the table's geometry, never the match.
+    # The client draws from snapshots only: the table's geometry, the rules' numbers, never the match.
     'draw': set(),
     'client': {ENGINE_FACE, 'characters', 'os', 'draw', 'profile', 'table', 'wire', 'device-frame', 'hand'},
     # Has its worlds in its own process; knows of no match and no wire.

@@ -120,8 +120,7 @@ BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
                       seconds(ticks_unreached_) >= rules.dead_ball_seconds;
     return dead ? Verdict::dead : Verdict::alive;
   }
-  const bool midfield = table.rods[rod_].line == Line::midfield;
-  const double limit = midfield ? rules.possession_midfield_seconds : rules.possession_seconds;
+  const double limit = possession_limit(rules, table.rods[rod_].line == Line::midfield);
   const bool absent = sight.absent[table.rods[rod_].team];
   const double wait =
       absent ? std::min(kAbsentStillSeconds, rules.still_seconds) : rules.still_seconds;

@@ -336,14 +336,47 @@ TEST_F(ArcadeTest, AGoalWaitsForTheRodThatShotToStop) {
 
 class TimedTest : public ItsfTest {
  protected:
-  TimedTest()
-      : ItsfTest([] {
+  explicit TimedTest(int sets_to_win = 1)
+      : ItsfTest([sets_to_win] {
           Rules rules = quick(arcade_rules());
           rules.match_seconds = 5.0;
           rules.goals_to_win = rules.max_goals = 99;
+          rules.sets_to_win = sets_to_win;
           return rules;
         }()) {}
 };
+
+class TimedSetsTest : public TimedTest {
+ protected:
+  TimedSetsTest() : TimedTest(2) {}
+};
+
+// What a ceremony is told by: a ball in the goal, or none.
+TEST_F(TimedSetsTest, ASetThatEndsOnTheClockIsWonWithoutAGoalAndNoBallLiesInOne) {
+  arrange([](MatchState& state, TableWorld&) { state.tally.score = {1, 2}; });
+  events.clear();
+  run(5.0);
+  EXPECT_EQ(view().screen, Screen::ceremony);
+  EXPECT_FALSE(view().ball_visible);
+  EXPECT_EQ(count(EventKind::goal), 0);
+  EXPECT_EQ(latest(EventKind::set_won).team, 1);
+  EXPECT_EQ(view().last_scorer, 1);
+  EXPECT_EQ(view().sets, (std::array<int, 2>{0, 1}));
+  EXPECT_EQ(view().score, (std::array<int, 2>{1, 2})) << "is still to be read";
+  run(desc.rules.ceremony_seconds);
+  EXPECT_EQ(view().screen, Screen::play);
+  EXPECT_EQ(view().next_server, 0) << "who lost the set serves (5)";
+}
+
+TEST_F(TimedSetsTest, AGoldenGoalEndsTheSetWithTheBallInTheGoal) {
+  run(5.5);
+  ASSERT_TRUE(view().golden_goal);
+  shoot_goal(1);
+  EXPECT_EQ(view().screen, Screen::ceremony);
+  EXPECT_TRUE(view().ball_visible);
+  EXPECT_EQ(latest(EventKind::goal).team, 1);
+  EXPECT_EQ(latest(EventKind::set_won).team, 1);
+}
 
 TEST_F(TimedTest, WhoLeadsWhenTheTimeIsOverHasWon) {
   EXPECT_TRUE(view().timed);

@@ -106,6 +106,26 @@ TEST_F(ModesTest, AGoalNamesItsManAndTheSpeedOfTheBall) {
   EXPECT_EQ(view().last_goal.rod, goal->rod);
 }
 
+// A renderer shows the goal again in slow motion meanwhile.
+TEST_F(ModesTest, TheCeremonyOfAGoalLastsFourSecondsUnlessSomebodyPushes) {
+  for (const Rules& rules : {arcade_rules(), itsf_rules()}) {
+    make(Mode::match, rules);
+    start_by_commands();
+    run(0.6);
+    shoot_goal(0);
+    ASSERT_EQ(view().screen, Screen::ceremony);
+    run(3.9 - view().screen_seconds);
+    EXPECT_EQ(view().screen, Screen::ceremony);
+    run(0.2);
+    EXPECT_EQ(view().screen, Screen::play);
+    shoot_goal(1);
+    ASSERT_EQ(view().screen, Screen::ceremony);
+    run(0.6);
+    command(Command::Kind::push, 1);
+    EXPECT_EQ(view().screen, Screen::play);
+  }
+}
+
 TEST_F(ModesTest, AnOwnGoalIsNamed) {
   start_by_commands();
   run(0.6);

@@ -28,6 +28,24 @@ TEST(Reach, NoBallIsWithinReachOfTwoRods) {
   }
 }
 
+// By this a renderer knows whose clock of possession runs: a snapshot tells the side alone.
+TEST(Reach, TheRodThatReachesTheBallIsTheNearestOneWithinHalfTheWayToTheNext) {
+  for (int layout = 0; layout < kLayouts; ++layout) {
+    const TableSpec& table = table_spec(static_cast<Layout>(layout));
+    const double half_way = 0.5 * (table.rods[1].x - table.rods[0].x);
+    for (int i = -200; i <= 200; ++i) {
+      const double x = 0.003 * i;
+      for (const CharacterBody& body : bodies_of_all_kinds()) {
+        const auto rods = rods_in_reach(table, {body, body}, {x, 0.0, 0.0173});
+        if (rods == 0) continue;
+        const double off = std::fabs(table.rods[std::countr_zero(rods)].x - x);
+        for (const RodSpec& other : table.rods) ASSERT_LE(off, std::fabs(other.x - x) + 1e-12);
+        ASSERT_LE(off, half_way) << x;
+      }
+    }
+  }
+}
+
 TEST(Reach, TheStripMidwayBetweenTwoRodsIsOutOfReach) {
   const TableSpec& table = table_spec(Layout::tournament);
   EXPECT_EQ(rods_in_reach(table, kAverage, {0.0, 0.0, 0.0173}), 0);

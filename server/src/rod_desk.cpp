@@ -55,7 +55,8 @@ foosball::ComputerPlayerDesc RodDesk::computer_desc(int team) const {
 
 foosball::PlayerSpec RodDesk::computer_player() const {
   if (rung_ < 0) return player_;
-  return {.level = rung_ + 1, .style = foosball::style_of_level(rung_ + 1)};
+  const int level = foosball::level_of_rung(rung_);
+  return {.level = level, .style = foosball::style_of_level(level)};
 }
 
 void RodDesk::set_rung(int rung) {

@@ -83,25 +83,6 @@ std::optional<draw::Quality> App::wanted_quality() const {
   return std::nullopt;
 }
 
-// Records the play, and shows a goal again while its ceremony lasts.
-void App::play_reel(std::int64_t now) {
-  const auto screen = static_cast<wire::Screen>(drawn_.screen);
-  const bool ceremony = screen == wire::Screen::ceremony || screen == wire::Screen::end;
-  if (ceremony && screen_before_ == number(wire::Screen::play)) reel_.mark_goal(now);
-  if (screen == wire::Screen::play && screen_before_ != drawn_.screen) reel_.clear();
-  screen_before_ = drawn_.screen;
-  replay_ = ceremony && reel_.showing(now);
-  if (!replay_) {
-    if (!drawn_.paused) reel_.record(drawn_, now);
-    return;
-  }
-  const wire::Snapshot again = reel_.scene(now);
-  drawn_.ball = again.ball;
-  drawn_.ball_in_play = true;
-  drawn_.rods = again.rods;
-  drawn_.men = again.men;
-}
-
 void App::follow_connection() {
   status_ = connection_->status();
   if (status_.link != link_seen_) {
@@ -403,7 +384,7 @@ int App::loop() {
     const std::int64_t input_us = os::monotonic_us();
     take_input(input_us);
     predict(input_us);
-    play_reel(input_us);
+    replay_ = reel_.follow(drawn_, input_us);
     follow_survey(input_us);
     follow_report();
     follow_watching();

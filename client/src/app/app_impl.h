@@ -54,7 +54,6 @@ class App {
   void watch_recordings();
   void follow_watching();
   void turn_view();
-  void play_reel(std::int64_t now);
   void hear(std::int64_t now);
   void follow_connection();
   void follow_roster();
@@ -119,7 +118,6 @@ class App {
   std::vector<std::string> news_;
   double news_until_ = 0.0;  // [s]
   ReplayReel reel_;
-  std::uint8_t screen_before_ = 0;
   bool replay_ = false;
   ConnectionStatus status_;
   wire::Roster roster_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "wire/enums.h"
 
@@ -20,6 +21,11 @@ float speed_of(const wire::Snapshot& scene) {
 }
 
 }  // namespace
+
+bool stopped_for_goal(const wire::Snapshot& scene) {
+  const auto screen = static_cast<wire::Screen>(scene.screen);
+  return (screen == wire::Screen::ceremony || screen == wire::Screen::end) && scene.ball_visible;
+}
 
 void MatchStory::begin_match() {
   *this = MatchStory();
@@ -51,6 +57,22 @@ void MatchStory::score(const wire::EventSnapshot& event) {
   shooting_team_ = -1;
 }
 
+// The score stands until the next set begins.
+void MatchStory::end_set(const wire::EventSnapshot& event, const wire::Snapshot& scene) {
+  const auto screen = static_cast<wire::Screen>(scene.screen);
+  if (screen != wire::Screen::ceremony && screen != wire::Screen::end) return;
+  set_over_ = true;
+  set_winner_ = event.team == 1 ? 1 : 0;
+  sets_.push_back({scene.score[0], scene.score[1]});
+}
+
+// Who lost the set serves (5): if that is now on the winner's side, the sides were changed (13).
+void MatchStory::begin_set(const wire::Snapshot& scene) {
+  set_over_ = false;
+  if (scene.next_server != set_winner_) return;
+  for (std::array<int, 2>& set : sets_) std::swap(set[0], set[1]);
+}
+
 void MatchStory::watch_shot(const wire::Snapshot& scene, float dt) {
   since_touch_ += dt;
   since_shot_ += dt;
@@ -76,6 +98,7 @@ void MatchStory::update(std::span<const wire::EventSnapshot> events, const wire:
   moments_.clear();
   const auto screen = static_cast<wire::Screen>(scene.screen);
   if (screen == wire::Screen::logo || screen == wire::Screen::selection) begin_match();
+  if (set_over_ && screen == wire::Screen::play) begin_set(scene);
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene.layout));
   for (const wire::EventSnapshot& event : events) {
     switch (static_cast<Kind>(event.kind)) {
@@ -88,6 +111,11 @@ void MatchStory::update(std::span<const wire::EventSnapshot> events, const wire:
       case Kind::serve:
         touch_ = {};
         shooting_team_ = -1;
+        since_serve_ = 0.0f;
+        break;
+      case Kind::set_won:
+      case Kind::match_won:
+        end_set(event, scene);
         break;
       case Kind::foul:
         since_foul_ = 0.0f;
@@ -97,6 +125,7 @@ void MatchStory::update(std::span<const wire::EventSnapshot> events, const wire:
     }
   }
   since_foul_ += dt;
+  since_serve_ += dt;
   watch_shot(scene, screen == wire::Screen::play && !scene.paused ? dt : 0.0f);
 }
 

@@ -25,6 +25,9 @@ struct TeamStatistics {
   float possession = 0.0f;    // [s] that the ball was last touched by this team
 };
 
+// The play has stopped for a goal, and not for the time: the ball is left where it scored.
+bool stopped_for_goal(const wire::Snapshot& scene);
+
 // What is worth a reaction of the crowd.
 enum class Moment : std::uint8_t { shot, save, goal, own_goal };
 struct StoryMoment {
@@ -45,6 +48,10 @@ class MatchStory {
   const std::array<TeamStatistics, 2>& statistics() const { return statistics_; }
   int last_touch_team() const { return touch_.team; }  // -1: nobody
   float since_foul() const { return since_foul_; }     // [s]; the scene says which
+  float since_serve() const { return since_serve_; }   // [s]
+  bool set_over() const { return set_over_; }          // the play has stopped for the end of a set
+  // The goals of each set that was seen to end, of the teams as they stand now.
+  const std::vector<std::array<int, 2>>& sets() const { return sets_; }
 
  private:
   struct Touch {
@@ -54,13 +61,18 @@ class MatchStory {
   void touch(const wire::EventSnapshot& event, const foosball::TableSpec& table);
   void watch_shot(const wire::Snapshot& scene, float dt);
   void score(const wire::EventSnapshot& event);
+  void end_set(const wire::EventSnapshot& event, const wire::Snapshot& scene);
+  void begin_set(const wire::Snapshot& scene);
 
   GoalStory goal_;
   std::array<TeamStatistics, 2> statistics_;
   std::vector<StoryMoment> moments_;
   Touch touch_;
   float since_touch_ = 0.0f;  // [s]
-  float since_foul_ = 1e3f;
+  float since_foul_ = 1e3f, since_serve_ = 1e3f;
+  bool set_over_ = false;
+  int set_winner_ = 0;
+  std::vector<std::array<int, 2>> sets_;
   bool shot_judged_ = true;  // the last touch was looked at: a shot or none
   int shooting_team_ = -1;
   float since_shot_ = 0.0f, shot_speed_ = 0.0f, speed_ = 0.0f;

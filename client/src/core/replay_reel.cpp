@@ -4,8 +4,28 @@
 #include <iterator>
 
 #include "client/interpolator.h"
+#include "core/match_story.h"
+#include "wire/enums.h"
 
 namespace client {
+
+bool ReplayReel::follow(wire::Snapshot& drawn, std::int64_t now_us) {
+  constexpr std::uint8_t kPlay = wire::number(wire::Screen::play);
+  const bool goal = stopped_for_goal(drawn);
+  if (goal && screen_before_ == kPlay) mark_goal(now_us);
+  if (drawn.screen == kPlay && screen_before_ != kPlay) clear();
+  screen_before_ = drawn.screen;
+  if (!goal || !showing(now_us)) {
+    if (!drawn.paused) record(drawn, now_us);
+    return false;
+  }
+  const wire::Snapshot again = scene(now_us);
+  drawn.ball = again.ball;
+  drawn.ball_in_play = true;
+  drawn.rods = again.rods;
+  drawn.men = again.men;
+  return true;
+}
 
 void ReplayReel::record(const wire::Snapshot& scene, std::int64_t now_us) {
   if (!frames_.empty() && now_us <= frames_.back().at_us) return;
@@ -26,12 +46,12 @@ void ReplayReel::clear() {
 
 // In the time of the play that is shown.
 std::int64_t ReplayReel::shown_us(std::int64_t now_us) const {
-  const std::int64_t since = now_us - goal_us_ - kAfterUs;
+  const std::int64_t since = now_us - goal_us_ - kWaitUs;
   return goal_us_ - kBeforeUs + static_cast<std::int64_t>(kSpeed * static_cast<double>(since));
 }
 
 bool ReplayReel::showing(std::int64_t now_us) const {
-  if (!goal_ || skipped_ || frames_.size() < 2 || now_us < goal_us_ + kAfterUs) return false;
+  if (!goal_ || skipped_ || frames_.size() < 2 || now_us < goal_us_ + kWaitUs) return false;
   return shown_us(now_us) < std::min(goal_us_ + kAfterUs, frames_.back().at_us);
 }
 

@@ -12,22 +12,11 @@
 
 #include "foosball/judgment.h"
 #include "foosball/match.h"
+#include "foosball/play_style.h"
 #include "foosball/played_pass.h"
 #include "vphysics/error.h"
 
 namespace foosball {
-
-// What a computer player prefers where it has a choice.
-enum class PlayStyle : std::uint8_t {
-  wall,     // hands stay at the goal, fears what comes back
-  shooter,  // strikes at the first fair chance, from any rod
-  passer,   // plays to a man further ahead where another would shoot
-  gambler,  // waits for the one chance, feints, takes risks with its own goal
-};
-inline constexpr int kPlayStyles = 4;
-const char* name_of(PlayStyle style);
-
-inline constexpr int kLevels = 5;
 
 struct PlayerSpec {
   enum class Kind : std::uint8_t {
@@ -46,7 +35,6 @@ struct PlayerSpec {
 // anything else with Errc::invalid_argument and a sentence that names the choices.
 vp::Expected<PlayerSpec> parse_player(std::string_view text);
 std::string to_text(const PlayerSpec& spec);
-PlayStyle style_of_level(int level);  // precondition: 1 <= level <= kLevels
 // What a player of this level and style judges by. Levels out of range are clamped.
 Judgment judgment_of(int level, PlayStyle style);
 

@@ -63,13 +63,18 @@ struct Rules {
   bool jarring = false;
 
   // The screens.
-  double ceremony_seconds = 2.5;
+  double ceremony_seconds = 4.0;  // a goal is shown again in slow motion (client)
   double end_seconds = 6.0;
   double idle_seconds = 60.0;     // no person moves a rod: back to the logo; 0: never
   double attract_seconds = 30.0;  // at the logo, until two computers show a match; 0: never
 
   bool operator==(const Rules&) const = default;
 };
+
+// For so long a rod may have the ball (24): a midfield, or any other.
+constexpr double possession_limit(const Rules& rules, bool midfield) {
+  return midfield ? rules.possession_midfield_seconds : rules.possession_seconds;
+}
 
 // The paper's game: first to five, played on whenever possible.
 constexpr Rules arcade_rules() {
