@@ -74,7 +74,71 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"survey-four", 0.4, 0, 0},
                            {"survey-thanks", 0.4, 0, 1},
                            {"above-survey", 0.4, 0, 0, View::above},
-                           {"above-survey-end", 1.0, 4, 0, View::above}};
+                           {"above-survey-end", 1.0, 4, 0, View::above},
+                           {"rules-possession", 0.35, 2, 0},
+                           {"rules-possession-itsf", 1.62, 2, 1},
+                           {"rules-foul-and-serve", 2.4, 2, 0},
+                           {"rules-golden-goal", 2.4, 2, 0},
+                           {"rules-time", 0.7, 3, 0},
+                           {"rules-set", 0.7, 3, 0},
+                           {"rules-sets-end", 1.0, 4, 0},
+                           {"rules-above-possession", 1.62, 2, 0, View::above},
+                           {"rules-above-time", 0.9, 3, 0, View::above},
+                           {"ladder-selection", 1.0, 1, 0},
+                           {"ladder-play", 2.4, 2, 0},
+                           {"ladder-above-play", 2.4, 2, 0, View::above},
+                           {"ladder-end", 1.0, 4, 0},
+                           {"ladder-top-end", 1.0, 4, 0},
+                           {"challenge-play", 2.4, 2, 0},
+                           {"training-play", 2.4, 2, 0}};
+
+// What the rules decide at this moment.
+void decide(const std::string& shot, wire::Snapshot& state, HudState& hud) {
+  const auto has = [&shot](const char* word) { return shot.find(word) != std::string::npos; };
+  if (shot.starts_with("rules")) state.sets = {1, 0};
+  if (has("possession")) {
+    state.rule_set = number(has("itsf") ? wire::RuleSet::itsf : wire::RuleSet::arcade);
+    state.possession_team = 1;
+    state.possession_seconds = has("itsf") ? 2.0f : 7.2f;
+    const auto& table = foosball::table_spec(foosball::Layout::tournament);
+    state.ball.position[0] = static_cast<float>(table.rods[4].x) - 0.02f;
+  }
+  if (has("foul-and-serve")) {
+    state.fouled = true;
+    state.last_foul = number(wire::Foul::possession);
+    state.next_server = 1;
+    state.ball_in_play = false;
+  }
+  if (has("golden")) {
+    state.timed = state.golden_goal = true;
+    state.score = {2, 2};
+  }
+  if (has("time")) {
+    state.ball_visible = false;
+    state.sets = {2, 0};
+  }
+  hud.set_over = has("rules-set") || has("time");
+  if (has("sets-end")) {
+    state.sets = {3, 1};
+    state.score = {5, 3};
+    hud.sets = {{5, 4}, {2, 5}, {5, 1}, {5, 3}};
+  }
+  if (shot.starts_with("ladder")) {
+    state.mode = number(wire::Mode::ladder);
+    state.rung = has("top") ? 4 : 2;
+    state.computer = {false, true};
+    state.sets = {static_cast<std::uint8_t>(state.screen == 4 ? 1 : 0), 0};
+  }
+  if (shot.starts_with("challenge")) {
+    state.mode = number(wire::Mode::challenge);
+    state.timed = true;
+    state.seconds_left = 71.4f;
+  }
+  if (shot.starts_with("training")) {
+    state.mode = number(wire::Mode::training);
+    state.last_shot = {0, 5, 1, 7.4f, 0.21f};
+  }
+}
 
 // As a person sees it who shares the table with others.
 MenuPage menu_page(Menu::Page page, int row, bool host = true) {
@@ -211,6 +275,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     if (name == "above-ceremony")
       hud.goal = {.team = 0, .scorer_rod = 6, .scorer_man = 0, .own_goal = true, .speed = 2.1f};
     hud.since_foul = 1.0f;
+    decide(name, state, hud);
     hud.replay = name == "ceremony";
     hud.statistics = {TeamStatistics{14, 6, 0, 9.3f, 71.0f}, TeamStatistics{9, 11, 1, 7.8f, 54.0f}};
     if (name.ends_with("settings")) {

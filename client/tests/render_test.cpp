@@ -12,6 +12,7 @@
 #include "client/menu.h"
 #include "draw/image.h"
 #include "render/hud.h"
+#include "render/match_words.h"
 #include "render/scene.h"
 #include "render/translate.h"
 #include "scripted_scene.h"
@@ -299,6 +300,21 @@ MenuPage menu_page(Menu::Page page) {
   return shown;
 }
 
+// The longest words of the rules and the modes.
+void tell_all_rules(wire::Snapshot& state, HudState& hud, int which) {
+  state.ball_visible = which % 2 == 0;
+  state.mode = number(which % 3 == 0 ? wire::Mode::challenge : wire::Mode::ladder);
+  state.computer = {false, true};
+  state.rung = which % 2 == 0 ? 4 : 2;
+  state.sets = {3, 2};
+  state.rule_set = number(wire::RuleSet::itsf);
+  state.fouled = state.golden_goal = state.timed = true;
+  state.last_foul = number(wire::Foul::time_out);
+  hud.since_foul = hud.since_serve = 0.5f;
+  hud.set_over = true;
+  hud.sets = {{8, 7}, {2, 5}, {5, 1}, {3, 5}, {8, 7}};
+}
+
 // Every screen, in windows of every shape, in each language, at the largest text: nothing reaches
 // over an edge (but for the soft rim of a letter).
 TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
@@ -324,6 +340,7 @@ TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
         hud.starving = true;
         const int more = shown / 10;
         hud.show_help = more == 1;
+        tell_all_rules(state, hud, more);
         state.paused = more == 2;
         hud.notices = {
             "the cabinet at /dev/ttyACM0 was unplugged: its rods 4 and 6 hold where they are"};
@@ -348,6 +365,46 @@ TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
     }
   }
   use_language("en", CLIENT_CATALOGUES);
+}
+
+// The clock of possession takes the room of the board and no more; from the seat neither they nor
+// what stands below for long hide any place where the ball may be.
+TEST_P(RenderTest, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  UiBatch words = UiBatch::create(Font::load().value()).value();
+  for (const glm::ivec2 size :
+       {glm::ivec2(1280, 720), glm::ivec2(640, 360), glm::ivec2(480, 800)}) {
+    for (const View view : {View::seat, View::above}) {
+      wire::Snapshot state = scripted_play(0.35);
+      HudState hud;
+      hud.state = &state;
+      hud.view = view;
+      hud.viewer_team = 0;
+      hud.camera = player_camera({}, size);
+      draw_hud(words, hud, size);
+      const UiBatch::Bounds before = words.bounds();
+      state.rule_set = number(wire::RuleSet::itsf);
+      state.possession_team = 1;
+      state.ball.position[0] = static_cast<float>(table.rods[4].x);
+      ASSERT_TRUE(possession_clock(state));
+      draw_hud(words, hud, size);
+      const UiBatch::Bounds after = words.bounds();
+      EXPECT_EQ(before.low, after.low);
+      EXPECT_EQ(before.high, after.high);
+      if (view == View::above) continue;
+      state.golden_goal = true;
+      draw_hud(words, hud, size);
+      const float low = words.bounds().high.y;
+      ASSERT_GT(low, after.high.y);
+      for (int i = 0; i <= 20; ++i) {
+        const double x = (i / 20.0 - 0.5) * table.length;
+        const float y = static_cast<float>(0.5 * table.width);  // the far wall
+        const glm::vec3 ball = hud.camera.project({static_cast<float>(x), y, 0.12f}, size);
+        EXPECT_GT(ball.y, low) << size.x << "x" << size.y << " x " << x;
+      }
+    }
+  }
 }
 
 // Men and rods before the ball let it be seen: over scripted play it is never more than half hidden

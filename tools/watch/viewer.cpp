@@ -244,9 +244,7 @@ void Viewer::draw_match() {
   hud.viewer_team = turned ? 1 : -1;
   hud.text_scale = settings_.text_scale;
   hud.still = settings_.reduced_flashes;
-  hud.goal = staging_->story().last_goal();
-  hud.since_foul = staging_->story().since_foul();
-  hud.statistics = staging_->story().statistics();
+  client::tell_story(hud, staging_->story());
   hud.recorded = true;
   client::draw_hud(*ui_, hud, picture);
   glViewport(0, 0, size_.x, size_.y);

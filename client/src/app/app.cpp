@@ -251,9 +251,7 @@ HudState App::hud(const Camera& camera) {
   hud.still = settings_.reduced_flashes;
   hud.replay = replay_;
   hud.rod_shift = rod_shift();
-  hud.goal = story_.last_goal();
-  hud.since_foul = story_.since_foul();
-  hud.statistics = story_.statistics();
+  tell_story(hud, story_);
   hud.menu = menu_.page(menu_context());
   hud.rod_names = rod_names();
   if (report_) hud.fame = report_->fame;

@@ -169,7 +169,8 @@ void Effects::show(std::span<const wire::EventSnapshot> events, const wire::Snap
     if (sounds == nullptr) continue;
     const glm::vec3 at = vec(event.point);
     if (static_cast<Kind>(event.kind) == Kind::serve) sounds->play(Sound::serve, 0.35f, at);
-    if (static_cast<Kind>(event.kind) == Kind::match_won) sounds->play(Sound::whistle, 0.6f, at);
+    const auto kind = static_cast<Kind>(event.kind);
+    if (kind == Kind::match_won || kind == Kind::set_won) sounds->play(Sound::whistle, 0.6f, at);
   }
   react(story, scene, particles, sounds);
   follow_ball(scene, story, particles, sounds, dt);

@@ -6,6 +6,7 @@
 
 #include "foosball/table.h"
 #include "render/hud_screens.h"
+#include "render/match_words.h"
 #include "render/sentences.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
@@ -13,12 +14,19 @@
 namespace client {
 namespace {
 
+// In place of a team's character, so that the field stays as free as without it.
+void draw_possession(const HudPen& pen, const PossessionClock& clock, const glm::vec2& at) {
+  pen.text(std::to_string(clock.seconds) + " s", {Face::bold, 23.0f, 0.0f, Align::centre}, at,
+           clock.hurries ? kWarning : kInk, 0.55f, 108.0f);
+}
+
 // The board's upper edge is at y.
 void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
   const wire::Snapshot& state = *hud.state;
   const HudPen pen = whole.fitting(204.0f, 90.0f);
   const float half = 196.0f, height = 62.0f;
   const float y = at_the_bottom ? pen.bottom - height - 6.0f : 14.0f;
+  const auto possession = possession_clock(state);
   pen.panel({-half, y}, {half, y + height}, 14.0f, kPanel);
   for (int team = 0; team < 2; ++team) {
     // The left of the board is the left of the picture: a viewer of team 1 sees the table turned.
@@ -27,14 +35,20 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     const std::string score = std::to_string(state.score[t]);
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
-    pen.text(std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]),
-             {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + 31.0f}, kTeamInk[t],
-             0.55f, 108.0f);
+    const bool counted = possession && possession->team == team;
+    pen.text(team_with_mark(team), {Face::bold, counted ? 15.0f : 18.0f, 0.06f, Align::centre},
+             {side * 137.0f, y + (counted ? 23.0f : 31.0f)}, kTeamInk[t], 0.55f, 108.0f);
+    if (counted) {
+      draw_possession(pen, *possession, {side * 137.0f, y + 49.0f});
+      continue;
+    }
     const std::string& name = foosball::nearest(*hud.characters, state.character[t]).name;
     pen.text(tr(name.c_str()), {Face::regular, 11.5f, 0.01f, Align::centre},
              {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
-  if (state.sets[0] + state.sets[1] > 0) {
+  // At the end of a match of one set there is nothing to count.
+  const int least_sets = state.screen == number(wire::Screen::end) ? 2 : 1;
+  if (state.sets[0] + state.sets[1] >= least_sets) {
     const std::size_t left = pen.left_is_team_0 ? 0 : 1;
     const std::string sets = std::string(tr("sets")) + " " + std::to_string(state.sets[left]) +
                              " : " + std::to_string(state.sets[1 - left]);
@@ -49,43 +63,18 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
   pen.text(clock, {Face::regular, 14.0f, 0.04f, Align::centre}, {0.0f, y + 38.0f}, kInk);
 }
 
-std::string team_with_mark(std::uint8_t team) {
-  const std::size_t t = team == 1 ? 1 : 0;
-  return std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]);
-}
+constexpr float kSmallWindow = 0.75f;  // pixels a unit: below, news of the match are written larger
 
-// What the rules have to say now: a time-out, a foul for a while, else the last shot in training.
-std::string rules_line(const HudState& hud) {
-  constexpr float kFoulShown = 4.0f;  // [s]
-  constexpr std::array<const char*, 6> kFouls{N_("held too long"),    N_("spinning"),
-                                              N_("jarring"),          N_("technical foul"),
-                                              N_("time-out misused"), N_("serve")};
-  const wire::Snapshot& state = *hud.state;
-  char number_text[48];
-  if (state.time_out_seconds > 0.0f) {
-    std::snprintf(number_text, sizeof number_text, " %.0f s",
-                  static_cast<double>(state.time_out_seconds));
-    return std::string(tr("Time-out")) + ": " + team_with_mark(state.time_out_team) + number_text;
-  }
-  if (state.fouled && hud.since_foul < kFoulShown) {
-    const char* foul = kFouls[std::min<std::size_t>(state.last_foul, kFouls.size() - 1)];
-    return std::string(tr("Foul")) + ": " + team_with_mark(state.last_foul_team) + ", " + tr(foul);
-  }
-  if (state.mode == number(wire::Mode::training) && state.last_shot.speed > 0.0f) {
-    std::snprintf(number_text, sizeof number_text, ": %.1f m/s, %.0f°",
-                  static_cast<double>(state.last_shot.speed),
-                  57.29578 * static_cast<double>(state.last_shot.angle));
-    return std::string(tr("Last shot")) + number_text;
-  }
-  return {};
-}
-
-void draw_rules_line(const HudPen& pen, const HudState& hud, bool at_the_bottom) {
+// Beside the board.
+void draw_rules_line(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
   const std::string line = rules_line(hud);
   if (line.empty()) return;
   const TextStyle style{Face::bold, 16.0f, 0.0f, Align::centre};
-  const float half = std::min(0.5f * pen.width(line, style) + 14.0f, pen.half_width - 4.0f);
-  const float y = at_the_bottom ? pen.bottom - 100.0f : 82.0f;
+  const float wanted = 0.5f * whole.width(line, style) + 14.0f;
+  const HudPen pen = whole.readable(kSmallWindow, wanted + 4.0f);
+  const float half = std::min(wanted, pen.half_width - 4.0f);
+  const float board = 76.0f * whole.scale / pen.scale;
+  const float y = at_the_bottom ? pen.bottom - board - 28.0f : board + 6.0f;
   pen.panel({-half, y}, {half, y + 26.0f}, 8.0f, {0.20f, 0.13f, 0.02f, 0.86f});
   pen.text(line, style, {0.0f, y + 19.0f}, kWarning, 0.55f, 2.0f * half - 12.0f);
 }
@@ -107,6 +96,26 @@ void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& sc
     pen.text(tr("HELD"), {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning,
              0.55f, 58.0f);
   }
+}
+
+// Beside the board, where there is one below, else below what else is told in the corner.
+void draw_mode(const HudPen& whole, const HudState& hud) {
+  const auto lines = mode_lines(*hud.state, whole.left_is_team_0 ? 0 : 1);
+  if (lines[0].empty()) return;
+  const bool above = hud.view == View::above;
+  const HudPen pen = above ? whole : whole.readable(kSmallWindow, 400.0f);
+  const TextStyle bold{Face::bold, 15.0f, 0.0f, Align::left};
+  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
+  const float beside = pen.half_width - 16.0f - 212.0f;
+  const bool narrow = beside < 100.0f;  // above the board and the line of the rules
+  const float x = -pen.half_width + 16.0f;
+  const float y = !above ? 70.0f : pen.bottom - (narrow ? 134.0f : 36.0f);
+  const float room = above && !narrow ? beside : pen.half_width;
+  const float width =
+      std::min(room, std::max(pen.width(lines[0], bold), pen.width(lines[1], regular)));
+  pen.panel({x - 10.0f, y - 19.0f}, {x + width + 10.0f, y + 27.0f}, 8.0f, kPanel);
+  pen.text(lines[0], bold, {x, y}, kInk, 0.55f, room);
+  pen.text(lines[1], regular, {x, y + 19.0f}, kFaint, 0.55f, room);
 }
 
 // What the keys do: all of it on the logo and when asked for, a line where a choice is to be made.
@@ -207,14 +216,17 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
     case ScreenKind::play:
       break;
     case ScreenKind::ceremony:
-      draw_ceremony(pen, state, hud.goal, hud.replay, hud.still, above);
+      draw_ceremony(pen, state, ceremony_words(hud), hud.replay, hud.still, above);
       break;
     case ScreenKind::end:
-      draw_end(pen, state, hud.statistics, hud.report);
+      draw_end(pen, state, end_words(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report);
       break;
   }
   draw_score(pen, hud, above);
-  if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) draw_rules_line(pen, hud, above);
+  if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) {
+    draw_rules_line(pen, hud, above);
+    draw_mode(pen, hud);
+  }
   if (!above) draw_held_rods(pen, hud, screen);
   if (state.paused) draw_paused(pen);
 }
@@ -233,6 +245,15 @@ void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& s
 }
 
 }  // namespace
+
+void tell_story(HudState& hud, const MatchStory& story) {
+  hud.goal = story.last_goal();
+  hud.since_foul = story.since_foul();
+  hud.since_serve = story.since_serve();
+  hud.set_over = story.set_over();
+  hud.sets = story.sets();
+  hud.statistics = story.statistics();
+}
 
 void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
   const bool left = hud.viewer_team != 1;

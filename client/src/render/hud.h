@@ -45,7 +45,9 @@ struct HudState {
   bool recorded = false;  // a recording: nobody is waited for, nor called to play
   std::array<float, 8> rod_shift{};
   GoalStory goal;
-  float since_foul = 1e3f;  // [s]
+  float since_foul = 1e3f, since_serve = 1e3f;  // [s]
+  bool set_over = false;                        // at a ceremony
+  std::vector<std::array<int, 2>> sets;         // goals of those that are over, as far as seen
   std::array<TeamStatistics, 2> statistics;
   const wire::Report* report = nullptr;  // of the match that has just ended; null: none is kept
   std::vector<wire::Fame> fame;          // who plays best; none: not known
@@ -53,6 +55,9 @@ struct HudState {
   std::vector<SurveyPanel> survey;       // the questionnaire, by person; none: not asked
   std::array<std::string, 8> rod_names;  // who plays each, to be shown at its handle
 };
+
+// What the events of the match have told.
+void tell_story(HudState& hud, const MatchStory& story);
 
 class HudPen;
 void draw_menu(const HudPen& pen, const MenuPage& page);

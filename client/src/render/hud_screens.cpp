@@ -10,6 +10,7 @@
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 #include "render/hud.h"
+#include "render/match_words.h"
 #include "render/translate.h"
 
 namespace client {
@@ -150,19 +151,7 @@ void draw_chosen(const HudPen& pen, int character, int team, const glm::vec2& lo
   pen.panel(low, low + size, 14.0f, kTeamInk[static_cast<std::size_t>(team)], 2.0f);
 }
 
-std::string named_team(std::size_t team) {
-  return std::string(kTeamMark[team]).append(" ").append(kTeamNames[team]);
-}
-
 }  // namespace
-
-std::string line_name(int layout, int rod) {
-  constexpr std::array<const char*, 4> kLines{N_("Goalie"), N_("Defence"), N_("Midfield"),
-                                              N_("Attack")};
-  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(layout));
-  const auto& spec = table.rods[static_cast<std::size_t>(std::clamp(rod, 0, foosball::kRods - 1))];
-  return tr(kLines[static_cast<std::size_t>(spec.line)]);
-}
 
 // In two columns where there is room, else in one; smaller where even that is too wide.
 float draw_all_keys(const HudPen& whole, float room) {
@@ -231,11 +220,16 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
   const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
   const auto rows = static_cast<float>(shown);
   const HudPen pen = whole.fitting(450.0f, 660.0f);
-  pen.panel({-200.0f, 16.0f}, {200.0f, 88.0f}, 14.0f, kPanel);
-  pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f}, kInk,
-           0.8f, 370.0f);
+  const auto mode = mode_lines(state, pen.left_is_team_0 ? 0 : 1);
+  const float up = mode[0].empty() ? 0.0f : 10.0f;  // room for it
+  pen.panel({-200.0f, 16.0f - up}, {200.0f, 88.0f + up}, 14.0f, kPanel);
+  pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f - up},
+           kInk, 0.8f, 370.0f);
   pen.text(tr("spin a rod to choose, push it to confirm"),
-           {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, 76.0f}, kFaint, 0.8f, 370.0f);
+           {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, 76.0f - up}, kFaint, 0.8f, 370.0f);
+  if (!mode[0].empty())
+    pen.text(mode[0] + ": " + mode[1], {Face::bold, 18.0f, 0.0f, Align::centre}, {0.0f, 80.0f + up},
+             kWarning, 0.8f, 370.0f);
   const float width = std::min(262.0f, pen.half_width - 160.0f), top = 108.0f, low = 606.0f;
   const float between = 6.0f;
   const float height =
@@ -248,7 +242,7 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
     const int chosen = std::min<int>(state.character[t], count - 1);
     const int first = std::clamp(chosen - kAtOnce / 2, 0, count - shown);
     pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 56.0f}, 16.0f, kVeil);
-    pen.text(named_team(t), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
+    pen.text(team_with_mark(team), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
              kTeamInk[t], 0.55f, width - 70.0f);
     if (team == viewer_team)
       pen.text(tr("you"), {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, top + 34.0f},
@@ -277,32 +271,22 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
   }
 }
 
-void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const GoalStory& goal,
+void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const CeremonyWords& words,
                    bool replay, bool still, bool at_the_bottom) {
   const HudPen pen = whole.fitting(430.0f, 180.0f);
-  const auto team = static_cast<std::size_t>(state.last_scorer == 1);
   const float grow = still ? 0.0f : 0.25f * std::exp(-7.0f * state.screen_seconds);
   const float high = 78.0f, top = at_the_bottom ? pen.bottom - high - 74.0f : 84.0f;
-  const Colour& ink = kTeamInk[team];
+  const Colour& ink = kTeamInk[state.last_scorer == 1 ? 1 : 0];
   pen.panel({-pen.half_width, top}, {pen.half_width, top + high}, 0.0f,
             {0.25f * ink.r, 0.25f * ink.g, 0.25f * ink.b, 0.80f});
   for (const float y : {top, top + high - 4.0f})
     pen.panel({-pen.half_width, y}, {pen.half_width, y + 4.0f}, 0.0f, ink);
-  const char* call = goal.own_goal ? tr("OWN GOAL") : tr("GOAL");
-  pen.text(call, {Face::bold, 52.0f * (1.0f + grow), 0.14f, Align::right}, {-20.0f, top + 58.0f},
-           ink, 0.8f, 380.0f);
-  std::string who;
-  if (goal.scorer_rod >= 0) {
-    const std::size_t of = goal.own_goal ? 1 - team : team;
-    char speed[32];
-    std::snprintf(speed, sizeof speed, ", %.1f m/s", static_cast<double>(goal.speed));
-    who = named_team(of) + ", " + line_name(state.layout, goal.scorer_rod) + " " +
-          std::to_string(goal.scorer_man + 1) + speed;
-  }
-  const std::string line = tr("Goal for") + std::string(" ") + named_team(team);
-  pen.text(line, {Face::bold, 22.0f, 0.02f, Align::left}, {10.0f, top + 34.0f}, kInk, 0.8f, 400.0f);
-  pen.text(who, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk, 0.8f,
+  pen.text(words.call, {Face::bold, 52.0f * (1.0f + grow), 0.14f, Align::right},
+           {-20.0f, top + 58.0f}, ink, 0.8f, 380.0f);
+  pen.text(words.line, {Face::bold, 22.0f, 0.02f, Align::left}, {10.0f, top + 34.0f}, kInk, 0.8f,
            400.0f);
+  pen.text(words.detail, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk,
+           0.8f, 400.0f);
   if (!replay) return;
   const float y = at_the_bottom ? top - 42.0f : top + high + 10.0f;
   pen.panel({-pen.half_width + 16.0f, y}, {-pen.half_width + 236.0f, y + 32.0f}, 8.0f, kPanel);
@@ -395,29 +379,35 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
   }
 }
 
-void draw_end(const HudPen& whole, const wire::Snapshot& state,
+void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& words,
               const std::array<TeamStatistics, 2>& statistics, const wire::Report* report) {
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
   std::vector<EndRow> rows = end_rows(statistics);
   if (report != nullptr) take_report(rows, *report);
-  const float half = 310.0f, height = 210.0f + 28.0f * static_cast<float>(rows.size());
+  const float details = 26.0f * static_cast<float>(words.details.size());
+  const float half = 310.0f, height = 210.0f + details + 28.0f * static_cast<float>(rows.size());
   const HudPen pen = whole.fitting(half + 10.0f, height + 120.0f);
   const float top = 0.5f * (pen.bottom - height);
   pen.panel({-half, top}, {half, top + height}, 20.0f, {0.03f, 0.045f, 0.07f, 0.86f});
-  const bool drawn = state.score[0] == state.score[1];  // only where the time was over
+  const bool drawn = state.score[0] == state.score[1];
   pen.panel({-half, top}, {half, top + height}, 20.0f, drawn ? kFaint : kTeamInk[team], 2.0f);
-  pen.text(drawn ? tr("A DRAW") : named_team(team) + " " + tr("WINS"),
-           {Face::bold, 50.0f, 0.04f, Align::centre}, {0.0f, top + 62.0f},
+  pen.text(words.title, {Face::bold, 50.0f, 0.04f, Align::centre}, {0.0f, top + 62.0f},
            drawn ? kInk : kTeamInk[team], 0.8f, 2.0f * half - 40.0f);
   const std::size_t left = pen.left_is_team_0 ? 0 : 1, right = 1 - left;
-  const std::string score =
-      std::to_string(state.score[left]) + " : " + std::to_string(state.score[right]);
-  pen.text(score, {Face::bold, 44.0f, 0.05f, Align::centre}, {0.0f, top + 116.0f}, kInk);
+  const std::string result =
+      std::to_string(words.result[left]) + " : " + std::to_string(words.result[right]);
+  pen.text(result, {Face::bold, 44.0f, 0.05f, Align::centre}, {0.0f, top + 116.0f}, kInk);
   for (const auto& [at, of] : {std::pair(-1.0f, left), std::pair(1.0f, right)}) {
-    pen.text(named_team(of), {Face::bold, 19.0f, 0.04f, Align::centre}, {at * 200.0f, top + 112.0f},
-             kTeamInk[of], 0.55f, 190.0f);
+    pen.text(team_with_mark(static_cast<int>(of)), {Face::bold, 19.0f, 0.04f, Align::centre},
+             {at * 200.0f, top + 112.0f}, kTeamInk[of], 0.55f, 190.0f);
   }
-  float y = top + 156.0f;
+  float y = top + 148.0f;
+  for (const std::string& detail : words.details) {
+    pen.text(detail, {Face::bold, 18.0f, 0.02f, Align::centre}, {0.0f, y}, kWarning, 0.55f,
+             2.0f * half - 40.0f);
+    y += 26.0f;
+  }
+  y += 8.0f;
   for (const EndRow& row : rows) {
     pen.text(row.name, {Face::regular, 16.0f, 0.0f, Align::centre}, {0.0f, y}, kFaint, 0.55f,
              220.0f);
@@ -425,8 +415,8 @@ void draw_end(const HudPen& whole, const wire::Snapshot& state,
     pen.text(row.values[right], {Face::bold, 17.0f, 0.0f, Align::centre}, {200.0f, y}, kInk);
     y += 28.0f;
   }
-  pen.text(tr("push a rod to play again"), {Face::regular, 17.0f, 0.0f, Align::centre},
-           {0.0f, top + height - 20.0f}, kFaint, 0.55f, 2.0f * half - 40.0f);
+  pen.text(words.call, {Face::regular, 17.0f, 0.0f, Align::centre}, {0.0f, top + height - 20.0f},
+           kFaint, 0.55f, 2.0f * half - 40.0f);
 }
 
 void draw_paused(const HudPen& whole) {

@@ -14,6 +14,9 @@
 
 namespace client {
 
+struct CeremonyWords;  // render/match_words.h
+struct EndWords;
+
 inline const Colour kInk{0.90f, 0.94f, 0.98f, 1.0f};
 inline const Colour kFaint{0.66f, 0.73f, 0.80f, 0.95f};
 inline const Colour kWarning{1.0f, 0.80f, 0.36f, 1.0f};
@@ -67,19 +70,16 @@ void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, boo
 // Six at a time of each team's characters, about the one that is chosen.
 void draw_selection(const HudPen& pen, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team);
-// A band at the upper edge, or the lower: the field stays free. Own goals and the scorer are named.
-void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
+// A band at the upper edge, or the lower: the field stays free.
+void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const CeremonyWords& words,
                    bool replay, bool still, bool at_the_bottom);
 // report: as it is kept, or null: what was seen here.
-void draw_end(const HudPen& pen, const wire::Snapshot& state,
+void draw_end(const HudPen& pen, const wire::Snapshot& state, const EndWords& words,
               const std::array<TeamStatistics, 2>& statistics, const wire::Report* report);
 // Its upper edge at y; how high it is with so many players.
 void draw_fame(const HudPen& pen, std::span<const wire::Fame> fame, float y);
 float fame_height(std::size_t players);
 void draw_paused(const HudPen& pen);
-
-// "4 attack"... in the person's language: of a rod by its line.
-std::string line_name(int layout, int rod);
 
 // What the keys do, at the bottom of the screen; how high it stands.
 // room: from the bottom up; where it is too small to read all of them, a line says what they are.

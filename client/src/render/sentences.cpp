@@ -65,20 +65,6 @@ std::string plain_list(std::string_view word) {
   return text;
 }
 
-std::string filled(std::string_view form, const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < form.size(); ++i) {
-    const std::size_t which = i + 1 < form.size() ? static_cast<std::size_t>(form[i + 1] - '1') : 9;
-    if (form[i] == '%' && which < words.size()) {
-      text += words[which];
-      ++i;
-    } else {
-      text += form[i];
-    }
-  }
-  return text;
-}
-
 // The form that says most of the sentence in its own words: a stranger's may look like another.
 struct Known {
   const char* form = nullptr;
@@ -126,6 +112,20 @@ std::optional<std::string> translated(std::string_view sentence, int depth) {
 }
 
 }  // namespace
+
+std::string filled(std::string_view form, const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    const std::size_t which = i + 1 < form.size() ? static_cast<std::size_t>(form[i + 1] - '1') : 9;
+    if (form[i] == '%' && which < words.size()) {
+      text += words[which];
+      ++i;
+    } else {
+      text += form[i];
+    }
+  }
+  return text;
+}
 
 std::string tr_sentence(const std::string& english) {
   return translated(english, 0).value_or(english);

@@ -4,11 +4,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace client {
 
 // The sentence in the language in use; one that is not known as it is. A stranger's words may be
 // part of it: they are kept as they are.
 std::string tr_sentence(const std::string& english);
+
+// The form with the words at its places %1 .. %9.
+std::string filled(std::string_view form, const std::vector<std::string>& words);
 
 }  // namespace client

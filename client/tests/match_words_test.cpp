@@ -1,0 +1,275 @@
+// What the rules decide is told: words from snapshots and stories, without a window.
+#include "render/match_words.h"
+
+#include <gtest/gtest.h>
+
+#include "render/translate.h"
+#include "scripted_scene.h"
+#include "wire/enums.h"
+
+namespace client {
+namespace {
+
+constexpr int kFirstMidfield = 3, kFirstAttack = 5, kSecondMidfield = 4;  // rods
+
+struct Told {
+  wire::Snapshot state = scripted_play(0.35);
+  HudState hud;
+  Told() { hud.state = &state; }
+  Told(const Told&) = delete;
+  Told& operator=(const Told&) = delete;
+  void stop(wire::Screen screen, bool ball_in_goal) {
+    state.screen = number(screen);
+    state.ball_in_play = false;
+    state.ball_visible = ball_in_goal;
+  }
+};
+
+// The ball lies before this rod.
+wire::Snapshot held_by(int rod, float seconds, wire::RuleSet rules) {
+  wire::Snapshot state = scripted_play(0.35);
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  const auto& spec = table.rods[static_cast<std::size_t>(rod)];
+  state.ball.position = {static_cast<float>(spec.x) + 0.02f, 0.1f, 0.0173f};
+  state.rule_set = number(rules);
+  state.possession_team = static_cast<std::uint8_t>(spec.team);
+  state.possession_seconds = seconds;
+  return state;
+}
+
+// --- the clock of possession ---------------------------------------------------------------------
+
+TEST(MatchWords, TheClockOfPossessionCountsDownTheLastFiveSeconds) {
+  const auto arcade = [](int rod, float seconds) {
+    return possession_clock(held_by(rod, seconds, wire::RuleSet::arcade));
+  };
+  EXPECT_FALSE(arcade(kFirstMidfield, 4.9f)) << "10 s on a midfield: more than 5 are left";
+  ASSERT_TRUE(arcade(kFirstMidfield, 5.5f));
+  EXPECT_EQ(arcade(kFirstMidfield, 5.5f)->seconds, 5);
+  EXPECT_EQ(arcade(kFirstMidfield, 5.5f)->team, 0);
+  EXPECT_TRUE(arcade(kFirstMidfield, 5.5f)->hurries);
+  EXPECT_EQ(arcade(kSecondMidfield, 9.5f)->seconds, 1);
+  EXPECT_EQ(arcade(kSecondMidfield, 9.5f)->team, 1);
+  EXPECT_FALSE(arcade(kFirstAttack, 9.5f)) << "15 s elsewhere";
+  EXPECT_EQ(arcade(kFirstAttack, 12.0f)->seconds, 3);
+  EXPECT_EQ(arcade(0, 14.2f)->seconds, 1) << "the goalie";
+}
+
+TEST(MatchWords, ByTheTournamentsRulesTheClockIsAlwaysTold) {
+  const auto clock = possession_clock(held_by(kFirstAttack, 0.5f, wire::RuleSet::itsf));
+  ASSERT_TRUE(clock);
+  EXPECT_EQ(clock->seconds, 15);
+  EXPECT_FALSE(clock->hurries);
+  EXPECT_TRUE(possession_clock(held_by(kFirstAttack, 11.0f, wire::RuleSet::itsf))->hurries);
+}
+
+TEST(MatchWords, NoClockRunsWhereNobodyHasTheBall) {
+  const wire::Snapshot held = held_by(kFirstMidfield, 8.0f, wire::RuleSet::itsf);
+  ASSERT_TRUE(possession_clock(held));
+  wire::Snapshot state = held;
+  state.ball_in_play = false;
+  EXPECT_FALSE(possession_clock(state));
+  state = held;
+  state.time_out_seconds = 20.0f;
+  EXPECT_FALSE(possession_clock(state));
+  state = held;
+  state.mode = number(wire::Mode::training);
+  EXPECT_FALSE(possession_clock(state)) << "there it is served again";
+  state = held;
+  state.screen = number(wire::Screen::ceremony);
+  EXPECT_FALSE(possession_clock(state));
+  state = held;
+  const auto& rods = foosball::table_spec(foosball::Layout::tournament).rods;
+  state.ball.position[0] = static_cast<float>(rods[kFirstMidfield].x + 0.11);  // nearer to the next
+  EXPECT_FALSE(possession_clock(state)) << "on its way to another rod";
+}
+
+// --- the line of the rules -----------------------------------------------------------------------
+
+TEST(MatchWords, TheServeIsToldBeforeItAndAWhileAfter) {
+  Told told;
+  told.state.next_server = 1;
+  EXPECT_EQ(rules_line(told.hud), "");
+  told.hud.since_serve = 0.5f;
+  EXPECT_EQ(rules_line(told.hud), "Serve: ▲ VEGA");
+  told.hud.since_serve = 3.0f;
+  EXPECT_EQ(rules_line(told.hud), "");
+  told.state.ball_in_play = false;
+  EXPECT_EQ(rules_line(told.hud), "Serve: ▲ VEGA");
+  told.state.fouled = true;
+  told.state.last_foul = number(wire::Foul::possession);
+  told.hud.since_foul = 0.2f;
+  EXPECT_EQ(rules_line(told.hud), "Foul: ● ORION, held too long  -  Serve: ▲ VEGA");
+}
+
+TEST(MatchWords, AGoldenGoalIsToldWhileTheNextOneDecides) {
+  Told told;
+  told.state.golden_goal = true;
+  EXPECT_EQ(rules_line(told.hud), "golden goal: the next one decides");
+  told.state.time_out_seconds = 12.0f;
+  told.state.time_out_team = 0;
+  EXPECT_EQ(rules_line(told.hud), "Time-out: ● ORION 12 s");
+}
+
+TEST(MatchWords, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
+  Told told;
+  told.state.mode = number(wire::Mode::training);
+  told.state.last_shot = {0, 5, 1, 7.25f, 0.1745f};
+  told.hud.since_serve = 0.1f;
+  EXPECT_EQ(rules_line(told.hud), "Last shot: 7.2 m/s, 10°");
+  told.state.fouled = true;
+  told.state.last_foul = number(wire::Foul::serve);
+  told.hud.since_foul = 0.2f;
+  EXPECT_EQ(rules_line(told.hud), "Foul: ● ORION, faulty serve  -  Last shot: 7.2 m/s, 10°");
+}
+
+// --- ceremonies ----------------------------------------------------------------------------------
+
+TEST(MatchWords, AGoalNamesItsScorerAndWhoServesNext) {
+  Told told;
+  told.stop(wire::Screen::ceremony, true);
+  told.state.last_scorer = 0;
+  told.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};
+  const CeremonyWords words = ceremony_words(told.hud);
+  EXPECT_EQ(words.call, "GOAL");
+  EXPECT_EQ(words.line, "Goal for ● ORION  -  Serve: ▲ VEGA");
+  EXPECT_EQ(words.detail, "● ORION, Attack 2, 7.4 m/s");
+}
+
+TEST(MatchWords, ASetThatEndsOnTheClockIsNoGoal) {
+  Told told;
+  told.stop(wire::Screen::ceremony, false);
+  told.state.last_scorer = 1;
+  told.state.score = {1, 2};
+  told.state.sets = {1, 1};
+  told.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};  // an earlier one
+  const CeremonyWords words = ceremony_words(told.hud);
+  EXPECT_EQ(words.call, "TIME");
+  EXPECT_EQ(words.line, "Set for ▲ VEGA");
+  EXPECT_EQ(words.detail, "2 : 1, sets 1 : 1");
+}
+
+TEST(MatchWords, AGoalThatWinsASetSaysSo) {
+  Told told;
+  told.stop(wire::Screen::ceremony, true);
+  told.state.last_scorer = 1;
+  told.hud.set_over = true;
+  EXPECT_EQ(ceremony_words(told.hud).line, "Goal and set for ▲ VEGA");
+  EXPECT_EQ(ceremony_words(told.hud).call, "GOAL");
+  told.state.golden_goal = true;
+  EXPECT_EQ(ceremony_words(told.hud).call, "GOLDEN GOAL");
+}
+
+// --- the end of a match --------------------------------------------------------------------------
+
+TEST(MatchWords, AMatchOfSetsIsToldInSetsWithTheGoalsOfEach) {
+  Told told;
+  told.stop(wire::Screen::end, true);
+  told.state.last_scorer = 0;
+  told.state.score = {5, 3};
+  told.state.sets = {3, 1};
+  told.hud.sets = {{5, 4}, {2, 5}, {5, 1}, {5, 3}};
+  EndWords words = end_words(told.hud, 0);
+  EXPECT_EQ(words.title, "● ORION WINS");
+  EXPECT_EQ(words.result, (std::array<int, 2>{3, 1}));
+  EXPECT_EQ(words.details, std::vector<std::string>{"sets  5:4   2:5   5:1   5:3"});
+  EXPECT_EQ(end_words(told.hud, 1).details,
+            std::vector<std::string>{"sets  4:5   5:2   1:5   3:5"});
+  told.hud.sets = {{5, 1}, {5, 3}};  // joined late
+  EXPECT_EQ(end_words(told.hud, 0).details, std::vector<std::string>{"last set 5:3"});
+  told.state.sets = {1, 0};
+  words = end_words(told.hud, 0);
+  EXPECT_EQ(words.result, (std::array<int, 2>{5, 3})) << "one set: its goals";
+  EXPECT_TRUE(words.details.empty());
+}
+
+TEST(MatchWords, TheLadderNamesRungOpponentNextRungAndChampion) {
+  Told told;
+  told.state.mode = number(wire::Mode::ladder);
+  told.state.computer = {false, true};
+  told.state.rung = 2;
+  EXPECT_EQ(mode_lines(told.state, 0),
+            (std::array<std::string, 2>{"Rung 3 of 5", "level 3, passer"}));
+  told.stop(wire::Screen::end, true);
+  told.state.sets = {1, 0};
+  EXPECT_EQ(end_words(told.hud, 0).call, "push a rod for the next rung: level 4, passer");
+  told.state.sets = {0, 1};
+  told.state.last_scorer = 1;
+  EXPECT_EQ(end_words(told.hud, 0).call, "push a rod to play again") << "lost";
+  told.state.computer = {true, false};
+  told.state.rung = 4;
+  const EndWords top = end_words(told.hud, 0);
+  EXPECT_EQ(top.title, "CHAMPION OF THE LADDER");
+  EXPECT_EQ(top.details, std::vector<std::string>{"▲ VEGA has beaten every opponent"});
+  told.state.attract = true;
+  EXPECT_EQ(mode_lines(told.state, 0)[0], "") << "computers show a match, nobody climbs";
+  EXPECT_EQ(end_words(told.hud, 0).title, "▲ VEGA WINS");
+}
+
+TEST(MatchWords, AChallengeTellsWhatIsLeftAndThePoints) {
+  Told told;
+  told.state.mode = number(wire::Mode::challenge);
+  told.state.timed = true;
+  told.state.seconds_left = 71.4f;
+  told.state.score = {2, 1};
+  EXPECT_EQ(mode_lines(told.state, 0)[0], "Challenge of the day");
+  EXPECT_EQ(mode_lines(told.state, 0)[1], "1:12 left, goals 2 : 1");
+  EXPECT_EQ(mode_lines(told.state, 1)[1], "1:12 left, goals 1 : 2");
+}
+
+TEST(MatchWords, AreInThePersonsLanguage) {
+  use_language("de", CLIENT_CATALOGUES);
+  Told told;
+  told.stop(wire::Screen::ceremony, false);
+  EXPECT_EQ(ceremony_words(told.hud).call, "ZEIT");
+  use_language("ko", CLIENT_CATALOGUES);
+  told.state.mode = number(wire::Mode::ladder);
+  told.state.rung = 2;
+  EXPECT_EQ(mode_lines(told.state, 0)[0], "사다리 5단 중 3단");
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+// --- the story of sets ---------------------------------------------------------------------------
+
+struct SetStory {
+  MatchStory story;
+  wire::Snapshot scene = scripted_play(0.35);
+
+  void win(std::uint8_t team, const std::array<std::uint8_t, 2>& score) {
+    scene.screen = number(wire::Screen::ceremony);
+    scene.score = score;
+    wire::EventSnapshot won;
+    won.kind = number(wire::EventKind::set_won);
+    won.team = team;
+    story.update({&won, 1}, scene, 0.01f);
+    EXPECT_TRUE(story.set_over());
+  }
+  void play_on(std::uint8_t server) {
+    scene.screen = number(wire::Screen::play);
+    scene.score = {0, 0};
+    scene.next_server = server;
+    story.update({}, scene, 0.01f);
+    EXPECT_FALSE(story.set_over());
+  }
+};
+
+TEST(MatchStory, KeepsTheGoalsOfEachSet) {
+  SetStory sets;
+  sets.win(0, {5, 3});
+  sets.play_on(1);  // who lost it
+  sets.win(1, {4, 5});
+  EXPECT_EQ(sets.story.sets(), (std::vector<std::array<int, 2>>{{5, 3}, {4, 5}}));
+}
+
+TEST(MatchStory, ChangesTheSidesOfSetsWithTheirPlayers) {
+  SetStory sets;
+  sets.win(0, {5, 3});
+  sets.play_on(0);  // who lost it, on the other side now
+  EXPECT_EQ(sets.story.sets(), (std::vector<std::array<int, 2>>{{3, 5}}));
+  sets.scene.screen = number(wire::Screen::logo);
+  sets.story.update({}, sets.scene, 0.01f);
+  EXPECT_TRUE(sets.story.sets().empty()) << "another match";
+}
+
+}  // namespace
+}  // namespace client
