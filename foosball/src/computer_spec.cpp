@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "foosball/computer_player.h"
+#include "random.h"
 
 namespace foosball {
 namespace {
@@ -54,6 +55,12 @@ PlayStyle style_of_level(int level) {
                                                    PlayStyle::passer, PlayStyle::passer,
                                                    PlayStyle::gambler};
   return kStyles.at(static_cast<std::size_t>(level - 1));
+}
+
+PlayerSpec challenge_opponent(std::uint64_t challenge) {
+  Random random(challenge ^ 0x6f70706f6e656e74u);  // not as the match's own dice fall: "opponent"
+  const int level = 1 + random.below(kLevels);
+  return {.level = level, .style = static_cast<PlayStyle>(random.below(kPlayStyles))};
 }
 
 vp::Expected<PlayerSpec> parse_player(std::string_view text) {

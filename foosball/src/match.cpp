@@ -12,25 +12,9 @@
 namespace foosball {
 namespace {
 
-bool plausible(const Rules& rules) {
-  const auto duration = [](double s) { return s > 0.0 && s <= kMaxDuration; };
-  const auto or_never = [](double s) { return s >= 0.0 && s <= kMaxDuration; };
-  return static_cast<int>(rules.set) < kRuleSets && static_cast<int>(rules.spin) < kSpinRules &&
-         rules.goals_to_win >= 1 && rules.goals_to_win <= rules.max_goals &&
-         rules.max_goals <= kMaxScore && rules.lead >= 1 && rules.lead <= kMaxScore &&
-         rules.sets_to_win >= 1 && rules.sets_to_win <= kMaxSets &&
-         (rules.golden_goal || rules.sets_to_win == 1) && rules.time_outs >= 0 &&
-         rules.time_outs <= kMaxCount && duration(rules.dead_ball_seconds) &&
-         duration(rules.possession_midfield_seconds) && duration(rules.possession_seconds) &&
-         duration(rules.time_out_seconds) && duration(rules.ceremony_seconds) &&
-         duration(rules.end_seconds) && or_never(rules.match_seconds) &&
-         or_never(rules.still_seconds) && or_never(rules.idle_seconds) &&
-         or_never(rules.attract_seconds);
-}
-
 bool plausible(const MatchDesc& desc) {
   return static_cast<int>(desc.layout) < kLayouts && static_cast<int>(desc.mode) < kModes &&
-         plausible(desc.rules) && in_range(desc.tuning) && in_range(desc.characters);
+         playable(desc.rules) && in_range(desc.tuning) && in_range(desc.characters);
 }
 
 bool usable(const RodTarget& target) {
@@ -52,15 +36,31 @@ double seconds(std::uint64_t ticks) {
 
 }  // namespace
 
-MatchDesc challenge_of(std::uint32_t date, Layout layout) {
-  return {.layout = layout, .seed = date, .rules = challenge_rules(), .mode = Mode::challenge};
+bool playable(const Rules& rules) {
+  const auto duration = [](double s) { return s > 0.0 && s <= kMaxDuration; };
+  const auto or_never = [](double s) { return s >= 0.0 && s <= kMaxDuration; };
+  return static_cast<int>(rules.set) < kRuleSets && static_cast<int>(rules.spin) < kSpinRules &&
+         rules.goals_to_win >= 1 && rules.goals_to_win <= rules.max_goals &&
+         rules.max_goals <= kMaxScore && rules.lead >= 1 && rules.lead <= kMaxScore &&
+         rules.sets_to_win >= 1 && rules.sets_to_win <= kMaxSets &&
+         (rules.golden_goal || rules.sets_to_win == 1) && rules.time_outs >= 0 &&
+         rules.time_outs <= kMaxCount && duration(rules.dead_ball_seconds) &&
+         duration(rules.possession_midfield_seconds) && duration(rules.possession_seconds) &&
+         duration(rules.time_out_seconds) && duration(rules.ceremony_seconds) &&
+         duration(rules.end_seconds) && or_never(rules.match_seconds) &&
+         or_never(rules.still_seconds) && or_never(rules.idle_seconds) &&
+         or_never(rules.attract_seconds);
+}
+
+MatchDesc challenge_of(std::uint32_t date) {
+  return {.seed = date, .rules = challenge_rules(), .mode = Mode::challenge};
 }
 
 Match::Impl::Impl(const MatchDesc& d) : desc(d), state(first_state(d)) {
   world = std::make_unique<TableWorld>(d.layout, bodies_of(d, state), state.first, d.tuning);
-  state.seed = d.seed;
   state.tuning = d.tuning;
   state.random = Random(d.seed).state();
+  state.game = state.next = {d.mode, d.rules, d.mode == Mode::challenge ? d.seed : 0};
   state.feed_rod = rod_of(0, Line::attack);
   events.reserve(kMaxEventsPerStep);
   reset_gestures();
@@ -71,11 +71,14 @@ Match::Impl::Impl(const MatchDesc& d) : desc(d), state(first_state(d)) {
 
 void Match::Impl::step(const TickInput& input) {
   events.clear();
+  const bool played = state.screen == Screen::play;
   for (const Command& command : input.commands) apply(command);
   if (!(world->tuning() == state.tuning)) rebuild_world();
   watch_hands(input.rods, !input.commands.empty());
   if (!state.paused) {
-    drive_rods(input.rods);
+    // What hands wanted before a try of a challenge began is none of it.
+    const bool begins = !played && state.screen == Screen::play && state.play_ticks == 0;
+    if (!(begins && mode() == Mode::challenge)) drive_rods(input.rods);
     if (state.ball_parked) world->park_ball();
     const vp::Vec3 velocity_before = world->ball().velocity;
     const bool sane = world->step();
@@ -122,12 +125,16 @@ void Match::Impl::apply(const Command& command) {
     case Command::Kind::tune:
       tune(command.value, command.amount);
       break;
+    case Command::Kind::set_up:
+      set_up(command.setup);
+      break;
   }
 }
 
 // Takes effect in this tick: the world is built anew.
 void Match::Impl::tune(int index, double value) {
-  if (index >= kTuningValues) return;
+  const bool challenge = state.game.mode == Mode::challenge || state.next.mode == Mode::challenge;
+  if (index >= kTuningValues || challenge) return;
   const TuningField& field = kTuningFields[static_cast<std::size_t>(index)];
   if (in_range(field, value)) state.tuning.*field.value = value;
 }
@@ -189,8 +196,13 @@ void Match::Impl::refresh_view() {
   const BallState ball = world->ball();
   view.tick = state.tick;
   view.layout = desc.layout;
-  view.mode = desc.mode;
+  view.mode = state.game.mode;
   view.rule_set = rules().set;
+  view.rules = rules();
+  view.challenge = state.game.challenge;
+  view.setup =
+      setup_of(state.next.mode, state.next.rules, static_cast<std::uint32_t>(state.next.challenge));
+  view.setup_waits = !(state.next == state.game);
   view.screen = state.screen;
   view.paused = state.paused;
   view.characters = characters();

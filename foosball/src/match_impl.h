@@ -26,9 +26,9 @@ struct Match::Impl {
   std::uint64_t events_dropped = 0;
 
   const TableSpec& table() const { return world->table(); }
-  const Rules& rules() const { return desc.rules; }
+  const Rules& rules() const { return state.game.rules; }
   int characters() const { return static_cast<int>(desc.characters.size()); }
-  Mode mode() const { return state.attract ? Mode::match : desc.mode; }
+  Mode mode() const { return state.attract ? Mode::match : state.game.mode; }
 
   // match.cpp
   void step(const TickInput& input);
@@ -77,6 +77,8 @@ struct Match::Impl {
   void start_play(int server);
   void new_set();
   void go_on_after_end();
+  void set_up(const GameSetup& setup);
+  int characters_to_draw() const;
   int person() const;
   int dice(int n);
   void tune(int index, double value);

@@ -7,31 +7,7 @@
 namespace foosball {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x37'30'4d'42'46'53;  // "SFBM07"
-
-template <class Archive, class R>
-void visit_rules(Archive& archive, R& rules) {
-  archive.choice(rules.set, kRuleSets);
-  archive.choice(rules.goals_to_win, kMaxScore + 1);
-  archive.choice(rules.max_goals, kMaxScore + 1);
-  archive.choice(rules.lead, kMaxScore + 1);
-  archive.choice(rules.sets_to_win, kMaxSets + 1);
-  archive.real(rules.match_seconds, 0.0, kMaxDuration);
-  archive.flag(rules.golden_goal);
-  archive.flag(rules.change_sides);
-  archive.real(rules.dead_ball_seconds, 0.0, kMaxDuration);
-  archive.real(rules.still_seconds, 0.0, kMaxDuration);
-  archive.real(rules.possession_midfield_seconds, 0.0, kMaxDuration);
-  archive.real(rules.possession_seconds, 0.0, kMaxDuration);
-  archive.choice(rules.time_outs, kMaxCount + 1);
-  archive.real(rules.time_out_seconds, 0.0, kMaxDuration);
-  archive.choice(rules.spin, kSpinRules);
-  archive.flag(rules.jarring);
-  archive.real(rules.ceremony_seconds, 0.0, kMaxDuration);
-  archive.real(rules.end_seconds, 0.0, kMaxDuration);
-  archive.real(rules.idle_seconds, 0.0, kMaxDuration);
-  archive.real(rules.attract_seconds, 0.0, kMaxDuration);
-}
+constexpr std::uint64_t kMagic = 0x38'30'4d'42'46'53;  // "SFBM08"
 
 template <class Archive, class Magic, class Digest, class Desc, class State>
 void visit_head(Archive& archive, Magic& magic, Digest& characters, Desc& desc, State& state) {
@@ -45,15 +21,15 @@ void visit_head(Archive& archive, Magic& magic, Digest& characters, Desc& desc, 
 
 // What no match is ever in, though each field by itself is in its range.
 bool consistent(const MatchDesc& desc, const MatchState& s) {
-  const Rules& rules = desc.rules;
+  const Rules& rules = s.game.rules;
   const TableSpec& table = table_spec(desc.layout);
   const bool plays = s.screen == Screen::play;
   const auto man_of = [&](int rod, int man) { return man < table.rods[rod].men; };
   const auto touch_ok = [&](const Touch& touch) {
     return touch.tick <= s.tick && man_of(touch.rod, touch.man);
   };
+  if (!playable(rules) || !playable(s.next.rules)) return false;
   // Counts of what began with the match.
-
   bool ok = s.screen_ticks <= s.tick && s.play_ticks <= s.tick &&
             s.tally.set_ticks <= s.play_ticks && s.idle_ticks <= s.tick &&
             s.absent_ticks[0] <= s.tick && s.absent_ticks[1] <= s.tick;

@@ -162,6 +162,7 @@ void Match::Impl::enter(Screen screen) {
     state.ball_parked = !state.ball_in_goal;  // else it stays to be seen where it scored
   }
   if (screen == Screen::logo) {
+    state.game = state.next;
     state.attract = false;
     state.rung = 0;
     state.feed_man = -1;
@@ -183,9 +184,9 @@ int Match::Impl::dice(int n) {
 
 // From the selection: a new match, the serve decided by lot (3).
 void Match::Impl::start_match() {
-  if (mode() == Mode::challenge) state.random = Random(state.seed).state();
+  if (mode() == Mode::challenge) state.random = Random(state.game.challenge).state();
   if (mode() == Mode::challenge || state.attract) {
-    for (int& character : state.character) character = dice(characters());
+    for (int& character : state.character) character = dice(characters_to_draw());
   }
   const int server = dice(kTeams);
   state.tally = {};
@@ -196,6 +197,24 @@ void Match::Impl::start_match() {
   state.built = state.character;
   rebuild_world();
   start_play(server);
+}
+
+// A challenge draws from the built-in ones, which come first where there are others.
+int Match::Impl::characters_to_draw() const {
+  if (mode() != Mode::challenge) return characters();
+  return std::min(characters(), static_cast<int>(built_in_characters().size()));
+}
+
+// In play, rules do not change under the players' hands: at the next logo. The selection stays, but
+// where another mode leads elsewhere.
+void Match::Impl::set_up(const GameSetup& setup) {
+  if (!playable(setup)) return;
+  if (setup.mode == Mode::challenge && !(state.tuning == Tuning{})) return;
+  state.next = {setup.mode, rules_of(setup, state.game.rules), setup.date};
+  const bool other_mode = state.next.mode != state.game.mode;
+  if (state.attract || (state.screen == Screen::selection && other_mode))
+    return enter(Screen::logo);
+  if (state.screen == Screen::logo || state.screen == Screen::selection) state.game = state.next;
 }
 
 // Nobody is there: two computers play until a hand touches a rod.
@@ -246,11 +265,16 @@ void Match::Impl::go_on_after_end() {
   enter(Screen::selection);
 }
 
-// As state.built, first and tuning say. Rods and ball stay as they are.
+// As state.built, first and tuning say. Rods and ball stay as they are; but each try of a challenge
+// begins at rest, whatever was played before.
 void Match::Impl::rebuild_world() {
   auto rebuilt =
       std::make_unique<TableWorld>(desc.layout, bodies_of(desc, state), state.first, state.tuning);
   state.touching.clear();  // the new world tells of no contact that ends, those that last begin
+  if (mode() == Mode::challenge && state.screen != Screen::play) {
+    world = std::move(rebuilt);
+    return;
+  }
   rebuilt->set_ball(world->ball());
   for (int rod = 0; rod < kRods; ++rod) {
     rebuilt->set_rod(rod, world->rod(rod));

@@ -15,6 +15,7 @@ namespace foosball {
 
 // A score that fits a byte and no match reaches.
 inline constexpr int kMaxScore = 99;
+static_assert(kMostGoals <= kMaxScore);
 inline constexpr int kMaxSets = 9;
 inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counted no further
 inline constexpr double kMaxDuration = 3600.0;  // [s]
@@ -43,6 +44,21 @@ struct Touch {
   }
 };
 
+// What is played, and by what.
+struct Game {
+  Mode mode = Mode::match;
+  Rules rules;
+  std::uint64_t challenge = 0;  // what a challenge is drawn from, again at each start; else 0
+
+  bool operator==(const Game&) const = default;
+
+  template <class Archive, class Self>
+  static void visit(Archive& archive, Self& self);
+};
+
+// Each number in its range, and together a match that can end.
+bool playable(const Rules& rules);
+
 // What the score is made of.
 struct Tally {
   std::array<int, kTeams> score{};      // goals in this set
@@ -68,8 +84,8 @@ struct Tally {
 };
 
 struct MatchState {
-  std::uint64_t seed = 0;  // of the description: a challenge draws from it anew at each start
   std::uint64_t tick = 0;
+  Game game, next;  // in hand; from the next logo on
   Screen screen = Screen::logo;
   bool paused = false;
   Tally tally;
@@ -148,6 +164,37 @@ inline TeamBodies bodies_of(const MatchDesc& desc, const MatchState& state) {
           desc.characters[static_cast<std::size_t>(state.built[1])].body};
 }
 
+template <class Archive, class R>
+void visit_rules(Archive& archive, R& rules) {
+  archive.choice(rules.set, kRuleSets);
+  archive.choice(rules.goals_to_win, kMaxScore + 1);
+  archive.choice(rules.max_goals, kMaxScore + 1);
+  archive.choice(rules.lead, kMaxScore + 1);
+  archive.choice(rules.sets_to_win, kMaxSets + 1);
+  archive.real(rules.match_seconds, 0.0, kMaxDuration);
+  archive.flag(rules.golden_goal);
+  archive.flag(rules.change_sides);
+  archive.real(rules.dead_ball_seconds, 0.0, kMaxDuration);
+  archive.real(rules.still_seconds, 0.0, kMaxDuration);
+  archive.real(rules.possession_midfield_seconds, 0.0, kMaxDuration);
+  archive.real(rules.possession_seconds, 0.0, kMaxDuration);
+  archive.choice(rules.time_outs, kMaxCount + 1);
+  archive.real(rules.time_out_seconds, 0.0, kMaxDuration);
+  archive.choice(rules.spin, kSpinRules);
+  archive.flag(rules.jarring);
+  archive.real(rules.ceremony_seconds, 0.0, kMaxDuration);
+  archive.real(rules.end_seconds, 0.0, kMaxDuration);
+  archive.real(rules.idle_seconds, 0.0, kMaxDuration);
+  archive.real(rules.attract_seconds, 0.0, kMaxDuration);
+}
+
+template <class Archive, class Self>
+void Game::visit(Archive& archive, Self& self) {
+  archive.choice(self.mode, kModes);
+  visit_rules(archive, self.rules);
+  archive.any(self.challenge);
+}
+
 template <class Archive, class S>
 void visit_shot(Archive& archive, S& shot) {
   archive.choice(shot.team, kTeams);
@@ -159,8 +206,9 @@ void visit_shot(Archive& archive, S& shot) {
 
 template <class Archive, class Self>
 void MatchState::visit(Archive& archive, Self& self) {
-  archive.any(self.seed);
   archive.count(self.tick, kMaxTicks);
+  Game::visit(archive, self.game);
+  Game::visit(archive, self.next);
   archive.choice(self.screen, kScreens);
   archive.flag(self.paused);
   Tally::visit(archive, self.tally);

@@ -294,7 +294,7 @@ TEST_F(ModesTest, TrainingServesToTheSideThatBeganItUntilAManIsAskedFor) {
 }
 
 TEST_F(ModesTest, ASavedChallengeIsThatOfItsDay) {
-  const MatchDesc day = challenge_of(20261122, Layout::tournament);
+  const MatchDesc day = challenge_of(20261122);
   const auto first_serves = [&](Match& of) {
     std::vector<int> seen;
     for (int attempt = 0; attempt < 3; ++attempt) {
@@ -312,12 +312,12 @@ TEST_F(ModesTest, ASavedChallengeIsThatOfItsDay) {
   const auto expected = first_serves(original);
   int others = 0;
   for (std::uint32_t date = 20270101; date < 20270106; ++date) {
-    Match other = *Match::create(challenge_of(date, Layout::tournament));
+    Match other = *Match::create(challenge_of(date));
     const std::uint64_t hash = other.state_hash();
     ASSERT_TRUE(other.restore(saved));
     EXPECT_NE(other.state_hash(), hash);
     EXPECT_EQ(first_serves(other), expected) << date;
-    Match own = *Match::create(challenge_of(date, Layout::tournament));
+    Match own = *Match::create(challenge_of(date));
     others += first_serves(own) != expected ? 1 : 0;
   }
   EXPECT_GT(others, 0) << "days differ";
@@ -336,7 +336,7 @@ TEST_F(ModesTest, AFeedThatIsNoMansIsIgnored) {
 // --- challenge, ladder ---------------------------------------------------------------------------
 
 TEST_F(ModesTest, TheChallengeOfADayIsTheSameAtEveryTry) {
-  desc = challenge_of(20261122, Layout::tournament);
+  desc = challenge_of(20261122);
   match = std::make_unique<Match>(*Match::create(desc));
   push(0);
   ASSERT_EQ(view().screen, Screen::play) << "characters are drawn";
@@ -352,7 +352,7 @@ TEST_F(ModesTest, TheChallengeOfADayIsTheSameAtEveryTry) {
 }
 
 TEST_F(ModesTest, ADrawnChallengeEndsAsADraw) {
-  desc = challenge_of(20261122, Layout::tournament);
+  desc = challenge_of(20261122);
   desc.rules.match_seconds = 1.0;
   match = std::make_unique<Match>(*Match::create(desc));
   push(0);

@@ -13,6 +13,7 @@
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
 #include "server/option_checks.h"
+#include "wire/sentence.h"
 
 namespace app {
 namespace {
@@ -67,6 +68,13 @@ std::string check_sets(const std::string& text) {
   int sets = 0;
   const bool ok = CLI::detail::lexical_cast(text, sets) && sets >= 1 && sets <= 17 && sets % 2 == 1;
   return ok ? "" : "\"" + text + "\" is no odd number of sets from 1 to 17";
+}
+
+std::string check_date(const std::string& text) {
+  std::uint32_t date = 0;
+  const bool ok =
+      text.size() == 8 && CLI::detail::lexical_cast(text, date) && foosball::is_date(date);
+  return ok ? "" : "\"" + text + "\" is no day of the calendar, such as 20261122";
 }
 
 // Today as the number that names a challenge, such as 20261122 (UTC).
@@ -124,8 +132,9 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
          "minutes, the same for all on a day; ladder: against stronger and stronger computers")
       ->check(CLI::IsMember({"match", "training", "challenge", "ladder"}));
   cli.add_option("--date", raw.date, "of the challenge, such as 20261122 (today)")
-      ->check(CLI::Range(10000101, 99991231));
-  cli.add_option("--level", raw.level, "of the computer players, 1 to 5")
+      ->check(check_date);
+  cli.add_option("--level", raw.level,
+                 "of the computer players, 1 to 5; the ladder and the challenge have their own")
       ->check(CLI::Range(1, foosball::kLevels));
   cli.add_option("--style", raw.style,
                  "of the computer players: wall, shooter, passer or gambler; without it, the one "
@@ -218,38 +227,72 @@ std::string with_scheme(const std::string& device) {
   return (device.rfind("/dev/", 0) == 0 ? "serial:" : "file:") + device;
 }
 
-foosball::Rules rules_of(const Raw& raw) {
-  foosball::Rules rules = raw.rules == "itsf" ? foosball::itsf_rules() : foosball::arcade_rules();
-  if (raw.minutes > 0.0) {
-    rules.match_seconds = 60.0 * raw.minutes;
-    rules.goals_to_win = rules.max_goals = 99;
-  }
-  if (raw.goals > 0) {
-    rules.goals_to_win = raw.goals;
-    rules.max_goals = std::min(99, raw.goals + 3);  // as 8 is to 5
-  }
-  if (raw.sets > 0) rules.sets_to_win = (raw.sets + 1) / 2;
-  rules.change_sides = raw.change_sides;
-  return rules;
-}
-
 foosball::Mode mode_of(const std::string& name) {
   if (name == "training") return foosball::Mode::training;
   if (name == "ladder") return foosball::Mode::ladder;
   return name == "challenge" ? foosball::Mode::challenge : foosball::Mode::match;
 }
 
+// The first of these options that was given, or none.
+std::string given(const CLI::App& cli, std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (cli.get_option(name)->count() > 0) return name;
+  return {};
+}
+
+// Empty, or which option says what the mode decides by itself.
+std::string contradiction(const CLI::App& cli, const Raw& raw) {
+  using wire::Said;
+  const foosball::Mode mode = mode_of(raw.mode);
+  const auto refused = [&](const std::string& option, const wire::Sentence& why) {
+    return option + " and --mode " + raw.mode + ": " + why.text();
+  };
+  if (mode != foosball::Mode::challenge && raw.date > 0)
+    return "--date is the day of a challenge: give --mode challenge with it, or leave it out";
+  if (!foosball::chooses_rules(mode)) {
+    if (raw.layout != "tournament") return refused("--layout", wire::say<Said::challenge_table>());
+    const std::string own = given(cli, {"--tuning", "--characters", "--seed"});
+    if (!own.empty())
+      return own +
+             " and --mode challenge: the challenge of the day is the same for everybody; leave " +
+             own + " out";
+    if (raw.rules != "arcade") return refused("--rules", wire::say<Said::challenge_is_set>());
+    const std::string set =
+        given(cli, {"--goals", "--sets", "--minutes", "--change-sides", "--level", "--style"});
+    if (!set.empty()) return refused(set, wire::say<Said::challenge_is_set>());
+  }
+  if (!foosball::has_end(mode)) {
+    const std::string end = given(cli, {"--goals", "--sets", "--minutes", "--change-sides"});
+    if (!end.empty()) return refused(end, wire::say<Said::training_has_no_end>());
+  }
+  if (!foosball::chooses_opponent(mode)) {
+    const std::string opponent = given(cli, {"--level", "--style"});
+    if (!opponent.empty()) return refused(opponent, wire::say<Said::ladder_has_its_levels>());
+  }
+  return {};
+}
+
+foosball::GameSetup setup_of(const Raw& raw) {
+  foosball::GameSetup setup;
+  setup.mode = mode_of(raw.mode);
+  setup.rules = raw.rules == "itsf" ? foosball::RuleSet::itsf : foosball::RuleSet::arcade;
+  setup.goals = raw.goals;
+  setup.sets = raw.sets;
+  setup.match_ms = static_cast<std::uint32_t>(std::lround(60'000.0 * raw.minutes));
+  setup.change_sides = raw.change_sides;
+  return setup;
+}
+
 void translate(Options& o, const Raw& raw) {
   const auto layout =
       raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
   o.match.layout = layout;
-  o.match.rules = rules_of(raw);
-  o.match.mode = mode_of(raw.mode);
-  if (o.match.mode == foosball::Mode::challenge) {
-    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : today(), layout);
-  }
-  if (!raw.seed.empty() && o.match.mode != foosball::Mode::challenge)
-    o.match.seed = *server::parse_seed(raw.seed);
+  const foosball::GameSetup setup = setup_of(raw);
+  o.match.rules = foosball::rules_of(setup);
+  o.match.mode = setup.mode;
+  if (setup.mode == foosball::Mode::challenge)
+    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : today());
+  if (!raw.seed.empty()) o.match.seed = *server::parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   const std::string player = std::to_string(raw.level);
   o.computer_player =
@@ -280,6 +323,7 @@ std::string own_characters() {
 }
 
 tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {
+  if (!foosball::chooses_rules(mode_of(raw.mode))) return foosball::built_in_characters();
   if (!raw.characters.empty()) return characters::load_characters(raw.characters);
   const std::string own = own_characters();
   if (own.empty()) return foosball::built_in_characters();
@@ -316,6 +360,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     return tl::unexpected(
         Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options"});
   }
+  if (std::string why = contradiction(cli, raw); !why.empty())
+    return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   translate(options, raw);
   if (!raw.tuning.empty()) {
     auto tuning = profile::load_tuning(raw.tuning);

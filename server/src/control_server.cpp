@@ -63,6 +63,12 @@ bool ControlServer::tell_tuning(const wire::Tuning& tuning) {
   return true;
 }
 
+bool ControlServer::tell_game(const wire::Game& game) {
+  if (!games_.push(wire::Game(game))) return false;
+  ::eventfd_write(wake_.get(), 1);
+  return true;
+}
+
 void ControlServer::ask(std::uint32_t match, RodSet cabinet_rods) {
   if (questionnaires_.push({match, cabinet_rods})) ::eventfd_write(wake_.get(), 1);
 }
@@ -112,6 +118,7 @@ void ControlServer::run() {
     watch_kicks(os::monotonic_us());
     publish_notices();
     publish_tuning();
+    publish_game();
     publish_questionnaires();
     publish_report();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
@@ -262,6 +269,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     send(connection, wire::Pong{ping->id});
   } else if (const auto* wish = std::get_if<wire::Wish>(&message); wish && joined) {
     take_wish(connection, *wish);
+  } else if (const auto* game = std::get_if<wire::Game>(&message); game && joined) {
+    take_game(connection, *game);
   } else if (const auto* answers = std::get_if<wire::Answers>(&message); answers && joined) {
     take_answers(connection, *answers);
   } else if (const auto* kick = std::get_if<wire::Kick>(&message); kick && joined) {
@@ -365,6 +374,17 @@ void ControlServer::publish_tuning() {
   tuning_ = tuning;
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, tuning);
+  }
+}
+
+void ControlServer::publish_game() {
+  wire::Game game;
+  bool any = false;
+  while (games_.pop(game)) any = true;
+  if (!any) return;
+  game_ = game;
+  for (auto& connection : connections_) {
+    if (connection->state == State::joined) send(*connection, game);
   }
 }
 

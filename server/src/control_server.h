@@ -29,6 +29,7 @@
 #include "os/file_descriptor.h"
 #include "seats.h"
 #include "server/counters.h"
+#include "server/game_choice.h"
 #include "server/log.h"
 #include "server/network.h"
 #include "server/spsc_queue.h"
@@ -48,6 +49,7 @@ struct ControlEvent {
     rods,  // has others now
     left,  // for good
     wish,
+    game,     // can be played, as far as can be known before the tick
     answers,  // to the questionnaire
   };
   Kind kind = Kind::joined;
@@ -62,6 +64,7 @@ struct ControlEvent {
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
   os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
   foosball::Command wish{};    // wish
+  wire::Game game;             // game: date: of a challenge
   bool put_out = false;        // left: by others, not of its own will
   wire::Answers answers;       // answers: of one team's rods that were asked and had not answered
 };
@@ -73,7 +76,9 @@ struct ControlOptions {
   int udp = -1;  // the port's UDP socket, which must outlive the server
   std::uint16_t udp_port = 0;
   foosball::Layout layout{};
-  wire::Characters characters;  // said to each who joins
+  wire::Characters characters;        // said to each who joins
+  GameSite site;                      // at the start
+  std::function<std::string()> date;  // ServerOptions::date; called on the control thread
   std::optional<Endpoint> multicast;
   wire::SealKey group_key{};              // with multicast: everybody's
   bool teams_open = true;                 // false: a recording plays, nobody can take a team
@@ -94,6 +99,7 @@ class ControlServer {
   void clear(std::uint32_t topic, const std::string& text);  // text: for the log
   // Sent to all, and to each who joins until another is. False: try again in the next tick.
   bool tell_tuning(const wire::Tuning& tuning);
+  bool tell_game(const wire::Game& game);  // the same
   // A match was won that is kept: who has rods may answer. cabinet_rods: those that its own hands
   // have, who are asked at the first host's at this machine. Left out if 8 are waiting.
   void ask(std::uint32_t match, RodSet cabinet_rods);
@@ -152,6 +158,7 @@ class ControlServer {
   void expire(ControlConnection& connection);
   void publish_notices();
   void publish_tuning();
+  void publish_game();
   void publish_questionnaires();
   void publish_report();
   void tell(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
@@ -176,6 +183,8 @@ class ControlServer {
                                    const os::SocketAddress& listener);
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
+  void take_game(ControlConnection& connection, wire::Game game);
+  bool in_challenge() const;
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
   // control_kicks.cpp
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
@@ -219,6 +228,8 @@ class ControlServer {
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<wire::Notice, 64> outbound_;
   SpscQueue<wire::Tuning, 8> tunings_;
+  SpscQueue<wire::Game, 8> games_;
+  std::optional<wire::Game> game_;  // as it was last told
   SpscQueue<wire::Report, 8> reports_;
   std::optional<wire::Report> report_;                // the last one
   SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's

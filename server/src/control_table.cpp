@@ -32,6 +32,13 @@ std::uint32_t vote_topic(const foosball::Command& wish) {
   return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
 }
 
+bool is_default(const wire::Tuning& tuning) {
+  const foosball::Tuning usual;
+  for (std::size_t i = 0; i < tuning.values.size(); ++i)
+    if (tuning.values[i] != usual.*foosball::kTuningFields[i].value) return false;
+  return true;
+}
+
 wire::Sentence asks_for(const foosball::Command& wish, const std::string& name, int votes,
                         int needed) {
   if (wish.kind == foosball::Command::Kind::restart)
@@ -283,6 +290,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   send(connection, options_.characters);
   for (const auto& [topic, notice] : notices_) send(connection, notice);
   if (tuning_) send(connection, *tuning_);
+  if (game_) send(connection, *game_);
   if (report_) send(connection, *report_);
   roster_changed_ = true;
   return true;
@@ -407,10 +415,48 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
   const Ruling ruling = seat != nullptr
                             ? rule(seat->role, plays_it ? command.team : seat->team, command)
                             : Ruling::no;
+  const bool keeps_tuning = command.kind == foosball::Command::Kind::tune && in_challenge();
+  if (ruling == Ruling::yes && keeps_tuning)
+    answer(connection, wire::kGameAnswerTopic, say<Said::challenge_keeps_tuning>());
   const bool taken =
-      ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
+      !keeps_tuning && ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
       (ruling == Ruling::yes ? hand_on(seat->client, command) : put_to_vote(*seat, command));
   count(taken ? Count::wishes : Count::wishes_dropped);
+}
+
+bool ControlServer::in_challenge() const {
+  return game_ && game_->mode == number(wire::Mode::challenge);
+}
+
+// What is played is the host's to choose, as the tuning is. A challenge is that of today.
+void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
+  const Seat* seat = seats_.find(connection.client);
+  const auto refuse_it = [&](const wire::Sentence& why_not) {
+    count(Count::wishes_dropped);
+    answer(connection, wire::kGameAnswerTopic, why_not);
+  };
+  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) {
+    count(Count::wishes_dropped);
+    return;
+  }
+  if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
+  if (seat->role != wire::Role::host) return refuse_it(say<Said::only_host_chooses>());
+  GameSite site = options_.site;
+  if (tuning_) site.default_tuning = is_default(*tuning_);
+  if (const wire::Sentence why = why_not(game, site); !why.empty()) return refuse_it(why);
+  if (game.mode == number(wire::Mode::challenge)) {
+    game.date = options_.date ? day_of(options_.date()) : 0;
+    if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
+  }
+  if (untold_.size() > kMostUntold) return refuse_it(say<Said::server_overloaded>());
+  count(Count::wishes);
+  send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::game;
+  event.client = seat->client;
+  event.game = game;
+  untold_.push_back(std::move(event));
+  tell_tick();
 }
 
 // --- the questionnaire

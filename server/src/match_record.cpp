@@ -72,6 +72,7 @@ static_assert(same(wire::WishKind::feed, foosball::Command::Kind::feed));
 static_assert(same(wire::WishKind::seat, foosball::Command::Kind::seat));
 static_assert(same(wire::WishKind::touch, foosball::Command::Kind::touch));
 static_assert(same(wire::WishKind::tune, foosball::Command::Kind::tune));
+static_assert(same(wire::WishKind::set_up, foosball::Command::Kind::set_up));
 static_assert(same(wire::RodStatus::absent, cabinet::RodStatus::absent));
 static_assert(same(wire::RodStatus::live, cabinet::RodStatus::live));
 static_assert(same(wire::RodStatus::held, cabinet::RodStatus::held));
@@ -83,6 +84,27 @@ static_assert(same(wire::RodSource::replay, RodDriver::replay));
 
 std::uint32_t milliseconds(double seconds) {
   return static_cast<std::uint32_t>(std::llround(std::clamp(seconds, 0.0, 4.0e6) * 1000.0));
+}
+
+// Precondition: in range.
+wire::JournalSetup to_record(const foosball::GameSetup& setup) {
+  return {static_cast<std::uint8_t>(setup.mode),
+          static_cast<std::uint8_t>(setup.rules),
+          static_cast<std::uint8_t>(setup.goals),
+          static_cast<std::uint8_t>(setup.sets),
+          setup.match_ms,
+          setup.change_sides,
+          setup.date};
+}
+
+foosball::GameSetup from_record(const wire::JournalSetup& setup) {
+  return {static_cast<foosball::Mode>(setup.mode),
+          static_cast<foosball::RuleSet>(setup.rule_set),
+          setup.goals,
+          setup.sets,
+          setup.match_ms,
+          setup.change_sides,
+          setup.date};
 }
 
 }  // namespace
@@ -172,13 +194,15 @@ foosball::MatchDesc from_header(const wire::JournalHeader& header) {
 
 wire::JournalCommand to_record(const foosball::Command& command) {
   const bool tune = command.kind == foosball::Command::Kind::tune;
+  const bool set_up = command.kind == foosball::Command::Kind::set_up;
   return {static_cast<std::uint8_t>(command.kind), command.team, command.value,
-          tune ? std::bit_cast<std::uint64_t>(command.amount) : 0};
+          tune ? std::bit_cast<std::uint64_t>(command.amount) : 0,
+          set_up ? to_record(command.setup) : wire::JournalSetup{}};
 }
 
 foosball::Command from_record(const wire::JournalCommand& command) {
   return {static_cast<foosball::Command::Kind>(command.kind), command.team, command.value,
-          std::bit_cast<double>(command.amount)};
+          std::bit_cast<double>(command.amount), from_record(command.setup)};
 }
 
 }  // namespace server

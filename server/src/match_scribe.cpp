@@ -60,9 +60,9 @@ results::MatchResult MatchScribe::result(const foosball::MatchView& view,
                                          const Players& players) const {
   results::MatchResult result;
   result.layout = name_of(match_.layout);
-  result.goals_to_win = static_cast<std::uint32_t>(match_.rules.goals_to_win);
-  result.max_goals = static_cast<std::uint32_t>(match_.rules.max_goals);
-  result.seed = match_.seed;
+  result.goals_to_win = static_cast<std::uint32_t>(view.rules.goals_to_win);
+  result.max_goals = static_cast<std::uint32_t>(view.rules.max_goals);
+  result.seed = view.mode == foosball::Mode::challenge ? view.challenge : match_.seed;
   result.play_seconds = view.play_seconds;
   const auto statistics = statistics_of_teams(before_, statistics_.totals());
   for (std::size_t t = 0; t < result.teams.size(); ++t) {

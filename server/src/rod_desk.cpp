@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "server/game_choice.h"
+
 namespace server {
 namespace {
 
@@ -27,10 +29,12 @@ RodDesk::RodDesk(const foosball::MatchDesc& match,
     : table_(foosball::table_spec(match.layout)),
       computer_fills_(computer_fills),
       player_(computer_player),
+      chosen_(computer_player),
+      seated_(player_in(match.mode, 0, match.seed, computer_player)),
       computer_allowed_(computer),
       seed_(match.seed),
+      match_seed_(match.seed),
       mux_(slide_limits(table_)) {
-  if (match.mode == foosball::Mode::ladder) rung_ = 0;
   hand_watch_.resize(places_.size());
   for (Place& place : places_) {
     place.remote = std::make_unique<RemoteSource>("client");
@@ -44,24 +48,26 @@ RodDesk::RodDesk(const foosball::MatchDesc& match,
 }
 
 foosball::ComputerPlayerDesc RodDesk::computer_desc(int team) const {
-  static_assert(foosball::kLadderRungs == foosball::kLevels);
   foosball::ComputerPlayerDesc desc;
   desc.team = team;
   desc.seed = computer_seed(seed_, team);
   desc.opens_match = computer_allowed_[0] && computer_allowed_[1];
-  desc.player = computer_player();
+  desc.player = seated_;
   return desc;
 }
 
-foosball::PlayerSpec RodDesk::computer_player() const {
-  if (rung_ < 0) return player_;
-  const int level = foosball::level_of_rung(rung_);
-  return {.level = level, .style = foosball::style_of_level(level)};
-}
-
-void RodDesk::set_rung(int rung) {
-  if (rung_ < 0 || rung == rung_ || rung < 0 || rung >= foosball::kLadderRungs) return;
-  rung_ = rung;
+void RodDesk::follow(const foosball::MatchView& view) {
+  using foosball::Screen;
+  const bool under_way =
+      !view.attract && view.screen != Screen::logo && view.screen != Screen::selection;
+  if (!under_way) player_ = chosen_;
+  const bool challenge = view.mode == foosball::Mode::challenge;
+  const bool begins = under_way && !under_way_;
+  under_way_ = under_way;
+  const auto player = player_in(view.mode, view.rung, view.challenge, player_);
+  if (player == seated_ && !(challenge && begins)) return;
+  seated_ = player;
+  seed_ = challenge ? view.challenge : match_seed_;
   for (int team = 0; team < foosball::kTeams; ++team) {
     computers_[team]->replace(computer_desc(team));
   }

@@ -67,10 +67,15 @@ class RodDesk {
   void show_match(bool shown);
   // A hand has moved a rod of a device or a client since the match is shown.
   bool hand_moved() const;
-  // The opponent at a rung of the ladder: stronger from one to the next.
-  void set_rung(int rung);
+  // Another computer player is chosen; it comes when the next match does, in a game that leaves the
+  // choice.
+  void choose_player(const foosball::PlayerSpec& player) { chosen_ = player; }
+  bool player_waits() const { return !(chosen_ == player_); }
+  // Each tick, before poll(): who plays where a computer does, as the game has it; at each try of a
+  // challenge the same, and in the same state.
+  void follow(const foosball::MatchView& view);
   // Who plays where a computer does.
-  foosball::PlayerSpec computer_player() const;
+  const foosball::PlayerSpec& computer_player() const { return seated_; }
 
   void poll(std::int64_t now_us);
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
@@ -107,11 +112,13 @@ class RodDesk {
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
   std::uint8_t computed_ = 0;  // rods that a computer plays unless a device has them, by bit
   bool computer_fills_;
-  foosball::PlayerSpec player_;
+  foosball::PlayerSpec player_, chosen_;  // in this match; from the next one on
+  foosball::PlayerSpec seated_;           // by what the game has
   std::array<bool, foosball::kTeams>
       computer_allowed_{};  // else it plays only a match that is shown
-  std::uint64_t seed_ = 0;
-  int rung_ = -1;  // not on the ladder
+  std::uint64_t seed_ = 0;  // the match's, or the challenge's
+  std::uint64_t match_seed_ = 0;
+  bool under_way_ = false;  // a match, as follow() saw it
   bool shown_ = false;
   std::uint8_t vacated_ = 0;  // by who left in this match, or the team; nobody has taken them since
   std::array<std::int64_t, foosball::kRods> offered_until_us_{};

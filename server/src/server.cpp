@@ -45,6 +45,7 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
            match.view()),
       recorder(std::move(journal)),
       scribe(options.match),
+      opponent(opponent_of(options.computer_player)),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
   clients.reserve(static_cast<std::size_t>(options.limits.connections));
   next.commands.reserve(wire::kMaxJournalCommands);
@@ -72,6 +73,9 @@ ControlOptions Server::Impl::control_options() const {
   out.group_key = group_key;
   out.layout = options.match.layout;
   out.characters = characters::to_record(options.match.characters);
+  const bool computer = options.computer[0] || options.computer[1];
+  out.site = site_of(options.match, computer);
+  out.date = options.date;
   out.multicast = options.network.multicast;
   out.teams_open = options.replay == nullptr;
   out.random = options.random;
@@ -108,6 +112,9 @@ void Server::Impl::take_control_events() {
         break;
       case ControlEvent::Kind::wish:
         take_wish(event);
+        break;
+      case ControlEvent::Kind::game:
+        take_game(event.game);
         break;
       case ControlEvent::Kind::answers:
         keep_answers(event);
@@ -150,6 +157,16 @@ void Server::Impl::take_wish(const ControlEvent& event) {
   next.commands.push_back(to_record(event.wish));
 }
 
+void Server::Impl::take_game(const wire::Game& asked) {
+  if (options.replay) return;
+  foosball::Command command{foosball::Command::Kind::set_up};
+  command.setup = setup_of(asked, asked.date);
+  next.commands.push_back(to_record(command));
+  if (asked.level == 0) return;
+  opponent = {asked.level, asked.style};
+  desk.choose_player(player_of(opponent));
+}
+
 // False when there is no tick to step: a client is awaited, or a recording is over.
 bool Server::Impl::gather(std::int64_t now_us) {
   input.receive(now_us);
@@ -171,7 +188,7 @@ bool Server::Impl::gather(std::int64_t now_us) {
 
 void Server::Impl::gather_live(std::int64_t now_us) {
   desk.show_match(match.view().attract);
-  desk.set_rung(match.view().rung);
+  desk.follow(match.view());
   watch_absences();
   desk.poll(now_us);
   tell_match();
@@ -218,6 +235,14 @@ void Server::Impl::watch_tuning() {
   for (std::size_t i = 0; i < tuning.values.size(); ++i)
     tuning.values[i] = now.*foosball::kTuningFields[i].value;
   if (control.tell_tuning(tuning)) tuning_told = now;
+}
+
+// Clients show it, and choose from there.
+void Server::Impl::watch_game() {
+  const foosball::MatchView& view = match.view();
+  const wire::Game now = to_game(view.setup, opponent, view.setup_waits || desk.player_waits());
+  if (game_told == now) return;
+  if (control.tell_game(now)) game_told = now;
 }
 
 // Once a second: whether anything of it has reached the network.
@@ -320,6 +345,7 @@ void Server::tick(std::int64_t now_us) {
   s.tell_report();
   s.watch_sending();
   s.watch_tuning();
+  s.watch_game();
 }
 
 void Server::wait_sent() {

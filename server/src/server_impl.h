@@ -20,6 +20,7 @@
 #include "recorder.h"
 #include "results_log.h"
 #include "rod_desk.h"
+#include "server/game_choice.h"
 #include "server/server.h"
 #include "socket.h"
 
@@ -57,6 +58,8 @@ struct Server::Impl {
   void tell_who_is_not_rated_as_the_team(const results::MatchResult& result);
   void watch_sending();
   void watch_tuning();
+  void take_game(const wire::Game& asked);
+  void watch_game();
   // Empty: the notice is cleared, and the log has over.
   void notify(Topic topic, const wire::Sentence& text, const std::string& over = {},
               std::uint32_t index = 0);
@@ -101,6 +104,8 @@ struct Server::Impl {
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;
   std::optional<foosball::Tuning> tuning_told;
+  Opponent opponent;  // as chosen last
+  std::optional<wire::Game> game_told;
   bool replay_over = false, journal_told = false, finished = false;
   bool was_played = false;  // somebody has, and not the computers for show
 

@@ -93,7 +93,7 @@ void Server::Impl::watch_absences() {
   const foosball::MatchView& view = match.view();
   const bool in_match = view.screen != foosball::Screen::logo &&
                         view.screen != foosball::Screen::end && !view.attract &&
-                        options.match.mode != foosball::Mode::training;
+                        view.mode != foosball::Mode::training;
   const bool in_play = in_match && view.screen == foosball::Screen::play && !view.paused &&
                        view.time_out_seconds <= 0.0;
   const bool changed = desk.watch_absences(in_match, in_play, tick_us);

@@ -30,6 +30,7 @@ bool well_formed(const wire::Wish& wish) {
              in_range(foosball::kTuningFields[wish.value], wish.amount);
     case Kind::seat:
     case Kind::touch:
+    case Kind::set_up:
       return false;
   }
   return false;

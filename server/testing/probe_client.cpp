@@ -121,6 +121,8 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
         roster_ = *roster;
       } else if (const auto* tuning = std::get_if<wire::Tuning>(&message)) {
         tuning_ = *tuning;
+      } else if (const auto* game = std::get_if<wire::Game>(&message)) {
+        game_ = *game;
       } else if (const auto* report = std::get_if<wire::Report>(&message)) {
         report_ = *report;
       } else if (const auto* characters = std::get_if<wire::Characters>(&message)) {

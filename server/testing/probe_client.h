@@ -38,11 +38,12 @@ class ProbeClient {
   wire::Hello hello(std::uint8_t team = wire::kWatchOnly) const;
   bool say(const wire::ControlMessage& message);
   bool send_raw(std::span<const std::byte> bytes);  // false when the server has closed
-  // The next message that is no Roster, no Tuning, no Report and no list of Characters; nothing at
-  // the deadline or when the server has closed.
+  // The next message that is no Roster, no Tuning, no Game, no Report and no list of Characters;
+  // nothing at the deadline or when the server has closed.
   std::optional<wire::ControlMessage> hear(int patience_ms = kPatienceMs);
   const wire::Roster& roster() const { return roster_; }  // the last one heard
   const std::optional<wire::Tuning>& tuning() const { return tuning_; }
+  const std::optional<wire::Game>& game() const { return game_; }
   const wire::Characters& characters() const { return characters_; }
   const std::optional<wire::Report>& report() const { return report_; }
   // The next message of this kind, throwing away others.
@@ -84,6 +85,7 @@ class ProbeClient {
   wire::Welcome welcome_;
   wire::Roster roster_;
   std::optional<wire::Tuning> tuning_;
+  std::optional<wire::Game> game_;
   wire::Characters characters_;
   std::optional<wire::Report> report_;
   wire::DatagramOpener snapshots_;

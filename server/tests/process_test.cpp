@@ -60,6 +60,22 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--seconds", "nan"},
       {"--minutes", "nan"},
       {"--keep-seats", "nan"},
+      {"--mode", "challenge", "--date", "20260231"},
+      {"--mode", "challenge", "--date", "2026112"},
+      {"--date", "20261122"},
+      {"--mode", "challenge", "--goals", "3"},
+      {"--mode", "challenge", "--rules", "itsf"},
+      {"--mode", "challenge", "--minutes", "1"},
+      {"--mode", "challenge", "--change-sides"},
+      {"--mode", "challenge", "--level", "2"},
+      {"--mode", "challenge", "--style", "wall"},
+      {"--mode", "challenge", "--seed", "1"},
+      {"--mode", "challenge", "--layout", "paper"},
+      {"--mode", "challenge", "--tuning", "/nowhere.toml"},
+      {"--mode", "challenge", "--characters", "/nowhere"},
+      {"--mode", "ladder", "--level", "2"},
+      {"--mode", "ladder", "--style", "wall"},
+      {"--mode", "training", "--minutes", "1"},
       {"--recordings", ".", "--recordings-gb", "nan"},
       {"--check-character", ""},
       {"--fast"},
@@ -84,6 +100,30 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
     const std::string& said = process.output();
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     EXPECT_EQ(said.rfind("space-foosball-server: ", 0), 0u) << said;
+  }
+}
+
+TEST(ServerProgram, NamesTheOptionThatTheModeDecides) {
+  const auto said = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"--port", "0", "--quiet", "--mode"});
+    Process process(serve(options));
+    process.wait();
+    return process.output();
+  };
+  EXPECT_NE(said({"ladder", "--level", "3"}).find("--level"), std::string::npos);
+  EXPECT_NE(said({"challenge", "--sets", "3"}).find("--sets"), std::string::npos);
+  EXPECT_NE(said({"challenge", "--seed", "3"}).find("--seed"), std::string::npos);
+}
+
+TEST(ServerProgram, PlaysWhatTheModeLeavesToBeChosen) {
+  for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+           {"challenge", "--layout", "tournament", "--date", "20240229"},
+           {"ladder", "--goals", "2", "--sets", "3", "--rules", "itsf"},
+           {"training", "--level", "3", "--style", "wall", "--layout", "paper"}}) {
+    std::vector<std::string> all{"--port", "0", "--seconds", "0.01", "--mode"};
+    all.insert(all.end(), options.begin(), options.end());
+    Process process(serve(all));
+    EXPECT_EQ(process.wait(), 0) << process.output();
   }
 }
 

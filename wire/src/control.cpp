@@ -46,6 +46,10 @@ auto build(Builder& b, const Kick& m) {
 auto build(Builder& b, const Tuning& m) {
   return fb::CreateTuning(b, b.CreateVector(m.values.data(), m.values.size()));
 }
+auto build(Builder& b, const Game& m) {
+  return fb::CreateGame(b, m.mode, m.rule_set, m.goals, m.sets, m.match_ms, m.change_sides, m.level,
+                        m.style, m.date, m.waits);
+}
 auto build(Builder& b, const Seat& m) {
   return fb::CreateSeat(b, m.client, text(b, m.name, kMaxName), m.team, m.rods, m.role, m.away);
 }
@@ -159,6 +163,12 @@ bool take(const fb::Tuning& t, Tuning& m) {
     if (!std::isfinite(m.values[i])) return false;
   }
   return true;
+}
+// Numbers that no table is looked up by are the server's to judge, with a sentence.
+bool take(const fb::Game& t, Game& m) {
+  m = {t.mode(),         t.rule_set(), t.goals(), t.sets(), t.match_ms(),
+       t.change_sides(), t.level(),    t.style(), t.date(), t.waits()};
+  return m.mode < kModeCount && m.rule_set < kRuleSetCount && m.style <= kStyleCount;
 }
 bool take(const fb::Seat& t, Seat& m) {
   m.client = t.client();
@@ -311,6 +321,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Report>(control.message_as_Report(), message);
     case fb::Message::Kick:
       return take_as<Kick>(control.message_as_Kick(), message);
+    case fb::Message::Game:
+      return take_as<Game>(control.message_as_Game(), message);
     case fb::Message::NONE:
       break;
   }

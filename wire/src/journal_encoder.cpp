@@ -9,7 +9,7 @@
 namespace wire {
 namespace {
 
-// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 77 bits, and of any payload
+// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 78 bits, and of any payload
 // but a header and a keyframe.
 constexpr std::size_t kSmallPayload = 1024;
 
@@ -42,9 +42,15 @@ std::span<const std::byte> encode(std::span<std::byte> scratch, Describe describ
   return scratch.first(encoder.finish());
 }
 
+bool valid(const JournalSetup& s) {
+  return s.mode < kModeCount && s.rule_set < kRuleSetCount && s.goals <= kMostGoals &&
+         s.sets <= kMostSets && s.match_ms <= kMostMatchMs && s.date <= kLastDate;
+}
+
 bool valid(const JournalCommand& c) {
   return c.kind < kCommandKindCount && c.team < kTeamCount &&
-         (c.amount == 0 || c.kind == number(WishKind::tune));
+         (c.amount == 0 || c.kind == number(WishKind::tune)) &&
+         (c.setup == JournalSetup{} || (c.kind == number(WishKind::set_up) && valid(c.setup)));
 }
 
 bool valid(const JournalTick& tick) {

@@ -189,6 +189,16 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount - 1, 1.0))) << "too few";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount + 1, 1.0))) << "too many";
   EXPECT_TRUE(refused(fb::Message::Tuning, tuning(kTuningCount, std::nan("")))) << "no number";
+  const auto game = [&](unsigned mode, unsigned rules, unsigned style) {
+    const auto byte = [](unsigned n) { return static_cast<std::uint8_t>(n); };
+    return fb::CreateGame(b, byte(mode), byte(rules), 255, 255, 0xFFFFFFFF, false, 255,
+                          byte(style));
+  };
+  EXPECT_FALSE(refused(fb::Message::Game, game(kModeCount - 1, kRuleSetCount - 1, kStyleCount)))
+      << "numbers are the server's to judge";
+  EXPECT_TRUE(refused(fb::Message::Game, game(kModeCount, 0, 0))) << "mode";
+  EXPECT_TRUE(refused(fb::Message::Game, game(0, kRuleSetCount, 0))) << "rules";
+  EXPECT_TRUE(refused(fb::Message::Game, game(0, 0, kStyleCount + 1))) << "style";
   EXPECT_FALSE(refused(fb::Message::Kick, fb::CreateKick(b, 1)));
   EXPECT_TRUE(refused(fb::Message::Kick, fb::CreateKick(b, 0))) << "nobody";
   const auto answers = [&](std::uint8_t rods, std::size_t count, std::uint8_t score) {

@@ -201,8 +201,12 @@ TEST(Journal, TheEncoderRefusesWhatTheReaderWould) {
   JournalTick tick;
   tick.commands.resize(65);
   EXPECT_FALSE(encoder.add(tick, out)) << "too many commands";
-  tick.commands = {{9, 0, 0}};
+  tick.commands = {{10, 0, 0}};
   EXPECT_FALSE(encoder.add(tick, out)) << "an unknown command";
+  tick.commands = {{9, 0, 0, 0, {.goals = 100}}};
+  EXPECT_FALSE(encoder.add(tick, out)) << "more goals than a set has";
+  tick.commands = {{3, 0, 0, 0, {.goals = 1}}};
+  EXPECT_FALSE(encoder.add(tick, out)) << "a setup that is none";
   tick.commands.clear();
   tick.rods[0].angle_urad = kJournalAngleLimit + 1;
   EXPECT_FALSE(encoder.add(tick, out)) << "an angle out of range";

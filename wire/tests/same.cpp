@@ -58,6 +58,10 @@ auto tied(const Kick& m) {
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }
+auto tied(const Game& m) {
+  return std::tie(m.mode, m.rule_set, m.goals, m.sets, m.match_ms, m.change_sides, m.level, m.style,
+                  m.date, m.waits);
+}
 auto tied(const Questionnaire& m) {
   return std::tie(m.match, m.rods);
 }

@@ -218,6 +218,7 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
       {"change_of_team", Claim{0xF0, 1}},
       {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
       {"tuning", tuning()},
+      {"game", Game{2, 0, 0, 0, 90'000, true, 4, 3, 20261122, true}},
       {"characters", Characters{characters()}},
       {"questionnaire", Questionnaire{3, 0x2B}},
       {"answers", Answers{3, 0x0B, {5, 4, 0, 1, 3, 2}}},
@@ -239,7 +240,10 @@ std::vector<JournalEntry> journal() {
                                                   .characters = characters()}};
   JournalTick tick;
   tick.rods[3] = {400'000, -1'570'796, 2'000'000, -31'416, true};
-  tick.commands = {{0, 1, 0, 0}, {1, 0, 2, 0}, {8, 0, 3, 0x3FF8000000000000}};
+  tick.commands = {{0, 1, 0, 0},
+                   {1, 0, 2, 0},
+                   {8, 0, 3, 0x3FF8000000000000},
+                   {9, 0, 0, 0, {3, 1, 7, 5, 90'000, true, 20261122}}};
   entries.emplace_back(tick);
   tick.tick = 1;
   tick.commands.clear();
@@ -322,6 +326,14 @@ std::vector<CharacterRecord> random_characters(std::mt19937_64& random) {
   return all;
 }
 
+JournalSetup random_setup(std::mt19937_64& random) {
+  return {
+      below<std::uint8_t>(random, kModeCount),        below<std::uint8_t>(random, kRuleSetCount),
+      below<std::uint8_t>(random, kMostGoals + 1),    below<std::uint8_t>(random, kMostSets + 1),
+      below<std::uint32_t>(random, kMostMatchMs + 1), random() % 2 == 0,
+      below<std::uint32_t>(random, kLastDate + 1)};
+}
+
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
   std::vector<JournalEntry> entries{
       JournalHeader{.seed = random(), .dead_ball_ms = 1, .ceremony_ms = 2, .end_ms = 3}};
@@ -334,6 +346,7 @@ std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
       command = {below<std::uint8_t>(random, kCommandKindCount),
                  below<std::uint8_t>(random, kTeamCount), below<std::uint8_t>(random, 256), 0};
       if (command.kind == number(WishKind::tune)) command.amount = random();
+      if (command.kind == number(WishKind::set_up)) command.setup = random_setup(random);
     }
     entries.emplace_back(tick);
     if (random() % 50 == 0) entries.emplace_back(JournalHash{tick.tick + 1, random()});

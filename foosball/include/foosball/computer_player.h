@@ -35,6 +35,8 @@ struct PlayerSpec {
 // anything else with Errc::invalid_argument and a sentence that names the choices.
 vp::Expected<PlayerSpec> parse_player(std::string_view text);
 std::string to_text(const PlayerSpec& spec);
+// Whom a challenge is played against, drawn from its date: the same for everybody.
+PlayerSpec challenge_opponent(std::uint64_t challenge);
 // What a player of this level and style judges by. Levels out of range are clamped.
 Judgment judgment_of(int level, PlayStyle style);
 

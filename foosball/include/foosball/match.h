@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "foosball/game_setup.h"
 #include "foosball/rod_motion.h"
 #include "foosball/rules.h"
 #include "foosball/table.h"
@@ -38,14 +39,18 @@ struct Command {
     feed,              // training: team, value = feed_value(): serve to that man from now on
     seat,              // from the server: team, value 1: a computer plays it, 0: people do
     touch,             // from the server: a hand has moved a rod while computers show a match
-    tune,              // value = index into kTuningFields, amount = the new value, if in its range
+    tune,              // value = index into kTuningFields, amount = the new value, if in its range;
+                       // not in a challenge
+    set_up,            // another game: setup, if playable(); at the logo and the selection, and
+                       // while computers show a match, at once; else when the logo comes next
   };
   Kind kind;
   std::uint8_t team = 0;
   std::uint8_t value = 0;
   double amount = 0.0;  // tune
+  GameSetup setup{};    // set_up
 };
-inline constexpr int kCommandKinds = 9;
+inline constexpr int kCommandKinds = 10;
 
 // Command::value of a feed: 0 <= man < kMaxMenOnRod.
 constexpr std::uint8_t feed_value(Line line, int man) {
@@ -101,8 +106,10 @@ struct MatchDesc {
   Characters characters = built_in_characters();  // that teams choose from
 };
 
-// The challenge of a day: date as a number such as 20261122. The same match for everybody.
-MatchDesc challenge_of(std::uint32_t date, Layout layout);
+// The challenge of a day: date as a number such as 20261122. The same match for everybody: of the
+// tournament table, the built-in characters and the default tuning. Whom it is played against:
+// challenge_opponent() (foosball/computer_player.h).
+MatchDesc challenge_of(std::uint32_t date);
 
 // A ball sent off slower is a pass or a dribble.
 inline constexpr double kShotSpeed = 4.0;  // [m/s]
@@ -120,6 +127,10 @@ struct MatchView {
   Layout layout{};
   Mode mode{};
   RuleSet rule_set{};
+  Rules rules;                  // all of them
+  std::uint64_t challenge = 0;  // in a challenge: what it is drawn from, its date
+  GameSetup setup;              // as chosen last;
+  bool setup_waits = false;     // it is another game than the one in hand
   Screen screen{};
   bool paused = false;
   std::array<int, kTeams> score{};

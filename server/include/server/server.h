@@ -30,7 +30,8 @@ struct ServerOptions {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
   bool computer_fills = false;  // ... and its rods that nobody has while people have the others
-  foosball::PlayerSpec computer_player{};  // level and style; the ladder has its own
+  // At the start; clients may choose another. The ladder and the challenge have their own.
+  foosball::PlayerSpec computer_player{};
   NetworkOptions network;
   AccessOptions access;
   ControlLimits limits;
@@ -42,8 +43,10 @@ struct ServerOptions {
   // the end if nobody has played; it has at most so many bytes. 0: asked for.
   std::uint64_t record_by_default_bytes = 0;
   // A file of results (results/store.h) to which every match that was won or drawn is added, or
-  // empty; and then what date it is, as 2026-11-22T23:59:59Z. Not of a replay.
+  // empty. Not of a replay.
   std::string results;
+  // What date it is, as 2026-11-22T23:59:59Z, for results and for the challenge of the day; any
+  // thread. None: then there are neither.
   std::function<std::string()> date;
   bool questionnaire = true;  // with results: asks who has played, after each match
   bool await_client = false;  // the first tick is when the first client has joined

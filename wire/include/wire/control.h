@@ -19,7 +19,7 @@
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 5;
+inline constexpr std::uint16_t kControlVersion = 6;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
@@ -87,6 +87,26 @@ struct Kick {
 // Server to client: the tuning values of the match, on joining and after each change.
 struct Tuning {
   std::array<double, kTuningCount> values{};  // finite, in the order of foosball/tuning.h
+};
+
+// What is played: asked for by a client, of which the host's word counts, and told by the server on
+// joining and after each change. It takes effect at the logo and the selection; in play it waits
+// for the next match, or for a restart. What the mode does not leave to be chosen is asked for as 0
+// (foosball/game_setup.h). A Notice of kGameAnswerTopic says why a request is not done.
+struct Game {
+  std::uint8_t mode = 0, rule_set = 0;  // Mode, RuleSet (wire/enums.h)
+  std::uint8_t goals = 0;               // that win a set; 0: as the rules have it
+  std::uint8_t sets = 0;                // best of; 0: as the rules have it
+  std::uint32_t match_ms = 0;           // of play of a set; 0: no limit
+  bool change_sides = false;
+  // Of the computer players. Told where the mode decides: of the challenge's opponent; the
+  // ladder's is known by its rung, and 0 here.
+  std::uint8_t level = 0;  // from 1
+  std::uint8_t style =
+      0;  // from 1: wall, shooter, passer, gambler; 0: the one that suits the level
+  std::uint32_t date = 0;  // told: of a challenge; asked for: 0, for it is today's
+  bool waits = false;      // told: it is another game than the one in hand
+  bool operator==(const Game&) const = default;
 };
 
 // One who has a place at the table.
@@ -180,7 +200,7 @@ struct Report {
 
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick>;
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

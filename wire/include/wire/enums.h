@@ -39,7 +39,7 @@ enum class Foul : std::uint8_t {
   serve = 5,
 };
 
-// Wish::kind and JournalCommand::kind; seat and touch come from the server alone.
+// Wish::kind and JournalCommand::kind; seat, touch and set_up come from the server alone.
 enum class WishKind : std::uint8_t {
   push = 0,
   choose_character = 1,
@@ -50,6 +50,7 @@ enum class WishKind : std::uint8_t {
   seat = 6,
   touch = 7,
   tune = 8,
+  set_up = 9,
 };
 
 // Knock::role, Welcome::role, Seat::role: what a client may do. A host may do everything, a player

@@ -49,9 +49,19 @@ struct RodTargetValues {
 JournalRod quantise_rod(const RodTargetValues& values);
 RodTargetValues dequantise_rod(const JournalRod& rod);
 
+// A foosball::GameSetup.
+struct JournalSetup {
+  std::uint8_t mode = 0, rule_set = 0, goals = 0, sets = 0;
+  std::uint32_t match_ms = 0;
+  bool change_sides = false;
+  std::uint32_t date = 0;
+  bool operator==(const JournalSetup&) const = default;
+};
+
 struct JournalCommand {
   std::uint8_t kind = 0, team = 0, value = 0;
   std::uint64_t amount = 0;  // tune: the bits of a double (IEEE 754); else 0
+  JournalSetup setup{};      // set_up; else all zero
   bool operator==(const JournalCommand&) const = default;
 };
 

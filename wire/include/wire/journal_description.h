@@ -90,6 +90,20 @@ void describe_journal_ticks_head(Codec& codec, H& head) {
                 head.count);
 }
 
+template <class Codec, class S>
+void describe_journal_setup(Codec& codec, S& s) {
+  codec.integer(
+      Integer{"mode", 2, kModeCount - 1, "", "0 match, 1 training, 2 challenge, 3 ladder"}, s.mode);
+  codec.integer(Integer{"rule_set", 1, kRuleSetCount - 1, "", "0 arcade, 1 ITSF"}, s.rule_set);
+  codec.integer(Integer{"goals", 7, kMostGoals, "", "that win a set; 0: as the rules have it"},
+                s.goals);
+  codec.integer(Integer{"sets", 5, kMostSets, "", "best of; 0: as the rules have it"}, s.sets);
+  codec.integer(Integer{"match_ms", 22, kMostMatchMs, "ms", "of a set; 0: no limit"}, s.match_ms);
+  codec.integer(Integer{"date", 27, kLastDate, "", "of a challenge, such as 20261122; else 0"},
+                s.date);
+  codec.flag(Flag{"change_sides", ""}, s.change_sides);
+}
+
 template <class Codec, class T>
 void describe_journal_tick(Codec& codec, T& tick) {
   constexpr std::int64_t kDelta32 = std::numeric_limits<std::uint32_t>::max();
@@ -107,7 +121,7 @@ void describe_journal_tick(Codec& codec, T& tick) {
              tick.commands, [&](auto& command) {
                codec.integer(Integer{"kind", 4, kCommandKindCount - 1, "",
                                      "0 push, 1 choose character, 2 pause, 3 restart, 4 time-out, "
-                                     "5 feed, 6 seat, 7 touch, 8 tune"},
+                                     "5 feed, 6 seat, 7 touch, 8 tune, 9 set up"},
                              command.kind);
                codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
                codec.integer(Integer{"value", 8, 255, "", ""}, command.value);
@@ -118,6 +132,9 @@ void describe_journal_tick(Codec& codec, T& tick) {
                                         "bits of a double, IEEE 754"},
                                 command.amount);
                           });
+               codec.when(Group{"kind", "9 only, set up, then follows:"},
+                          command.kind == number(WishKind::set_up),
+                          [&] { describe_journal_setup(codec, command.setup); });
              });
   codec.align();
 }

@@ -26,10 +26,15 @@ inline constexpr unsigned kFaceCount = 4;           // foosball::Face
 inline constexpr unsigned kEventKindCount = number(EventKind::match_drawn) + 1;
 inline constexpr unsigned kWishKindCount =
     number(WishKind::feed) + 1;  // that a client may send, and tune
-inline constexpr unsigned kCommandKindCount = number(WishKind::tune) + 1;
+inline constexpr unsigned kCommandKindCount = number(WishKind::set_up) + 1;
 inline constexpr unsigned kTuningCount = 28;  // foosball::kTuningFields
 inline constexpr unsigned kRuleSetCount = number(RuleSet::itsf) + 1;
 inline constexpr unsigned kModeCount = number(Mode::ladder) + 1;
+inline constexpr unsigned kMostGoals = 99;           // foosball::kMostGoals
+inline constexpr unsigned kMostSets = 17;            // foosball::kMostSets
+inline constexpr unsigned kMostMatchMs = 3'600'000;  // foosball::kMostMatchMs
+inline constexpr unsigned kLastDate = 99991231;      // foosball::kLastDate
+inline constexpr unsigned kStyleCount = 4;           // foosball::kPlayStyles
 inline constexpr unsigned kFoulCount = number(Foul::serve) + 1;
 inline constexpr unsigned kSpinRuleCount = 3;  // foosball::SpinRule
 inline constexpr unsigned kRungCount = 5;      // foosball::kLadderRungs
@@ -42,6 +47,9 @@ inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 
 // Notice::topic of answers that are not kept.
 inline constexpr std::uint32_t kAnswersTopic = 301;
+
+// Notice::topic of a Game that is not taken, and of a tuning value that is not.
+inline constexpr std::uint32_t kGameAnswerTopic = 303;
 
 // Notice::topic of a Kick that is not done; of a vote against a client: + its number.
 inline constexpr std::uint32_t kKickAnswerTopic = 302;

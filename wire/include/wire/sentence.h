@@ -49,6 +49,18 @@ namespace wire {
   X(waits_for_players, "the match waits: nothing is heard of any player") \
   X(not_rated, "the match does not count for the rating of who played too little of it: %1") \
   X(lost_by_leaving, "whoever leaves a match has lost it: %1") \
+  /* what is played */ \
+  X(only_host_chooses, "only the host chooses what is played") \
+  X(no_such_game, "this game cannot be played: 1 to 99 goals, an odd number of sets up to 17, at most 60 minutes, level 1 to 5") \
+  X(challenge_is_set, "the challenge of the day has its own rules and opponent: choose none with it") \
+  X(training_has_no_end, "training does not end: choose no goals, sets or minutes with it") \
+  X(ladder_has_its_levels, "on the ladder the computer is stronger from match to match: choose no level or style with it") \
+  X(no_computer_here, "the computer plays no team here: start the server with --team1 computer") \
+  X(challenge_table, "the challenge of the day is played on the tournament table: start the game without --layout paper") \
+  X(challenge_characters, "the challenge of the day is played by the built-in characters: move yours of the same names away, or start the game without --characters") \
+  X(challenge_tuning, "the challenge of the day is played with the default tuning: set all values to their defaults first") \
+  X(challenge_keeps_tuning, "the challenge of the day keeps the default tuning: choose another game first") \
+  X(challenge_undated, "this server does not know the date, and so no challenge of the day") \
   /* votes */ \
   X(asks_for_pause, "%1 asks for a pause: %2 of %3 votes. Ask for it too to agree") \
   X(asks_for_restart, "%1 asks for a restart: %2 of %3 votes. Ask for it too to agree") \

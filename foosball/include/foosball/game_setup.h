@@ -1,0 +1,110 @@
+// What may be chosen of a match while its server runs, as a person says it: by a command to the
+// match (foosball/match.h), by a request of a client, by options. Plain data.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "foosball/rules.h"
+
+namespace foosball {
+
+inline constexpr int kMostGoals = 99;  // that win a set
+inline constexpr int kMostSets = 17;   // of which a match is the best
+inline constexpr std::uint32_t kMostMatchMs = 3'600'000;
+inline constexpr int kGoalsBeyond = 3;  // how many more a last set may take: 8 are to 5
+inline constexpr std::uint32_t kFirstDate = 1000'01'01, kLastDate = 9999'12'31;
+
+struct GameSetup {
+  Mode mode = Mode::match;
+  RuleSet rules = RuleSet::arcade;
+  int goals = 0;               // that win a set, 1..kMostGoals; 0: as the rules have it
+  int sets = 0;                // the best of so many, odd, 1..kMostSets; 0: as the rules have it
+  std::uint32_t match_ms = 0;  // of play of a set [ms], at most kMostMatchMs; 0: no limit
+  bool change_sides = false;   // between sets
+  std::uint32_t date = 0;      // of a challenge, such as 20261122; else 0
+
+  bool operator==(const GameSetup&) const = default;
+};
+
+// What the mode leaves to be chosen.
+constexpr bool chooses_rules(Mode mode) {
+  return mode != Mode::challenge;
+}
+constexpr bool has_end(Mode mode) {
+  return mode == Mode::match || mode == Mode::ladder;
+}
+constexpr bool chooses_opponent(Mode mode) {
+  return mode == Mode::match || mode == Mode::training;
+}
+
+// The setup with what its mode does not leave to be chosen left out; a date stays.
+constexpr GameSetup only_chosen(GameSetup setup) {
+  if (!chooses_rules(setup.mode)) setup.rules = RuleSet::arcade;
+  if (!has_end(setup.mode)) {
+    setup.goals = setup.sets = 0;
+    setup.match_ms = 0;
+    setup.change_sides = false;
+  }
+  return setup;
+}
+
+// A day of the Gregorian calendar.
+constexpr bool is_date(std::uint32_t date) {
+  const std::uint32_t year = date / 10000, month = date / 100 % 100, day = date % 100;
+  if (date < kFirstDate || date > kLastDate || month < 1 || month > 12) return false;
+  const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+  const bool short_month = month == 4 || month == 6 || month == 9 || month == 11;
+  const std::uint32_t days = month == 2 ? (leap ? 29 : 28) : short_month ? 30 : 31;
+  return day >= 1 && day <= days;
+}
+
+// Numbers in their ranges.
+constexpr bool in_range(const GameSetup& setup) {
+  return static_cast<int>(setup.mode) < kModes && static_cast<int>(setup.rules) < kRuleSets &&
+         setup.goals >= 0 && setup.goals <= kMostGoals && setup.match_ms <= kMostMatchMs &&
+         (setup.sets == 0 || (setup.sets >= 1 && setup.sets <= kMostSets && setup.sets % 2 == 1));
+}
+
+// In range, without what contradicts the mode.
+constexpr bool playable(const GameSetup& setup) {
+  const bool dated = setup.mode == Mode::challenge ? is_date(setup.date) : setup.date == 0;
+  return in_range(setup) && dated && setup == only_chosen(setup);
+}
+
+// The rules of a setup that is in range. The times of the screens are not chosen: they are those of
+// `screens`.
+constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
+  Rules rules = setup.mode == Mode::challenge  ? challenge_rules()
+                : setup.rules == RuleSet::itsf ? itsf_rules()
+                                               : arcade_rules();
+  if (setup.match_ms > 0) {
+    rules.match_seconds = setup.match_ms / 1000.0;
+    rules.goals_to_win = rules.max_goals = kMostGoals;
+  }
+  if (setup.goals > 0) {
+    rules.goals_to_win = setup.goals;
+    rules.max_goals = std::min(kMostGoals, setup.goals + kGoalsBeyond);
+  }
+  if (setup.sets > 0) rules.sets_to_win = (setup.sets + 1) / 2;
+  rules.change_sides = setup.change_sides;
+  rules.ceremony_seconds = screens.ceremony_seconds;
+  rules.end_seconds = screens.end_seconds;
+  rules.idle_seconds = screens.idle_seconds;
+  rules.attract_seconds = screens.attract_seconds;
+  return rules;
+}
+
+// The other way round, as near as a setup can say it. date: of a challenge.
+constexpr GameSetup setup_of(Mode mode, const Rules& rules, std::uint32_t date = 0) {
+  GameSetup setup{.mode = mode, .rules = rules.set};
+  const bool timed = rules.match_seconds > 0.0;
+  setup.goals = timed && rules.goals_to_win == kMostGoals ? 0 : rules.goals_to_win;
+  setup.sets = 2 * rules.sets_to_win - 1;
+  setup.match_ms = static_cast<std::uint32_t>(rules.match_seconds * 1000.0 + 0.5);
+  setup.change_sides = rules.change_sides;
+  setup.date = mode == Mode::challenge ? date : 0;
+  return only_chosen(setup);
+}
+
+}  // namespace foosball
