@@ -327,6 +327,25 @@ TEST_F(ConnectionTest, WishesAndGoodByeReachTheServer) {
   EXPECT_TRUE(bye && std::holds_alternative<wire::Bye>(*bye));
 }
 
+TEST_F(ConnectionTest, TheGameIsHeardAndAskedForInItsSessionAlone) {
+  open();
+  join(42);
+  EXPECT_FALSE(connection->game());
+  wire::Game game;
+  game.goals = 5;
+  server.send(game);
+  ASSERT_TRUE(eventually([&] { return connection->game() == game; }));
+  wire::Game training;
+  training.mode = 1;
+  connection->choose(41, game);  // a window that has not heard of the new match yet
+  connection->choose(42, training);
+  const auto asked = server.next_message();
+  ASSERT_TRUE(asked && std::holds_alternative<wire::Game>(*asked));
+  EXPECT_EQ(std::get<wire::Game>(*asked), training);
+  server.drop_client();
+  EXPECT_TRUE(eventually([&] { return !connection->game(); }));
+}
+
 // Its kernel takes no more: the good-bye waits at the client, where a reset would discard it.
 TEST_F(ConnectionTest, TheGoodByeReachesAServerThatReadsLate) {
   server.take_little();

@@ -256,7 +256,7 @@ TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
     titles.insert(menu.page(context).title);
     menu.step({.right = 1}, 0, context);
   }
-  EXPECT_EQ(titles.size(), 4u);
+  EXPECT_EQ(titles.size(), 5u);
   menu.step({.back = true}, 0, context);
   EXPECT_TRUE(menu.page(context).rows.empty());
   menu.toggle(Menu::Page::tuning);
@@ -286,8 +286,8 @@ TEST(Menu, StandsWithoutAServer) {
   const SeatsView nothing;
   Menu menu("");
   const Menu::Context context{settings, nothing, nullptr};
-  for (const auto page :
-       {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning, Menu::Page::recordings}) {
+  for (const auto page : {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning,
+                          Menu::Page::recordings, Menu::Page::game}) {
     menu.toggle(page);
     for (int i = 0; i < 80; ++i) menu.step({.down = 1, .confirm = i % 3 == 0}, 0, context);
     EXPECT_FALSE(menu.page(context).rows.empty());

@@ -60,6 +60,10 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"above-seats", 4.6, 2, 0, View::above},
                            {"tuning", 4.6, 2, 0},
                            {"tuning-read-only", 4.6, 2, 0},
+                           {"game", 4.6, 2, 0},
+                           {"game-challenge", 0.4, 0, 0},
+                           {"game-ladder", 0.4, 0, 0, View::above},
+                           {"game-read-only", 4.6, 2, 0},
                            {"two-a-side", 2.4, 2, 0},
                            {"goalie-in-hand", 0.9, 2, 0},
                            {"attack-in-hand", 1.62, 2, 0},
@@ -141,7 +145,8 @@ void decide(const std::string& shot, wire::Snapshot& state, HudState& hud) {
 }
 
 // As a person sees it who shares the table with others.
-MenuPage menu_page(Menu::Page page, int row, bool host = true) {
+MenuPage menu_page(Menu::Page page, int row, bool host = true,
+                   std::uint8_t game_mode = number(wire::Mode::match)) {
   static SeatsView seats;
   seats.client = 1;
   seats.role = number(host ? wire::Role::host : wire::Role::player);
@@ -161,6 +166,14 @@ MenuPage menu_page(Menu::Page page, int row, bool host = true) {
   foosball::Tuning tuning;
   tuning.hop_gain = 3.2;
   menu.tuning().hear(1, tuning, host);
+  wire::Game game;
+  game.mode = game_mode;
+  game.goals = 5;
+  game.sets = 1;
+  game.level = game_mode == number(wire::Mode::ladder) ? 0 : 4;
+  game.style = game_mode == number(wire::Mode::challenge) ? 4 : 0;
+  game.waits = game_mode == number(wire::Mode::match) && host;
+  menu.game().hear(1, game, host, "");
   const Menu::Context context{settings, seats, &crew};
   menu.toggle(page);
   menu.step({.down = row - 1}, 0, context);
@@ -296,6 +309,12 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     if (name == "seats" || name == "above-seats") hud.menu = menu_page(Menu::Page::seats, 4);
     if (name == "tuning") hud.menu = menu_page(Menu::Page::tuning, 12);
     if (name == "tuning-read-only") hud.menu = menu_page(Menu::Page::tuning, 1, false);
+    if (name == "game") hud.menu = menu_page(Menu::Page::game, 3);
+    if (name == "game-challenge")
+      hud.menu = menu_page(Menu::Page::game, 1, true, number(wire::Mode::challenge));
+    if (name == "game-ladder")
+      hud.menu = menu_page(Menu::Page::game, 1, true, number(wire::Mode::ladder));
+    if (name == "game-read-only") hud.menu = menu_page(Menu::Page::game, 1, false);
     if (name == "two-a-side") {
       view.active_rods = hud.active_rods = 0b00011010;
       hud.rod_names = {"gamepad 1", "gamepad 1", "gamepad 2",     "mouse",

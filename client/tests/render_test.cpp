@@ -16,6 +16,7 @@
 #include "render/scene.h"
 #include "render/translate.h"
 #include "scripted_scene.h"
+#include "wire/sentence.h"
 
 namespace client {
 namespace {
@@ -289,6 +290,9 @@ MenuPage menu_page(Menu::Page page) {
   static Settings settings;
   Menu menu("/nowhere");
   menu.tuning().hear(1, foosball::Tuning{}, true);
+  wire::Game game;
+  game.waits = true;
+  menu.game().hear(1, game, true, wire::say<wire::Said::challenge_characters>().text());
   menu.toggle(page);
   const Menu::Context context{settings, seats, &crew};
   menu.step({.down = page == Menu::Page::tuning ? 28 : 1}, 0, context);
@@ -325,7 +329,7 @@ TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
     UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
     for (const glm::ivec2 size : {glm::ivec2(480, 640), glm::ivec2(640, 360), glm::ivec2(320, 240),
                                   glm::ivec2(3840, 600), glm::ivec2(1280, 720)}) {
-      for (int shown = 0; shown < 5 * 2 * 6; ++shown) {
+      for (int shown = 0; shown < 5 * 2 * 8; ++shown) {
         wire::Snapshot state = scripted_play(0.35);
         state.screen = static_cast<std::uint8_t>(shown % 5);
         HudState hud;

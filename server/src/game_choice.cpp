@@ -27,7 +27,7 @@ foosball::PlayerSpec player_in(foosball::Mode mode, int rung, std::uint64_t chal
                                const foosball::PlayerSpec& chosen) {
   static_assert(foosball::kLadderRungs == foosball::kLevels);
   if (mode == foosball::Mode::challenge) return foosball::challenge_opponent(challenge);
-  if (mode == foosball::Mode::ladder) return player_of({.level = rung + 1});
+  if (mode == foosball::Mode::ladder) return player_of({.level = foosball::level_of_rung(rung)});
   return chosen;
 }
 

@@ -76,6 +76,7 @@ class Connection {
   std::vector<wire::Notice> notices() const;   // standing ones, oldest first
   wire::Roster roster() const;                 // who is there, and which rods they have
   std::optional<wire::Tuning> tuning() const;  // of the match that is joined, once it is known
+  std::optional<wire::Game> game() const;      // the same: what is played
   // What the server asked last, of the session that is joined: who played may answer.
   std::optional<wire::Questionnaire> questionnaire() const;
   // What is kept of the last match, and who plays best, as its server said; empty: nothing yet.
@@ -91,6 +92,8 @@ class Connection {
   void claim(std::uint64_t session, const wire::Claim& claim);
   // This player is to be put out of the match: the host's word, else a vote.
   void kick(std::uint64_t session, const wire::Kick& kick);
+  // This is to be played: the host's word.
+  void choose(std::uint64_t session, const wire::Game& game);
   // What a player answered, with the match of questionnaire().
   void answer(std::uint64_t session, const wire::Answers& answers);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated

@@ -29,8 +29,9 @@ enum class Action : std::uint8_t {
   tuning,
   time_out,
   recordings,
+  game,
 };
-inline constexpr int kActions = 20;
+inline constexpr int kActions = 21;
 
 constexpr std::size_t index_of(Action action) {
   return static_cast<std::size_t>(action);

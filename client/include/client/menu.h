@@ -1,9 +1,10 @@
-// The menu: pages of settings, seats, tuning and recordings, worked alike with keys, mouse, gamepad
-// or rods. Its first row chooses the page.
+// The menu: pages of settings, seats, tuning, recordings and the game, worked alike with keys,
+// mouse, gamepad or rods. Its first row chooses the page.
 #pragma once
 
 #include <optional>
 
+#include "client/game_menu.h"
 #include "client/input_events.h"
 #include "client/menu_page.h"
 #include "client/seats_menu.h"
@@ -14,8 +15,8 @@ namespace client {
 
 class Menu {
  public:
-  enum class Page : std::uint8_t { settings, seats, tuning, recordings };
-  static constexpr int kPages = 4;
+  enum class Page : std::uint8_t { settings, seats, tuning, recordings, game };
+  static constexpr int kPages = 5;
 
   explicit Menu(std::string profiles) : tuning_(std::move(profiles)) {}
 
@@ -26,6 +27,7 @@ class Menu {
     return open_ && page_ == Page::settings && settings_.waits_for_key();
   }
   TuningMenu& tuning() { return tuning_; }
+  GameMenu& game() { return game_; }
 
   struct Context {
     Settings& settings;
@@ -51,6 +53,7 @@ class Menu {
   SettingsMenu settings_;
   SeatsMenu seats_;
   TuningMenu tuning_;
+  GameMenu game_;
 };
 
 }  // namespace client

@@ -69,6 +69,7 @@ class App {
   bool take_survey_input(std::int64_t now);
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
+  void choose_game(std::int64_t now);
   void hear_of_pads();
   void tell(std::vector<std::string> lines);
   void predict(std::int64_t now);

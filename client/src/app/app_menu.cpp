@@ -91,6 +91,7 @@ void App::open_menu(const InputEvents& events) {
   if (asked(Action::settings) || events.pad_menu) menu_.toggle(Menu::Page::settings);
   if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
   if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
+  if (asked(Action::game)) menu_.toggle(Menu::Page::game);
   if (asked(Action::recordings)) return watch_recordings();
   menu_hand_.restart();
 }
@@ -103,6 +104,7 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   };
   if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
   if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
+  if (pressed(Action::game)) return menu_.toggle(Menu::Page::game);
   if (pressed(Action::recordings)) return watch_recordings();
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
   const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
@@ -172,6 +174,16 @@ void App::tune(std::int64_t now) {
                       status_.welcome.role == number(wire::Role::host));
   for (const wire::Wish& wish : menu_.tuning().wishes(now))
     connection_->wish(crew_->session(), wish);
+}
+
+void App::choose_game(std::int64_t now) {
+  if (!crew_ || status_.link != Link::joined) return;
+  std::string refused;
+  for (const wire::Notice& notice : connection_->notices())
+    if (notice.topic == wire::kGameAnswerTopic) refused = notice.text;
+  menu_.game().hear(crew_->session(), connection_->game(),
+                    status_.welcome.role == number(wire::Role::host), refused);
+  if (const auto game = menu_.game().ask(now)) connection_->choose(crew_->session(), *game);
 }
 
 void App::hear_of_pads() {

@@ -59,6 +59,9 @@ std::int64_t Connection::delay_us() const {
 std::optional<wire::Tuning> Connection::tuning() const {
   return impl_->link.tuning();
 }
+std::optional<wire::Game> Connection::game() const {
+  return impl_->link.game();
+}
 std::optional<wire::Questionnaire> Connection::questionnaire() const {
   return impl_->link.questionnaire();
 }
@@ -73,6 +76,9 @@ void Connection::claim(std::uint64_t session, const wire::Claim& claim) {
 }
 void Connection::kick(std::uint64_t session, const wire::Kick& kick) {
   impl_->link.kick(session, kick);
+}
+void Connection::choose(std::uint64_t session, const wire::Game& game) {
+  impl_->link.choose(session, game);
 }
 void Connection::answer(std::uint64_t session, const wire::Answers& answers) {
   impl_->link.answer(session, answers);

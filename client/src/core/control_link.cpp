@@ -74,6 +74,10 @@ void ControlLink::kick(std::uint64_t session, const wire::Kick& kick) {
   ask(kick, session);
 }
 
+void ControlLink::choose(std::uint64_t session, const wire::Game& game) {
+  ask(game, session);
+}
+
 void ControlLink::answer(std::uint64_t session, const wire::Answers& answers) {
   ask(answers, session);
 }
@@ -91,6 +95,11 @@ std::optional<wire::Report> ControlLink::report() const {
 std::optional<wire::Tuning> ControlLink::tuning() const {
   const std::lock_guard lock(mutex_);
   return tuning_;
+}
+
+std::optional<wire::Game> ControlLink::game() const {
+  const std::lock_guard lock(mutex_);
+  return game_;
 }
 
 void ControlLink::run() {
@@ -272,6 +281,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     tuning_ = *tuning;
   }
+  if (const auto* game = std::get_if<wire::Game>(&message)) {
+    const std::lock_guard lock(mutex_);
+    game_ = *game;
+  }
   if (const auto* questionnaire = std::get_if<wire::Questionnaire>(&message)) {
     const std::lock_guard lock(mutex_);
     questionnaire_ = *questionnaire;
@@ -343,6 +356,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   asked_.clear();
   roster_ = {};
   tuning_.reset();
+  game_.reset();
   questionnaire_.reset();
   report_.reset();
   notices_.clear();  // of a server that may be another when it is back

@@ -28,11 +28,13 @@ class ControlLink {
   std::vector<wire::Notice> notices() const;
   wire::Roster roster() const;
   std::optional<wire::Tuning> tuning() const;
+  std::optional<wire::Game> game() const;
   std::optional<wire::Questionnaire> questionnaire() const;
   std::optional<wire::Report> report() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
   void kick(std::uint64_t session, const wire::Kick& kick);
+  void choose(std::uint64_t session, const wire::Game& game);
   void answer(std::uint64_t session, const wire::Answers& answers);
 
  private:
@@ -86,6 +88,7 @@ class ControlLink {
   std::map<std::uint32_t, wire::Notice> notices_;
   wire::Roster roster_;
   std::optional<wire::Tuning> tuning_;
+  std::optional<wire::Game> game_;
   std::optional<wire::Questionnaire> questionnaire_;
   std::optional<wire::Report> report_;
   std::vector<wire::ControlMessage> asked_;  // to be sent

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "wire/enums.h"
+
 #define N_(english) english  // for xgettext: render/translate.h
 
 namespace client {
@@ -45,6 +47,7 @@ int Menu::rows(const Context& context) const {
   if (page_ == Page::seats && context.crew != nullptr) rows = seats_.rows(context.seats);
   if (page_ == Page::tuning) rows = tuning_.rows();
   if (page_ == Page::recordings) rows = recordings_rows;
+  if (page_ == Page::game) rows = game_.rows();
   return rows + 1;
 }
 
@@ -74,6 +77,9 @@ Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context
     outcome.asked = seats_.step(context.seats, row_ - 1, inside, *context.crew);
   } else if (page_ == Page::tuning) {
     tuning_.step(row_ - 1, inside);
+  } else if (page_ == Page::game) {
+    if (game_.step(row_ - 1, inside))
+      outcome.asked.wishes.push_back({number(wire::WishKind::restart), 0, 0});
   } else if (page_ == Page::recordings) {
     const bool changes = inside.right % 2 != 0 || inside.confirm;
     outcome.watch_recordings = row_ - 1 == row_watch && inside.confirm;
@@ -86,7 +92,7 @@ Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context
 
 MenuPage Menu::page(const Context& context) const {
   constexpr std::array<const char*, kPages> kTitles{N_("Settings"), N_("Seats"), N_("Tuning"),
-                                                    N_("Recordings")};
+                                                    N_("Recordings"), N_("Game")};
   MenuPage page;
   if (!open_) return page;
   if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
@@ -94,6 +100,7 @@ MenuPage Menu::page(const Context& context) const {
     page = seats_.page(context.seats, *context.crew, row_ - 1);
   if (page_ == Page::tuning) page = tuning_.page(row_ - 1);
   if (page_ == Page::recordings) page = recordings_page(context.settings, row_ - 1);
+  if (page_ == Page::game) page = game_.page(row_ - 1);
   page.title = kTitles[static_cast<std::size_t>(page_)];
   page.rows.insert(page.rows.begin(), MenuRow{.label = N_("Page"), .value = page.title});
   page.chosen = row_;

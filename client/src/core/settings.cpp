@@ -10,9 +10,9 @@ namespace client {
 namespace {
 
 constexpr std::array<const char*, kActions> kActionNames{
-    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",    "rod_2",     "rod_3",
-    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",    "automatic", "camera",
-    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings"};
+    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",    "rod_2",      "rod_3",
+    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",    "automatic",  "camera",
+    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings", "game"};
 
 struct NamedKey {
   const char* name;
@@ -166,6 +166,7 @@ KeyBindings default_keys() {
   set(Action::tuning, "F4");
   set(Action::time_out, "T");
   set(Action::recordings, "F5");
+  set(Action::game, "F6");
   return keys;
 }
 

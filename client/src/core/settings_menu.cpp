@@ -49,7 +49,8 @@ constexpr std::array<const char*, kActions> kActionLabels{N_("Slide away"),
                                                           N_("Seats"),
                                                           N_("Tuning"),
                                                           N_("Time-out"),
-                                                          N_("Recordings")};
+                                                          N_("Recordings"),
+                                                          N_("Game")};
 constexpr std::array<const char*, 3> kQualities{N_("automatic"), N_("low"), N_("high")};
 constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system"), "English",
                                                              "한국어", "Deutsch"};

@@ -34,7 +34,7 @@ constexpr std::array<KeyHelp, 14> kAllKeys{
      {N_("Space, click"), N_("push: begin, confirm")},
      {"P", N_("pause")},
      {"C", N_("camera: seat, above, follow, spectator")},
-     {"F2 F3 F4 F5", N_("settings, seats, tuning, recordings")},
+     {"F2 ... F6", N_("settings, seats, tuning, recordings, game")},
      {"T", N_("time-out")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};
@@ -42,8 +42,9 @@ constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 - 9 0", N_("or")},
                                                  {N_("wheel, arrows"), N_("choose")},
                                                  {N_("Space, click"), N_("confirm")},
                                                  {"F1", N_("all keys")}}};
-constexpr std::array<KeyHelp, 2> kLogoKeys{
-    {{N_("Space, click"), N_("push: begin, confirm")}, {"F1", N_("all keys")}}};
+constexpr std::array<KeyHelp, 3> kLogoKeys{{{N_("Space, click"), N_("push: begin, confirm")},
+                                            {"F6", N_("choose the game")},
+                                            {"F1", N_("all keys")}}};
 constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
                                              {"F1", N_("all keys")},
                                              {"F2", N_("settings")},

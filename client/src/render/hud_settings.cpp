@@ -77,7 +77,10 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
   const HudPen pen = whole.fitting(kHalf + 10.0f, 420.0f).readable(0.62f, kHalf + 10.0f);
   std::vector<std::string> notes;
   if (!page.note.empty()) notes = wrapped(pen, tr(page.note.c_str()), 2.0f * kHalf - 50.0f);
-  if (!page.detail.empty()) notes.push_back(tr_sentence(page.detail));
+  if (!page.detail.empty()) {
+    for (std::string& line : wrapped(pen, tr_sentence(page.detail), 2.0f * kHalf - 50.0f))
+      notes.push_back(std::move(line));
+  }
   const std::size_t problem_from = notes.size();
   if (!page.problem.empty()) {
     for (std::string& line : wrapped(pen, page.problem, 2.0f * kHalf - 50.0f))
