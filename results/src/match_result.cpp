@@ -55,6 +55,8 @@ std::string problem_with(const MatchResult& result) {
     if (team.statistics && !is_amount(team.statistics->possession_seconds)) {
       return "a team's possession is no number of seconds";
     }
+    if (team.statistics && !is_amount(team.statistics->fastest_shot.value_or(0.0)))
+      return "a shot's speed is no number";
   }
   return {};
 }

@@ -47,8 +47,12 @@ void count(const MatchResult& match, int side, Players& players) {
       ++(!player.left && *winner == side ? standing.wins : standing.losses);
     standing.goals_for += own.goals;
     standing.goals_against += other.goals;
-    if (match.shot_speeds) {
-      standing.fastest_shot = std::max(standing.fastest_shot, match.shot_speeds->fastest);
+    if (own.statistics)
+      standing.fastest_shot =
+          std::max(standing.fastest_shot, own.statistics->fastest_shot.value_or(0.0));
+    if (own.statistics && other.statistics) {
+      standing.saves += own.statistics->saves;
+      standing.shots_faced += other.statistics->shots_on_target;
     }
   }
 }

@@ -70,7 +70,9 @@ constexpr const char* kMigrations[kSchemaVersion] = {
          CHECK (share BETWEEN 0.0 AND 1.0);)",
     // 5: who has left it
     R"(ALTER TABLE player ADD COLUMN has_left INTEGER NOT NULL DEFAULT 0
-         CHECK (has_left IN (0, 1));)"};
+         CHECK (has_left IN (0, 1));)",
+    // 6: each team's own fastest shot
+    R"(ALTER TABLE team ADD COLUMN fastest_shot REAL;)"};
 
 std::string sentence(const std::string& path, const std::string& why) {
   return "results in " + path + ": " + why;
@@ -305,9 +307,11 @@ std::optional<std::int64_t> insert(sqlite3* db, const MatchResult& result) {
     using S = TeamStatistics;
     ok = Statement(db,
                    "INSERT INTO team (match, team, goals, shots, shots_on_target, saves, passes, "
-                   "touches, own_goals, possession_seconds) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+                   "touches, own_goals, possession_seconds, fastest_shot) "
+                   "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
              .bind(id, t, team.goals, of(&S::shots), of(&S::shots_on_target), of(&S::saves),
-                   of(&S::passes), of(&S::touches), of(&S::own_goals), of(&S::possession_seconds))
+                   of(&S::passes), of(&S::touches), of(&S::own_goals), of(&S::possession_seconds),
+                   team.statistics ? team.statistics->fastest_shot : std::nullopt)
              .run();
     for (int seat = 0; seat < static_cast<int>(team.players.size()) && ok; ++seat) {
       const Player& player = team.players[static_cast<std::size_t>(seat)];
@@ -400,9 +404,11 @@ tl::expected<std::vector<Answers>, std::string> Store::answers() const {
 namespace {
 
 bool read_teams(sqlite3* db, int version, std::map<std::int64_t, MatchResult*>& by_id) {
+  const std::string fastest = version < 6 ? "NULL" : "fastest_shot";
   Statement teams(db, version < 2 ? "SELECT match, team, goals FROM team"
                                   : "SELECT match, team, goals, shots, shots_on_target, saves, "
-                                    "passes, touches, own_goals, possession_seconds FROM team");
+                                    "passes, touches, own_goals, possession_seconds, " +
+                                        fastest + " FROM team");
   while (teams.row()) {
     const auto at = by_id.find(teams.integer(0));
     if (at == by_id.end()) continue;
@@ -411,6 +417,7 @@ bool read_teams(sqlite3* db, int version, std::map<std::int64_t, MatchResult*>& 
     if (version < 2 || teams.null(3)) continue;
     team.statistics = {teams.count(3), teams.count(4), teams.count(5), teams.count(6),
                        teams.count(7), teams.count(8), teams.real(9)};
+    if (!teams.null(10)) team.statistics->fastest_shot = teams.real(10);
   }
   const std::string share = version < 4 ? "1.0" : "share", left = version < 5 ? "0" : "has_left";
   Statement players(db, "SELECT match, team, name, kind, " + share + ", " + left +

@@ -84,6 +84,7 @@ nlohmann::ordered_json json_of(const Team& team) {
     out["touches"] = s->touches;
     out["own_goals"] = s->own_goals;
     out["possession_s"] = s->possession_seconds;
+    if (s->fastest_shot) out["fastest_shot"] = *s->fastest_shot;
   }
   return out;
 }
@@ -112,8 +113,9 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       "match,finished_at,layout,goals_to_win,max_goals,seed,play_s,shot_speed_median,"
       "shot_speed_fastest,recording";
   for (int t = 0; t < kTeams; ++t) {
-    for (const char* column : {"players", "goals", "shots", "shots_on_target", "saves", "passes",
-                               "touches", "own_goals", "possession_s", "shares", "left"}) {
+    for (const char* column :
+         {"players", "goals", "shots", "shots_on_target", "saves", "passes", "touches", "own_goals",
+          "possession_s", "shares", "left", "fastest_shot"}) {
       text += fmt::format(",team{}_{}", t, column);
     }
   }
@@ -137,6 +139,8 @@ std::string matches_csv(std::span<const MatchResult> matches) {
       text += csv_cell(shares(team));
       text += ',';
       text += csv_cell(leavers(team));
+      text += ',';
+      if (team.statistics) text += optional_number(team.statistics->fastest_shot);
     }
     text += "\r\n";
   }
@@ -166,27 +170,30 @@ std::string matches_json(std::span<const MatchResult> matches) {
 }
 
 std::string standings_table(std::span<const Standing> standings) {
-  std::string text =
-      fmt::format("{:>4}  {:<24} {:>6} {:>7} {:>5} {:>6} {:>9}  {:>12} {:>11}\n", "", "player",
-                  "rating", "matches", "wins", "losses", "goals", "fastest m/s", "not counted");
+  std::string text = fmt::format(
+      "{:>4}  {:<24} {:>6} {:>7} {:>5} {:>6} {:>9}  {:>12} {:>6} {:>11}\n", "", "player", "rating",
+      "matches", "wins", "losses", "goals", "fastest m/s", "saved", "not counted");
   int place = 0;
   for (const Standing& s : standings) {
-    text += fmt::format("{:>4}  {:<24} {:>6.0f} {:>7} {:>5} {:>6} {:>4}:{:<4}  {:>12} {:>11}\n",
-                        ++place, shown(s.name, 24), s.rating, s.matches, s.wins, s.losses,
-                        s.goals_for, s.goals_against,
-                        s.fastest_shot > 0.0 ? fmt::format("{:.1f}", s.fastest_shot) : "",
-                        s.not_counted > 0 ? std::to_string(s.not_counted) : "");
+    const auto saved = s.saved();
+    text += fmt::format(
+        "{:>4}  {:<24} {:>6.0f} {:>7} {:>5} {:>6} {:>4}:{:<4}  {:>12} {:>6} {:>11}\n", ++place,
+        shown(s.name, 24), s.rating, s.matches, s.wins, s.losses, s.goals_for, s.goals_against,
+        s.fastest_shot > 0.0 ? fmt::format("{:.1f}", s.fastest_shot) : "",
+        saved ? fmt::format("{:.0f}%", 100.0 * *saved) : "",
+        s.not_counted > 0 ? std::to_string(s.not_counted) : "");
   }
   return text;
 }
 
 std::string standings_csv(std::span<const Standing> standings) {
   std::string text =
-      "player,kind,rating,matches,wins,losses,goals_for,goals_against,fastest_shot,not_counted\r\n";
+      "player,kind,rating,matches,wins,losses,goals_for,goals_against,fastest_shot,not_counted,"
+      "shots_faced,saves\r\n";
   for (const Standing& s : standings) {
-    text += fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g},{}\r\n", csv_cell(s.name),
+    text += fmt::format("{},{},{:.2f},{},{},{},{},{},{:.6g},{},{},{}\r\n", csv_cell(s.name),
                         csv_cell(s.kind), s.rating, s.matches, s.wins, s.losses, s.goals_for,
-                        s.goals_against, s.fastest_shot, s.not_counted);
+                        s.goals_against, s.fastest_shot, s.not_counted, s.shots_faced, s.saves);
   }
   return text;
 }
@@ -203,7 +210,9 @@ std::string standings_json(std::span<const Standing> standings) {
                    {"goals_for", s.goals_for},
                    {"goals_against", s.goals_against},
                    {"fastest_shot", s.fastest_shot},
-                   {"not_counted", s.not_counted}});
+                   {"not_counted", s.not_counted},
+                   {"shots_faced", s.shots_faced},
+                   {"saves", s.saves}});
   }
   return dump(all);
 }

@@ -28,7 +28,27 @@ TEST(Rating, OfEqualsHalfTheGainGoesOver) {
   EXPECT_EQ(all[1].losses, 1u);
   EXPECT_EQ(all[0].goals_for, 5u);
   EXPECT_EQ(all[0].goals_against, 3u);
-  EXPECT_DOUBLE_EQ(all[1].fastest_shot, 9.25);
+}
+
+// Found by a reviewer: the fastest shot of a match was credited to both sides.
+TEST(Rating, TellsTheFastestShotAndTheSavesOfTheOwnTeams) {
+  std::vector<MatchResult> matches{match_between("Ann", "Bob", 5, 3, 1),
+                                   match_between("Ann", "Bob", 3, 5, 2)};
+  matches[1].teams[0].statistics->fastest_shot = 7.0;
+  matches[1].teams[1].statistics->saves = 0;
+  const auto all = standings(matches);
+  const auto ann = std::ranges::find(all, "Ann", &Standing::name);
+  const auto bob = std::ranges::find(all, "Bob", &Standing::name);
+  EXPECT_DOUBLE_EQ(ann->fastest_shot, 9.25);
+  EXPECT_DOUBLE_EQ(bob->fastest_shot, 8.5);
+  EXPECT_EQ(ann->shots_faced, 2u) << "Bob's on target, of both matches";
+  EXPECT_EQ(ann->saves, 4u);
+  EXPECT_DOUBLE_EQ(*ann->saved(), 1.0) << "never above all";
+  EXPECT_DOUBLE_EQ(*bob->saved(), 0.4);
+  matches[1].teams[0].statistics->fastest_shot.reset();
+  matches[0].teams[0].statistics.reset();
+  for (const Standing& one : standings(matches))
+    EXPECT_DOUBLE_EQ(one.fastest_shot, one.name == "Bob" ? 8.5 : 0.0) << "not known";
 }
 
 // By hand: after 1516 against 1484, E of the weaker is 1 / (1 + 10^(32/400)) = 0.454078...

@@ -109,7 +109,7 @@ TEST_F(StoreTest, SaysThatItIsTheDiskThatFailed) {
 
 TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   Store store = made();
-  std::vector<MatchResult> bad(9, match_between("Ann", "Bob", 5, 3));
+  std::vector<MatchResult> bad(10, match_between("Ann", "Bob", 5, 3));
   bad[0].finished_at = "yesterday";
   bad[1].finished_at = "2026-13-22T20:00:00Z";
   bad[2].teams[0].players.clear();
@@ -119,6 +119,7 @@ TEST_F(StoreTest, RefusesWhatIsNoResultAndKeepsNothingOfIt) {
   bad[6].recording.resize(5000, 'x');
   bad[7].teams[0].players[0].share = 1.01;
   bad[8].teams[0].players[0].share = std::numeric_limits<double>::quiet_NaN();
+  bad[9].teams[1].statistics->fastest_shot = std::numeric_limits<double>::infinity();
   for (const MatchResult& match : bad) EXPECT_FALSE(store.add(match));
   EXPECT_TRUE(store.matches({}).value().empty());
 }
@@ -208,7 +209,8 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   execute(
       "DROP TABLE answer; DROP TABLE sheet; ALTER TABLE player DROP COLUMN share; "
-      "ALTER TABLE player DROP COLUMN has_left; PRAGMA user_version = 2");
+      "ALTER TABLE player DROP COLUMN has_left; ALTER TABLE team DROP COLUMN fastest_shot; "
+      "PRAGMA user_version = 2");
   {
     const Store old = Store::open(path_, Access::read_only).value();
     EXPECT_EQ(old.matches({}).value().size(), 1u);
@@ -226,8 +228,8 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
 TEST_F(StoreTest, ReadsAndMigratesTheThirdVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   execute(
-      "ALTER TABLE player DROP COLUMN share; ALTER TABLE player DROP COLUMN has_left; PRAGMA "
-      "user_version = 3");
+      "ALTER TABLE player DROP COLUMN share; ALTER TABLE player DROP COLUMN has_left; "
+      "ALTER TABLE team DROP COLUMN fastest_shot; PRAGMA user_version = 3");
   const auto share = [](const Store& store) {
     return store.matches({}).value().at(0).teams[0].players.at(0).share;
   };
@@ -244,9 +246,27 @@ TEST_F(StoreTest, ReadsAndMigratesTheFourthVersion) {
     return store.matches({}).value().at(0).teams[0].players.at(0).left;
   };
   EXPECT_TRUE(left(made()));
-  execute("ALTER TABLE player DROP COLUMN has_left; PRAGMA user_version = 4");
+  execute(
+      "ALTER TABLE player DROP COLUMN has_left; ALTER TABLE team DROP COLUMN fastest_shot; "
+      "PRAGMA user_version = 4");
   EXPECT_FALSE(left(Store::open(path_, Access::read_only).value()));
   EXPECT_FALSE(left(made())) << "nobody knows any more";
+}
+
+// As the release before a team's own fastest shot made it.
+TEST_F(StoreTest, ReadsAndMigratesTheFifthVersion) {
+  { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
+  const auto fastest = [](const Store& store) {
+    return store.matches({}).value().at(0).teams[1].statistics.value().fastest_shot;
+  };
+  EXPECT_EQ(fastest(made()), 8.5);
+  execute("ALTER TABLE team DROP COLUMN fastest_shot; PRAGMA user_version = 5");
+  EXPECT_EQ(fastest(Store::open(path_, Access::read_only).value()), std::nullopt);
+  Store store = made();
+  EXPECT_EQ(fastest(store), std::nullopt) << "nobody knows whose the fastest was";
+  ASSERT_TRUE(store.add(match_between("Ann", "Bob", 5, 3)));
+  EXPECT_EQ(store.matches({.player = "", .newest = 1}).value()[0].teams[0].statistics->fastest_shot,
+            9.25);
 }
 
 TEST_F(StoreTest, SaysWhichVersionItNeeds) {

@@ -58,7 +58,7 @@ TEST(Text, SaysWhoPlayedOnlyAPartOfAMatch) {
   EXPECT_NE(table.find("Bob (100%, left)"), std::string::npos) << table;
   EXPECT_NE(csv.find(",Ann; computer 2,"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",0.62; 0.38,,"), std::string::npos) << csv;
-  EXPECT_NE(csv.find(",1,Bob\r\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",1,Bob,8.5\r\n"), std::string::npos) << csv;
   const auto json = nlohmann::json::parse(matches_json(matches));
   EXPECT_EQ(json[0]["teams"][0]["players"][0]["share"], 0.62);
   EXPECT_EQ(json[0]["teams"][0]["players"][0]["left"], false);

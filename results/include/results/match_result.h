@@ -27,8 +27,9 @@ struct Player {
 // Counts of a team; of none where they were not taken.
 struct TeamStatistics {
   std::uint64_t shots = 0, shots_on_target = 0, saves = 0, passes = 0, touches = 0;
-  std::uint64_t own_goals = 0;      // that the team shot into its own goal
-  double possession_seconds = 0.0;  // since its last touch
+  std::uint64_t own_goals = 0;           // that the team shot into its own goal
+  double possession_seconds = 0.0;       // since its last touch
+  std::optional<double> fastest_shot{};  // [m/s], 0: the team did not shoot; none: not kept
   bool operator==(const TeamStatistics&) const = default;
 };
 

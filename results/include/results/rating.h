@@ -7,7 +7,9 @@
 // match each has played.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,7 +37,13 @@ struct Standing {
   std::uint64_t matches = 0, wins = 0, losses = 0;  // that count for him
   std::uint64_t not_counted = 0;                    // others: he played too little of them
   std::uint64_t goals_for = 0, goals_against = 0;   // of his team
-  double fastest_shot = 0.0;  // in a match of his, of either team [m/s]; 0: not known
+  double fastest_shot = 0.0;  // of his team in a match of his [m/s]; 0: not known
+  // Of his team: shots of the others that would have been goals, and those that it saved.
+  std::uint64_t shots_faced = 0, saves = 0;
+  std::optional<double> saved() const {  // share of shots_faced, 0 .. 1; none: it faced none
+    if (shots_faced == 0) return std::nullopt;
+    return std::min(1.0, static_cast<double>(saves) / static_cast<double>(shots_faced));
+  }
   bool operator==(const Standing&) const = default;
 };
 

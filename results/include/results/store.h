@@ -20,7 +20,7 @@ struct sqlite3;
 
 namespace results {
 
-inline constexpr int kSchemaVersion = 5;
+inline constexpr int kSchemaVersion = 6;
 inline constexpr int kBusy_ms = 2000;
 
 enum class Access { read_only, create };
