@@ -43,6 +43,15 @@ auto build(Builder& b, const Claim& m) {
 auto build(Builder& b, const Kick& m) {
   return fb::CreateKick(b, m.client);
 }
+auto texts(Builder& b, const RodPlayers& players) {
+  std::array<flatbuffers::Offset<flatbuffers::String>, kRods> each;
+  for (std::size_t rod = 0; rod < each.size(); ++rod) each[rod] = text(b, players[rod], kMaxName);
+  return b.CreateVector(each.data(), each.size());
+}
+auto build(Builder& b, const Names& m) {
+  const auto players = texts(b, m.players);
+  return fb::CreateNames(b, text(b, m.name, kMaxName), players);
+}
 auto build(Builder& b, const Tuning& m) {
   return fb::CreateTuning(b, b.CreateVector(m.values.data(), m.values.size()));
 }
@@ -58,7 +67,8 @@ auto build(Builder& b, const Roster& m) {
   for (const Seat& seat : m.seats) {
     if (seats.size() < kMaxSeats) seats.push_back(build(b, seat));
   }
-  return fb::CreateRoster(b, b.CreateVector(seats));
+  const auto players = texts(b, m.players);
+  return fb::CreateRoster(b, b.CreateVector(seats), players);
 }
 auto build(Builder& b, const Characters& m) {
   const std::vector<std::byte> list = encode_characters(m);
@@ -100,10 +110,11 @@ auto build(Builder& b, const Answers& m) {
 }
 auto build(Builder& b, const TeamReport& m) {
   return fb::CreateTeamReport(b, m.shots, m.shots_on_target, m.saves, m.passes, m.own_goals,
-                              m.possession, m.rating, m.rating_change);
+                              m.possession, m.rating, m.rating_change, m.fastest_shot);
 }
 auto build(Builder& b, const Fame& m) {
-  return fb::CreateFame(b, text(b, m.name, kMaxName), m.rating, m.matches, m.wins);
+  return fb::CreateFame(b, text(b, m.name, kMaxName), m.rating, m.matches, m.wins, m.fastest_shot,
+                        m.shots_faced, m.saves);
 }
 auto build(Builder& b, const Report& m) {
   std::vector<flatbuffers::Offset<fb::TeamReport>> teams;
@@ -156,6 +167,17 @@ bool take(const fb::Kick& t, Kick& m) {
   m.client = t.client();
   return m.client != 0;
 }
+using Texts = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>;
+bool take(const Texts* from, RodPlayers& to) {
+  if (from->size() != to.size()) return false;
+  for (std::size_t rod = 0; rod < to.size(); ++rod) {
+    if (!take(from->Get(static_cast<flatbuffers::uoffset_t>(rod)), kMaxName, to[rod])) return false;
+  }
+  return true;
+}
+bool take(const fb::Names& t, Names& m) {
+  return take(t.name(), kMaxName, m.name) && take(t.players(), m.players);
+}
 bool take(const fb::Tuning& t, Tuning& m) {
   if (t.values()->size() != m.values.size()) return false;
   for (std::size_t i = 0; i < m.values.size(); ++i) {
@@ -184,7 +206,7 @@ bool take(const fb::Roster& t, Roster& m) {
   for (const auto* seat : *t.seats()) {
     if (!take(*seat, m.seats.emplace_back())) return false;
   }
-  return true;
+  return take(t.players(), m.players);
 }
 bool take(const fb::Characters& t, Characters& m) {
   return decode_characters(std::as_bytes(std::span(t.list()->data(), t.list()->size())), m);
@@ -254,15 +276,20 @@ bool take(const fb::Answers& t, Answers& m) {
   return m.rods != 0;
 }
 bool take(const fb::TeamReport& t, TeamReport& m) {
-  m = {t.shots(),     t.shots_on_target(), t.saves(),  t.passes(),
-       t.own_goals(), t.possession(),      t.rating(), t.rating_change()};
-  return std::isfinite(m.possession) && std::isfinite(m.rating) && std::isfinite(m.rating_change);
+  m = {t.shots(),      t.shots_on_target(), t.saves(),         t.passes(),      t.own_goals(),
+       t.possession(), t.rating(),          t.rating_change(), t.fastest_shot()};
+  return std::isfinite(m.possession) && std::isfinite(m.rating) && std::isfinite(m.rating_change) &&
+         std::isfinite(m.fastest_shot);
 }
 bool take(const fb::Fame& t, Fame& m) {
   m.rating = t.rating();
   m.matches = t.matches();
   m.wins = t.wins();
-  return take(t.name(), kMaxName, m.name) && std::isfinite(m.rating);
+  m.fastest_shot = t.fastest_shot();
+  m.shots_faced = t.shots_faced();
+  m.saves = t.saves();
+  return take(t.name(), kMaxName, m.name) && std::isfinite(m.rating) &&
+         std::isfinite(m.fastest_shot);
 }
 bool take(const fb::Report& t, Report& m) {
   m.match = t.match();
@@ -323,6 +350,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Kick>(control.message_as_Kick(), message);
     case fb::Message::Game:
       return take_as<Game>(control.message_as_Game(), message);
+    case fb::Message::Names:
+      return take_as<Names>(control.message_as_Names(), message);
     case fb::Message::NONE:
       break;
   }

@@ -223,11 +223,24 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused(fb::Message::Report, report(1, 0, 1500.0f))) << "a team is missing";
   EXPECT_TRUE(refused(fb::Message::Report, report(2, kMaxFame + 1, 1500.0f))) << "too many";
   EXPECT_TRUE(refused(fb::Message::Report, report(2, 1, std::nanf("")))) << "no number";
+  const auto texts = [&](std::size_t count, const char* each) {
+    return std::vector(count, b.CreateString(each));
+  };
   const auto roster = [&](std::size_t seats, std::uint8_t team) {
     const auto seat = fb::CreateSeatDirect(b, 1, "a", team, 1, 1, false);
     const std::vector all(seats, seat);
-    return fb::CreateRosterDirect(b, &all);
+    const auto nobody = texts(8, "");
+    return fb::CreateRosterDirect(b, &all, &nobody);
   };
+  const auto names = [&](std::size_t rods, const char* player) {
+    const auto players = texts(rods, player);
+    return fb::CreateNamesDirect(b, "Ann", &players);
+  };
+  EXPECT_FALSE(refused(fb::Message::Names, names(8, "Ben")));
+  EXPECT_TRUE(refused(fb::Message::Names, names(7, "Ben"))) << "a rod is missing";
+  EXPECT_TRUE(refused(fb::Message::Names, names(9, "Ben"))) << "too many";
+  EXPECT_TRUE(refused(fb::Message::Names, names(8, "B\n"))) << "a control character";
+  EXPECT_TRUE(refused(fb::Message::Names, names(8, std::string(65, 'a').c_str()))) << "too long";
   EXPECT_FALSE(refused(fb::Message::Roster, roster(kMaxSeats, 0)));
   EXPECT_TRUE(refused(fb::Message::Roster, roster(kMaxSeats + 1, 0))) << "too many seats";
   EXPECT_TRUE(refused(fb::Message::Roster, roster(1, 2))) << "team";

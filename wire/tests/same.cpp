@@ -55,6 +55,9 @@ auto tied(const Claim& m) {
 auto tied(const Kick& m) {
   return std::tie(m.client);
 }
+auto tied(const Names& m) {
+  return std::tie(m.name, m.players);
+}
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }
@@ -70,10 +73,10 @@ auto tied(const Answers& m) {
 }
 auto tied(const TeamReport& m) {
   return std::tie(m.shots, m.shots_on_target, m.saves, m.passes, m.own_goals, m.possession,
-                  m.rating, m.rating_change);
+                  m.rating, m.rating_change, m.fastest_shot);
 }
 auto tied(const Fame& m) {
-  return std::tie(m.name, m.rating, m.matches, m.wins);
+  return std::tie(m.name, m.rating, m.matches, m.wins, m.fastest_shot, m.shots_faced, m.saves);
 }
 auto tied(const Seat& m) {
   return std::tie(m.client, m.name, m.team, m.rods, m.role, m.away);
@@ -131,7 +134,7 @@ bool all_tied(const List& a, const List& b) {
 struct TiedRoster {
   const Roster& roster;
   friend bool operator==(const TiedRoster& a, const TiedRoster& b) {
-    return all_tied(a.roster.seats, b.roster.seats);
+    return all_tied(a.roster.seats, b.roster.seats) && a.roster.players == b.roster.players;
   }
 };
 TiedRoster tied(const Roster& m) {

@@ -80,6 +80,8 @@ Snapshot random_head(std::mt19937_64& random) {
   s.computer = {random() % 2 == 0, random() % 2 == 0};
   s.attract = random() % 2;
   s.rung = below<std::uint8_t>(random, kRungCount);
+  s.feed_rod = below<std::uint8_t>(random, kRods);
+  s.feed_man = below<std::uint8_t>(random, kMenOnRod);
   s.ball_visible = random() % 2;
   s.last_goal = random_shot(random);
   s.last_goal_own = random() % 2;
@@ -147,6 +149,8 @@ Snapshot snapshot() {
   s.possession_seconds = 3.5F;
   s.computer = {false, true};
   s.rung = 4;
+  s.feed_rod = 6;
+  s.feed_man = 2;
   s.last_goal = {1, 5, 2, 7.5F, 0.25F};
   s.last_shot = {0, 2, 1, 9.25F, -0.125F};
   s.screen_seconds = 12.5F;
@@ -200,32 +204,34 @@ std::vector<CharacterRecord> characters() {
 }
 
 std::vector<std::pair<std::string, ControlMessage>> control() {
-  return {
-      {"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
-      {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
-                          "239.1.2.3", 4244, 0x81, 2, 9, octets<32>(1), octets<32>(101)}},
-      {"refusal", Refusal{Refusal::Code::team_taken, "Team 0 is taken; choose team 1."}},
-      {"wish", Wish{1, 1, 2, 0.0}},
-      {"tune", Wish{8, 0, 26, 0.125}},
-      {"ping", Ping{7}},
-      {"pong", Pong{7}},
-      {"notice", Notice{Notice::Level::warning, 3, "cabinet unplugged: its rods hold"}},
-      {"bye", Bye{"window closed"}},
-      {"knock", Knock{2, 1, octets<16>(1), octets<32>(65)}},
-      {"challenge", Challenge{octets<32>(17)}},
-      {"claim", Claim{0x2A}},
-      {"kick", Kick{7}},
-      {"change_of_team", Claim{0xF0, 1}},
-      {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}}}},
-      {"tuning", tuning()},
-      {"game", Game{2, 0, 0, 0, 90'000, true, 4, 3, 20261122, true}},
-      {"characters", Characters{characters()}},
-      {"questionnaire", Questionnaire{3, 0x2B}},
-      {"answers", Answers{3, 0x0B, {5, 4, 0, 1, 3, 2}}},
-      {"report",
-       Report{3,
-              {{{7, 5, 2, 11, 1, 60.25f, 1516.0f, 16.0f}, {3, 1, 4, 2, 0, 50.0f, 1484.0f, -16.0f}}},
-              {{"J\xC3\xBCrgen", 1516.0f, 12, 7}, {"computer 2", 1484.0f, 1, 0}}}}};
+  return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
+          {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
+                              "239.1.2.3", 4244, 0x81, 2, 9, octets<32>(1), octets<32>(101)}},
+          {"refusal", Refusal{Refusal::Code::team_taken, "Team 0 is taken; choose team 1."}},
+          {"wish", Wish{1, 1, 2, 0.0}},
+          {"tune", Wish{8, 0, 26, 0.125}},
+          {"ping", Ping{7}},
+          {"pong", Pong{7}},
+          {"notice", Notice{Notice::Level::warning, 3, "cabinet unplugged: its rods hold"}},
+          {"bye", Bye{"window closed"}},
+          {"knock", Knock{2, 1, octets<16>(1), octets<32>(65)}},
+          {"challenge", Challenge{octets<32>(17)}},
+          {"claim", Claim{0x2A}},
+          {"kick", Kick{7}},
+          {"change_of_team", Claim{0xF0, 1}},
+          {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}},
+                            {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
+          {"names", Names{"Ann", {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
+          {"tuning", tuning()},
+          {"game", Game{2, 0, 0, 0, 90'000, true, 4, 3, 20261122, true}},
+          {"characters", Characters{characters()}},
+          {"questionnaire", Questionnaire{3, 0x2B}},
+          {"answers", Answers{3, 0x0B, {5, 4, 0, 1, 3, 2}}},
+          {"report", Report{3,
+                            {{{7, 5, 2, 11, 1, 60.25f, 1516.0f, 16.0f, 9.5f},
+                              {3, 1, 4, 2, 0, 50.0f, 1484.0f, -16.0f, 0.0f}}},
+                            {{"J\xC3\xBCrgen", 1516.0f, 12, 7, 9.5f, 40, 22},
+                             {"computer 2", 1484.0f, 1, 0}}}}};
 }
 
 std::vector<JournalEntry> journal() {

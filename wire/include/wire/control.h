@@ -29,6 +29,9 @@ inline constexpr std::uint8_t kWatchOnly = 255;
 inline constexpr std::size_t kMaxSeats = 64;
 inline constexpr std::size_t kMaxFame = 8;
 
+// By rod: who plays it. Empty: the one whose name the seat has, or nobody.
+using RodPlayers = std::array<std::string, kRods>;
+
 // Client to server, first message from another machine: the exchange of wire/password_exchange.h.
 // What follows its Challenge, both ways, is a sealed stream (wire/seal.h) of messages.
 struct Knock {
@@ -78,6 +81,13 @@ struct Claim {
   std::uint8_t team = kWatchOnly;  // plays for it from now on; kWatchOnly: for the one it has
 };
 
+// Client to server: who the people at this client are. A name that another has there already, or
+// that results have for others, gets a number behind it: the Roster tells which.
+struct Names {
+  std::string name;    // of the client's seat
+  RodPlayers players;  // of its rods
+};
+
 // Client to server: this player is to be put out of the match. A host's word is done; of players it
 // is a vote, begun or agreed to. A Notice of kKickAnswerTopic says why it is neither.
 struct Kick {
@@ -119,6 +129,7 @@ struct Seat {
 // Server to client: all who have a place, after each change.
 struct Roster {
   std::vector<Seat> seats;  // <= kMaxSeats
+  RodPlayers players;
 };
 
 // Server to client: not accepted; the connection closes.
@@ -185,11 +196,14 @@ struct TeamReport {
   std::uint32_t shots = 0, shots_on_target = 0, saves = 0, passes = 0, own_goals = 0;
   float possession = 0.0f;                    // since its last touch [s]; finite, as all here
   float rating = 0.0f, rating_change = 0.0f;  // its players' mean Elo after the match; by it
+  float fastest_shot = 0.0f;                  // [m/s]; 0: it did not shoot, or not known
 };
 struct Fame {
   std::string name;
   float rating = 0.0f;
   std::uint32_t matches = 0, wins = 0;
+  float fastest_shot = 0.0f;                 // of the player's teams [m/s]; 0: not known
+  std::uint32_t shots_faced = 0, saves = 0;  // of the player's teams: on target; of those
 };
 // Server to client, on joining and after each match that is kept: the last one, and who plays best.
 struct Report {
@@ -200,7 +214,8 @@ struct Report {
 
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game>;
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game,
+                 Names>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

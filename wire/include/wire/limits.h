@@ -16,6 +16,7 @@ inline constexpr std::uint32_t kMaxTickUs = 10'000;
 static_assert(kMaxTick <= (std::uint64_t{1} << 62) / kMaxTickUs);
 
 inline constexpr unsigned kTeamCount = 2;
+inline constexpr int kRods = 8;
 inline constexpr unsigned kLayoutCount = 2;  // foosball::Layout
 inline constexpr unsigned kScreenCount = number(Screen::end) + 1;
 inline constexpr unsigned kMaxCharacterCount = 12;  // foosball::kMaxCharacters

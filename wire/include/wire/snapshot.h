@@ -9,10 +9,11 @@
 #include <span>
 #include <vector>
 
+#include "wire/limits.h"
+
 namespace wire {
 
 inline constexpr std::size_t kMaxDatagram = 1200;
-inline constexpr int kRods = 8;
 inline constexpr int kMaxMen = 32;
 inline constexpr int kMaxBalls = 1;
 inline constexpr int kMaxEvents = 8;
@@ -78,10 +79,11 @@ struct Snapshot {
   std::uint8_t last_foul = 0, last_foul_team = 0;
   std::uint8_t possession_team = 0;
   float possession_seconds = 0;
-  std::array<bool, 2> computer{};  // plays the team
-  bool attract = false;            // nobody plays: computers show a match
-  std::uint8_t rung = 0;           // of the ladder
-  bool ball_visible = false;       // in play, or in the goal it went into
+  std::array<bool, 2> computer{};           // plays the team
+  bool attract = false;                     // nobody plays: computers show a match
+  std::uint8_t rung = 0;                    // of the ladder
+  std::uint8_t feed_rod = 0, feed_man = 0;  // training: to whom the ball is served
+  bool ball_visible = false;                // in play, or in the goal it went into
   ShotSnapshot last_goal, last_shot;
   bool last_goal_own = false;
   float screen_seconds = 0, play_seconds = 0;

@@ -10,7 +10,7 @@
 namespace wire {
 
 inline constexpr std::uint64_t kSnapshotMagic = 0x4E534653;  // "SFSN"
-inline constexpr std::uint64_t kSnapshotVersion = 3;
+inline constexpr std::uint64_t kSnapshotVersion = 4;
 
 // 15 um over +-2 m: a table is 1.2 m long, and a ball that left it is of no interest further out.
 inline constexpr Fixed kPosition{"position", 18, 0x1p-16, "m", "x, y, z in the world"};
@@ -120,6 +120,9 @@ void describe_rules_state(Codec& codec, S& s) {
   });
   codec.flag(Flag{"attract", "nobody plays: computers show a match"}, s.attract);
   codec.integer(Integer{"rung", 3, kRungCount - 1, "", "of the ladder"}, s.rung);
+  codec.integer(Integer{"feed_rod", 3, kRods - 1, "", "training: to whom the ball is served"},
+                s.feed_rod);
+  codec.integer(Integer{"feed_man", 3, kMenOnRod - 1, "", ""}, s.feed_man);
   codec.flag(Flag{"ball_visible", "in play, or in the goal it went into"}, s.ball_visible);
   codec.group(Group{"last_goal", "credited to"}, [&] { describe_shot(codec, s.last_goal); });
   codec.flag(Flag{"last_goal_own", "by a man of the team that conceded"}, s.last_goal_own);
