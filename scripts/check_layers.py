@@ -65,6 +65,7 @@ LAYERS = {
     'sandbox/': 'sandbox',
     'foosball/include/foosball/assists.h': 'table',
     'foosball/include/foosball/character.h': 'table',
+    'foosball/include/foosball/feed.h': 'table',
     'foosball/include/foosball/game_setup.h': 'table',
     'foosball/include/foosball/judgment.h': 'table',
     'foosball/include/foosball/play_style.h': 'table',

@@ -212,6 +212,7 @@ void Match::Impl::refresh_view() {
   view.screen_seconds = seconds(state.screen_ticks);
   view.tuning = state.tuning;
   view.events_dropped = events_dropped;
+  view.matches_begun = matches_begun;
   view.ball_in_play = state.ball_in_play;
   view.ball_visible = !state.ball_parked;
   view.ball_position = ball.pose.position();
@@ -250,6 +251,8 @@ void Match::Impl::refresh_match_view() {
   view.computer = state.computer;
   view.attract = state.attract;
   view.rung = state.rung;
+  view.feed_rod = state.feed_rod;
+  view.feed_man = feed_man();
 }
 
 vp::Expected<void> Match::Impl::restore(std::span<const std::byte> bytes) {

@@ -24,6 +24,7 @@ struct Match::Impl {
   MatchView view;
   std::vector<Event> events;
   std::uint64_t events_dropped = 0;
+  std::uint32_t matches_begun = 0;
 
   const TableSpec& table() const { return world->table(); }
   const Rules& rules() const { return state.game.rules; }
@@ -68,6 +69,8 @@ struct Match::Impl {
   void begin_training(int team);
   void ask_time_out(int team);
   void feed(int team, int value);
+  void feed_to(int rod, int man);
+  void feed_by_turn(int rod, int turn);
   void show_match();
   void read_gestures();
   void push(int team);
@@ -88,6 +91,13 @@ struct Match::Impl {
   int rod_of(int team, Line line) const {
     return rods_of_team(table(), team)[static_cast<std::size_t>(line)];
   }
+  // Before whom the ball is served where no man is named: the middle one, of two the one at the
+  // team's right hand.
+  int middle_man(int rod) const {
+    const RodSpec& spec = table().rods[rod];
+    return spec.team == 0 ? spec.men / 2 : spec.men - 1 - spec.men / 2;
+  }
+  int feed_man() const { return state.feed_man >= 0 ? state.feed_man : middle_man(state.feed_rod); }
   bool last_set() const {
     return state.tally.sets[0] + state.tally.sets[1] + 1 >= 2 * rules().sets_to_win - 1;
   }

@@ -272,9 +272,8 @@ void Match::Impl::serve_again() {
 // leaves none loses the ball.
 void Match::Impl::put_in_play() {
   const RodSpec& rod = table().rods[state.serve_rod];
-  const int man = state.serve_man >= 0 && state.serve_man < rod.men
-                      ? state.serve_man
-                      : (rod.team == 0 ? rod.men / 2 : rod.men - 1 - rod.men / 2);
+  const int man = state.serve_man >= 0 && state.serve_man < rod.men ? state.serve_man
+                                                                    : middle_man(state.serve_rod);
   vp::Vec3 place;
   if (!find_place(state.serve_rod, man, place)) {
     if (++state.serve_waits < to_ticks(kServeWait)) return;

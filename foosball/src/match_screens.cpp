@@ -98,9 +98,23 @@ void Match::Impl::feed(int team, int value) {
   const int rod = rod_of(team, static_cast<Line>(value / 8));
   const int man = value % 8;
   if (man >= table().rods[rod].men) return;
+  feed_to(rod, man);
+}
+
+void Match::Impl::feed_to(int rod, int man) {
   state.feed_rod = rod;
   state.feed_man = man;
   if (state.screen == Screen::play) serve_again();
+}
+
+// By the rods alone: whoever spins a rod after a goal has the ball served there, forward to the
+// next man, back to the one before. The end of a shot's swing is no choice.
+void Match::Impl::feed_by_turn(int rod, int turn) {
+  const bool between =
+      state.screen == Screen::ceremony && state.screen_ticks >= to_ticks(kCeremonyAtLeast);
+  if (mode() != Mode::training || !between) return;
+  const int men = table().rods[rod].men;
+  feed_to(rod, rod == state.feed_rod ? (feed_man() + turn + men) % men : middle_man(rod));
 }
 
 void Match::Impl::read_gestures() {
@@ -110,8 +124,13 @@ void Match::Impl::read_gestures() {
     if (state.attract) continue;  // the computers' rods; a hand is told by the server
     if (gesture.turn != 0) {
       choose(team, (state.character[team] + gesture.turn + characters()) % characters());
+      feed_by_turn(rod, gesture.turn);
     }
-    if (gesture.push) push(team);
+    if (gesture.push) {
+      const bool chooses = mode() == Mode::training && state.screen == Screen::selection;
+      push(team);
+      if (chooses) feed_to(rod, middle_man(rod));  // who begins with a rod has the ball there
+    }
   }
 }
 
@@ -189,6 +208,7 @@ void Match::Impl::start_match() {
     for (int& character : state.character) character = dice(characters_to_draw());
   }
   const int server = dice(kTeams);
+  ++matches_begun;
   state.tally = {};
   state.absent_ticks = {};
   state.last_server = server;

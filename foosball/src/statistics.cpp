@@ -113,9 +113,16 @@ void StatisticsObserver::observe(const MatchView& view, std::span<const Event> e
 void StatisticsObserver::abandon() {
   if (begun_) ++totals_.undecided;
   if (in_play_) end_rally();
-  Statistics totals = totals_;
+  const Statistics totals = totals_;
+  const auto fastest = fastest_shots_;
   *this = StatisticsObserver{};
   totals_ = totals;
+  fastest_shots_ = fastest;
+}
+
+void StatisticsObserver::begin_match() {
+  abandon();
+  fastest_shots_ = {};
 }
 
 // --- events --------------------------------------------------------------------------------------
@@ -398,6 +405,7 @@ void StatisticsObserver::end_shot() {
   ++totals_.shots[shot_.team];
   if (shot_.on_target) ++totals_.shots_on_target[shot_.team];
   totals_.shot_speed.add(shot_.peak);
+  fastest_shots_[shot_.team] = std::max(fastest_shots_[shot_.team], shot_.peak);
   shot_ = {};
 }
 

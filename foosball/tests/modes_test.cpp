@@ -273,6 +273,68 @@ TEST_F(ModesTest, TrainingNeedsNoOpponentAndServesToTheManAskedForAgainAndAgain)
   EXPECT_GE(count(EventKind::serve), 1) << "a ball left lying is served again";
 }
 
+// At a cabinet there are the rods alone: the one that is pushed to begin, and those spun after a
+// goal.
+TEST_F(ModesTest, TrainingServesToTheRodThatBeganItAndThatIsSpunAfterAGoal) {
+  make(Mode::training);
+  const auto rods = rods_of_team(table(), 0);
+  const int midfield = rods[2], attack = rods[3];
+  const auto served_to = [&](int rod, int man) {
+    EXPECT_EQ(view().feed_rod, rod);
+    EXPECT_EQ(view().feed_man, man);
+    const Event* serve = last(EventKind::serve);
+    return serve != nullptr && serve->rod == rod && serve->man == man;
+  };
+  push(midfield);
+  push(midfield);
+  run(0.7);
+  EXPECT_TRUE(served_to(midfield, 2));
+  const auto spun_after_a_goal = [&](int rod, double turn) {
+    shoot_goal(0);
+    run(0.6);
+    ASSERT_EQ(view().screen, Screen::ceremony);
+    move(rod, 0.0, input.rods[rod].angle - attack_sign(0) * turn, 0.3);
+    run(desc.rules.ceremony_seconds + 0.7);
+    ASSERT_EQ(view().screen, Screen::play);
+  };
+  spun_after_a_goal(midfield, 2.2);
+  EXPECT_TRUE(served_to(midfield, 3)) << "forward: the next man";
+  spun_after_a_goal(midfield, -4.4);
+  EXPECT_TRUE(served_to(midfield, 1)) << "back twice";
+  spun_after_a_goal(attack, 2.2);
+  EXPECT_TRUE(served_to(attack, 1)) << "another rod: its middle man";
+  // The end of the shot's own swing chooses nobody.
+  shoot_goal(0);
+  move(midfield, 0.0, input.rods[midfield].angle - 2.2, 0.1);
+  run(desc.rules.ceremony_seconds + 0.7);
+  EXPECT_TRUE(served_to(attack, 1));
+}
+
+TEST_F(ModesTest, ASpunRodChoosesNobodyInAMatch) {
+  start_by_commands();
+  const int before = view().feed_rod;
+  shoot_goal(0);
+  run(0.6);
+  const int rod = rods_of_team(table(), 0)[2];
+  move(rod, 0.0, -2.2, 0.2);
+  EXPECT_EQ(view().feed_rod, before);
+}
+
+TEST_F(ModesTest, CountsEveryBeginningOfAMatchHoweverFewTicksItTakes) {
+  desc = challenge_of(20261122, Layout::tournament);
+  match = std::make_unique<Match>(*Match::create(desc));
+  EXPECT_EQ(view().matches_begun, 0u);
+  command(Command::Kind::push, 0);
+  EXPECT_EQ(view().matches_begun, 1u);
+  commands = {{Command::Kind::restart}, {Command::Kind::push, 0}};
+  step();
+  EXPECT_EQ(view().screen, Screen::play) << "both within one tick";
+  EXPECT_EQ(view().matches_begun, 2u);
+  make(Mode::match);
+  start_by_commands();
+  EXPECT_EQ(view().matches_begun, 1u) << "a choice of characters begins nothing yet";
+}
+
 TEST_F(ModesTest, TrainingServesToTheSideThatBeganItUntilAManIsAskedFor) {
   for (const int team : {0, 1}) {
     make(Mode::training);
@@ -325,8 +387,8 @@ TEST_F(ModesTest, ASavedChallengeIsThatOfItsDay) {
 
 TEST_F(ModesTest, AFeedThatIsNoMansIsIgnored) {
   make(Mode::training);
-  push(0);
-  push(0);
+  command(Command::Kind::push, 0);
+  command(Command::Kind::push, 0);
   command(Command::Kind::feed, 0, feed_value(Line::goalie, 4));
   command(Command::Kind::feed, 0, 255);
   run(0.7);

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "foosball/feed.h"
 #include "foosball/game_setup.h"
 #include "foosball/rod_motion.h"
 #include "foosball/rules.h"
@@ -51,12 +52,6 @@ struct Command {
   GameSetup setup{};    // set_up
 };
 inline constexpr int kCommandKinds = 10;
-
-// Command::value of a feed: 0 <= man < kMaxMenOnRod.
-constexpr std::uint8_t feed_value(Line line, int man) {
-  return static_cast<std::uint8_t>(static_cast<int>(line) * 8 + man);
-}
-inline constexpr int kFeedValues = 32;
 
 struct TickInput {
   RodTargets rods;
@@ -158,9 +153,10 @@ struct MatchView {
   int possession_team = 0;          // within whose reach the ball is or was last
   double possession_seconds = 0.0;  // for so long
   std::array<bool, kTeams> computer{};
-  bool attract = false;       // nobody plays: computers show a match
-  int rung = 0;               // ladder: 0 .. kLadderRungs - 1
-  bool ball_visible = false;  // in play, or in the goal it went into
+  bool attract = false;            // nobody plays: computers show a match
+  int rung = 0;                    // ladder: 0 .. kLadderRungs - 1
+  int feed_rod = 0, feed_man = 0;  // training: to whom the ball is served
+  bool ball_visible = false;       // in play, or in the goal it went into
   bool ball_in_play = false;
   vp::Vec3 ball_position, ball_velocity;  // table's frame [m], [m/s]
   vp::SE3 ball_pose;                      // T_table_ball
@@ -172,6 +168,7 @@ struct MatchView {
   Tuning tuning;
   // Since create(): not of the match's state, so neither saved, restored nor hashed.
   std::uint64_t events_dropped = 0;
+  std::uint32_t matches_begun = 0;  // of whatever mode, those for show too
 };
 
 class Match {

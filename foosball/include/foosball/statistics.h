@@ -137,7 +137,11 @@ class StatisticsObserver {
   void meant(const PlayedPass& pass, Layout layout);
   // The match under way is given up: counts as undecided, if it had begun. Forgets it.
   void abandon();
+  // Another match begins: what is left of the one before is given up.
+  void begin_match();
   const Statistics& totals() const { return totals_; }
+  // Of each team, since begin_match() [m/s]; 0: it has not shot.
+  const std::array<double, kTeams>& fastest_shots() const { return fastest_shots_; }
 
  private:
   // A man's time at the ball: all contacts until another man has one or kTouchPause has passed.
@@ -190,6 +194,7 @@ class StatisticsObserver {
   void watch_stuck(const MatchView& view);
 
   Statistics totals_;
+  std::array<double, kTeams> fastest_shots_{};
   std::uint64_t now_ = 0;  // ticks observed
   bool begun_ = false;     // a match
   int leader_ = -1;        // who was last ahead
