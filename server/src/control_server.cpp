@@ -265,6 +265,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     answer_knock(connection, *knock);
   } else if (const auto* claim = std::get_if<wire::Claim>(&message); claim && joined) {
     take_claim(connection, *claim);
+  } else if (const auto* names = std::get_if<wire::Names>(&message); names && joined) {
+    take_names(connection, *names);
   } else if (const auto* ping = std::get_if<wire::Ping>(&message); ping && joined) {
     send(connection, wire::Pong{ping->id});
   } else if (const auto* wish = std::get_if<wire::Wish>(&message); wish && joined) {

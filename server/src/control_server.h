@@ -47,6 +47,7 @@ struct ControlEvent {
     away,  // lost, and expected back: its rods hold
     back,  // with new keys
     rods,  // has others now
+    name,  // of who plays these rods, or of the client
     left,  // for good
     wish,
     game,     // can be played, as far as can be known before the tick
@@ -57,8 +58,9 @@ struct ControlEvent {
   std::uint32_t client = 0;
   std::uint8_t team = wire::kWatchOnly;         // joined, rods
   RodSet rods = 0;                              // joined, back, rods: all that it has
+                                                // name: whose it is; none: the client's own
   std::uint64_t token = 0;                      // joined, back, rods
-  std::array<char, wire::kMaxName + 1> name{};  // joined, rods: ended by a zero
+  std::array<char, wire::kMaxName + 1> name{};  // joined, rods, name: ended by a zero
   wire::SealKey input_key{}, snapshot_key{};
   os::FileDescriptor socket;   // joined, back, rods: of who has rods for the first time
   os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
@@ -182,6 +184,8 @@ class ControlServer {
   os::FileDescriptor client_socket(const ControlConnection& connection,
                                    const os::SocketAddress& listener);
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
+  void take_names(ControlConnection& connection, const wire::Names& names);
+  void tell_name(const Seat& seat, RodSet rods, const std::string& name);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
   void take_game(ControlConnection& connection, wire::Game game);
   bool in_challenge() const;

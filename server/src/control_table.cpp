@@ -1,5 +1,6 @@
 // The part of ControlServer that decides who sits where, and who may what.
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "control_server.h"
@@ -339,6 +340,46 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   untold_.push_back(std::move(event));
   tell_tick();
   roster_changed_ = true;
+}
+
+// Who changes the name while a match is played is another player for it (docs/rules.md).
+void ControlServer::take_names(ControlConnection& connection, const wire::Names& names) {
+  Seat* seat = seats_.find(connection.client);
+  if (seat == nullptr || untold_.size() > kMostUntold ||
+      !connection.wishes.take(os::monotonic_us()))
+    return;
+  if (const std::string wanted = wire::clean_name(names.name); wanted != seat->wanted_name) {
+    seat->wanted_name = wanted;
+    seat->name.clear();
+    seat->name = seats_.name_for(*seat, seat->team);
+    tell_name(*seat, 0, seat->name);
+  }
+  wire::RodPlayers players;
+  for (int rod = 0; rod < foosball::kRods; ++rod) {
+    const auto r = static_cast<std::size_t>(rod);
+    if (!names.players[r].empty())
+      players[r] = seats_.player_name(*seat, wire::clean_name(names.players[r]), rod);
+  }
+  for (RodSet untold = 0xFF; untold != 0;) {
+    const std::string& name = players[static_cast<std::size_t>(std::countr_zero(untold))];
+    RodSet same = 0;
+    for (std::size_t rod = 0; rod < players.size(); ++rod)
+      if (players[rod] == name) same |= RodSet(1u << rod);
+    tell_name(*seat, same, name);
+    untold &= static_cast<RodSet>(~same);
+  }
+  seat->players = std::move(players);
+  tell_tick();
+  roster_changed_ = true;
+}
+
+void ControlServer::tell_name(const Seat& seat, RodSet rods, const std::string& name) {
+  ControlEvent event;
+  event.kind = ControlEvent::Kind::name;
+  event.client = seat.client;
+  event.rods = rods;
+  name.copy(event.name.data(), event.name.size() - 1);
+  untold_.push_back(std::move(event));
 }
 
 void ControlServer::lose_seat(std::uint32_t client) {

@@ -15,13 +15,10 @@ const char* name_of(foosball::Layout layout) {
 
 bool MatchScribe::observe(const foosball::Match& match, const foosball::RodTargets& targets) {
   const auto& events = match.events();
-  // A new one begins where the characters are chosen.
-  begins_ = std::any_of(events.begin(), events.end(), [&](const foosball::Event& event) {
-    return event.kind == foosball::EventKind::screen &&
-           match.view().screen == foosball::Screen::selection;
-  });
+  begins_ = match.view().matches_begun != matches_begun_;
   if (begins_) {
-    statistics_.abandon();
+    matches_begun_ = match.view().matches_begun;
+    statistics_.begin_match();
     before_ = statistics_.totals();
   }
   statistics_.observe(match.view(), events, targets);
@@ -67,6 +64,7 @@ results::MatchResult MatchScribe::result(const foosball::MatchView& view,
   const auto statistics = statistics_of_teams(before_, statistics_.totals());
   for (std::size_t t = 0; t < result.teams.size(); ++t) {
     result.teams[t] = {players[t], static_cast<std::uint32_t>(view.score[t]), statistics[t]};
+    result.teams[t].statistics->fastest_shot = statistics_.fastest_shots()[t];
   }
   result.shot_speeds = shot_speeds(before_, statistics_.totals());
   return result;

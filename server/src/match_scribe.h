@@ -29,6 +29,7 @@ class MatchScribe {
  private:
   foosball::MatchDesc match_;
   bool begins_ = false;
+  std::uint32_t matches_begun_ = 0;  // as the view has them
   foosball::StatisticsObserver statistics_;
   foosball::Statistics before_;  // totals when this match began
 };

@@ -60,18 +60,33 @@ bool is_name_of_results(std::string_view name) {
          name.starts_with("computer ");
 }
 
+bool has_name(const Seat& seat, const std::string& name) {
+  return seat.name == name || std::ranges::count(seat.players, name) > 0;
+}
+
 }  // namespace
 
+bool Seats::is_free(const std::string& name, const Seat& seat, std::uint8_t team) const {
+  return std::ranges::none_of(seats_, [&](const Seat& s) {
+    return s.client != seat.client && has_name(s, name) &&
+           (s.owner != seat.owner || s.team != team);
+  });
+}
+
 std::string Seats::name_for(const Seat& seat, std::uint8_t team) const {
-  const std::string& wanted = seat.wanted_name;
-  const auto is_free = [&](const std::string& name) {
-    return std::ranges::none_of(seats_, [&](const Seat& s) {
-      return s.client != seat.client && s.name == name && (s.owner != seat.owner || s.team != team);
-    });
-  };
-  if (!seat.name.empty() && is_free(seat.name)) return seat.name;
+  if (!seat.name.empty() && is_free(seat.name, seat, team)) return seat.name;
+  return free_name(seat.wanted_name, seat, team);
+}
+
+std::string Seats::player_name(const Seat& seat, const std::string& wanted, int rod) const {
+  if (wanted.empty() || wanted == seat.wanted_name) return {};
+  const auto team = static_cast<std::uint8_t>(foosball::table_spec(layout_).rods[rod].team);
+  return free_name(wanted, seat, team);
+}
+
+std::string Seats::free_name(const std::string& wanted, const Seat& seat, std::uint8_t team) const {
   const bool reserved = is_name_of_results(wanted);
-  if (!reserved && is_free(wanted)) return wanted;
+  if (!reserved && is_free(wanted, seat, team)) return wanted;
   for (int number = reserved ? 1 : 2;; ++number) {
     const std::string tail = " (" + std::to_string(number) + ")";
     std::string name = wanted.substr(0, wire::kMaxName - tail.size());
@@ -80,7 +95,7 @@ std::string Seats::name_for(const Seat& seat, std::uint8_t team) const {
            (static_cast<unsigned char>(wanted[name.size()]) & 0xC0u) == 0x80u) {
       name.pop_back();
     }
-    if (is_free(name + tail)) return name + tail;
+    if (is_free(name + tail, seat, team)) return name + tail;
   }
 }
 
@@ -121,6 +136,8 @@ wire::Roster Seats::roster() const {
   wire::Roster roster;
   for (const Seat& s : seats_) {
     roster.seats.push_back({s.client, s.name, s.team, s.rods, number(s.role), s.away()});
+    for (std::size_t rod = 0; rod < roster.players.size(); ++rod)
+      if ((s.rods >> rod & 1) != 0) roster.players[rod] = s.players[rod];
   }
   return roster;
 }

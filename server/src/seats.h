@@ -31,6 +31,7 @@ struct Seat {
   std::uint64_t ticket = 0;  // the client's secret
   std::string wanted_name;   // the one that was asked for: wire::clean_name()
   std::string name;          // Seats::name_for()
+  wire::RodPlayers players;  // Seats::player_name(); of rods that it has not, too
   std::uint8_t team = wire::kWatchOnly;
   RodSet rods = 0;
   wire::Role role = wire::Role::watcher;
@@ -66,6 +67,8 @@ class Seats {
   // owner or of another team, or where results have it for who is no person with a name (computer,
   // cabinet, nobody). Results and ratings go by names, so that nobody has another one without need.
   std::string name_for(const Seat& seat, std::uint8_t team) const;
+  // The same for one of several people at this seat, who plays this rod; empty: the seat's own.
+  std::string player_name(const Seat& seat, const std::string& wanted, int rod) const;
   int of_network(const os::SocketAddress& peer) const;
 
   struct Grant {
@@ -81,6 +84,8 @@ class Seats {
   wire::Roster roster() const;
 
  private:
+  bool is_free(const std::string& name, const Seat& seat, std::uint8_t team) const;
+  std::string free_name(const std::string& wanted, const Seat& seat, std::uint8_t team) const;
   RodSet taken_from(std::uint32_t client) const;
 
   foosball::Layout layout_;

@@ -107,6 +107,9 @@ void Server::Impl::take_control_events() {
       case ControlEvent::Kind::rods:
         change_rods(event);
         break;
+      case ControlEvent::Kind::name:
+        change_name(event);
+        break;
       case ControlEvent::Kind::left:
         dismiss(event.client, event.put_out);
         break;

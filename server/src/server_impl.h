@@ -33,6 +33,7 @@ struct Server::Impl {
   void take_control_events();
   void admit(ControlEvent& event);
   void change_rods(ControlEvent& event);
+  void change_name(const ControlEvent& event);
   void take_back(ControlEvent& event);
   void listen_to(ControlEvent& event);
   void dismiss(std::uint32_t client, bool put_out);
@@ -71,6 +72,8 @@ struct Server::Impl {
     std::uint8_t team;
     RodSet rods;
     Name name;
+    std::array<Name, foosball::kRods> players{};  // by rod; empty: the one of this name
+    const Name& at(int rod) const { return players[rod][0] != 0 ? players[rod] : name; }
   };
   static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
 

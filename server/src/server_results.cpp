@@ -21,10 +21,13 @@ void Server::Impl::count_players() {
     for (const Client& client : clients) {
       const RodSet rods = client.rods & own;
       person = person || rods != 0;
-      if ((rods & ~stand_ins) != 0) {
-        lineup.add(team, Lineup::Kind::person, client.name.data());
-      } else if (rods != 0) {
-        lineup.keep_seat(team, client.name.data());
+      for (int rod = 0; rod < foosball::kRods; ++rod) {
+        if ((rods >> rod & 1) == 0) continue;
+        if ((stand_ins >> rod & 1) == 0) {
+          lineup.add(team, Lineup::Kind::person, client.at(rod).data());
+        } else {
+          lineup.keep_seat(team, client.at(rod).data());
+        }
       }
     }
     for (int rod = 0; rod < foosball::kRods; ++rod) {
@@ -126,12 +129,14 @@ void Server::Impl::tell_report() {
                        count(s.own_goals),
                        static_cast<float>(s.possession_seconds),
                        static_cast<float>(kept.rating[t]),
-                       static_cast<float>(kept.change[t])};
+                       static_cast<float>(kept.change[t]),
+                       static_cast<float>(s.fastest_shot.value_or(0.0))};
   }
   for (const results::Standing& one : kept.fame) {
     const auto small = [](std::uint64_t n) { return static_cast<std::uint32_t>(n); };
-    report.fame.push_back(
-        {one.name, static_cast<float>(one.rating), small(one.matches), small(one.wins)});
+    report.fame.push_back({one.name, static_cast<float>(one.rating), small(one.matches),
+                           small(one.wins), static_cast<float>(one.fastest_shot),
+                           small(one.shots_faced), small(one.saves)});
   }
   control.report(report);
 }

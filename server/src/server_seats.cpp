@@ -32,7 +32,7 @@ std::string rods_by_name(RodSet rods, const auto& names) {
 }  // namespace
 
 void Server::Impl::admit(ControlEvent& event) {
-  clients.push_back({event.client, event.team, event.rods, event.name});
+  clients.push_back({event.client, event.team, event.rods, event.name, {}});
   ++clients_ever;
   desk.seat(event.client, event.rods, tick_us);
   listen_to(event);
@@ -56,6 +56,14 @@ void Server::Impl::change_rods(ControlEvent& event) {
   }
 }
 
+void Server::Impl::change_name(const ControlEvent& event) {
+  const auto client = std::ranges::find(clients, event.client, &Client::id);
+  if (client == clients.end()) return;
+  if (event.rods == 0) client->name = event.name;
+  for (int rod = 0; rod < foosball::kRods; ++rod)
+    if ((event.rods >> rod & 1) != 0) client->players[rod] = event.name;
+}
+
 void Server::Impl::take_back(ControlEvent& event) {
   input.remove(event.client);
   broadcaster.remove(event.client);
@@ -71,6 +79,7 @@ void Server::Impl::dismiss(std::uint32_t client, bool put_out) {
   const bool played = leaver->team < foosball::kTeams;
   remember_name(client);
   if (put_out) lineup.excuse(leaver->name.data());
+  for (int rod = 0; put_out && rod < foosball::kRods; ++rod) lineup.excuse(leaver->at(rod).data());
   clients.erase(leaver);
   desk.leave(client, tick_us);
   input.remove(client);
@@ -85,7 +94,7 @@ void Server::Impl::remember_name(std::uint32_t client) {
   const auto who = std::ranges::find(clients, client, &Client::id);
   if (who == clients.end()) return;
   for (int rod = 0; rod < foosball::kRods; ++rod)
-    if ((who->rods >> rod & 1) != 0) had_rod[rod] = who->name;
+    if ((who->rods >> rod & 1) != 0) had_rod[rod] = who->at(rod);
 }
 
 // A team keeps its match when one of it is away: all are told who plays.

@@ -83,6 +83,8 @@ void put_rules(const foosball::MatchView& view, wire::Snapshot& out) {
   out.possession_seconds = static_cast<float>(view.possession_seconds);
   out.attract = view.attract;
   out.rung = static_cast<std::uint8_t>(view.rung);
+  out.feed_rod = static_cast<std::uint8_t>(view.feed_rod);
+  out.feed_man = static_cast<std::uint8_t>(view.feed_man);
   out.ball_visible = view.ball_visible;
   out.last_goal = to_wire(view.last_goal);
   out.last_goal_own = view.last_goal_own;

@@ -1,6 +1,7 @@
 // The control port on real sockets: seats that are lost and taken again, rods that people share,
 // and who may tune.
 #include <atomic>
+#include <bit>
 
 #include "characters/record.h"
 #include "control_fixture.h"
@@ -299,6 +300,36 @@ TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   second.say(wire::Claim{all0, 0});
   ASSERT_TRUE(second.catch_up());
   EXPECT_EQ(second.roster().seats.at(0).name, "probe (2)") << "not the one who has left";
+}
+
+// Results and the rules for leavers go by names, so that several people at one window need several.
+TEST(Names, OfSeveralPeopleAtOneClientAreToldToAllAndChangedByNoOther) {
+  Lockstep table;
+  const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
+  const RodSet all1 = rods_of_team(foosball::MatchDesc{}.layout, 1);
+  ProbeClient window(table.port()), rival(table.port(), "127.0.0.2");
+  ASSERT_TRUE(window.join(0) && rival.join(1));
+  wire::Names names{"Ann", {}};
+  const auto first = static_cast<std::size_t>(std::countr_zero(all0));
+  const auto theirs = static_cast<std::size_t>(std::countr_zero(all1));
+  names.players[first] = " Ben\xE2\x80\x8B ";  // cleaned as the name of a Hello is
+  names.players[theirs] = "Dora";              // a rod that it has not
+  window.say(names);
+  ASSERT_TRUE(window.catch_up());
+  EXPECT_EQ(window.roster().seats.at(0).name, "Ann");
+  EXPECT_EQ(window.roster().players[first], "Ben");
+  EXPECT_EQ(window.roster().players[theirs], "");
+  // Another machine finds the names taken, and those that results have for others are nobody's.
+  wire::Names same{"Ben", {}};
+  same.players[theirs] = "Ann";
+  rival.say(same);
+  ASSERT_TRUE(rival.catch_up());
+  EXPECT_EQ(rival.roster().seats.at(1).name, "Ben (2)");
+  EXPECT_EQ(rival.roster().players[theirs], "Ann (2)");
+  same.players[theirs] = "computer 5";
+  rival.say(same);
+  ASSERT_TRUE(rival.catch_up());
+  EXPECT_EQ(rival.roster().players[theirs], "computer 5 (1)");
 }
 
 TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {

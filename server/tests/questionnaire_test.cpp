@@ -160,6 +160,30 @@ TEST_F(QuestionnaireTest, NobodyIsAskedWithoutAFileOrWhereItIsTurnedOff) {
 }
 
 // While nobody plays, computers show a match: it is nobody's, though a client has rods.
+// Found by a reviewer: four people at one window shared one name, and so one rating.
+TEST_F(QuestionnaireTest, TheResultNamesAllPeopleAtOneWindow) {
+  {
+    Lockstep table(short_match());
+    ProbeClient window(table.port());
+    const auto seat = window.join(0);
+    ASSERT_TRUE(seat);
+    wire::Names names{"Ann", {}};
+    names.players[static_cast<std::size_t>(
+        foosball::rods_of_team(foosball::table_spec(foosball::MatchDesc{}.layout), 0)[3])] = "Ben";
+    window.say(names);
+    ASSERT_TRUE(window.catch_up());
+    ASSERT_TRUE(play_to_the_end(table, window, *seat));
+    table->finish(wire::Sentence::untranslated("done"));
+    ASSERT_EQ(table->counters().results_kept, 1u);
+  }
+  const auto matches = results::Store::open(path_, results::Access::read_only)->matches({}).value();
+  ASSERT_EQ(matches.size(), 1u);
+  const auto& players = matches[0].teams[0].players;
+  ASSERT_EQ(players.size(), 2u);
+  EXPECT_EQ(players[0], (results::Player{"Ann", "person", 1.0, false}));
+  EXPECT_EQ(players[1], (results::Player{"Ben", "person", 1.0, false}));
+}
+
 TEST_F(QuestionnaireTest, AMatchThatIsShownIsNotKeptAndNobodyIsAsked) {
   Lockstep table([&](ServerOptions& o) {
     short_match()(o);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "foosball/computer_player.h"
 #include "match_scribe.h"
 #include "results/store.h"
 
@@ -190,6 +191,48 @@ TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
   ASSERT_TRUE(speeds);
   EXPECT_NEAR(speeds->median, 6.0, 0.11);
   EXPECT_NEAR(speeds->fastest, 9.0, 0.11);
+}
+
+// Two computers at the challenge of a day, for as long as each match lasts.
+results::MatchResult challenge_played(foosball::Match& match, MatchScribe& scribe, int& begun) {
+  std::array<foosball::ComputerPlayer, 2> players{
+      foosball::ComputerPlayer({.team = 0, .seed = 1, .player = *foosball::parse_player("2")}),
+      foosball::ComputerPlayer({.team = 1, .seed = 2, .player = *foosball::parse_player("2")})};
+  foosball::TickInput input;
+  const foosball::Command push{foosball::Command::Kind::push, 0};
+  for (int tick = 0; tick < 60'000; ++tick) {
+    for (auto& player : players) player.play(match.view(), input.rods);
+    const bool waits = match.view().screen == foosball::Screen::logo ||
+                       match.view().screen == foosball::Screen::end;
+    input.commands = std::span(&push, waits && tick % 600 == 599 ? 1 : 0);
+    match.step(input);
+    const bool over = scribe.observe(match, input.rods);
+    begun += scribe.begins() ? 1 : 0;
+    if (over) return scribe.result(match.view(), {});
+  }
+  ADD_FAILURE() << "the match does not end";
+  return {};
+}
+
+// Found by a reviewer: from the second try on a challenge's result had all tries before in it.
+TEST(MatchScribe, BeginsAnewWithEveryChallenge) {
+  foosball::MatchDesc desc = foosball::challenge_of(20261122, foosball::Layout::tournament);
+  desc.rules.match_seconds = 10.0;
+  desc.rules.end_seconds = 1.0;
+  foosball::Match match = *foosball::Match::create(desc);
+  MatchScribe scribe(desc);
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    int begun = 0;
+    const results::MatchResult result = challenge_played(match, scribe, begun);
+    EXPECT_EQ(begun, 1) << attempt;
+    double possession = 0.0;
+    for (const results::Team& team : result.teams) {
+      possession += team.statistics->possession_seconds;
+      EXPECT_EQ(team.statistics->shots > 0, *team.statistics->fastest_shot > 0.0);
+    }
+    EXPECT_GT(possession, 5.0) << attempt;
+    EXPECT_LE(possession, 10.001) << attempt << ": no more than the match lasts";
+  }
 }
 
 }  // namespace
