@@ -55,6 +55,10 @@ class Table {
   }
   std::uint16_t port() const { return server_->port(); }
   void hold(bool held) { held_ = held; }
+  foosball::MatchView view() {
+    const std::lock_guard guard(mutex_);
+    return server_->match().view();
+  }
   server::ControlCounters control() {
     const std::lock_guard guard(mutex_);
     return server_->counters().control;
@@ -267,6 +271,58 @@ TEST(Network, AMatchThatIsShownIsNotEndedByAClientWhoseHandRests) {
   for (int i = 0; i < 150; ++i) {  // time for it to go to the server and back
     ::poll(nullptr, 0, 2);
     ASSERT_TRUE(shown());
+  }
+}
+
+// Found by a reviewer: no client could ask for it. From a person's keys to the serve.
+TEST(Network, InTrainingAKeyChoosesTheManToWhomTheBallIsServed) {
+  Table table([](server::ServerOptions& o) { o.match.mode = foosball::Mode::training; });
+  const auto ann = started(player_at(table.port()));
+  ASSERT_TRUE(ann && in_play(*ann));
+  const std::uint64_t session = ann->status().welcome.session;
+  client::PlayerInput hand(session, 0, foosball::Layout::tournament);
+  int served_rod = -1, served_man = -1;
+  const auto frame = [&](const client::InputEvents& events) {
+    const std::int64_t now = os::monotonic_us();
+    const auto sample = ann->sample(now);
+    hand.update(events, sample.any ? &sample.state : nullptr, now);
+    for (const wire::Wish& wish : hand.wishes()) ann->wish(session, wish);
+    ann->drive(session, hand.rods());
+    for (const wire::EventSnapshot& event : ann->take_events()) {
+      if (event.kind != number(wire::EventKind::serve)) continue;
+      served_rod = event.rod;
+      served_man = event.man;
+    }
+    return sample.state;
+  };
+  const auto seen = [&](const std::function<bool(const wire::Snapshot&)>& holds) {
+    return eventually([&] { return holds(frame({})); });
+  };
+  const auto shows = [](wire::Screen screen) {
+    return [screen](const wire::Snapshot& s) { return s.screen == number(screen); };
+  };
+  client::InputEvents push, next_man;
+  push.push = true;
+  next_man.presses[client::index_of(client::Action::feed)] = 1;
+  frame({});
+  frame(push);
+  ASSERT_TRUE(seen(shows(wire::Screen::selection)));
+  frame(push);
+  ASSERT_TRUE(seen(shows(wire::Screen::play)));
+  const auto& spec = foosball::table_spec(foosball::Layout::tournament);
+  client::InputEvents defence;
+  defence.choose_line = static_cast<int>(foosball::Line::defence);
+  frame(defence);
+  for (int man = 0; man < 2; ++man) {
+    frame(next_man);
+    ASSERT_TRUE(seen([&](const wire::Snapshot& s) {
+      return s.feed_rod == hand.active_rod() && s.feed_man == man && s.ball_in_play;
+    })) << man;
+    ASSERT_TRUE(seen([&](const wire::Snapshot&) {
+      return served_rod == hand.active_rod() && served_man == man;
+    })) << man;
+    EXPECT_EQ(spec.rods[static_cast<std::size_t>(served_rod)].line, foosball::Line::defence);
+    EXPECT_EQ(table.view().feed_man, man);
   }
 }
 

@@ -34,7 +34,20 @@ TEST(Options, AreTakenAsGiven) {
   EXPECT_TRUE(o->mute);
 }
 
+TEST(Options, NamesAreGivenOneByOneOrWithCommas) {
+  using Names = std::vector<std::string>;
+  for (const auto& words : {std::vector<const char*>{"--name", "Ann", "--name", "Ben B"},
+                            std::vector<const char*>{"--name", "Ann, Ben  B"}}) {
+    const auto o = parse(words);
+    ASSERT_TRUE(o) << o.error().text;
+    EXPECT_EQ(o->names, (Names{"Ann", "Ben B"}));
+  }
+  EXPECT_TRUE(parse({})->names.empty()) << "as the settings say";
+}
+
 TEST(Options, BadOnesAreOneSentenceAndExitCodeTwo) {
+  const std::string too_long(65, 'a');
+
   const std::vector<std::vector<const char*>> bad{{"--server", "host:0"},
                                                   {"--server", "host:65536"},
                                                   {"--server", "a:b:1"},
@@ -47,6 +60,9 @@ TEST(Options, BadOnesAreOneSentenceAndExitCodeTwo) {
                                                   {"--quality", "best"},
                                                   {"--seconds", "-1"},
                                                   {"--nonsense"},
+                                                  {"--name", ""},
+                                                  {"--name", "a,b,c,d,e"},
+                                                  {"--name", too_long.c_str()},
                                                   {"--screenshot-at", "1"},
                                                   {"--seconds", "nan"},
                                                   {"--seconds", "inf"},

@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "client/crew_names.h"
 #include "core/input_collector.h"
+#include "foosball/feed.h"
 #include "scripted_scene.h"
 #include "wire/enums.h"
 
@@ -235,6 +237,125 @@ TEST(CrewAssists, NoRodIsMovedBetweenPlaysOrInAPause) {
       EXPECT_NEAR(crew.rods()[rod].slide, scene.rods[rod].slide, 1e-6f) << rod;
     }
   }
+}
+
+// --- how they are called -------------------------------------------------------------------------
+
+struct NamesTest : testing::Test {
+  std::optional<wire::Names> told(bool in_match = false) {
+    return names.update(table.crew, settings, in_match);
+  }
+  Table table{kAll};
+  Settings settings;
+  CrewNames names;
+};
+
+TEST_F(NamesTest, OnePersonWhoJoinedUnderTheNameHasNothingToSay) {
+  names.joined("player");
+  EXPECT_FALSE(told());
+  settings.names[0] = "Ann";
+  const auto now = told();
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->name, "Ann");
+  EXPECT_EQ(now->players, wire::RodPlayers{});
+  EXPECT_FALSE(told()) << "once";
+  EXPECT_EQ(names.set_names()[0], "Ann");
+}
+
+TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
+  names.joined("player");
+  for (const int rod : {0, 1}) table.crew.give(rod, kPad1);
+  for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
+  auto now = told();
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->players, (wire::RodPlayers{"player 2", "player 2", "player 3", "", "player 3", "",
+                                            "player 3", "player 3"}));
+  EXPECT_EQ(names.set_names(), wire::RodPlayers{}) << "nobody has said so";
+  settings.names = {"", "Ben", "", ""};
+  now = told();
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->players[0], "Ben");
+  EXPECT_EQ(now->players[2], "player 3");
+  EXPECT_EQ(now->name, "player");
+}
+
+// By the rules for leavers the old name would have lost the match.
+TEST_F(NamesTest, NobodyIsRenamedInAMatch) {
+  names.joined("player");
+  table.crew.give(2, kPad2);
+  EXPECT_EQ(told()->players[2], "player 2");
+  settings.names = {"Ann", "Ben", "Cleo", ""};
+  EXPECT_FALSE(told(true));
+  // Somebody comes whose device is before the others'.
+  table.crew.give(0, kPad1);
+  const auto joined = told(true);
+  ASSERT_TRUE(joined);
+  EXPECT_EQ(joined->players[0], "player 3");
+  EXPECT_EQ(joined->players[2], "player 2") << "as before";
+  const auto after = told();
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->name, "Ann");
+  EXPECT_EQ(after->players[0], "Ben") << "in the order of the devices again";
+  EXPECT_EQ(after->players[2], "Cleo");
+}
+
+// --- training ------------------------------------------------------------------------------------
+
+TEST(Crew, InTrainingAKeyOrAPadsButtonChoosesTheNextManOfTheRodInHand) {
+  Table table(kTeam0);
+  table.scene.screen = number(wire::Screen::play);
+  table.scene.mode = number(wire::Mode::training);
+  const auto& rods = foosball::table_spec(foosball::Layout::tournament).rods;
+  table.scene.feed_rod = 5;
+  table.scene.feed_man = 1;
+  const auto asked = [&] {
+    table.frame();
+    const auto wishes = table.crew.wishes();
+    if (wishes.empty()) return -1;
+    EXPECT_EQ(wishes.size(), 1u);
+    EXPECT_EQ(wishes[0].kind, number(wire::WishKind::feed));
+    EXPECT_EQ(wishes[0].team, 0);
+    return int{wishes[0].value};
+  };
+  const auto press = [&] {
+    table.input.key(key("F"), true);
+    table.input.key(key("F"), false);
+    return asked();
+  };
+  table.input.key(key("4"), true);  // the attack, rod 5
+  table.input.key(key("4"), false);
+  EXPECT_EQ(asked(), -1);
+  EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 2));
+  // Faster than the server's answer comes back.
+  EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 0));
+  EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 1));
+  table.now += 1'000'000;
+  EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 2)) << "as the scene has it";
+  // Another rod: its first man.
+  table.input.key(key("2"), true);
+  table.input.key(key("2"), false);
+  asked();
+  table.input.button(0, PadButton::share, true);
+  EXPECT_EQ(asked(), foosball::feed_value(rods[1].line, 0));
+  table.scene.screen = number(wire::Screen::ceremony);
+  EXPECT_EQ(press(), foosball::feed_value(rods[1].line, 1));
+  table.scene.paused = true;
+  EXPECT_EQ(press(), -1);
+  table.scene.paused = false;
+  table.scene.mode = number(wire::Mode::match);
+  EXPECT_EQ(press(), -1) << "in a match nobody is served";
+}
+
+TEST(InputCollector, LettersAreUtf8InTheOrderInWhichTheyWereTyped) {
+  InputCollector input;
+  for (const std::uint32_t letter : {0x41u, 0xFCu, 0xD55Cu, 0x1F600u, 0x0Au, 0x110000u})
+    input.letter(letter);
+  input.key(key("Backspace"), true);
+  input.letter('b');
+  input.key(key("Enter"), true);
+  EXPECT_EQ(input.take(kAllDevices).text, "A\xC3\xBC\xED\x95\x9C\xF0\x9F\x98\x80\bb\r");
+  input.clear();
+  EXPECT_EQ(input.take(kAllDevices).text, "");
 }
 
 }  // namespace

@@ -240,6 +240,17 @@ TEST(SeatsMenu, NamesStandAtTheRodsOnceMoreThanOnePlays) {
   EXPECT_EQ(names_at_rods(page.view, page.crew)[0].text, "") << "alone";
   page.crew.give(0, static_cast<int>(Device::pad_2));
   EXPECT_EQ(names_at_rods(page.view, page.crew)[0].number, 2);
+  page.view.own_names[0] = "Ben";
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[0].text, "Ben") << "by the name, where it is set";
+  EXPECT_FALSE(names_at_rods(page.view, page.crew)[0].translate);
+}
+
+TEST(SeatsMenu, TellsPeopleAtOneOtherWindowApart) {
+  SeatsPage page;
+  page.view.roster.players[7] = "Dora";
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[7].text, "Dora");
+  EXPECT_EQ(names_at_rods(page.view, page.crew)[6].text, "Ann");
+  EXPECT_GE(row_of(page.menu.page(page.view, page.crew, 0), "Ann, Dora"), 0);
 }
 
 // --- all pages -----------------------------------------------------------------------------------

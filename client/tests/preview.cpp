@@ -43,6 +43,8 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"pause", 3.3, 2, 0},
                            {"help", 4.6, 2, 1},
                            {"settings", 4.6, 2, 0},
+                           {"names", 4.6, 2, 0},
+                           {"training", 2.4, 2, 0},
                            {"above-logo", 0.4, 0, 0, View::above},
                            {"above-selection", 1.0, 1, 0, View::above},
                            {"above-play", 1.62, 2, 0, View::above},
@@ -295,17 +297,24 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
       hud.menu = menu_page(Menu::Page::settings, 5);
     }
     if (name.find("survey") != std::string::npos) hud.survey = survey_panels(name);
-    static const wire::Report report{
-        4,
-        {{{14, 9, 6, 23, 0, 71.0f, 1561.0f, 14.0f}, {9, 4, 11, 17, 1, 54.0f, 1533.0f, -14.0f}}},
-        {{"Annemarie", 1604.0f, 31, 22},
-         {"지훈", 1561.0f, 18, 11},
-         {"computer 4:gambler", 1533.0f, 12, 6},
-         {"player", 1488.0f, 9, 4},
-         {"computer 2", 1420.0f, 40, 11}}};
+    static const wire::Report report{4,
+                                     {{{14, 9, 6, 23, 0, 71.0f, 1561.0f, 14.0f, 9.3f},
+                                       {9, 4, 11, 17, 1, 54.0f, 1533.0f, -14.0f, 7.8f}}},
+                                     {{"Annemarie", 1604.0f, 31, 22, 14.2f, 240, 151},
+                                      {"지훈", 1561.0f, 18, 11, 9.3f, 120, 60},
+                                      {"computer 4:gambler", 1533.0f, 12, 6, 12.1f, 70, 41},
+                                      {"player", 1488.0f, 9, 4},
+                                      {"computer 2", 1420.0f, 40, 11}}};
     if (name.ends_with("end") || name == "survey-consent") hud.report = &report;
     if (name.ends_with("fame")) hud.fame = report.fame;
     if (name == "drawn") state.score = {2, 2};
+    if (name == "names") hud.menu = menu_page(Menu::Page::settings, 14);
+    if (name == "training") {
+      state.mode = number(wire::Mode::training);
+      state.feed_rod = 3;
+      state.feed_man = 4;
+      state.last_shot = {0, 3, 1, 8.6f, -0.31f};
+    }
     if (name == "seats" || name == "above-seats") hud.menu = menu_page(Menu::Page::seats, 4);
     if (name == "tuning") hud.menu = menu_page(Menu::Page::tuning, 12);
     if (name == "tuning-read-only") hud.menu = menu_page(Menu::Page::tuning, 1, false);

@@ -19,12 +19,17 @@ void go_to(SettingsMenu& menu, Settings& settings, const std::string& label) {
   menu.step({.down = row_of(menu, settings, label) - menu.row()}, 0, settings);
 }
 
-TEST(SettingsMenu, EveryRowButTheControlsChangesAndComesBack) {
+TEST(SettingsMenu, EveryRowButTheControlsAndNamesChangesAndComesBack) {
   SettingsMenu menu;
   menu.toggle();
   Settings settings;
   const int rows = static_cast<int>(menu.rows(settings).size()) - kActions;
   for (int row = 0; row < rows; ++row) {
+    if (menu.at_name()) {
+      EXPECT_FALSE(menu.step({.right = 1}, 0, settings));
+      menu.step({.down = 1}, 0, settings);
+      continue;
+    }
     const std::string before = format_settings(settings);
     EXPECT_TRUE(menu.step({.right = row == 0 ? -1 : 1}, 0, settings)) << row;
     EXPECT_NE(format_settings(settings), before)
@@ -52,6 +57,39 @@ TEST(SettingsMenu, AControlTakesTheNextKeyAndNoOtherActionKeepsIt) {
   EXPECT_TRUE(menu.open());
   menu.step({.back = true}, 0, settings);
   EXPECT_FALSE(menu.open());
+}
+
+TEST(SettingsMenu, ANameIsTypedAndKeptByEnterAlone) {
+  SettingsMenu menu;
+  menu.toggle();
+  Settings settings;
+  go_to(menu, settings, "Name of player");
+  const auto row = static_cast<std::size_t>(menu.row());
+  EXPECT_EQ(menu.rows(settings)[row].value, "player");
+  EXPECT_EQ(menu.rows(settings)[row + 1].value, "player 2");
+  EXPECT_FALSE(menu.step({.confirm = true, .text = "\r"}, 0, settings));
+  EXPECT_TRUE(menu.waits_for_key());
+  EXPECT_FALSE(menu.step({.text = "J\xC3\xBC"}, 'J', settings));
+  EXPECT_FALSE(menu.step({.text = "\bo x\b"}, 0, settings)) << "a letter of two bytes goes whole";
+  EXPECT_EQ(menu.rows(settings)[row].value, "Jo _");
+  EXPECT_TRUE(menu.step({.text = "\r"}, 0, settings));
+  EXPECT_FALSE(menu.waits_for_key());
+  EXPECT_EQ(settings.names[0], "Jo");
+  // As it was: by Esc, and by an Enter that changes nothing.
+  menu.step({.confirm = true}, 0, settings);
+  menu.step({.text = "hn"}, 0, settings);
+  EXPECT_FALSE(menu.step({.back = true}, 0, settings));
+  EXPECT_TRUE(menu.open());
+  EXPECT_EQ(settings.names[0], "Jo");
+  menu.step({.confirm = true}, 0, settings);
+  EXPECT_FALSE(menu.step({.text = "\r"}, 0, settings));
+  // Emptied it is the default again; and no name is longer than a message's.
+  menu.step({.confirm = true}, 0, settings);
+  EXPECT_TRUE(menu.step({.text = "\b\b\b\b\r"}, 0, settings));
+  EXPECT_EQ(menu.rows(settings)[row].value, "player");
+  menu.step({.confirm = true}, 0, settings);
+  EXPECT_TRUE(menu.step({.text = std::string(100, 'a') + "\r"}, 0, settings));
+  EXPECT_EQ(settings.names[0], std::string(64, 'a'));
 }
 
 TEST(MenuHand, KeysMouseAndRodsMakeTheSameSteps) {

@@ -24,6 +24,7 @@ Settings unusual() {
   s.handle_offset = {0.01f, -0.02f, 0, 0, 0.06f, 0, 0, -0.06f};
   s.keys[index_of(Action::push)] = {key_of_name("F12"), key_of_name("KeypadEnter")};
   s.keys[index_of(Action::help)] = {0, 0};
+  s.names = {"J\xC3\xBCrgen M", "", "= #3", ""};
   return s;
 }
 
@@ -34,6 +35,7 @@ TEST(Settings, AreReadAsTheyWereWritten) {
     EXPECT_EQ(format_settings(read.settings), format_settings(s));
     EXPECT_TRUE(read.settings.keys == s.keys);
     EXPECT_EQ(read.settings.view, s.view);
+    EXPECT_EQ(read.settings.names, s.names);
   }
 }
 
@@ -58,6 +60,16 @@ TEST(Settings, ABadLineIsNamedWithItsCureAndTheOthersCount) {
   EXPECT_EQ(read.settings.text_scale, 1.2f);
   EXPECT_TRUE(read.settings.reduced_shake);
   EXPECT_EQ(read.settings.volume, Settings{}.volume);
+}
+
+TEST(Settings, ANameThatIsNoneIsReportedAndOthersHaveTheirNumber) {
+  const ReadSettings read =
+      parse_settings("name.1 = Ann\nname.2 = " + std::string(65, 'a') + "\nname.5 = Eve");
+  EXPECT_EQ(read.problems.size(), 2u);
+  EXPECT_EQ(name_of_person(read.settings, 0), "Ann");
+  EXPECT_EQ(name_of_person(read.settings, 1), "player 2");
+  EXPECT_EQ(name_of_person(read.settings, 7), "player 8");
+  EXPECT_EQ(name_of_person(Settings{}, 0), "player");
 }
 
 TEST(Settings, StrangeBytesAreReportedNotTaken) {

@@ -94,6 +94,10 @@ class Connection {
   void kick(std::uint64_t session, const wire::Kick& kick);
   // This is to be played: the host's word.
   void choose(std::uint64_t session, const wire::Game& game);
+  // The name to join under from the next time on.
+  void join_as(const std::string& name);
+  // Who the people at this client are; it joins under that name from the next time on, too.
+  void name(std::uint64_t session, const wire::Names& names);
   // What a player answered, with the match of questionnaire().
   void answer(std::uint64_t session, const wire::Answers& answers);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "cabinet/hand.h"
 #include "client/controls.h"
@@ -30,11 +31,12 @@ struct InputEvents {
   bool pad_menu = false;
   bool pad_time_out = false;
   bool pad_back = false;            // out of a menu or a screen
-  bool pad_share = false;           // a recording
+  bool pad_share = false;           // a recording; in training the next man
   int pad_up = 0, pad_right = 0;    // presses of its cross, with their sign
   int held_up = 0, held_right = 0;  // -1, 0, 1: cross or left stick of a pad, as held
   bool back = false;                // Esc, while the pointer is free
   int any_key = 0;                  // of the window library; 0: none was pressed
+  std::string text{};               // typed: UTF-8, '\b' to take a letter back, '\r' for Enter
 };
 
 }  // namespace client

@@ -17,12 +17,14 @@ struct MenuRow {
   float share = -1.0f;   // 0..1: where the value lies in its range; negative: no bar
   float usual = -1.0f;   // ... and where its default does
   int value_number = 0;  // after the value; 0: none
+  bool typed = false;    // by letters, from Enter to Enter
 };
 
 // One step at a time: what a person asks of a menu in a frame.
 struct MenuSteps {
   int down = 0, right = 0;  // negative: up, left
   bool confirm = false, back = false;
+  std::string text{};  // typed, as InputEvents::text
 };
 
 struct MenuPage {

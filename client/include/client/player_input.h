@@ -46,8 +46,9 @@ class PlayerInput {
 
  private:
   void move(const InputEvents& events, const wire::Snapshot& scene);
-  void collect_wishes(const InputEvents& events, const wire::Snapshot& scene);
+  void collect_wishes(const InputEvents& events, const wire::Snapshot& scene, std::int64_t now_us);
   void choose_character(const InputEvents& events, const wire::Snapshot& scene);
+  void choose_man(int presses, const wire::Snapshot& scene, std::int64_t now_us);
   void choose_rod(const foosball::AssistView& view);
   void assist(const foosball::AssistView& view, std::int64_t now_us);
   void rest();
@@ -68,6 +69,9 @@ class PlayerInput {
   bool begun_ = false;
   foosball::Characters characters_ = foosball::built_in_characters();
   bool key_was_held_ = false;
+  // Training: whom the person chose last, and when; the scene has him a little later.
+  int fed_rod_ = -1, fed_man_ = 0;
+  std::int64_t fed_us_ = 0;
   std::vector<wire::Wish> wishes_;
 };
 

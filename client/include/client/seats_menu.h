@@ -22,6 +22,7 @@ struct SeatsView {
   wire::Roster roster;
   wire::Snapshot scene;
   DeviceSet pads = 0;                 // those that are plugged in
+  wire::RodPlayers own_names;         // of people here who have said how they are called, by rod
   std::vector<wire::Notice> notices;  // the votes among them are offered
 };
 

@@ -25,6 +25,8 @@ inline constexpr int kLanguages = 4;
 // never.
 enum class RodsShown : std::uint8_t { as_on_the_table, on, off };
 inline constexpr int kRodsShown = 3;
+// People at one window that may have a name; any others are numbered.
+inline constexpr std::size_t kNamedPeople = 4;
 constexpr bool rods_are_drawn(RodsShown rods, foosball::Layout layout) {
   return rods == RodsShown::as_on_the_table ? !foosball::hinged_men(layout) : rods == RodsShown::on;
 }
@@ -52,6 +54,8 @@ struct Settings {
   // view from above on a cabinet. kHandleOffset at most either way.
   std::array<float, 8> handle_offset{};
   KeyBindings keys = default_keys();
+  // Of the people at this window, who are known by them in results; empty: "player", "player 2" ...
+  std::array<std::string, kNamedPeople> names;
 
   bool operator==(const Settings&) const = default;
 };
@@ -62,6 +66,9 @@ struct ReadSettings {
   Settings settings;
   std::vector<std::string> problems;  // one sentence each: line, what is wrong, what to write
 };
+// Of whoever is the so-and-so-many-th person here, from 0.
+std::string name_of_person(const Settings& settings, std::size_t place);
+
 ReadSettings parse_settings(std::string_view text);
 std::string format_settings(const Settings& settings);
 

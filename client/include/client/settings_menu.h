@@ -44,19 +44,23 @@ class SettingsMenu {
   bool open() const { return open_; }
   void toggle();
   int row() const { return row_; }
-  void select(int row) { row_ = row; }  // one that there is
-  bool waits_for_key() const { return open_ && waits_; }
+  void select(int row) { row_ = row; }                    // one that there is
+  bool at_name() const;                                   // of a person, which is typed
+  bool waits_for_key() const { return open_ && waits_; }  // or for letters
   std::vector<MenuRow> rows(const Settings& settings) const;
-  // key: pressed in this frame, 0: none; for a row of the controls that waits for one.
+  // key: pressed in this frame, 0: none; for a row of the controls that waits for one. A row of a
+  // name waits for letters until Enter.
   // True if the settings changed.
   bool step(const MenuSteps& steps, int key, Settings& settings);
 
  private:
   bool change(int way, Settings& settings);
   bool bind(int key, Settings& settings);
+  bool write(const MenuSteps& steps, Settings& settings);
 
   bool open_ = false, waits_ = false;
   int row_ = 0;
+  std::string draft_;  // of a name
 };
 
 }  // namespace client

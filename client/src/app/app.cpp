@@ -50,6 +50,7 @@ std::string App::start(int& exit_code) {
     }
   }
   awaiting_since_ = os::monotonic_us();
+  connection_->join_as(name_of_person(settings_, 0));
   connection_->start();
   if (connection_->status().small_receive_buffer) {
     log_warning(
@@ -106,6 +107,7 @@ void App::follow_connection() {
   crew_ = std::make_unique<Crew>(
       welcome.session, welcome.team < foosball::kTeams ? welcome.team : 0, layout, welcome.rods);
   crew_->set_assists(assists_of(settings_));
+  crew_names_.joined(name_of_person(settings_, 0));
   prediction_ = std::make_unique<RodPrediction>(layout);
   use_characters();
 }
@@ -140,9 +142,21 @@ void App::learn_names() {
   constexpr std::size_t kMost = 4096;  // bytes: a crowd of strangers does not fill the atlas
   std::string names = names_;
   for (const wire::Seat& seat : roster_.seats) names += seat.name;
+  for (const std::string& player : roster_.players) names += player;
+  for (const std::string& name : settings_.names) names += name;
   if (names.size() > kMost || hangul_of(names) == hangul_of(names_)) return;
   names_ = names;
   if (const std::string error = use_texts(); !error.empty()) log_warning(error);
+}
+
+// Who changes the name while a match is played would have left it.
+void App::tell_names() {
+  const auto screen = static_cast<wire::Screen>(sample_.state.screen);
+  const bool in_match = sample_.any && !sample_.state.attract &&
+                        (screen == wire::Screen::play || screen == wire::Screen::ceremony);
+  if (!crew_ || status_.link != Link::joined) return;
+  if (const auto names = crew_names_.update(*crew_, settings_, in_match))
+    connection_->name(crew_->session(), *names);
 }
 
 // Whose side the picture is seen from; -1: this client only watches.
@@ -162,6 +176,7 @@ void App::hear(std::int64_t now) {
   follow_roster();
   SceneSample sample = connection_->sample(now);
   if (sample.any) sample_ = std::move(sample);  // else the last scene stands
+  tell_names();
   const auto events = connection_->take_events();
   events_.insert(events_.end(), events.begin(), events.end());
 }

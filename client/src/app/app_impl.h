@@ -16,6 +16,7 @@
 #include "app/watch_program.h"
 #include "app/window.h"
 #include "client/crew.h"
+#include "client/crew_names.h"
 #include "client/menu.h"
 #include "client/rod_prediction.h"
 #include "client/survey.h"
@@ -58,6 +59,7 @@ class App {
   void follow_connection();
   void follow_roster();
   void learn_names();
+  void tell_names();
   int viewer_team() const;
   void use_characters();
   void say_when_in_step(std::int64_t now);
@@ -94,6 +96,7 @@ class App {
   std::unique_ptr<SoundPlayer> sounds_;
   std::unique_ptr<Connection> connection_;
   std::unique_ptr<Crew> crew_;  // of the match that is joined
+  CrewNames crew_names_;
   std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
   Effects effects_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "app/app_impl.h"
@@ -45,6 +46,7 @@ void App::read_settings() {
   ReadSettings read = load_settings(settings_path());
   settings_ = read.settings;
   if (options_.view) settings_.view = *options_.view;
+  std::ranges::copy(options_.names, settings_.names.begin());
   problems_ = std::move(read.problems);
   for (const std::string& problem : problems_) log_warning(problem);
 }
@@ -78,6 +80,7 @@ SeatsView App::seats_view() const {
     if (window_->input().connected(pad)) view.pads |= bit_of(pad_device(pad));
   }
   view.notices = connection_->notices();
+  view.own_names = crew_names_.set_names();
   return view;
 }
 
@@ -109,7 +112,8 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
   const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
   const Menu::Outcome outcome =
-      menu_.step(waits ? MenuSteps{.back = events.back} : steps, events.any_key, menu_context());
+      menu_.step(waits ? MenuSteps{.back = events.back, .text = events.text} : steps,
+                 events.any_key, menu_context());
   if (outcome.settings_changed) change_settings();
   if (outcome.watch_recordings) watch_recordings();
   if (!crew_) return;

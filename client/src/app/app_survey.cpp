@@ -16,7 +16,8 @@ std::vector<SurveyPerson> App::survey_people(std::uint8_t rods) const {
   const auto add = [&](std::uint8_t asked, DeviceSet devices) {
     for (std::size_t rod = 0; rod < drawn_.rods.size(); ++rod) {
       if ((asked >> rod & 1) == 0) continue;
-      const bool named = devices != 0 && names[rod].translate;
+      const bool own = names[rod].translate || !seats_.own_names[rod].empty();
+      const bool named = devices != 0 && own;
       people.push_back({table.rods[rod].team, asked, devices, named ? names[rod].text : "",
                         named ? names[rod].number : 0});
       return;

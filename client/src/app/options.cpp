@@ -6,6 +6,7 @@
 
 #include "draw/command_line.h"
 #include "os/socket_address.h"
+#include "wire/text.h"
 
 namespace client {
 namespace {
@@ -59,8 +60,12 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
                  "SPACE_FOOSBALL_PASSWORD")
       ->envname("SPACE_FOOSBALL_PASSWORD");
   cli.add_flag("--host", options.connection.as_host, "the password is the host's");
-  cli.add_option("--name", options.connection.name, "your name, for the server's log")
-      ->capture_default_str();
+  cli.add_option("--name", options.names,
+                 "your name in results and ratings, instead of the settings'; of several people at "
+                 "this window one after another: Ann,Ben")
+      ->delimiter(',')
+      ->expected(1)
+      ->take_all();
   cli.add_option("--seconds", options.seconds, "leave after so many seconds")
       ->check(draw::within(0.1, 1e6));
   cli.add_flag("--until-server-ends", options.until_server_ends,
@@ -85,7 +90,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.footer(
       "Exit codes: 0 done, 1 failed, 2 bad option, 4 no display.\n"
       "Keys: 1-4 choose a rod, wheel next rod, Tab nearest rod, arrows or WASD slide and spin,\n"
-      "Space pushes (starts, confirms), P pauses, C changes the camera, F2 or O opens the "
+      "Space pushes (starts, confirms), P pauses, C changes the camera, in training F has the ball "
+      "served\n"
+      "to the next man of the rod in hand, F2 or O opens the "
       "settings,\n"
       "F1 or H shows the keys, Esc releases the mouse, again Esc leaves. Settings are kept in\n"
       "$XDG_CONFIG_HOME/space-foosball/client.conf, or ~/.config/space-foosball/client.conf.");
@@ -102,8 +109,14 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   const auto pixels = draw::parse_size(size);
   if (!pixels) return tl::unexpected(draw::refuse(pixels.error()));
   options.size = *pixels;
-  if (options.connection.name.size() > 64)
-    return tl::unexpected(draw::refuse("--name may have at most 64 bytes."));
+  if (options.names.size() > kNamedPeople)
+    return tl::unexpected(draw::refuse("--name: at most " + std::to_string(kNamedPeople) +
+                                       " people have names at one window."));
+  for (std::string& name : options.names) {
+    if (name.empty() || name.size() > wire::kMaxName)
+      return tl::unexpected(draw::refuse("--name wants names of 1 to 64 bytes each."));
+    name = wire::clean_name(name);
+  }
   if (options.screenshot_at && options.screenshot.empty())
     return tl::unexpected(draw::refuse("--screenshot-at wants --screenshot FILE.png too."));
   for (const auto& written : {draw::can_be_written("--stats-file", options.stats_file),

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "client/connection.h"
 #include "client/settings.h"
@@ -25,6 +26,8 @@ struct Options {
   std::optional<double> seconds;         // play so long, then leave
   std::optional<double> screenshot_at;   // none: at the end
   std::string screenshot, stats_file, font_directory;
+  // Of the people at this window; those that are not given are as the settings say.
+  std::vector<std::string> names;
 };
 
 tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* argv);

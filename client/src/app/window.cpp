@@ -60,6 +60,8 @@ tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& 
     if (action == GLFW_PRESS) impl_of(w).pressed(key);
     if (action == GLFW_RELEASE) impl_of(w).input.key(key, false);
   });
+  glfwSetCharCallback(handle,
+                      [](GLFWwindow* w, unsigned letter) { impl_of(w).input.letter(letter); });
   glfwSetCursorPosCallback(handle,
                            [](GLFWwindow* w, double x, double y) { impl_of(w).moved(x, y); });
   glfwSetScrollCallback(handle,

@@ -80,6 +80,12 @@ void Connection::kick(std::uint64_t session, const wire::Kick& kick) {
 void Connection::choose(std::uint64_t session, const wire::Game& game) {
   impl_->link.choose(session, game);
 }
+void Connection::join_as(const std::string& name) {
+  impl_->link.join_as(name);
+}
+void Connection::name(std::uint64_t session, const wire::Names& names) {
+  impl_->link.name(session, names);
+}
 void Connection::answer(std::uint64_t session, const wire::Answers& answers) {
   impl_->link.answer(session, answers);
 }

@@ -27,7 +27,7 @@ constexpr int kGoodbyeMs = 500;
 
 ControlLink::ControlLink(const ConnectionOptions& options, const os::SocketAddress& server,
                          SnapshotListener& listener)
-    : options_(options), server_(server), listener_(listener) {
+    : options_(options), server_(server), listener_(listener), name_(options.name) {
   status_.characters =
       std::make_shared<const foosball::Characters>(foosball::built_in_characters());
 }
@@ -76,6 +76,16 @@ void ControlLink::kick(std::uint64_t session, const wire::Kick& kick) {
 
 void ControlLink::choose(std::uint64_t session, const wire::Game& game) {
   ask(game, session);
+}
+
+void ControlLink::join_as(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  name_ = name;
+}
+
+void ControlLink::name(std::uint64_t session, const wire::Names& names) {
+  join_as(names.name);
+  ask(names, session);
 }
 
 void ControlLink::answer(std::uint64_t session, const wire::Answers& answers) {
@@ -213,12 +223,12 @@ void ControlLink::say_hello() {
   stage_ = Stage::greeting;
   wire::Hello hello;
   hello.snapshot_layout = wire::snapshot_layout_hash();
-  hello.name = options_.name;
   hello.udp_port = listener_.port();
   hello.team = options_.team;
   hello.rods = options_.rods;
   {  // the seat that was held there, if it is the same server
     const std::lock_guard lock(mutex_);
+    hello.name = name_;
     hello.session = status_.welcome.session;
     hello.ticket = status_.joins > 0 ? status_.welcome.token : 0;
   }

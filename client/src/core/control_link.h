@@ -35,6 +35,8 @@ class ControlLink {
   void claim(std::uint64_t session, const wire::Claim& claim);
   void kick(std::uint64_t session, const wire::Kick& kick);
   void choose(std::uint64_t session, const wire::Game& game);
+  void join_as(const std::string& name);
+  void name(std::uint64_t session, const wire::Names& names);
   void answer(std::uint64_t session, const wire::Answers& answers);
 
  private:
@@ -84,6 +86,7 @@ class ControlLink {
   std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;
 
   mutable std::mutex mutex_;  // all below
+  std::string name_;          // to join under
   ConnectionStatus status_;
   std::map<std::uint32_t, wire::Notice> notices_;
   wire::Roster roster_;

@@ -27,6 +27,8 @@ void InputCollector::set_keys(const KeyBindings& keys) {
 
 void InputCollector::key(int key, bool down) {
   if (down) any_key_ = key;
+  if (down && key == key_of_name("Backspace")) text_ += '\b';
+  if (down && (key == key_of_name("Enter") || key == key_of_name("KeypadEnter"))) text_ += '\r';
   if (down && key >= '0' && key <= '9') number_ = key == '0' ? 10 : key - '0';
   for (std::size_t action = 0; action < bindings_.size(); ++action) {
     for (std::size_t half = 0; half < halves_.size(); ++half) {
@@ -35,6 +37,25 @@ void InputCollector::key(int key, bool down) {
       if (!down) halves_[half].release(static_cast<Action>(action));
     }
   }
+}
+
+// As UTF-8.
+void InputCollector::letter(std::uint32_t codepoint) {
+  const auto put = [this](std::uint32_t byte) { text_ += static_cast<char>(byte); };
+  const auto tail = [&](int shift) { put(0x80u | (codepoint >> shift & 0x3Fu)); };
+  if (text_.size() > 256 || codepoint < 0x20 || codepoint > 0x10FFFF) return;
+  if (codepoint < 0x80) return put(codepoint);
+  if (codepoint < 0x800) {
+    put(0xC0u | codepoint >> 6);
+  } else if (codepoint < 0x10000) {
+    put(0xE0u | codepoint >> 12);
+    tail(6);
+  } else {
+    put(0xF0u | codepoint >> 18);
+    tail(12);
+    tail(6);
+  }
+  tail(0);
 }
 
 void InputCollector::release_keys() {
@@ -146,6 +167,7 @@ InputEvents InputCollector::take(DeviceSet devices) const {
   }
   events.back = back_;
   events.any_key = any_key_;
+  events.text = text_;
   if ((devices & bit_of(Device::keys_1)) != 0) events.number = number_;
   return events;
 }
@@ -160,6 +182,7 @@ void InputCollector::clear() {
   wheel_ -= std::trunc(wheel_);
   clicked_ = back_ = false;
   any_key_ = number_ = 0;
+  text_.clear();
 }
 
 }  // namespace client

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "client/devices.h"
 #include "client/input_events.h"
@@ -33,6 +34,7 @@ class InputCollector {
   void set_keys(const KeyBindings& keys);
   void key(int key, bool down);
   void release_keys();  // the window lost the focus
+  void letter(std::uint32_t codepoint);
   void mouse_moved(double right, double forward);
   void click() { clicked_ = true; }
   void wheel(double steps) { wheel_ += steps; }
@@ -65,6 +67,7 @@ class InputCollector {
   double mouse_right_ = 0.0, mouse_forward_ = 0.0, wheel_ = 0.0;
   bool clicked_ = false, back_ = false;
   int any_key_ = 0, number_ = 0;
+  std::string text_;
 };
 
 }  // namespace client

@@ -96,6 +96,10 @@ MenuPage Menu::page(const Context& context) const {
   MenuPage page;
   if (!open_) return page;
   if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
+  if (page_ == Page::settings && settings_.at_name())
+    page.note =
+        N_("Enter, then type the name; Enter again keeps it. Results and ratings go by it, "
+           "from the next match on.");
   if (page_ == Page::seats && context.crew != nullptr)
     page = seats_.page(context.seats, *context.crew, row_ - 1);
   if (page_ == Page::tuning) page = tuning_.page(row_ - 1);

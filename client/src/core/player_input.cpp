@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foosball/feed.h"
 #include "wire/enums.h"
 
 namespace client {
@@ -109,7 +110,7 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
     if (acted_us_ < 0 || now_us < acted_us_ || acts(events)) acted_us_ = now_us;
     const bool helps = in_play && now_us - acted_us_ < kRestsAfterUs;
     helps ? assist(view, now_us) : rest();
-    collect_wishes(events, *scene);
+    collect_wishes(events, *scene, now_us);
   }
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
 }
@@ -173,7 +174,8 @@ void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
   hand_.pad(events.has_pad ? turned(events.pad) : cabinet::PadState{});
 }
 
-void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot& scene) {
+void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot& scene,
+                                 std::int64_t now_us) {
   const auto team = static_cast<std::uint8_t>(team_);
   const auto screen = static_cast<wire::Screen>(scene.screen);
   if ((events.push || events.pad_push) && screen != wire::Screen::play)
@@ -186,6 +188,28 @@ void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot
   if (time_out && screen == wire::Screen::play)
     wishes_.push_back({number(wire::WishKind::time_out), team, 0});
   if (screen == wire::Screen::selection) choose_character(events, scene);
+  const int presses = events.presses[index_of(Action::feed)] + (events.pad_share ? 1 : 0);
+  const bool served = screen == wire::Screen::play || screen == wire::Screen::ceremony;
+  if (presses > 0 && served && scene.mode == number(wire::Mode::training) && !scene.paused)
+    choose_man(presses, scene, now_us);
+}
+
+// The ball is served to a man of the rod in hand, at each press to the next one.
+void PlayerInput::choose_man(int presses, const wire::Snapshot& scene, std::int64_t now_us) {
+  constexpr std::int64_t kSeenWithinUs = 500'000;
+  const bool known = fed_rod_ < 0 || now_us < fed_us_ || now_us - fed_us_ > kSeenWithinUs;
+  if (known) {
+    fed_rod_ = scene.feed_rod;
+    fed_man_ = scene.feed_man;
+  }
+  const int rod = hand_.active_rod();
+  const foosball::RodSpec& spec = table_.rods[static_cast<std::size_t>(rod)];
+  if (rod != fed_rod_) fed_man_ = -1;
+  fed_rod_ = rod;
+  fed_man_ = (fed_man_ + presses) % spec.men;
+  fed_us_ = now_us;
+  wishes_.push_back({number(wire::WishKind::feed), static_cast<std::uint8_t>(team_),
+                     foosball::feed_value(spec.line, fed_man_)});
 }
 
 // By number, by the wheel, or by a tap of an arrow; a spun rod chooses by itself, at the server.

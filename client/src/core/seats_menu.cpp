@@ -78,7 +78,8 @@ MenuRow rod_row(const SeatsView& view, const Crew& crew, int rod) {
       .value = "",
       .prefix = std::to_string(rod + 1) + "  " + kTeams[static_cast<std::size_t>(spec.team)]};
   if (const wire::Seat* seat = other_at(view, rod)) {
-    row.value = seat->name + (seat->away ? " ..." : "");
+    const std::string& player = view.roster.players[static_cast<std::size_t>(rod)];
+    row.value = (player.empty() ? seat->name : player) + (seat->away ? " ..." : "");
     row.translate_value = false;
     row.fixed = true;
   } else if ((crew.granted() >> rod & 1) != 0) {
@@ -116,8 +117,20 @@ bool may_kick(const SeatsView& view, const Crew& crew, const wire::Seat& seat) {
          seat.role != number(wire::Role::host);
 }
 
-MenuRow person_row(const wire::Seat& seat, bool self, bool fixed) {
-  MenuRow row{.label = seat.name.empty() ? "?" : seat.name,
+// All who play at that client: "Ann, Ben".
+std::string people_of(const wire::Seat& seat, const wire::RodPlayers& players) {
+  std::vector<std::string> people{seat.name.empty() ? "?" : seat.name};
+  for (std::size_t rod = 0; rod < players.size(); ++rod) {
+    const bool other = (seat.rods >> rod & 1) != 0 && !players[rod].empty();
+    if (other && std::ranges::count(people, players[rod]) == 0) people.push_back(players[rod]);
+  }
+  std::string text;
+  for (const std::string& name : people) text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
+MenuRow person_row(const wire::Seat& seat, const wire::RodPlayers& players, bool self, bool fixed) {
+  MenuRow row{.label = people_of(seat, players),
               .value = seat.away        ? N_("away")
                        : seat.rods == 0 ? N_("watches")
                                         : rods_text(seat.rods),
@@ -176,7 +189,8 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
                                                                        : N_("Play on")});
   }
   for (const wire::Seat& seat : view.roster.seats)
-    page.rows.push_back(person_row(seat, seat.client == view.client, !may_kick(view, crew, seat)));
+    page.rows.push_back(person_row(seat, view.roster.players, seat.client == view.client,
+                                   !may_kick(view, crew, seat)));
   const auto votes = votes_of(view);
   const int vote = chosen - first_vote;
   if (vote >= 0 && vote < static_cast<int>(votes.size()))
@@ -279,8 +293,10 @@ std::array<RodName, 8> names_at_rods(const SeatsView& view, const Crew& crew) {
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const bool mine = (crew.granted() >> rod & 1) != 0;
     if (!mine && other_at(view, rod) == nullptr) continue;
+    const auto r = static_cast<std::size_t>(rod);
     MenuRow row = rod_row(view, crew, rod);
-    names[static_cast<std::size_t>(rod)] = {row.value, row.translate_value, row.value_number};
+    names[r] = {row.value, row.translate_value, row.value_number};
+    if (mine && !view.own_names[r].empty()) names[r] = {view.own_names[r], false, 0};
   }
   return names;
 }

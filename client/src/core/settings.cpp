@@ -6,13 +6,17 @@
 #include <cstdio>
 #include <sstream>
 
+#include "wire/control.h"
+#include "wire/text.h"
+
 namespace client {
 namespace {
 
 constexpr std::array<const char*, kActions> kActionNames{
     "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",    "rod_2",      "rod_3",
     "rod_4",      "next_rod",   "previous_rod", "push",      "pause",    "automatic",  "camera",
-    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings", "game"};
+    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings", "game",
+    "feed"};
 
 struct NamedKey {
   const char* name;
@@ -130,6 +134,14 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "record_matches") return flag(s.record_matches);
   if (name == "handle_offset_mm")
     return read_offsets(value, s.handle_offset) ? "" : "eight numbers from -60 to 60";
+  if (name.starts_with("name.")) {
+    for (std::size_t i = 0; i < s.names.size(); ++i) {
+      if (name.substr(5) != std::to_string(i + 1)) continue;
+      if (!wire::is_clean_text(value, wire::kMaxName)) return "a name of at most 64 bytes";
+      s.names[i] = value;
+      return "";
+    }
+  }
   if (name.starts_with("key.")) {
     for (std::size_t i = 0; i < kActionNames.size(); ++i) {
       if (name.substr(4) != kActionNames[i]) continue;
@@ -167,6 +179,7 @@ KeyBindings default_keys() {
   set(Action::time_out, "T");
   set(Action::recordings, "F5");
   set(Action::game, "F6");
+  set(Action::feed, "F");
   return keys;
 }
 
@@ -194,6 +207,11 @@ int key_of_name(std::string_view name) {
     if (!of_key.empty() && of_key == name) return key;
   }
   return 0;
+}
+
+std::string name_of_person(const Settings& settings, std::size_t place) {
+  if (place < settings.names.size() && !settings.names[place].empty()) return settings.names[place];
+  return place == 0 ? "player" : "player " + std::to_string(place + 1);
 }
 
 ReadSettings parse_settings(std::string_view text) {
@@ -240,6 +258,8 @@ std::string format_settings(const Settings& s) {
   out << "handle_offset_mm =";
   for (const float offset : s.handle_offset) out << " " << std::lround(1e3f * offset);
   out << "\n";
+  for (std::size_t i = 0; i < s.names.size(); ++i)
+    out << "name." << i + 1 << " = " << s.names[i] << "\n";
   for (std::size_t i = 0; i < s.keys.size(); ++i) {
     out << "key." << kActionNames[i] << " =";
     for (const int key : s.keys[i]) {

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "foosball/table.h"
+#include "wire/control.h"
+#include "wire/text.h"
 
 #define N_(english) english  // for xgettext: render/translate.h
 
@@ -25,7 +28,8 @@ enum Row : int {
   row_goalie,
   row_aim,
   row_questionnaire,
-  first_offset,
+  first_name,
+  first_offset = first_name + static_cast<int>(kNamedPeople),
   first_key = first_offset + 8,
   row_count = first_key + kActions,
 };
@@ -50,7 +54,8 @@ constexpr std::array<const char*, kActions> kActionLabels{N_("Slide away"),
                                                           N_("Tuning"),
                                                           N_("Time-out"),
                                                           N_("Recordings"),
-                                                          N_("Game")};
+                                                          N_("Game"),
+                                                          N_("Training: next man")};
 constexpr std::array<const char*, 3> kQualities{N_("automatic"), N_("low"), N_("high")};
 constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system"), "English",
                                                              "한국어", "Deutsch"};
@@ -161,6 +166,12 @@ std::vector<MenuRow> SettingsMenu::rows(const Settings& s) const {
       {N_("Assist: aim"), on_off(s.aim)},
       {N_("Questions after a match"), on_off(s.questionnaire)},
   };
+  for (std::size_t i = 0; i < s.names.size(); ++i) {
+    const bool written = waits_ && row_ == first_name + static_cast<int>(i);
+    rows.push_back({N_("Name of player"), written ? draft_ + "_" : name_of_person(s, i), false,
+                    static_cast<int>(i) + 1});
+    rows.back().typed = true;
+  }
   for (std::size_t i = 0; i < s.handle_offset.size(); ++i) {
     rows.push_back({N_("Handle offset of rod"),
                     std::to_string(std::lround(1e3f * s.handle_offset[i])) + " mm", false,
@@ -238,8 +249,38 @@ bool SettingsMenu::bind(int key, Settings& settings) {
   return true;
 }
 
+bool SettingsMenu::at_name() const {
+  return row_ >= first_name && row_ < first_offset;
+}
+
+// Letters, until Enter or Esc.
+bool SettingsMenu::write(const MenuSteps& steps, Settings& settings) {
+  if (steps.back) waits_ = false;
+  for (const char letter : steps.text) {
+    if (!waits_) break;
+    if (letter == '\r') {
+      waits_ = false;
+      std::string& name = settings.names[static_cast<std::size_t>(row_ - first_name)];
+      const std::string before =
+          std::exchange(name, draft_.empty() ? "" : wire::clean_name(draft_));
+      return name != before;
+    }
+    if (letter != '\b') {
+      draft_ += letter;
+      continue;
+    }
+    // What follows the first byte of a letter is 10xxxxxx.
+    while (!draft_.empty() && (static_cast<unsigned char>(draft_.back()) & 0xC0u) == 0x80u)
+      draft_.pop_back();
+    if (!draft_.empty()) draft_.pop_back();
+  }
+  draft_ = wire::clean_text(draft_, wire::kMaxName);
+  return false;
+}
+
 bool SettingsMenu::step(const MenuSteps& steps, int key, Settings& settings) {
   if (!open_) return false;
+  if (waits_ && at_name()) return write(steps, settings);
   if (waits_) {
     if (steps.back || key != 0) waits_ = false;
     return key != 0 && bind(key, settings);
@@ -249,6 +290,11 @@ bool SettingsMenu::step(const MenuSteps& steps, int key, Settings& settings) {
     return false;
   }
   row_ = ((row_ + steps.down) % row_count + row_count) % row_count;
+  if (at_name()) {
+    waits_ = steps.confirm;
+    draft_ = settings.names[static_cast<std::size_t>(row_ - first_name)];
+    return false;
+  }
   if (steps.confirm && row_ >= first_key) {
     waits_ = true;
     return false;

@@ -23,19 +23,20 @@ struct KeyHelp {
   const char* keys;
   const char* meaning;
 };
-constexpr std::array<KeyHelp, 14> kAllKeys{
+constexpr std::array<KeyHelp, 15> kAllKeys{
     {{N_("Mouse"), N_("forward and back slides, sideways spins")},
      {"1 2 3 4", N_("take goalie, defence, midfield, attack")},
      {N_("Wheel, Q E"), N_("next rod")},
      {"Tab", N_("rod nearest to the ball by itself")},
      {N_("Arrows, WASD"), N_("slide and spin by keys")},
      {N_("Gamepad"), N_("sticks slide and spin, shoulders change rod")},
-     {N_("Gamepad buttons"), N_("A push, Start pause, Back menu, Y time-out")},
+     {N_("Gamepad buttons"), N_("A push, Start pause, Back menu, Y time-out, X next man")},
      {N_("Space, click"), N_("push: begin, confirm")},
      {"P", N_("pause")},
      {"C", N_("camera: seat, above, follow, spectator")},
      {"F2 ... F6", N_("settings, seats, tuning, recordings, game")},
      {"T", N_("time-out")},
+     {"F", N_("training: serve to the next man of the rod")},
      {"F1, H", N_("show or hide the keys")},
      {"Esc", N_("release the mouse; again: leave")}}};
 constexpr std::array<KeyHelp, 4> kSelectionKeys{{{"1 - 9 0", N_("or")},
@@ -308,6 +309,11 @@ std::string fixed(float number, const char* unit) {
   return text;
 }
 
+// 0: nobody shot, or it is not known.
+std::string speed_text(float speed) {
+  return speed > 0.0f ? fixed(speed, "m/s") : "-";
+}
+
 // Two by two, of the teams.
 template <class Team, class Value>
 std::array<std::string, 2> both(const std::array<Team, 2>& teams, Value value) {
@@ -318,7 +324,7 @@ std::vector<EndRow> end_rows(const std::array<TeamStatistics, 2>& s) {
   const float played = std::max(s[0].possession + s[1].possession, 1e-3f);
   return {{tr("shots"), both(s, [](const auto& t) { return std::to_string(t.shots); })},
           {tr("saves"), both(s, [](const auto& t) { return std::to_string(t.saves); })},
-          {tr("fastest shot"), both(s, [](const auto& t) { return fixed(t.fastest_shot, "m/s"); })},
+          {tr("fastest shot"), both(s, [](const auto& t) { return speed_text(t.fastest_shot); })},
           {tr("possession"),
            both(s,
                 [&](const auto& t) {
@@ -339,6 +345,7 @@ void take_report(std::vector<EndRow>& rows, const wire::Report& report) {
     return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
   });
   rows[4].values = both(r, [](const auto& t) { return std::to_string(t.own_goals); });
+  rows[2].values = both(r, [](const auto& t) { return speed_text(t.fastest_shot); });
   rows.insert(rows.begin() + 2,
               {tr("passes"), both(r, [](const auto& t) { return std::to_string(t.passes); })});
   rows.push_back({tr("rating (Elo)"), both(r, [](const auto& t) {
@@ -352,30 +359,49 @@ void take_report(std::vector<EndRow>& rows, const wire::Report& report) {
 }  // namespace
 
 float fame_height(std::size_t players) {
-  return 52.0f + 24.0f * static_cast<float>(players);
+  return 74.0f + 24.0f * static_cast<float>(players);
 }
 
 void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
-  const float half = 250.0f;
+  const float half = 320.0f;
   const HudPen pen = whole.fitting(half + 8.0f, whole.bottom);
   const float top = y * whole.scale / pen.scale;
   pen.panel({-half, top}, {half, top + fame_height(fame.size())}, 14.0f,
             {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   pen.text(tr("HALL OF FAME"), {Face::bold, 17.0f, 0.10f, Align::centre}, {0.0f, top + 27.0f},
            {0.62f, 0.84f, 1.0f, 1.0f}, 0.55f, 2.0f * half - 30.0f);
+  // Right edges of the columns, and their room.
+  constexpr float kRating = 24.0f, kWon = 104.0f, kSaves = 184.0f, kFastest = 262.0f, kRoom = 72.0f;
   float line = top + 54.0f;
+  const auto heading = [&](const char* name, float at, float room) {
+    pen.text(name, {Face::regular, 12.0f, 0.0f, Align::right}, {half - at, line - 3.0f}, kFaint,
+             0.55f, room);
+  };
+  heading(tr("rating (Elo)"), kRating, kRoom);
+  heading(tr("won"), kWon, kRoom);
+  heading(tr("saves"), kSaves, kRoom);
+  heading(tr("fastest shot"), kFastest, 2.0f * kRoom);
+  line += 22.0f;
   for (std::size_t i = 0; i < fame.size(); ++i) {
     const Colour& ink = i == 0 ? kWarning : kInk;
     pen.text(std::to_string(i + 1), {Face::bold, 15.0f, 0.0f, Align::right}, {-half + 34.0f, line},
              kFaint);
     pen.text(fame[i].name, {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line}, ink,
-             0.55f, 210.0f);
+             0.55f, 2.0f * half - kFastest - kRoom - 52.0f);
     const std::string won = std::to_string(fame[i].wins) + " / " + std::to_string(fame[i].matches);
-    pen.text(won, {Face::regular, 14.0f, 0.0f, Align::right}, {half - 100.0f, line}, kFaint, 0.55f,
-             130.0f);
+    const auto column = [&](const std::string& text, float at) {
+      pen.text(text, {Face::regular, 14.0f, 0.0f, Align::right}, {half - at, line}, kFaint, 0.55f,
+               kRoom);
+    };
+    column(won, kWon);
+    column(speed_text(fame[i].fastest_shot), kFastest);
+    // Of the shots on target that the player's teams faced.
+    const float faced = static_cast<float>(fame[i].shots_faced);
+    const float saved = std::min(1.0f, static_cast<float>(fame[i].saves) / std::max(faced, 1.0f));
+    column(faced > 0.0f ? std::to_string(std::lround(100.0f * saved)) + " %" : "-", kSaves);
     char rating[24];
     std::snprintf(rating, sizeof rating, "%.0f", static_cast<double>(fame[i].rating));
-    pen.text(rating, {Face::bold, 15.0f, 0.0f, Align::right}, {half - 24.0f, line}, ink);
+    pen.text(rating, {Face::bold, 15.0f, 0.0f, Align::right}, {half - kRating, line}, ink);
     line += 24.0f;
   }
 }

@@ -66,7 +66,7 @@ void draw_menu_row(const HudPen& pen, const MenuRow& row, float y, bool here) {
   if (value.empty() && !row.fixed)
     value = here ? "\u21B5" : "";
   else if (changes)
-    value = "\u2190 " + value + " \u2192";
+    value = row.typed ? value + " \u21B5" : "\u2190 " + value + " \u2192";
   pen.text(value, {Face::bold, 15.0f, 0.0f, Align::right}, {kHalf - 22.0f, y}, ink, 0.55f,
            bar ? 165.0f : 230.0f);
 }

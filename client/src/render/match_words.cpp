@@ -127,6 +127,14 @@ std::optional<PossessionClock> possession_clock(const wire::Snapshot& state) {
   return PossessionClock{team, static_cast<int>(std::ceil(left)), hurries};
 }
 
+// To whom the ball is served in training.
+std::string feed_text(const wire::Snapshot& state) {
+  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
+  const std::size_t rod = std::min<std::size_t>(state.feed_rod, foosball::kRods - 1);
+  return std::string(tr("Ball for")) + ": " + team_with_mark(table.rods[rod].team) + ", " +
+         line_name(state.layout, static_cast<int>(rod)) + " " + std::to_string(state.feed_man + 1);
+}
+
 std::string rules_line(const HudState& hud) {
   const wire::Snapshot& state = *hud.state;
   if (state.time_out_seconds > 0.0f) return time_out_text(state);
@@ -136,6 +144,7 @@ std::string rules_line(const HudState& hud) {
   if (state.fouled && hud.since_foul < kFoulShown) parts.push_back(foul_text(state));
   if (serve) parts.push_back(serve_text(state.next_server));
   if (state.golden_goal) parts.emplace_back(tr("golden goal: the next one decides"));
+  if (training) parts.push_back(feed_text(state));
   if (training && state.last_shot.speed > 0.0f) parts.push_back(last_shot_text(state.last_shot));
   return joined(parts, "  -  ");
 }
