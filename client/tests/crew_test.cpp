@@ -250,20 +250,21 @@ struct NamesTest : testing::Test {
   CrewNames names;
 };
 
-TEST_F(NamesTest, OnePersonWhoJoinedUnderTheNameHasNothingToSay) {
-  names.joined("player");
+TEST_F(NamesTest, AreToldOnceAndAgainAfterEachJoin) {
+  ASSERT_TRUE(told());
   EXPECT_FALSE(told());
   settings.names[0] = "Ann";
   const auto now = told();
   ASSERT_TRUE(now);
   EXPECT_EQ(now->name, "Ann");
   EXPECT_EQ(now->players, wire::RodPlayers{});
-  EXPECT_FALSE(told()) << "once";
+  EXPECT_FALSE(told());
   EXPECT_EQ(names.set_names()[0], "Ann");
+  names.joined();
+  EXPECT_TRUE(told()) << "the seat may have names of before";
 }
 
 TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
-  names.joined("player");
   for (const int rod : {0, 1}) table.crew.give(rod, kPad1);
   for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
   auto now = told();
@@ -281,7 +282,6 @@ TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
 
 // By the rules for leavers the old name would have lost the match.
 TEST_F(NamesTest, NobodyIsRenamedInAMatch) {
-  names.joined("player");
   table.crew.give(2, kPad2);
   EXPECT_EQ(told()->players[2], "player 2");
   settings.names = {"Ann", "Ben", "Cleo", ""};

@@ -17,8 +17,8 @@ class CrewNames {
  public:
   // Once a frame. What the server is to be told now; none: it knows.
   std::optional<wire::Names> update(const Crew& crew, const Settings& settings, bool in_match);
-  // The client was joined anew: the server knows the first person's name alone.
-  void joined(const std::string& name) { told_ = {name, {}}; }
+  // The server was joined anew: a seat that is taken again may have names of before.
+  void joined() { told_.reset(); }
   // By rod: of whoever has set a name; empty: of nobody.
   const wire::RodPlayers& set_names() const { return set_; }
 
@@ -28,7 +28,7 @@ class CrewNames {
   std::array<int, kDevices + 1> places_ = none();  // by device + 1: which person; -1: nobody yet
   Settings named_;                                 // whose names are in use
   bool named_once_ = false;
-  wire::Names told_;
+  std::optional<wire::Names> told_;
   wire::RodPlayers set_;
 
   static constexpr std::array<int, kDevices + 1> none() {

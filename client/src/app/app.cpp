@@ -107,7 +107,7 @@ void App::follow_connection() {
   crew_ = std::make_unique<Crew>(
       welcome.session, welcome.team < foosball::kTeams ? welcome.team : 0, layout, welcome.rods);
   crew_->set_assists(assists_of(settings_));
-  crew_names_.joined(name_of_person(settings_, 0));
+  crew_names_.joined();
   prediction_ = std::make_unique<RodPrediction>(layout);
   use_characters();
 }

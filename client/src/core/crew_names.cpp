@@ -35,7 +35,7 @@ std::optional<wire::Names> CrewNames::update(const Crew& crew, const Settings& s
       if (is_set) set_[rod] = name;
     }
   }
-  if (names.name == told_.name && names.players == told_.players) return std::nullopt;
+  if (told_ && names.name == told_->name && names.players == told_->players) return std::nullopt;
   told_ = names;
   return names;
 }

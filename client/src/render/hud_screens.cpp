@@ -310,7 +310,7 @@ std::string fixed(float number, const char* unit) {
 }
 
 // 0: nobody shot, or it is not known.
-std::string speed_text(float speed) {
+std::string shot_text(float speed) {
   return speed > 0.0f ? fixed(speed, "m/s") : "-";
 }
 
@@ -324,7 +324,7 @@ std::vector<EndRow> end_rows(const std::array<TeamStatistics, 2>& s) {
   const float played = std::max(s[0].possession + s[1].possession, 1e-3f);
   return {{tr("shots"), both(s, [](const auto& t) { return std::to_string(t.shots); })},
           {tr("saves"), both(s, [](const auto& t) { return std::to_string(t.saves); })},
-          {tr("fastest shot"), both(s, [](const auto& t) { return speed_text(t.fastest_shot); })},
+          {tr("fastest shot"), both(s, [](const auto& t) { return shot_text(t.fastest_shot); })},
           {tr("possession"),
            both(s,
                 [&](const auto& t) {
@@ -345,7 +345,7 @@ void take_report(std::vector<EndRow>& rows, const wire::Report& report) {
     return std::to_string(std::lround(100.0f * t.possession / played)) + " %";
   });
   rows[4].values = both(r, [](const auto& t) { return std::to_string(t.own_goals); });
-  rows[2].values = both(r, [](const auto& t) { return speed_text(t.fastest_shot); });
+  rows[2].values = both(r, [](const auto& t) { return shot_text(t.fastest_shot); });
   rows.insert(rows.begin() + 2,
               {tr("passes"), both(r, [](const auto& t) { return std::to_string(t.passes); })});
   rows.push_back({tr("rating (Elo)"), both(r, [](const auto& t) {
@@ -394,7 +394,7 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
                kRoom);
     };
     column(won, kWon);
-    column(speed_text(fame[i].fastest_shot), kFastest);
+    column(shot_text(fame[i].fastest_shot), kFastest);
     // Of the shots on target that the player's teams faced.
     const float faced = static_cast<float>(fame[i].shots_faced);
     const float saved = std::min(1.0f, static_cast<float>(fame[i].saves) / std::max(faced, 1.0f));
