@@ -115,12 +115,16 @@ TEST(MatchWords, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
   Told told;
   told.state.mode = number(wire::Mode::training);
   told.state.last_shot = {0, 5, 1, 7.25f, 0.1745f};
+  told.state.feed_rod = 1;
+  told.state.feed_man = 1;
   told.hud.since_serve = 0.1f;
-  EXPECT_EQ(rules_line(told.hud), "Last shot: 7.2 m/s, 10°");
+  EXPECT_EQ(rules_line(told.hud), "Ball for: ● ORION, Defence 2  -  Last shot: 7.2 m/s, 10°");
   told.state.fouled = true;
   told.state.last_foul = number(wire::Foul::serve);
   told.hud.since_foul = 0.2f;
-  EXPECT_EQ(rules_line(told.hud), "Foul: ● ORION, faulty serve  -  Last shot: 7.2 m/s, 10°");
+  EXPECT_EQ(
+      rules_line(told.hud),
+      "Foul: ● ORION, faulty serve  -  Ball for: ● ORION, Defence 2  -  Last shot: 7.2 m/s, 10°");
 }
 
 // --- ceremonies ----------------------------------------------------------------------------------

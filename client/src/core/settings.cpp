@@ -13,10 +13,10 @@ namespace client {
 namespace {
 
 constexpr std::array<const char*, kActions> kActionNames{
-    "slide_away", "slide_near", "spin_right",   "spin_left", "rod_1",    "rod_2",      "rod_3",
-    "rod_4",      "next_rod",   "previous_rod", "push",      "pause",    "automatic",  "camera",
-    "settings",   "help",       "seats",        "tuning",    "time_out", "recordings", "game",
-    "feed"};
+    "slide_away", "slide_near", "spin_right", "spin_left",    "rod_1", "rod_2",
+    "rod_3",      "rod_4",      "next_rod",   "previous_rod", "push",  "pause",
+    "automatic",  "camera",     "settings",   "help",         "seats", "tuning",
+    "time_out",   "recordings", "game",       "feed"};
 
 struct NamedKey {
   const char* name;

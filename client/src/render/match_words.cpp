@@ -84,6 +84,14 @@ bool has_climbed(const wire::Snapshot& state) {
   return state.sets[person] > state.sets[1 - person];
 }
 
+// To whom the ball is served in training.
+std::string feed_text(const wire::Snapshot& state) {
+  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
+  const std::size_t rod = std::min<std::size_t>(state.feed_rod, foosball::kRods - 1);
+  return std::string(tr("Ball for")) + ": " + team_with_mark(table.rods[rod].team) + ", " +
+         line_name(state.layout, static_cast<int>(rod)) + " " + std::to_string(state.feed_man + 1);
+}
+
 }  // namespace
 
 std::string team_with_mark(int team) {
@@ -125,14 +133,6 @@ std::optional<PossessionClock> possession_clock(const wire::Snapshot& state) {
   const bool hurries = left <= kHurries;
   if (!tournament && !hurries) return std::nullopt;
   return PossessionClock{team, static_cast<int>(std::ceil(left)), hurries};
-}
-
-// To whom the ball is served in training.
-std::string feed_text(const wire::Snapshot& state) {
-  const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
-  const std::size_t rod = std::min<std::size_t>(state.feed_rod, foosball::kRods - 1);
-  return std::string(tr("Ball for")) + ": " + team_with_mark(table.rods[rod].team) + ", " +
-         line_name(state.layout, static_cast<int>(rod)) + " " + std::to_string(state.feed_man + 1);
 }
 
 std::string rules_line(const HudState& hud) {
