@@ -78,15 +78,20 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
   }
 
   // The HUD alone, over an even grey.
-  draw::Image written(const wire::Snapshot& state, HudState hud) {
+  draw::Image written(const wire::Snapshot& state, const HudState& hud) {
+    return written(*ui, state, hud, kSize);
+  }
+  // In a part of the window that is as large as another window.
+  draw::Image written(UiBatch& words, const wire::Snapshot& state, HudState hud,
+                      const glm::ivec2& size) {
     hud.state = &state;
     hud.camera = camera;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, kSize.x, kSize.y);
+    glViewport(0, 0, size.x, size.y);
     glClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    draw_hud(*ui, hud, kSize);
-    return draw::read_pixels(kSize);
+    draw_hud(words, hud, size);
+    return draw::read_pixels(size);
   }
 
   glm::ivec2 pixel_of(const std::array<float, 3>& p) const {
@@ -344,6 +349,65 @@ TEST_P(RenderTest, NothingWrittenIsCutInAnyWindow) {
             << language << " " << size.x << "x" << size.y << " " << shown;
         EXPECT_LT(b.high.y, static_cast<float>(size.y) + kRim)
             << language << " " << size.x << "x" << size.y << " " << shown;
+      }
+    }
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+// Where two pictures differ: what was written more in the second.
+std::vector<glm::ivec2> added(const draw::Image& before, const draw::Image& after,
+                              const glm::ivec2& size) {
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const glm::ivec3 d = glm::abs(before.at(x, y) - after.at(x, y));
+      if (d.r + d.g + d.b > 12) pixels.emplace_back(x, y);
+    }
+  }
+  return pixels;
+}
+
+// Hints, notices and keys are written beside the board, never through it, and from above never over
+// the middle of the table.
+TEST_P(RenderTest, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  for (const char* language : {"en", "de", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    for (const auto& [size, scale] :
+         {std::pair(glm::ivec2(480, 540), 1.0f), std::pair(glm::ivec2(480, 540), 1.6f),
+          std::pair(kSize, 1.6f), std::pair(kSize, 1.0f), std::pair(glm::ivec2(320, 240), 1.0f)}) {
+      for (const View view : {View::seat, View::above}) {
+        wire::Snapshot state = scripted_play(0.35);
+        HudState plain;
+        plain.viewer_team = 0;
+        plain.text_scale = scale;
+        plain.view = view;
+        HudState hints = plain;
+        hints.mouse_free = hints.starving = hints.automatic_rod = true;
+        const draw::Image board = written(words, state, plain, size);
+        const draw::Image all = written(words, state, hints, size);
+        const auto hint = added(board, all, size);
+        EXPECT_GT(hint.size(), 500u) << "the hints are written";
+        // The board alone is on the grey, a little darker than it.
+        int through = 0, mid_table = 0;
+        for (const glm::ivec2& p : hint) {
+          through += board.at(p.x, p.y) != glm::ivec3(board.at(size.x / 2, size.y / 2));
+          mid_table += std::abs(p.y - size.y / 2) < size.y / 8;
+        }
+        EXPECT_EQ(through, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+        if (view == View::above) {
+          EXPECT_EQ(mid_table, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+          // The pause's keys stand above the board too: its figures stay as they are.
+          wire::Snapshot paused = state;
+          paused.paused = true;
+          const draw::Image keys = written(words, paused, plain, size);
+          int over = 0;
+          for (const glm::ivec2& p : added(board, keys, size))
+            over += board.at(p.x, p.y) != glm::ivec3(board.at(size.x / 2, size.y / 2));
+          EXPECT_EQ(over, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+        }
       }
     }
   }

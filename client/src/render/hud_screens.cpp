@@ -48,8 +48,8 @@ constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
                                              {"F2", N_("settings")},
                                              {"Esc", N_("release the mouse; again: leave")}}};
 
-// One line at the bottom of the screen; how high it stands.
-float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line) {
+// One line at the bottom of the screen, above what is there; how high it stands.
+float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line, float below = 0.0f) {
   const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
   const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
   const float within = 7.0f, between = 24.0f;
@@ -60,7 +60,7 @@ float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line) {
   }
   const float half = 0.5f * width + 20.0f;
   const HudPen pen = whole.fitting(half, 60.0f);
-  const float y = pen.bottom - 24.0f;
+  const float y = pen.bottom - 24.0f - below * whole.scale / pen.scale;
   pen.panel({-half, y - 22.0f}, {half, y + 10.0f}, 10.0f, kPanel);
   float x = -0.5f * width;
   for (const KeyHelp& key : line) {
@@ -69,7 +69,7 @@ float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line) {
     pen.text(tr(key.meaning), regular, {x, y}, kFaint);
     x += pen.width(tr(key.meaning), regular) + between;
   }
-  return 38.0f * pen.scale / whole.scale;
+  return below + 38.0f * pen.scale / whole.scale;
 }
 
 std::string capitalised(std::string text) {
@@ -199,8 +199,8 @@ float draw_keys_of_selection(const HudPen& pen) {
   return draw_key_line(pen, kSelectionKeys);
 }
 
-float draw_keys_of_pause(const HudPen& pen) {
-  return draw_key_line(pen, kPauseKeys);
+float draw_keys_of_pause(const HudPen& pen, float below) {
+  return draw_key_line(pen, kPauseKeys, below);
 }
 
 float logo_height(const HudPen& whole) {
@@ -224,13 +224,25 @@ void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, b
            {0.92f, 0.96f, 1.0f, pulse}, 0.8f);
 }
 
+namespace {
+
+HudPen selection_pen(const HudPen& whole) {
+  return whole.fitting(450.0f, 660.0f);
+}
+
+}  // namespace
+
+glm::vec2 selection_title_size(const HudPen& whole) {
+  return glm::vec2(208.0f, 88.0f) * (selection_pen(whole).scale / whole.scale);
+}
+
 // Each team's characters on its side, as many as fit below one another.
 void draw_selection(const HudPen& whole, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team) {
   constexpr int kAtOnce = 6;
   const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
   const auto rows = static_cast<float>(shown);
-  const HudPen pen = whole.fitting(450.0f, 660.0f);
+  const HudPen pen = selection_pen(whole);
   pen.panel({-200.0f, 16.0f}, {200.0f, 88.0f}, 14.0f, kPanel);
   pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f}, kInk,
            0.8f, 370.0f);

@@ -67,6 +67,8 @@ void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, boo
 // Six at a time of each team's characters, about the one that is chosen.
 void draw_selection(const HudPen& pen, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team);
+// Half of its title's width, and how far down it reaches.
+glm::vec2 selection_title_size(const HudPen& pen);
 // A band at the upper edge, or the lower: the field stays free. Own goals and the scorer are named.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const GoalStory& goal,
                    bool replay, bool still, bool at_the_bottom);
@@ -85,6 +87,7 @@ std::string line_name(int layout, int rod);
 // room: from the bottom up; where it is too small to read all of them, a line says what they are.
 float draw_all_keys(const HudPen& pen, float room);
 float draw_keys_of_selection(const HudPen& pen);
-float draw_keys_of_pause(const HudPen& pen);
+// below: what stands under it.
+float draw_keys_of_pause(const HudPen& pen, float below);
 
 }  // namespace client
