@@ -414,6 +414,38 @@ TEST_P(RenderTest, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
+// At the largest text too, and in high windows the lists use the height.
+TEST_P(RenderTest, TheKeysOfTheSelectionCoverNobodysChoice) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  wire::Snapshot state = scripted_play(1.0), ready = state;
+  state.screen = ready.screen = number(wire::Screen::selection);
+  state.confirmed = {false, false};
+  ready.confirmed = {true, true};
+  for (const char* language : {"en", "de", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    for (const auto& [size, scale] :
+         {std::pair(kSize, 1.0f), std::pair(kSize, 1.6f), std::pair(glm::ivec2(480, 540), 1.6f),
+          std::pair(glm::ivec2(320, 540), 1.0f)}) {
+      HudState watches, plays;
+      watches.recorded = true;  // without keys
+      watches.text_scale = plays.text_scale = scale;
+      plays.viewer_team = 0;
+      const draw::Image without = written(words, state, watches, size);
+      int lowest = 0;
+      for (const glm::ivec2& p : added(without, written(words, ready, watches, size), size))
+        lowest = std::max(lowest, p.y);
+      int covered = 0;
+      const auto more = added(without, written(words, state, plays, size), size);
+      for (const glm::ivec2& p : more) covered += p.y > size.y / 2 && p.y <= lowest;
+      EXPECT_GT(more.size(), 500u);
+      EXPECT_EQ(covered, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+      EXPECT_GT(lowest, 4 * size.y / 5) << language << " " << size.x << "x" << size.y;
+    }
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
 // Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
 // for longer than 0.3 s, in any view that is meant for play.
 TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {

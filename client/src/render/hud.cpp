@@ -274,7 +274,7 @@ float draw_side_lines(const HudPen& pen, const HudState& hud, float room_below) 
     return room_below + draw_side_stack(pen, stacked, pen.bottom - room_below, true);
   // The bands of a goal and of the end leave no room for them, and are soon over.
   const bool play = board && hud.state->screen == number(wire::Screen::play);
-  const float said = play && !rules_line(hud).empty() ? 38.0f : 6.0f;
+  const float said = play && !rules_line(hud).empty() ? 38.0f : choosing ? 2.0f : 6.0f;
   if (!board || play) draw_side_stack(pen, stacked, block.y + said, false);
   return room_below;
 }

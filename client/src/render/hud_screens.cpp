@@ -18,6 +18,8 @@ namespace {
 
 const Colour kVeil{0.01f, 0.015f, 0.03f, 0.42f};  // lets a screen's words stand out from the table
 
+constexpr float kLeastRead = 8.0f;  // [px] of a letter's size: smaller ones are smears
+
 struct KeyHelp {
   const char* keys;
   const char* meaning;
@@ -48,28 +50,37 @@ constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
                                              {"F2", N_("settings")},
                                              {"Esc", N_("release the mouse; again: leave")}}};
 
+constexpr TextStyle kKeyStyle{Face::bold, 14.0f, 0.0f, Align::left};
+constexpr TextStyle kMeaningStyle{Face::regular, 14.0f, 0.0f, Align::left};
+constexpr float kWithinKey = 7.0f, kBetweenKeys = 24.0f, kKeyLineHeight = 38.0f;
+
+float key_line_half(const HudPen& pen, std::span<const KeyHelp> line) {
+  float width = -kBetweenKeys;
+  for (const KeyHelp& key : line) {
+    width += pen.width(tr(key.keys), kKeyStyle) + kWithinKey +
+             pen.width(tr(key.meaning), kMeaningStyle) + kBetweenKeys;
+  }
+  return 0.5f * width + 20.0f;
+}
+
+float key_line_height(const HudPen& whole, std::span<const KeyHelp> line) {
+  return kKeyLineHeight * whole.fitting(key_line_half(whole, line), 60.0f).scale / whole.scale;
+}
+
 // One line at the bottom of the screen, above what is there; how high it stands.
 float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line, float below = 0.0f) {
-  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
-  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
-  const float within = 7.0f, between = 24.0f;
-  float width = -between;
-  for (const KeyHelp& key : line) {
-    width +=
-        whole.width(tr(key.keys), bold) + within + whole.width(tr(key.meaning), regular) + between;
-  }
-  const float half = 0.5f * width + 20.0f;
+  const float half = key_line_half(whole, line);
   const HudPen pen = whole.fitting(half, 60.0f);
   const float y = pen.bottom - 24.0f - below * whole.scale / pen.scale;
   pen.panel({-half, y - 22.0f}, {half, y + 10.0f}, 10.0f, kPanel);
-  float x = -0.5f * width;
+  float x = 20.0f - half;
   for (const KeyHelp& key : line) {
-    pen.text(tr(key.keys), bold, {x, y}, kInk);
-    x += pen.width(tr(key.keys), bold) + within;
-    pen.text(tr(key.meaning), regular, {x, y}, kFaint);
-    x += pen.width(tr(key.meaning), regular) + between;
+    pen.text(tr(key.keys), kKeyStyle, {x, y}, kInk);
+    x += pen.width(tr(key.keys), kKeyStyle) + kWithinKey;
+    pen.text(tr(key.meaning), kMeaningStyle, {x, y}, kFaint);
+    x += pen.width(tr(key.meaning), kMeaningStyle) + kBetweenKeys;
   }
-  return below + 38.0f * pen.scale / whole.scale;
+  return below + key_line_height(whole, line);
 }
 
 std::string capitalised(std::string text) {
@@ -104,15 +115,22 @@ Traits traits_of(const foosball::Characters& characters, const foosball::Charact
       among([](const Body& b) { return std::min(b.slide_speed, 4.0) / (kRod + 4.0 * b.mass); })};
 }
 
-void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float width,
+void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float room,
                 const Colour& colour, float text_size) {
-  pen.text(name, {Face::regular, text_size, 0.0f, Align::left}, at, kFaint, 0.55f, 56.0f);
-  const glm::vec2 low = at + glm::vec2(60.0f, -8.0f);
-  pen.panel(low, low + glm::vec2(width, 7.0f), 3.5f, {0.25f, 0.30f, 0.36f, 0.8f});
-  pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), 7.0f), 3.5f, colour);
+  const float label = 5.8f * text_size, high = 0.56f * text_size;
+  pen.text(name, {Face::regular, text_size, 0.0f, Align::left}, at, kFaint, 0.55f, label - 4.0f);
+  const glm::vec2 low = at + glm::vec2(label, -0.64f * text_size);
+  const float width = std::max(room - label, 10.0f);
+  pen.panel(low, low + glm::vec2(width, high), 0.5f * high, {0.25f, 0.30f, 0.36f, 0.8f});
+  pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), high), 0.5f * high, colour);
 }
 
-// The portrait, the name, and what the character is good at.
+// Of a row of that height, whose lines do not touch one another.
+float trait_text_size(float height) {
+  return std::min(14.0f, 0.175f * height);
+}
+
+// The portrait, the name, and what the character is good at, where that can be read.
 void draw_character(const HudPen& pen, const foosball::Characters& characters, int character,
                     int team, const glm::vec2& low, const glm::vec2& size, bool chosen) {
   const foosball::Character& shown = foosball::nearest(characters, character);
@@ -120,26 +138,30 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
   const glm::vec2 high = low + size;
   pen.panel(low, high, 12.0f,
             chosen ? Colour{0.07f, 0.10f, 0.15f, 0.92f} : Colour{0.03f, 0.045f, 0.07f, 0.72f});
-  const float tall = size.y - 8.0f, wide = 0.8f * tall;
-  pen.picture(character, team, low + 4.0f, low + 4.0f + glm::vec2(wide, tall));
+  const float tall = std::min(size.y - 8.0f, 0.34f * size.x), wide = 0.8f * tall;
+  const float above = 0.5f * (size.y - tall);
+  pen.picture(character, team, low + glm::vec2(4.0f, above),
+              low + glm::vec2(4.0f + wide, above + tall));
   if (chosen) pen.panel(low, high, 12.0f, colour, 2.0f);
   if (character < 10)  // its number key
     pen.text(std::to_string((character + 1) % 10), {Face::bold, 14.0f, 0.0f, Align::right},
              {high.x - 9.0f, low.y + 18.0f}, chosen ? kInk : kFaint);
   const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
-  const float room = size.x - wide - 20.0f;
-  pen.text(capitalised(tr(shown.name.c_str())), {Face::bold, 18.0f, 0.0f, Align::left},
-           text + glm::vec2(0.0f, 0.28f * size.y), chosen ? kInk : kFaint, 0.55f, room - 12.0f);
+  const float room = size.x - wide - 20.0f, line = trait_text_size(size.y);
+  const bool traits_shown = chosen || line * pen.scale >= kLeastRead;
+  pen.text(capitalised(tr(shown.name.c_str())),
+           {Face::bold, std::min(18.0f, 0.29f * size.y), 0.0f, Align::left},
+           text + glm::vec2(0.0f, traits_shown ? 0.22f * size.y + 6.5f : 0.5f * size.y + 6.5f),
+           chosen ? kInk : kFaint, 0.55f, room - 12.0f);
+  if (!traits_shown) return;
   const Traits traits = traits_of(characters, shown);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
-  const float bars = std::max(room - 60.0f, 10.0f);
-  const float line = std::min(12.5f, 0.175f * size.y);  // no line touches the next
-  draw_trait(pen, tr("attack"), traits.attack, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar,
-             line);
-  draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar,
-             line);
-  draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar,
-             line);
+  const auto trait = [&](const char* name, float share, float down) {
+    draw_trait(pen, name, share, text + glm::vec2(0.0f, down * size.y), room, bar, line);
+  };
+  trait(tr("attack"), traits.attack, 0.53f);
+  trait(tr("defence"), traits.guard, 0.72f);
+  trait(tr("agility"), traits.agility, 0.91f);
 }
 
 // The chosen one, large enough to see whose face it is: beside the list, where there is room.
@@ -226,8 +248,35 @@ void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, b
 
 namespace {
 
+constexpr float kBetweenRows = 6.0f;
+
+struct RowHeights {
+  float chosen, other;
+};
+
+// The chosen row is the higher one where not all have the room to be read in full.
+RowHeights row_heights(float room, int rows, float scale) {
+  const float even = std::min(124.0f, room / static_cast<float>(rows));
+  const float least = kLeastRead / (0.175f * scale) + kBetweenRows;
+  if (even >= least) return {even, even};
+  const float chosen = std::min(least, 0.4f * room);
+  return {chosen, (room - chosen) / static_cast<float>(rows - 1)};
+}
+
+// In two lines at most, below the list.
+void draw_specialty(const HudPen& pen, const foosball::Character& one, float middle, float y,
+                    float room) {
+  const TextStyle style{Face::regular, 13.5f, 0.0f, Align::centre};
+  std::vector<std::string> lines = pen.wrapped(capitalised(tr(one.specialty.c_str())), style, room);
+  for (; lines.size() > 2; lines.pop_back()) lines[lines.size() - 2] += " " + lines.back();
+  for (const std::string& line : lines) {
+    y += 17.0f;
+    pen.text(line, style, {middle, y}, kInk, 0.55f, room);
+  }
+}
+
 HudPen selection_pen(const HudPen& whole) {
-  return whole.fitting(450.0f, 660.0f);
+  return whole.readable(0.8f, 300.0f).fitting(300.0f, 660.0f);
 }
 
 }  // namespace
@@ -241,50 +290,48 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team) {
   constexpr int kAtOnce = 6;
   const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
-  const auto rows = static_cast<float>(shown);
   const HudPen pen = selection_pen(whole);
   pen.panel({-200.0f, 16.0f}, {200.0f, 88.0f}, 14.0f, kPanel);
   pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f}, kInk,
            0.8f, 370.0f);
   pen.text(tr("spin a rod to choose, push it to confirm"),
            {Face::regular, 15.0f, 0.0f, Align::centre}, {0.0f, 76.0f}, kFaint, 0.8f, 370.0f);
-  const float width = std::min(262.0f, pen.half_width - 160.0f), top = 108.0f, low = 606.0f;
-  const float between = 6.0f;
-  const float height =
-      std::min(118.0f, (low - top - 98.0f) / static_cast<float>(kAtOnce) - between);
+  const float width = 262.0f, top = 114.0f, header = 46.0f, footer = 76.0f;
+  const float keys = key_line_height(whole, kSelectionKeys) * whole.scale / pen.scale;
+  const RowHeights rows = row_heights(pen.bottom - keys - 10.0f - top - header - footer,
+                                      static_cast<int>(kAtOnce), pen.scale);
   for (int team = 0; team < 2; ++team) {
     const auto t = static_cast<std::size_t>(team);
-    const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 24.0f
-                                                      : pen.half_width - 24.0f - width;
-    const float end = top + 46.0f + rows * (height + between);
+    const bool at_left = (team == 0) == pen.left_is_team_0;
+    const float x = at_left ? -pen.half_width + 24.0f : pen.half_width - 24.0f - width;
+    const float end = top + header + rows.chosen + rows.other * static_cast<float>(shown - 1);
     const int chosen = std::min<int>(state.character[t], count - 1);
     const int first = std::clamp(chosen - kAtOnce / 2, 0, count - shown);
-    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 56.0f}, 16.0f, kVeil);
+    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + footer}, 16.0f, kVeil);
     pen.text(named_team(t), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
              kTeamInk[t], 0.55f, width - 70.0f);
     if (team == viewer_team)
       pen.text(tr("you"), {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, top + 34.0f},
                kInk);
-    for (int row = 0; row < shown; ++row) {
-      draw_character(pen, characters, first + row, team,
-                     {x, top + 46.0f + (height + between) * static_cast<float>(row)},
-                     {width, height}, chosen == first + row);
+    float y = top + header;
+    for (int one = first; one < first + shown; ++one) {
+      const float height = one == chosen ? rows.chosen : rows.other;
+      draw_character(pen, characters, one, team, {x, y}, {width, height - kBetweenRows},
+                     one == chosen);
+      y += height;
     }
-    const foosball::Character& one = foosball::nearest(characters, chosen);
-    pen.text(capitalised(tr(one.specialty.c_str())), {Face::regular, 13.5f, 0.0f, Align::centre},
-             {x + 0.5f * width, end + 16.0f}, kInk, 0.55f, width);
+    draw_specialty(pen, foosball::nearest(characters, chosen), x + 0.5f * width, end, width);
     constexpr float kPortrait = 168.0f;
-    const bool at_left = (team == 0) == pen.left_is_team_0;
     const float inner = at_left ? x + width + 26.0f : x - 26.0f - kPortrait;
     if (pen.half_width - 62.0f - width > kPortrait) {
       draw_chosen(pen, chosen, team, {inner, top}, kPortrait);
     }
     if (count > shown) {
       const std::string place = std::to_string(chosen + 1) + " / " + std::to_string(count);
-      pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 40.0f}, kFaint);
+      pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 61.0f}, kFaint);
     }
     const char* status = state.confirmed[t] ? tr("READY") : tr("choosing ...");
-    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 41.0f},
+    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 62.0f},
              state.confirmed[t] ? kTeamInk[t] : kFaint, 0.55f, width);
   }
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/match_story.h"
 #include "foosball/character.h"
@@ -37,6 +38,9 @@ class HudPen {
   // In units; a line wider than max_width (the region's, if 0) is written smaller.
   void text(std::string_view utf8, TextStyle style, const glm::vec2& at, const Colour& colour,
             float glow = 0.55f, float max_width = 0.0f) const;
+  // Words into lines that fit, at spaces.
+  std::vector<std::string> wrapped(const std::string& text, const TextStyle& style,
+                                   float room) const;
   void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
              float outline = 0.0f) const;
   void picture(int column, int row, const glm::vec2& low, const glm::vec2& high) const;
