@@ -12,6 +12,7 @@
 #include "client/menu.h"
 #include "draw/image.h"
 #include "render/hud.h"
+#include "render/hud_replay.h"
 #include "render/scene.h"
 #include "render/translate.h"
 #include "scripted_scene.h"
@@ -444,6 +445,45 @@ TEST_P(RenderTest, TheKeysOfTheSelectionCoverNobodysChoice) {
     }
   }
   use_language("en", CLIENT_CATALOGUES);
+}
+
+// Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
+// the date, the mark of what is kept, or the window's edge.
+TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  UiBatch words = UiBatch::create(Font::load().value()).value();
+  ReplayList list;
+  list.rows.resize(1);
+  list.show_keys = false;
+  ReplayList::Row& row = list.rows[0];
+  row.when = "2026-11-25 10:31";
+  row.kept = true;
+  row.seconds = 754.0;
+  const auto drawn = [&](const char* name, const glm::ivec2& size) {
+    row.players = {name, name};
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, size.x, size.y);
+    glClear(GL_COLOR_BUFFER_BIT);
+    draw_replay_list(words, list, size);
+    return draw::read_pixels(size);
+  };
+  for (const glm::ivec2 size : {glm::ivec2(480, 540), glm::ivec2(640, 360), kSize}) {
+    const draw::Image blank = drawn(" ", size);
+    const auto name =
+        added(blank, drawn("H H H H H H H H H H H H H H H H H H H H H H H H H", size), size);
+    ASSERT_FALSE(name.empty());
+    const auto place = replay_list_layout(size).rows;
+    int low = size.y, high = 0, over = 0;
+    for (const glm::ivec2& p : name) {
+      low = std::min(low, p.y);
+      high = std::max(high, p.y);
+      const glm::ivec3 before = blank.at(p.x, p.y);
+      over += before.r + before.g + before.b > 240;
+      EXPECT_TRUE(place.holds(p)) << p.x << " " << p.y;
+    }
+    EXPECT_GE(high - low + 1, 8) << size.x << "x" << size.y;  // a capital of 11 px is 8 high
+    EXPECT_EQ(over, 0) << size.x << "x" << size.y;
+  }
 }
 
 // Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
