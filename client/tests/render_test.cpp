@@ -487,6 +487,25 @@ TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
 }
 
 // Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
+TEST_P(RenderTest, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
+  wire::Snapshot state = scripted_play(0.35), held = state, recorded = state;
+  held.rods[3].status = recorded.rods[3].status = number(wire::RodStatus::held);
+  recorded.rods[3].source = number(wire::RodSource::replay);
+  const glm::ivec2 small{640, 360};
+  camera = player_camera({}, small);
+  const draw::Image plain = written(*ui, state, {}, small);
+  EXPECT_TRUE(added(plain, written(*ui, recorded, {}, small), small).empty());
+  int low = small.y, high = 0;
+  const draw::Image said = written(*ui, held, {}, small);
+  for (const glm::ivec2& p : added(plain, said, small)) {
+    const glm::ivec3 c = said.at(p.x, p.y);
+    if (c.r < 200) continue;  // the letters, not their panel
+    low = std::min(low, p.y);
+    high = std::max(high, p.y);
+  }
+  EXPECT_GE(high - low + 1, 7);  // capitals of a line of 10 px
+}
+
 // for longer than 0.3 s, in any view that is meant for play.
 TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {
   if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the same places are left out";

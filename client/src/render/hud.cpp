@@ -8,6 +8,7 @@
 
 #include "foosball/table.h"
 #include "render/hud_screens.h"
+#include "render/scene.h"
 #include "render/sentences.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
@@ -114,21 +115,24 @@ float lower_room(const HudState& hud) {
 }
 
 // Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
-void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+void draw_held_rods(const HudPen& whole, const HudState& hud, const glm::ivec2& screen) {
+  const HudPen pen = whole.readable(0.85f, 200.0f);
+  const TextStyle style{Face::bold, 13.0f, 0.06f, Align::centre};
+  const float half = 0.5f * pen.width(tr("HELD"), style) + 8.0f;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(hud.state->layout));
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const auto r = static_cast<std::size_t>(rod);
-    const auto& driven = hud.state->rods[r];
-    if (driven.status != number(wire::RodStatus::held)) continue;
+    if (!rod_is_held(hud.state->rods[r])) continue;
     const float y = hud.state->rods[r].slide + 0.9f * handle_offset(table, rod);
     const glm::vec3 p = hud.camera.project(
         {static_cast<float>(table.rods[r].x), y, static_cast<float>(table.rod_height)}, screen);
+    const float side = (half + 19.0f) * pen.scale;
     const glm::vec2 at = pen.from_pixels(
-        {std::clamp(p.x, 50.0f * pen.scale, static_cast<float>(screen.x) - 50.0f * pen.scale),
+        {std::clamp(p.x, side, std::max(static_cast<float>(screen.x) - side, side)),
          std::clamp(p.y, 100.0f * pen.scale, static_cast<float>(screen.y) - 60.0f * pen.scale)});
-    pen.panel(at + glm::vec2(-31, -12), at + glm::vec2(31, 11), 6.0f, {0.22f, 0.15f, 0.02f, 0.88f});
-    pen.text(tr("HELD"), {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning,
-             0.55f, 58.0f);
+    pen.panel(at + glm::vec2(-half, -12), at + glm::vec2(half, 11), 6.0f,
+              {0.22f, 0.15f, 0.02f, 0.88f});
+    pen.text(tr("HELD"), style, at + glm::vec2(0, 5), kWarning);
   }
 }
 

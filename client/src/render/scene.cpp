@@ -69,6 +69,11 @@ bool ball_is_seen(const wire::Snapshot& state) {
   return state.ball_in_play || state.ball_visible;
 }
 
+bool rod_is_held(const wire::RodSnapshot& rod) {
+  return rod.status == number(wire::RodStatus::held) &&
+         rod.source != number(wire::RodSource::replay);
+}
+
 void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift) {
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
   for (wire::ManState& man : state.men)
@@ -209,9 +214,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   const auto rod_glow = [&](std::size_t rod) { return glow(rod) > 0.0f ? 1.0f + glow(rod) : 0.0f; };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
-    const bool held = state.rods[rod].status == number(wire::RodStatus::held) &&
-                      state.rods[rod].source != number(wire::RodSource::replay);
-    return held ? glm::mix(team, kHeldColour, 0.35f) : team;
+    return rod_is_held(state.rods[rod]) ? glm::mix(team, kHeldColour, 0.35f) : team;
   };
   for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
     const foosball::RodSpec& spec = table_->rods[rod];

@@ -42,6 +42,10 @@ void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift);
 // A scored ball lies in the goal until the next serve, a ball out of play is nowhere.
 bool ball_is_seen(const wire::Snapshot& state);
 
+// Its hand is gone: a warning for those who play. A recording does not have who drives a rod, and
+// a computer's two hands let go of the others all the time.
+bool rod_is_held(const wire::RodSnapshot& rod);
+
 class Scene {
  public:
   // Needs a current OpenGL ES 3.0 context. The error is a sentence.
