@@ -44,6 +44,7 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"pause", 3.3, 2, 0},
                            {"help", 4.6, 2, 1},
                            {"settings", 4.6, 2, 0},
+                           {"paper", 1.62, 2, 0},
                            {"mouse-free", 0.35, 2, 0},
                            {"selection-mouse-free", 1.0, 1, 0},
                            {"above-mouse-free", 1.62, 2, 0, View::above},
@@ -175,7 +176,9 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
               1e3 * (font_done - scene_done));
   for (const Shot& shot : kShots) {
     if (!std::string_view(shot.name).starts_with(only)) continue;
-    wire::Snapshot state = scripted_play(shot.seconds);
+    const bool paper = std::string_view(shot.name).starts_with("paper");
+    wire::Snapshot state =
+        scripted_play(shot.seconds, paper ? foosball::Layout::paper : foosball::Layout::tournament);
     state.screen = shot.screen;
     state.ball_in_play = shot.screen == 2;
     state.confirmed = {true, false};
@@ -214,6 +217,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     hud.viewer_team = shot.team;
     hud.active_rods = view.active_rods;
     hud.view = shot.view;
+    hud.rods = view.rods;
     hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .own_goal = false, .speed = 7.4f};
     if (name == "above-ceremony")
       hud.goal = {.team = 0, .scorer_rod = 6, .scorer_man = 0, .own_goal = true, .speed = 2.1f};

@@ -14,6 +14,7 @@
 #include "render/hud.h"
 #include "render/hud_replay.h"
 #include "render/scene.h"
+#include "render/table_mesh.h"
 #include "render/translate.h"
 #include "scripted_scene.h"
 
@@ -486,7 +487,6 @@ TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
   }
 }
 
-// Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
 TEST_P(RenderTest, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
   wire::Snapshot state = scripted_play(0.35), held = state, recorded = state;
   held.rods[3].status = recorded.rods[3].status = number(wire::RodStatus::held);
@@ -506,6 +506,7 @@ TEST_P(RenderTest, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
   EXPECT_GE(high - low + 1, 7);  // capitals of a line of 10 px
 }
 
+// Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
 // for longer than 0.3 s, in any view that is meant for play.
 TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {
   if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the same places are left out";
@@ -583,6 +584,20 @@ TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
     EXPECT_GT(changed(image, empty, at, 14), 40)
         << "rod " << int{man.rod} << " man " << int{man.man};
   }
+}
+
+// Of the paper's layout unless asked for: there is no handle to be marked.
+TEST_P(RenderTest, WhereNoRodsAreDrawnNoHandleIsMarked) {
+  const wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);
+  const auto& table = foosball::table_spec(foosball::Layout::paper);
+  const glm::ivec2 handle =
+      pixel_of({static_cast<float>(table.rods[3].x), handle_offset(table, 3) + state.rods[3].slide,
+                static_cast<float>(table.rod_height)});
+  HudState plain, marked;
+  marked.active_rods = 1u << 3;
+  EXPECT_EQ(changed(written(state, plain), written(state, marked), handle, 12), 0);
+  marked.rods = RodsShown::on;
+  EXPECT_GT(changed(written(state, plain), written(state, marked), handle, 12), 40);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothQualities, RenderTest,

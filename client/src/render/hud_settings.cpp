@@ -129,6 +129,7 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const g
     const auto& at = man.body.position;
     mark("\u25BC", {at[0], at[1], at[2] + (above ? 0.0f : 0.085f)}, above ? 17.0f : 19.0f, kSignal);
   }
+  if (!rods_are_drawn(hud.rods, table.layout)) return;  // there is no handle
   const float x = static_cast<float>(spec.x) + hud.rod_shift[rod],
               z = static_cast<float>(table.rod_height);
   const float end =

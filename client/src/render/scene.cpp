@@ -182,7 +182,8 @@ void Scene::use_layout(foosball::Layout layout) {
   const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
   body_mesh_ = GpuMesh(body_mesh(table, detail));
   rim_mesh_ = GpuMesh(rim_mesh(table, detail));
-  for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_})
+  bearings_mesh_ = GpuMesh(bearings_mesh(table, detail));
+  for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_, &bearings_mesh_})
     mesh->set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
   glass_mesh_ = GpuMesh(glass_mesh(table));
   field_mesh_ = GpuMesh(field_mesh(table));
@@ -241,6 +242,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
 void Scene::draw_standing() const {
   rim_mesh_.draw();
   if (rods_drawn_) {
+    bearings_mesh_.draw();
     for (const GpuMesh& rod : rod_meshes_) rod.draw();
   }
   for (const GpuMesh& figures : figure_meshes_) figures.draw();

@@ -106,7 +106,7 @@ class Scene {
   draw::ShadowTarget shadow_;
   glm::mat4 light_matrix_{1.0f};
   std::optional<draw::Target> portraits_;
-  GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
+  GpuMesh body_mesh_, rim_mesh_, bearings_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
   foosball::Characters characters_ = foosball::built_in_characters();
   std::vector<GpuMesh> figure_meshes_;  // by team, then character
