@@ -10,6 +10,7 @@
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 #include "render/hud.h"
+#include "render/sentences.h"
 #include "render/translate.h"
 
 namespace client {
@@ -442,8 +443,8 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
     const Colour& ink = i == 0 ? kWarning : kInk;
     pen.text(std::to_string(i + 1), {Face::bold, 15.0f, 0.0f, Align::right}, {-half + 34.0f, line},
              kFaint);
-    pen.text(fame[i].name, {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line}, ink,
-             0.55f, 210.0f);
+    pen.text(tr_player(fame[i].name), {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line},
+             ink, 0.55f, 210.0f);
     const std::string won = std::to_string(fame[i].wins) + " / " + std::to_string(fame[i].matches);
     pen.text(won, {Face::regular, 14.0f, 0.0f, Align::right}, {half - 100.0f, line}, kFaint, 0.55f,
              130.0f);

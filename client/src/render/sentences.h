@@ -11,4 +11,8 @@ namespace client {
 // part of it: they are kept as they are.
 std::string tr_sentence(const std::string& english);
 
+// Who played, as results have it: a person's name as it is, "computer 4:gambler" and the like in
+// the language in use.
+std::string tr_player(const std::string& name);
+
 }  // namespace client
