@@ -448,6 +448,30 @@ TEST_P(RenderTest, TheKeysOfTheSelectionCoverNobodysChoice) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
+TEST_P(RenderTest, TheKeysCanBeReadInANarrowWindow) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  constexpr glm::ivec2 kNarrow{480, 540};
+  const wire::Snapshot state = scripted_play(0.35);
+  for (const char* language : {"en", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    HudState asked;
+    asked.viewer_team = 0;
+    asked.show_help = true;
+    const draw::Image image = written(words, state, asked, kNarrow);
+    // From below, the first letters are those of "Esc".
+    int high = 0;
+    for (int y = kNarrow.y - 1; y > kNarrow.y / 2; --y) {
+      bool letters = false;
+      for (int x = 0; x < kNarrow.x / 2; ++x) letters = letters || image.at(x, y).r > 190;
+      if (!letters && high > 0) break;
+      high += letters;
+    }
+    EXPECT_GE(high, 7) << language;  // a capital of a line of 10 px
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
 // Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
 // the date, the mark of what is kept, or the window's edge.
 TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {

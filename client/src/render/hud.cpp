@@ -38,12 +38,13 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     const std::string score = std::to_string(state.score[t]);
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
+    const TextStyle small{Face::regular, 11.5f, 0.01f, Align::centre};
+    const bool crew = small.size * pen.scale >= kLeastRead;
     pen.text(std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]),
-             {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + 31.0f}, kTeamInk[t],
-             0.55f, 108.0f);
+             {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + (crew ? 31.0f : 37.0f)},
+             kTeamInk[t], 0.55f, 108.0f);
     const std::string& name = foosball::nearest(*hud.characters, state.character[t]).name;
-    pen.text(tr(name.c_str()), {Face::regular, 11.5f, 0.01f, Align::centre},
-             {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
+    if (crew) pen.text(tr(name.c_str()), small, {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
   if (state.sets[0] + state.sets[1] > 0) {
     const std::size_t left = pen.left_is_team_0 ? 0 : 1;
@@ -154,11 +155,12 @@ float draw_help(const HudPen& pen, const HudState& hud) {
 
 // On the logo who plays best, below its title; where there is no room beside the keys, by turns.
 float draw_logo_panels(const HudPen& pen, const HudState& hud) {
-  constexpr float kBelowTitle = 262.0f, kKeysAtMost = 240.0f, kTurn = 7.0f;  // units, [s]
+  constexpr float kBelowTitle = 262.0f, kTurn = 7.0f;  // units, [s]
   const bool logo = hud.state != nullptr && hud.state->screen == number(wire::Screen::logo);
   if (!logo || hud.fame.empty() || hud.show_help) return draw_help(pen, hud);
   const bool keys = hud.viewer_team >= 0;
-  const float room = pen.bottom - (keys ? kKeysAtMost : 0.0f) - kBelowTitle - 10.0f;
+  const float taken = keys ? all_keys_height(pen, pen.bottom - logo_height(pen)) : 0.0f;
+  const float room = pen.bottom - taken - kBelowTitle - 10.0f;
   std::size_t players = hud.fame.size();
   while (players > 3 && fame_height(players) > room) --players;
   if (fame_height(players) <= room) {
@@ -175,9 +177,10 @@ float draw_logo_panels(const HudPen& pen, const HudState& hud) {
 }
 
 void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
-  float y = pen.bottom - 22.0f - room_below;
+  constexpr float kHighest = 22.0f;  // its panel is then at the upper edge
+  float y = std::max(pen.bottom - 22.0f - room_below, kHighest);
   const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
-  for (std::size_t i = 0; i < shown; ++i) {
+  for (std::size_t i = 0; i < shown && y >= kHighest; ++i) {
     const std::string text = tr_sentence(hud.notices[hud.notices.size() - 1 - i]);
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
     const float half = std::min(0.5f * pen.width(text, style) + 16.0f, pen.half_width - 4.0f);

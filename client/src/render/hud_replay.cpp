@@ -37,9 +37,9 @@ struct Pen {
   // A name: smaller only as far as it can be read, then cut.
   void name(std::string text, float size, Align align, const glm::vec2& at, const Colour& colour,
             float room, Face face = Face::regular) const {
-    constexpr float kLeastRead = 11.0f;  // [px] of a letter's size
+    constexpr float kLeastName = 11.0f;  // [px] of a letter's size
     const float wide = width(text, size, face);
-    if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastRead / scale));
+    if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastName / scale));
     if (width(text, size, face) > room) {
       const auto shortened = [&] { return text + "\u2026"; };
       while (!text.empty() && width(shortened(), size, face) > room) {

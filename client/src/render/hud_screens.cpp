@@ -19,8 +19,6 @@ namespace {
 
 const Colour kVeil{0.01f, 0.015f, 0.03f, 0.42f};  // lets a screen's words stand out from the table
 
-constexpr float kLeastRead = 8.0f;  // [px] of a letter's size: smaller ones are smears
-
 struct KeyHelp {
   const char* keys;
   const char* meaning;
@@ -187,35 +185,79 @@ std::string line_name(int layout, int rod) {
   return tr(kLines[static_cast<std::size_t>(spec.line)]);
 }
 
-// In two columns where there is room, else in one; smaller where even that is too wide.
-float draw_all_keys(const HudPen& whole, float room) {
-  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
-  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
+namespace {
+
+// All keys, as they fit: in so many columns, with how much room they take.
+struct KeysLayout {
+  HudPen pen;
+  std::size_t columns, rows;
+  float half, height;
+  bool readable;  // else a line says less
+  float taken() const { return height + 18.0f; }
+};
+
+constexpr float kBetweenColumns = 34.0f;
+
+struct KeyColumn {
   float keys = 0.0f, meaning = 0.0f;
+  float width() const { return keys + 14.0f + meaning; }
+};
+
+KeyColumn key_column(const HudPen& pen) {
+  KeyColumn column;
   for (const KeyHelp& key : kAllKeys) {
-    keys = std::max(keys, whole.width(tr(key.keys), bold));
-    meaning = std::max(meaning, whole.width(tr(key.meaning), regular));
+    column.keys = std::max(column.keys, pen.width(tr(key.keys), kKeyStyle));
+    column.meaning = std::max(column.meaning, pen.width(tr(key.meaning), kMeaningStyle));
   }
-  const float column = keys + 14.0f + meaning, between = 34.0f;
-  const bool two = whole.half_width > column + 0.5f * between + 26.0f;
-  const std::size_t columns = two ? 2 : 1, rows = (kAllKeys.size() + columns - 1) / columns;
-  const float half = 0.5f * (two ? 2.0f * column + between : column) + 24.0f;
+  return column;
+}
+
+KeysLayout keys_in(std::size_t columns, const HudPen& whole, float room) {
+  const std::size_t rows = (kAllKeys.size() + columns - 1) / columns;
+  const float column = key_column(whole).width();
+  const float half = 0.5f * (columns == 2 ? 2.0f * column + kBetweenColumns : column) + 24.0f;
   const float height = 26.0f * static_cast<float>(rows) + 26.0f;
-  const float taken = height + 18.0f, fits = std::min(whole.bottom, room) / whole.bottom;
-  const HudPen pen = whole.fitting(half + 4.0f, (fits < 1.0f ? taken : height + 40.0f) / fits);
+  const HudPen large = columns == 1 ? whole.readable(0.8f, half + 4.0f) : whole;
+  const float fits = std::min(large.bottom, room * whole.scale / large.scale) / large.bottom;
+  const HudPen pen =
+      large.fitting(half + 4.0f, (fits < 0.999f ? height + 18.0f : height + 40.0f) / fits);
   const HudPen alone = whole.fitting(half + 4.0f, height + 40.0f);
   constexpr float kSmallest = 0.85f;  // of its size without such a bound; below, it is hard to read
-  if (pen.scale < kSmallest * alone.scale) return draw_key_line(whole, kLogoKeys);
-  const float top = pen.bottom - taken;
-  pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
+  return {pen, columns, rows, half, height, pen.scale >= kSmallest * alone.scale};
+}
+
+// In two columns where there is room, else in one, as where one can be clearly larger.
+KeysLayout keys_layout(const HudPen& whole, float room) {
+  const KeysLayout one = keys_in(1, whole, room);
+  if (whole.half_width <= key_column(whole).width() + 0.5f * kBetweenColumns + 26.0f) return one;
+  const KeysLayout two = keys_in(2, whole, room);
+  return one.readable && one.pen.scale > 1.15f * two.pen.scale ? one : two;
+}
+
+}  // namespace
+
+float all_keys_height(const HudPen& whole, float room) {
+  const KeysLayout layout = keys_layout(whole, room);
+  if (!layout.readable) return key_line_height(whole, kLogoKeys);
+  return layout.taken() * layout.pen.scale / whole.scale;
+}
+
+float draw_all_keys(const HudPen& whole, float room) {
+  const KeysLayout layout = keys_layout(whole, room);
+  if (!layout.readable) return draw_key_line(whole, kLogoKeys);
+  const HudPen& pen = layout.pen;
+  const KeyColumn column = key_column(pen);
+  const float half = layout.half, top = pen.bottom - layout.taken();
+  pen.panel({-half, top}, {half, top + layout.height}, 14.0f,
+            {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
-    const float x = -half + 24.0f + (i % columns == 0 ? 0.0f : column + between);
-    const std::size_t row = i / columns;
-    const float y = top + 31.0f + 26.0f * static_cast<float>(row);
-    pen.text(tr(kAllKeys[i].keys), bold, {x, y}, kInk);
-    pen.text(tr(kAllKeys[i].meaning), regular, {x + keys + 14.0f, y}, kFaint);
+    const std::size_t row = i / layout.columns;
+    const float right = i % layout.columns == 0 ? 0.0f : column.width() + kBetweenColumns;
+    const float x = -half + 24.0f + right, y = top + 31.0f + 26.0f * static_cast<float>(row);
+    pen.text(tr(kAllKeys[i].keys), kKeyStyle, {x, y}, kInk);
+    pen.text(tr(kAllKeys[i].meaning), kMeaningStyle, {x + column.keys + 14.0f, y}, kFaint);
   }
-  return (height + 18.0f) * pen.scale / whole.scale;
+  return layout.taken() * pen.scale / whole.scale;
 }
 
 float draw_keys_of_selection(const HudPen& pen) {

@@ -21,6 +21,7 @@ inline const Colour kWarning{1.0f, 0.80f, 0.36f, 1.0f};
 inline const Colour kPanel{0.030f, 0.045f, 0.070f, 0.74f};
 inline const std::array<Colour, 2> kTeamInk{Colour{1.0f, 0.60f, 0.22f, 1.0f},
                                             Colour{0.42f, 0.74f, 1.0f, 1.0f}};
+inline constexpr float kLeastRead = 8.0f;  // [px] of a letter's size: smaller ones are smears
 // Beside a team's name: told apart without colours.
 inline constexpr std::array<const char*, 2> kTeamMark{"●", "▲"};
 
@@ -90,6 +91,7 @@ std::string line_name(int layout, int rod);
 // What the keys do, at the bottom of the screen; how high it stands.
 // room: from the bottom up; where it is too small to read all of them, a line says what they are.
 float draw_all_keys(const HudPen& pen, float room);
+float all_keys_height(const HudPen& pen, float room);
 float draw_keys_of_selection(const HudPen& pen);
 // below: what stands under it.
 float draw_keys_of_pause(const HudPen& pen, float below);
