@@ -472,6 +472,25 @@ TEST_P(RenderTest, TheKeysCanBeReadInANarrowWindow) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
+TEST_P(RenderTest, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFieldFromAbove) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  const wire::Snapshot state = scripted_play(0.35);
+  wire::Snapshot scored = state;
+  scored.score = {7, 8};
+  HudState plain, menu;
+  menu.menu.title = "Settings";
+  menu.menu.rows.resize(3);
+  EXPECT_FALSE(added(written(state, plain), written(scored, plain), kSize).empty());
+  EXPECT_TRUE(added(written(state, menu), written(scored, menu), kSize).empty());
+  HudState one, three;
+  one.view = three.view = View::above;
+  one.notices = {"the newest"};
+  three.notices = {"a first sentence", "a second one", "the newest"};
+  EXPECT_TRUE(added(written(state, one), written(state, three), kSize).empty());
+  one.view = three.view = View::seat;
+  EXPECT_FALSE(added(written(state, one), written(state, three), kSize).empty());
+}
+
 // Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
 // the date, the mark of what is kept, or the window's edge.
 TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {

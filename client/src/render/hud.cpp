@@ -179,7 +179,9 @@ float draw_logo_panels(const HudPen& pen, const HudState& hud) {
 void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   constexpr float kHighest = 22.0f;  // its panel is then at the upper edge
   float y = std::max(pen.bottom - 22.0f - room_below, kHighest);
-  const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
+  // From above they lie over the field: the newest alone.
+  const std::size_t most = hud.view == View::above ? 1 : 3;
+  const std::size_t shown = std::min(hud.notices.size(), most);
   for (std::size_t i = 0; i < shown && y >= kHighest; ++i) {
     const std::string text = tr_sentence(hud.notices[hud.notices.size() - 1 - i]);
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
@@ -305,7 +307,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_end(pen, state, hud.statistics, hud.report);
       break;
   }
-  draw_score(pen, hud, above);
+  if (hud.menu.rows.empty()) draw_score(pen, hud, above);  // a menu would stand half over it
   if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) draw_rules_line(pen, hud, above);
   if (!above) draw_held_rods(pen, hud, screen);
   if (state.paused) draw_paused(pen);
