@@ -38,8 +38,9 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     const std::string score = std::to_string(state.score[t]);
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
-    const TextStyle small{Face::regular, 11.5f, 0.01f, Align::centre};
-    const bool crew = small.size * pen.scale >= kLeastRead;
+    const TextStyle small{Face::regular, std::max(11.5f, kLeastRead / pen.scale), 0.01f,
+                          Align::centre};
+    const bool crew = small.size <= 13.0f;  // larger ones have no room
     pen.text(std::string(kTeamMark[t]).append(" ").append(kTeamNames[t]),
              {Face::bold, 18.0f, 0.06f, Align::centre}, {side * 137.0f, y + (crew ? 31.0f : 37.0f)},
              kTeamInk[t], 0.55f, 108.0f);
