@@ -629,6 +629,37 @@ TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
   }
 }
 
+TEST_P(RenderTest, FromAboveTheHeadOfAnUprightManIsOfHisTeamsColour) {
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  camera = above_camera(table, 0, kSize);
+  const auto characters = static_cast<std::uint8_t>(foosball::built_in_characters().size());
+  for (std::uint8_t character = 0; character < characters; ++character) {
+    wire::Snapshot state = scripted_play(0.35);
+    state.ball_in_play = false;
+    state.character = {character, character};
+    for (auto& rod : state.rods) rod.slide = rod.angle = 0.0f;
+    place_men(state);
+    const draw::Image image = draw(state);
+    std::array<int, 2> of_team{}, pixels{};
+    for (const wire::ManState& man : state.men) {
+      const auto team = static_cast<std::size_t>(table.rods[man.rod].team);
+      const glm::ivec2 at = pixel_of(man.body.position);
+      for (int y = at.y - 4; y <= at.y + 4; ++y) {
+        for (int x = at.x - 4; x <= at.x + 4; ++x) {
+          const glm::ivec3 c = image.at(x, y);
+          of_team[team] += team == 0 ? c.r > c.b + 25 : c.b > c.r + 25;
+          ++pixels[team];
+        }
+      }
+    }
+    for (std::size_t team = 0; team < 2; ++team) {
+      const double share = static_cast<double>(of_team[team]) / pixels[team];
+      std::printf("character %d, team %zu: %.0f %%\n", int{character}, team, 100.0 * share);
+      EXPECT_GT(share, 0.5) << int{character} << " of team " << team;
+    }
+  }
+}
+
 // Of the paper's layout unless asked for: there is no handle to be marked.
 TEST_P(RenderTest, WhereNoRodsAreDrawnNoHandleIsMarked) {
   const wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);

@@ -124,10 +124,14 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const g
     pen.text(sign, {Face::bold, size, 0.0f, Align::centre}, place + glm::vec2(0, 0.365f * size),
              colour, 0.0f);
   };
+  constexpr float kBeside = 0.036f;  // [m]
   for (const wire::ManState& man : state.men) {
     if (man.rod != active) continue;
     const auto& at = man.body.position;
-    mark("\u25BC", {at[0], at[1], at[2] + (above ? 0.0f : 0.085f)}, above ? 17.0f : 19.0f, kSignal);
+    // From above beside him, on the rod: his head stays free.
+    const glm::vec3 place =
+        above ? glm::vec3(at[0], at[1] + kBeside, at[2]) : glm::vec3(at[0], at[1], at[2] + 0.085f);
+    mark("\u25BC", place, above ? 17.0f : 19.0f, kSignal);
   }
   if (!rods_are_drawn(hud.rods, table.layout)) return;  // there is no handle
   const float x = static_cast<float>(spec.x) + hud.rod_shift[rod],
