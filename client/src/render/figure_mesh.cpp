@@ -187,8 +187,10 @@ void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
 }
 
-// Hoops of white around chest and thighs: a pattern that needs no colour.
-void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg) {
+// Hoops of white around head, chest and thighs, wide enough for a man of 50 px: a pattern that
+// needs no colour.
+void add_stripes(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
+                 const PartExtent& leg) {
   b.paint({glm::vec3(0.92f), 0.0f, 0.5f, 0.0f, 0.0f});
   const auto hoop = [&](const glm::vec3& centre, const glm::vec2& half, float height) {
     b.loft(std::array{LoftRing{centre - glm::vec3(0, 0, 0.5f * height), half, 2.8f},
@@ -196,12 +198,20 @@ void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg)
            14);
   };
   const float h = 2.0f * torso.half.z;
-  for (const float share : {0.28f, 0.55f, 0.82f}) {
+  constexpr float kWide = 0.0095f;
+  for (const float share : {0.24f, 0.72f}) {
     hoop({torso.centre.x, torso.centre.y, torso.bottom() + share * h},
-         {0.93f * torso.half.x, 0.92f * torso.half.y}, 0.0055f);
+         {0.95f * torso.half.x, 0.94f * torso.half.y}, kWide);
   }
-  hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.3f * leg.half.z},
-       {1.0f * leg.half.x, 1.0f * leg.half.y}, 0.0055f);
+  hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.1f * leg.half.z},
+       {1.02f * leg.half.x, 1.02f * leg.half.y}, kWide);
+  // Above the eyes; the helmet's top stays of the team's colour.
+  const glm::vec3 r = helmet_radii(head);
+  const auto ring = [&](float up, float out) {
+    return LoftRing{
+        {head.centre.x, head.centre.y, head.centre.z + up * r.z}, out * glm::vec2(r.x, r.y), 2.0f};
+  };
+  b.loft(std::array{ring(0.34f, 0.99f), ring(0.66f, 0.80f)}, 16);
 }
 
 void add_legs(MeshBuilder& b, const PartExtent& leg, const PartExtent& torso,
@@ -263,7 +273,7 @@ MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,
   add_torso(b, torso);
   add_arms(b, torso);
   add_head(b, head, torso, look);
-  if (look.stripes) add_stripes(b, torso, leg);
+  if (look.stripes) add_stripes(b, head, torso, leg);
   add_legs(b, leg, torso, foot);
   add_foot(b, foot);
   // The clamp on the rod, as wide as the man, so that no box of the physics is left unseen.
