@@ -500,7 +500,7 @@ TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
   list.rows.resize(1);
   list.show_keys = false;
   ReplayList::Row& row = list.rows[0];
-  row.when = "2026-11-25 10:31";
+  row.when = "2026-11-25  10:31";
   row.kept = true;
   row.seconds = 754.0;
   const auto drawn = [&](const char* name, const glm::ivec2& size) {
@@ -512,6 +512,11 @@ TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
     return draw::read_pixels(size);
   };
   for (const glm::ivec2 size : {glm::ivec2(480, 540), glm::ivec2(640, 360), kSize}) {
+    // A date is written to its last figure.
+    const draw::Image minute = drawn(" ", size);
+    row.when.back() = '7';
+    EXPECT_FALSE(added(minute, drawn(" ", size), size).empty()) << size.x << "x" << size.y;
+    row.when.back() = '1';
     const draw::Image blank = drawn(" ", size);
     const auto name =
         added(blank, drawn("H H H H H H H H H H H H H H H H H H H H H H H H H", size), size);

@@ -40,7 +40,7 @@ struct Pen {
     constexpr float kLeastName = 11.0f;  // [px] of a letter's size
     const float wide = width(text, size, face);
     if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastName / scale));
-    if (width(text, size, face) > room) {
+    if (width(text, size, face) > 1.01f * room) {  // not for a rounding
       const auto shortened = [&] { return text + "\u2026"; };
       while (!text.empty() && width(shortened(), size, face) > room) {
         while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
@@ -358,7 +358,7 @@ std::string player_text(const ReplayList::Row& row, std::size_t team) {
 struct RowPlaces {
   float when, kept, middle, beside_score, side, seconds, state;
 };
-constexpr RowPlaces kInOneLine{0.155f, 0.187f, 0.43f, 0.045f, 0.175f, 0.745f, 0.225f};
+constexpr RowPlaces kInOneLine{0.164f, 0.187f, 0.43f, 0.045f, 0.175f, 0.745f, 0.225f};
 constexpr RowPlaces kInTwoLines{0.36f, 0.41f, 0.50f, 0.065f, 0.42f, 0.60f, 0.36f};
 
 void draw_row(const Pen& pen, const ReplayList::Row& row, const ScreenBox& box, bool chosen,
