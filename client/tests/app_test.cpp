@@ -186,6 +186,21 @@ TEST(Particles, AreManyAndColouredByStrengthMaterialAndTeam) {
   EXPECT_LT(reduced.count(), 40u);
 }
 
+TEST(Particles, AFastBallLeavesATrailWithoutGapsAtThirtyFramesASecond) {
+  constexpr float kRadius = 0.0173f, kFrame = 1.0f / 30.0f;
+  const glm::vec3 velocity{10.0f, 0.0f, 0.0f};
+  Particles particles;
+  for (int frame = 0; frame < 3; ++frame)
+    particles.streak(velocity * (kFrame * static_cast<float>(frame)), velocity, kRadius,
+                     {1, 0.5f, 0}, kFrame);
+  std::vector<float> places;
+  for (const ParticleVertex& v : particles.vertices()) places.push_back(v.position_radius.x);
+  std::ranges::sort(places);
+  ASSERT_GT(places.size(), 3u);
+  for (std::size_t i = 1; i < places.size(); ++i)
+    EXPECT_LT(places[i] - places[i - 1], 0.8f * kRadius);  // a bead's radius
+}
+
 TEST(Particles, DieAndNeverGrowBeyondTheirBound) {
   Particles particles;
   for (int i = 0; i < 100; ++i) particles.celebrate({0, 0, 0}, {1, 1, 1}, 1.0f);

@@ -112,8 +112,19 @@ TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
   }
   EXPECT_TRUE(menu.wishes(now).empty());
   const MenuPage page = menu.page(row("gravity"));
-  EXPECT_EQ(page.rows[static_cast<std::size_t>(row("gravity"))].value, "9.5 m/s^2");
+  EXPECT_EQ(page.rows[static_cast<std::size_t>(row("gravity"))].value, "9.5 m/s\u00B2");
   EXPECT_TRUE(page.rows[static_cast<std::size_t>(row("gravity"))].fixed);
+}
+
+TEST_F(TuningPanel, WritesValuesInUnitsThatPeopleRead) {
+  const MenuPage page = menu.page(row("rolling_resistance"));
+  for (const MenuRow& line : page.rows) {
+    if (line.share < 0.0f) continue;
+    EXPECT_EQ(line.value.find("e-"), std::string::npos) << line.label << " " << line.value;
+  }
+  const std::string& value = page.rows[static_cast<std::size_t>(row("rolling_resistance"))].value;
+  EXPECT_TRUE(value.ends_with(" mm")) << value;
+  EXPECT_NE(page.detail.find("[0 .. 2]"), std::string::npos) << page.detail;  // 0.002 m
 }
 
 TEST_F(TuningPanel, SavesLoadsAndResets) {

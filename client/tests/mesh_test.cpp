@@ -169,7 +169,8 @@ TEST(TableMesh, IsClosedAndLeavesTheGoalMouthsOpen) {
   for (const auto layout : {foosball::Layout::paper, foosball::Layout::tournament}) {
     const auto& table = foosball::table_spec(layout);
     const MeshData body = body_mesh(table, 1.0f), mesh = rim_mesh(table, 1.0f);
-    for (const MeshData* part : {&body, &mesh}) {
+    const MeshData bearings = bearings_mesh(table, 1.0f);
+    for (const MeshData* part : {&body, &mesh, &bearings}) {
       expect_sound_triangles(*part);
       expect_closed(*part);
     }
@@ -185,6 +186,20 @@ TEST(TableMesh, IsClosedAndLeavesTheGoalMouthsOpen) {
       EXPECT_FALSE(in_mouth);
     }
   }
+}
+
+// Where no rods are drawn, nothing that carries them stands in the men's way.
+TEST(TableMesh, SideWallsAreLowAndBareWithoutTheirBearings) {
+  const auto& table = foosball::table_spec(foosball::Layout::paper);
+  for (const MeshVertex& v : rim_mesh(table, 1.0f).vertices) {
+    const bool between_ends = std::abs(v.position.x) < 0.5 * table.length - 0.01;
+    if (!between_ends || std::abs(v.position.y) < 0.5 * table.width - 0.001) continue;
+    EXPECT_LT(v.position.z, kSolidWallHeight + 1e-4f);
+  }
+  float high = 0.0f;
+  for (const MeshVertex& v : bearings_mesh(table, 1.0f).vertices)
+    high = std::max(high, v.position.z);
+  EXPECT_GT(high, table.rod_height);
 }
 
 TEST(RodMesh, ReachesThroughBothWallsAtTheEndOfItsSlideWithTheHandleOnItsTeamsSide) {

@@ -1,10 +1,11 @@
 // For whoever works on the picture: draws scripted moments without a server and writes them as PNG.
-//   client_preview DIRECTORY [low|high] [WxH] [en|de|ko] [NAME]
-// NAME: only the moments whose name begins with it.
+//   client_preview DIRECTORY [low|high] [WxH] [en|de|ko] [NAME] [TEXT_SCALE]
+// NAME: only the moments whose name begins with it, all of them if it is empty.
 #include <GLES3/gl3.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <string>
@@ -45,6 +46,11 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"settings", 4.6, 2, 0},
                            {"names", 4.6, 2, 0},
                            {"training", 2.4, 2, 0},
+                           {"paper", 1.62, 2, 0},
+                           {"mouse-free", 0.35, 2, 0},
+                           {"selection-mouse-free", 1.0, 1, 0},
+                           {"above-mouse-free", 1.62, 2, 0, View::above},
+                           {"above-pause", 3.3, 2, 0, View::above},
                            {"above-logo", 0.4, 0, 0, View::above},
                            {"above-selection", 1.0, 1, 0, View::above},
                            {"above-play", 1.62, 2, 0, View::above},
@@ -223,7 +229,7 @@ Camera camera_of(const Shot& shot, const wire::Snapshot& state, const glm::ivec2
 }
 
 int run(const std::string& directory, draw::Quality quality, const glm::ivec2& size,
-        const std::string& language, const std::string& only) {
+        const std::string& language, const std::string& only, float text_scale) {
   auto window = Window::open({.size = size, .title = "preview"});
   if (!window) {
     std::fprintf(stderr, "%s\n", window.error().sentence.c_str());
@@ -249,7 +255,9 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
               1e3 * (font_done - scene_done));
   for (const Shot& shot : kShots) {
     if (!std::string_view(shot.name).starts_with(only)) continue;
-    wire::Snapshot state = scripted_play(shot.seconds);
+    const bool paper = std::string_view(shot.name).starts_with("paper");
+    wire::Snapshot state =
+        scripted_play(shot.seconds, paper ? foosball::Layout::paper : foosball::Layout::tournament);
     state.screen = shot.screen;
     state.ball_in_play = shot.screen == 2;
     state.confirmed = {true, false};
@@ -282,10 +290,13 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
     view.distinct_teams = name.starts_with("distinct");
     HudState hud;
     hud.state = &state;
+    hud.text_scale = text_scale;
+    hud.mouse_free = hud.starving = name.ends_with("mouse-free");
     hud.camera = view.camera;
     hud.viewer_team = shot.team;
     hud.active_rods = view.active_rods;
     hud.view = shot.view;
+    hud.rods = view.rods;
     hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .own_goal = false, .speed = 7.4f};
     if (name == "above-ceremony")
       hud.goal = {.team = 0, .scorer_rod = 6, .scorer_man = 0, .own_goal = true, .speed = 2.1f};
@@ -334,7 +345,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
           std::string(tr("Physics server lost: waiting at")) + " 127.0.0.1:4750";
       hud.connection_detail = "The scene stands as it was last heard.";
     }
-    state.paused = std::strcmp(shot.name, "pause") == 0;
+    state.paused = name.ends_with("pause");
     hud.show_help = std::strcmp(shot.name, "help") == 0;
     if (std::strcmp(shot.name, "held") == 0) hud.notices = {"cabinet unplugged: rods 4, 6 hold"};
     Particles particles;
@@ -382,5 +393,6 @@ int main(int argc, char** argv) {
   glm::ivec2 size{1280, 720};
   if (argc > 3) std::sscanf(argv[3], "%dx%d", &size.x, &size.y);
   return client::run(argc > 1 ? argv[1] : ".", quality, size, argc > 4 ? argv[4] : "en",
-                     argc > 5 ? argv[5] : "");
+                     argc > 5 ? argv[5] : "",
+                     argc > 6 ? static_cast<float>(std::atof(argv[6])) : 1.0f);
 }

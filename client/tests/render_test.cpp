@@ -12,8 +12,10 @@
 #include "client/menu.h"
 #include "draw/image.h"
 #include "render/hud.h"
+#include "render/hud_replay.h"
 #include "render/match_words.h"
 #include "render/scene.h"
+#include "render/table_mesh.h"
 #include "render/translate.h"
 #include "scripted_scene.h"
 #include "wire/sentence.h"
@@ -80,15 +82,20 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
   }
 
   // The HUD alone, over an even grey.
-  draw::Image written(const wire::Snapshot& state, HudState hud) {
+  draw::Image written(const wire::Snapshot& state, const HudState& hud) {
+    return written(*ui, state, hud, kSize);
+  }
+  // In a part of the window that is as large as another window.
+  draw::Image written(UiBatch& words, const wire::Snapshot& state, HudState hud,
+                      const glm::ivec2& size) {
     hud.state = &state;
     hud.camera = camera;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, kSize.x, kSize.y);
+    glViewport(0, 0, size.x, size.y);
     glClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    draw_hud(*ui, hud, kSize);
-    return draw::read_pixels(kSize);
+    draw_hud(words, hud, size);
+    return draw::read_pixels(size);
   }
 
   glm::ivec2 pixel_of(const std::array<float, 3>& p) const {
@@ -411,6 +418,203 @@ TEST_P(RenderTest, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
   }
 }
 
+// Where two pictures differ: what was written more in the second.
+std::vector<glm::ivec2> added(const draw::Image& before, const draw::Image& after,
+                              const glm::ivec2& size) {
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const glm::ivec3 d = glm::abs(before.at(x, y) - after.at(x, y));
+      if (d.r + d.g + d.b > 12) pixels.emplace_back(x, y);
+    }
+  }
+  return pixels;
+}
+
+// Hints, notices and keys are written beside the board, never through it, and from above never over
+// the middle of the table.
+TEST_P(RenderTest, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  for (const char* language : {"en", "de", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    for (const auto& [size, scale] :
+         {std::pair(glm::ivec2(480, 540), 1.0f), std::pair(glm::ivec2(480, 540), 1.6f),
+          std::pair(kSize, 1.6f), std::pair(kSize, 1.0f), std::pair(glm::ivec2(320, 240), 1.0f)}) {
+      for (const View view : {View::seat, View::above}) {
+        wire::Snapshot state = scripted_play(0.35);
+        HudState plain;
+        plain.viewer_team = 0;
+        plain.text_scale = scale;
+        plain.view = view;
+        HudState hints = plain;
+        hints.mouse_free = hints.starving = hints.automatic_rod = true;
+        const draw::Image board = written(words, state, plain, size);
+        const draw::Image all = written(words, state, hints, size);
+        const auto hint = added(board, all, size);
+        EXPECT_GT(hint.size(), 500u) << "the hints are written";
+        // The board alone is on the grey, a little darker than it.
+        int through = 0, mid_table = 0;
+        for (const glm::ivec2& p : hint) {
+          through += board.at(p.x, p.y) != glm::ivec3(board.at(size.x / 2, size.y / 2));
+          mid_table += std::abs(p.y - size.y / 2) < size.y / 8;
+        }
+        EXPECT_EQ(through, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+        if (view == View::above) {
+          EXPECT_EQ(mid_table, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+          // The pause's keys stand above the board too: its figures stay as they are.
+          wire::Snapshot paused = state;
+          paused.paused = true;
+          const draw::Image keys = written(words, paused, plain, size);
+          int over = 0;
+          for (const glm::ivec2& p : added(board, keys, size))
+            over += board.at(p.x, p.y) != glm::ivec3(board.at(size.x / 2, size.y / 2));
+          EXPECT_EQ(over, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+        }
+      }
+    }
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+// At the largest text too, and in high windows the lists use the height.
+TEST_P(RenderTest, TheKeysOfTheSelectionCoverNobodysChoice) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  wire::Snapshot state = scripted_play(1.0), ready = state;
+  state.screen = ready.screen = number(wire::Screen::selection);
+  state.confirmed = {false, false};
+  ready.confirmed = {true, true};
+  for (const char* language : {"en", "de", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    for (const auto& [size, scale] :
+         {std::pair(kSize, 1.0f), std::pair(kSize, 1.6f), std::pair(glm::ivec2(480, 540), 1.6f),
+          std::pair(glm::ivec2(320, 540), 1.0f)}) {
+      HudState watches, plays;
+      watches.recorded = true;  // without keys
+      watches.text_scale = plays.text_scale = scale;
+      plays.viewer_team = 0;
+      const draw::Image without = written(words, state, watches, size);
+      int lowest = 0;
+      for (const glm::ivec2& p : added(without, written(words, ready, watches, size), size))
+        lowest = std::max(lowest, p.y);
+      int covered = 0;
+      const auto more = added(without, written(words, state, plays, size), size);
+      for (const glm::ivec2& p : more) covered += p.y > size.y / 2 && p.y <= lowest;
+      EXPECT_GT(more.size(), 500u);
+      EXPECT_EQ(covered, 0) << language << " " << size.x << "x" << size.y << " " << scale;
+      EXPECT_GT(lowest, 4 * size.y / 5) << language << " " << size.x << "x" << size.y;
+    }
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+TEST_P(RenderTest, TheKeysCanBeReadInANarrowWindow) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  constexpr glm::ivec2 kNarrow{480, 540};
+  const wire::Snapshot state = scripted_play(0.35);
+  for (const char* language : {"en", "ko"}) {
+    use_language(language, CLIENT_CATALOGUES);
+    UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
+    HudState asked;
+    asked.viewer_team = 0;
+    asked.show_help = true;
+    const draw::Image image = written(words, state, asked, kNarrow);
+    // From below, the first letters are those of "Esc".
+    int high = 0;
+    for (int y = kNarrow.y - 1; y > kNarrow.y / 2; --y) {
+      bool letters = false;
+      for (int x = 0; x < kNarrow.x / 2; ++x) letters = letters || image.at(x, y).r > 190;
+      if (!letters && high > 0) break;
+      high += letters;
+    }
+    EXPECT_GE(high, 7) << language;  // a capital of a line of 10 px
+  }
+  use_language("en", CLIENT_CATALOGUES);
+}
+
+TEST_P(RenderTest, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFieldFromAbove) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  const wire::Snapshot state = scripted_play(0.35);
+  wire::Snapshot scored = state;
+  scored.score = {7, 8};
+  HudState plain, menu;
+  menu.menu.title = "Settings";
+  menu.menu.rows.resize(3);
+  EXPECT_FALSE(added(written(state, plain), written(scored, plain), kSize).empty());
+  EXPECT_TRUE(added(written(state, menu), written(scored, menu), kSize).empty());
+  HudState one, three;
+  one.view = three.view = View::above;
+  one.notices = {"the newest"};
+  three.notices = {"a first sentence", "a second one", "the newest"};
+  EXPECT_TRUE(added(written(state, one), written(state, three), kSize).empty());
+  one.view = three.view = View::seat;
+  EXPECT_FALSE(added(written(state, one), written(state, three), kSize).empty());
+}
+
+// Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
+// the date, the mark of what is kept, or the window's edge.
+TEST_P(RenderTest, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
+  if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the words are the same";
+  UiBatch words = UiBatch::create(Font::load().value()).value();
+  ReplayList list;
+  list.rows.resize(1);
+  list.show_keys = false;
+  ReplayList::Row& row = list.rows[0];
+  row.when = "2026-11-25  10:31";
+  row.kept = true;
+  row.seconds = 754.0;
+  const auto drawn = [&](const char* name, const glm::ivec2& size) {
+    row.players = {name, name};
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, size.x, size.y);
+    glClear(GL_COLOR_BUFFER_BIT);
+    draw_replay_list(words, list, size);
+    return draw::read_pixels(size);
+  };
+  for (const glm::ivec2 size : {glm::ivec2(480, 540), glm::ivec2(640, 360), kSize}) {
+    // A date is written to its last figure.
+    const draw::Image minute = drawn(" ", size);
+    row.when.back() = '7';
+    EXPECT_FALSE(added(minute, drawn(" ", size), size).empty()) << size.x << "x" << size.y;
+    row.when.back() = '1';
+    const draw::Image blank = drawn(" ", size);
+    const auto name =
+        added(blank, drawn("H H H H H H H H H H H H H H H H H H H H H H H H H", size), size);
+    ASSERT_FALSE(name.empty());
+    const auto place = replay_list_layout(size).rows;
+    int low = size.y, high = 0, over = 0;
+    for (const glm::ivec2& p : name) {
+      low = std::min(low, p.y);
+      high = std::max(high, p.y);
+      const glm::ivec3 before = blank.at(p.x, p.y);
+      over += before.r + before.g + before.b > 240;
+      EXPECT_TRUE(place.holds(p)) << p.x << " " << p.y;
+    }
+    EXPECT_GE(high - low + 1, 8) << size.x << "x" << size.y;  // a capital of 11 px is 8 high
+    EXPECT_EQ(over, 0) << size.x << "x" << size.y;
+  }
+}
+
+TEST_P(RenderTest, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
+  wire::Snapshot state = scripted_play(0.35), held = state, recorded = state;
+  held.rods[3].status = recorded.rods[3].status = number(wire::RodStatus::held);
+  recorded.rods[3].source = number(wire::RodSource::replay);
+  const glm::ivec2 small{640, 360};
+  camera = player_camera({}, small);
+  const draw::Image plain = written(*ui, state, {}, small);
+  EXPECT_TRUE(added(plain, written(*ui, recorded, {}, small), small).empty());
+  int low = small.y, high = 0;
+  const draw::Image said = written(*ui, held, {}, small);
+  for (const glm::ivec2& p : added(plain, said, small)) {
+    const glm::ivec3 c = said.at(p.x, p.y);
+    if (c.r < 200) continue;  // the letters, not their panel
+    low = std::min(low, p.y);
+    high = std::max(high, p.y);
+  }
+  EXPECT_GE(high - low + 1, 7);  // capitals of a line of 10 px
+}
+
 // Men and rods before the ball let it be seen: over scripted play it is never more than half hidden
 // for longer than 0.3 s, in any view that is meant for play.
 TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {
@@ -489,6 +693,51 @@ TEST_P(RenderTest, ThePaperLayoutHasFourMenOnEachRod) {
     EXPECT_GT(changed(image, empty, at, 14), 40)
         << "rod " << int{man.rod} << " man " << int{man.man};
   }
+}
+
+TEST_P(RenderTest, FromAboveTheHeadOfAnUprightManIsOfHisTeamsColour) {
+  const auto& table = foosball::table_spec(foosball::Layout::tournament);
+  camera = above_camera(table, 0, kSize);
+  const auto characters = static_cast<std::uint8_t>(foosball::built_in_characters().size());
+  for (std::uint8_t character = 0; character < characters; ++character) {
+    wire::Snapshot state = scripted_play(0.35);
+    state.ball_in_play = false;
+    state.character = {character, character};
+    for (auto& rod : state.rods) rod.slide = rod.angle = 0.0f;
+    place_men(state);
+    const draw::Image image = draw(state);
+    std::array<int, 2> of_team{}, pixels{};
+    for (const wire::ManState& man : state.men) {
+      const auto team = static_cast<std::size_t>(table.rods[man.rod].team);
+      const glm::ivec2 at = pixel_of(man.body.position);
+      for (int y = at.y - 4; y <= at.y + 4; ++y) {
+        for (int x = at.x - 4; x <= at.x + 4; ++x) {
+          const glm::ivec3 c = image.at(x, y);
+          of_team[team] += team == 0 ? c.r > c.b + 25 : c.b > c.r + 25;
+          ++pixels[team];
+        }
+      }
+    }
+    for (std::size_t team = 0; team < 2; ++team) {
+      const double share = static_cast<double>(of_team[team]) / pixels[team];
+      std::printf("character %d, team %zu: %.0f %%\n", int{character}, team, 100.0 * share);
+      EXPECT_GT(share, 0.5) << int{character} << " of team " << team;
+    }
+  }
+}
+
+// Of the paper's layout unless asked for: there is no handle to be marked.
+TEST_P(RenderTest, WhereNoRodsAreDrawnNoHandleIsMarked) {
+  const wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);
+  const auto& table = foosball::table_spec(foosball::Layout::paper);
+  const glm::ivec2 handle =
+      pixel_of({static_cast<float>(table.rods[3].x), handle_offset(table, 3) + state.rods[3].slide,
+                static_cast<float>(table.rod_height)});
+  HudState plain, marked;
+  marked.active_rods = 1u << 3;
+  EXPECT_EQ(changed(written(state, plain), written(state, marked), handle, 12), 0);
+  marked.rods = RodsShown::on;
+  EXPECT_GT(changed(written(state, plain), written(state, marked), handle, 12), 40);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothQualities, RenderTest,

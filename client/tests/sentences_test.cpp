@@ -26,6 +26,19 @@ TEST(Sentences, KeepTheWordsOfOthersInATranslation) {
             "geschrieben hat");
 }
 
+TEST(Sentences, CallComputerPlayersInThePersonsLanguageAndPeopleAsTheyAre) {
+  {
+    const Language german("de");
+    EXPECT_EQ(tr_player("computer 4:gambler"), "Computer 4, Zocker");
+    EXPECT_EQ(tr_player("nobody"), "niemand");
+    for (const char* person : {"Annemarie", "computers", "computer 2:person", "wall", ""})
+      EXPECT_EQ(tr_player(person), person);
+  }
+  const Language korean("ko");
+  EXPECT_EQ(tr_player("computer 4:gambler"), "컴퓨터 4, 승부사");
+  EXPECT_EQ(tr_player("computer 2"), "컴퓨터 2");
+}
+
 TEST(Sentences, MayHaveTheirWordsInAnotherOrder) {
   const Language korean("ko");
   EXPECT_EQ(tr_sentence("the computer plays rods 3 for Ann"),

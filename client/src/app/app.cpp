@@ -264,6 +264,7 @@ HudState App::hud(const Camera& camera) {
   hud.automatic_rod = settings_.automatic_rod && hud.viewer_team >= 0;
   hud.active_rods = active_rods();
   hud.view = settings_.view;
+  hud.rods = settings_.rods;
   hud.text_scale = settings_.text_scale;
   hud.still = settings_.reduced_flashes;
   hud.replay = replay_;

@@ -1,9 +1,11 @@
 #include "client/tuning_menu.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 
 #include "client/settings.h"
 #include "profile/tuning_profile.h"
@@ -33,10 +35,32 @@ double stepped(const foosball::TuningField& field, double value, int way) {
   return std::clamp(std::strtod(text, nullptr), field.least, field.most);
 }
 
-std::string number_text(double value, const char* unit) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.5g%s%s", value, *unit == '\0' ? "" : " ", unit);
+// As people write it: in units of which the values are no small fractions.
+struct ShownUnit {
+  std::string_view unit;
+  const char* shown;
+  double factor;
+};
+constexpr std::array<ShownUnit, 4> kShownUnits{{{"m", "mm", 1e3},
+                                                {"kg", "g", 1e3},
+                                                {"kg m^2", "kg cm\u00B2", 1e4},
+                                                {"m/s^2", "m/s\u00B2", 1.0}}};
+
+ShownUnit shown_unit(const char* unit) {
+  const auto* found = std::ranges::find(kShownUnits, std::string_view(unit), &ShownUnit::unit);
+  return found != kShownUnits.end() ? *found : ShownUnit{unit, unit, 1.0};
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
   return text;
+}
+
+std::string value_text(double value, const foosball::TuningField& field) {
+  const ShownUnit unit = shown_unit(field.unit);
+  const std::string number = number_text(value * unit.factor);
+  return *unit.shown == '\0' ? number : number + " " + unit.shown;
 }
 
 float share_of(const foosball::TuningField& field, double value) {
@@ -118,7 +142,7 @@ MenuPage TuningMenu::page(int chosen) const {
   for (const foosball::TuningField& field : foosball::kTuningFields) {
     const double value = now.*field.value, standard = usual.*field.value;
     MenuRow row{.label = field.name,
-                .value = told_ ? number_text(value, field.unit) : "...",
+                .value = told_ ? value_text(value, field) : "...",
                 .translate_value = false,
                 .prefix = value == standard ? "" : "*",
                 .translate_label = false,
@@ -131,8 +155,10 @@ MenuPage TuningMenu::page(int chosen) const {
   if (index >= 0 && index < foosball::kTuningValues) {
     const foosball::TuningField& field = foosball::kTuningFields[static_cast<std::size_t>(index)];
     page.note = field.meaning;
-    page.detail = number_text(usual.*field.value, field.unit) + "  [" +
-                  number_text(field.least, "") + " .. " + number_text(field.most, "") + "]";
+    const double factor = shown_unit(field.unit).factor;
+    page.detail = value_text(usual.*field.value, field) + "  [" +
+                  number_text(factor * field.least) + " .. " + number_text(factor * field.most) +
+                  "]";
   } else if (!may_change_ && chosen != row_save) {
     page.note = N_("Only the host changes the values; you see them as they are.");
   }

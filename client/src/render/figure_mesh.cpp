@@ -14,7 +14,8 @@ using Part = foosball::ManBox::Part;
 const Paint kSuit{glm::vec3(1.0f), 1.0f, 0.48f, 0.0f, 0.0f};
 const Paint kSuitDark{glm::vec3(0.42f), 1.0f, 0.55f, 0.0f, 0.0f};
 const Paint kShell{glm::vec3(0.80f, 0.82f, 0.85f), 0.0f, 0.30f, 0.0f, 0.0f};
-const Paint kHelmet{glm::vec3(0.88f, 0.89f, 0.91f), 0.38f, 0.28f, 0.0f, 0.0f};
+// In the team's colour: it is most of what the view from above has of an upright man.
+const Paint kHelmet{glm::vec3(1.0f), 0.92f, 0.36f, 0.0f, 0.0f};
 const Paint kPack{glm::vec3(0.42f, 0.45f, 0.50f), 0.0f, 0.45f, 0.2f, 0.0f};
 const Paint kVisor{glm::vec3(0.10f, 0.075f, 0.04f), 0.0f, 0.12f, 0.85f, 0.0f};
 const Paint kSteel{glm::vec3(0.55f, 0.57f, 0.60f), 0.0f, 0.30f, 1.0f, 0.0f};
@@ -85,13 +86,18 @@ void add_arms(MeshBuilder& b, const PartExtent& t) {
   }
 }
 
+glm::vec3 helmet_radii(const PartExtent& head) {
+  return {head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
+}
+
+// Light on the helmet, which is of the team's colour.
 void add_crest(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, int crest) {
   const glm::vec2 along =
       crest == 0 ? glm::vec2(0.72f * r.x, 0.22f * r.y) : glm::vec2(0.22f * r.x, 0.85f * r.y);
   const auto ring = [&](float z, float share) {
     return LoftRing{{at.x - 0.1f * r.x, at.y, at.z + z * r.z}, share * along, 2.5f};
   };
-  b.paint(kSuit);  // in the team's colour, seen from above
+  b.paint(kShell);
   b.loft(std::array{ring(0.72f, 1.0f), ring(0.98f, 0.8f), ring(1.07f, 0.5f)}, 12);
 }
 
@@ -123,9 +129,9 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
                8);
       }
       break;
-    case foosball::Headgear::hood:  // falls down the back
-      b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.05f * r.z},
-                  {0.95f * r.x, 1.08f * wide, 1.02f * r.z}, 14, 10);
+    case foosball::Headgear::hood:  // falls down the back; the helmet's top is seen
+      b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.20f * r.z},
+                  {0.95f * r.x, 1.08f * wide, 0.86f * r.z}, 14, 10);
       break;
     case foosball::Headgear::bubble:  // a ring around the glass, and a pompon for who looks down
       b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.15f * r.x, 0.0020f, 14, 6);
@@ -170,9 +176,8 @@ void add_face(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const Fig
 
 void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
               const FigureLook& look) {
-  const glm::vec3 r{head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
-  b.paint(look.headgear == foosball::Headgear::cap ? Paint{look.accent, 0.5f, 0.5f, 0.0f, 0.0f}
-                                                   : kHelmet);
+  const glm::vec3 r = helmet_radii(head);
+  b.paint(kHelmet);
   b.ellipsoid(head.centre, r, 20, 14);
   add_headgear(b, head.centre, r, look);
   add_crest(b, head.centre, r, look.crest);
@@ -182,8 +187,10 @@ void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
 }
 
-// Hoops of white around chest and thighs: a pattern that needs no colour.
-void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg) {
+// Hoops of white around head, chest and thighs, wide enough for a man of 50 px: a pattern that
+// needs no colour.
+void add_stripes(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
+                 const PartExtent& leg) {
   b.paint({glm::vec3(0.92f), 0.0f, 0.5f, 0.0f, 0.0f});
   const auto hoop = [&](const glm::vec3& centre, const glm::vec2& half, float height) {
     b.loft(std::array{LoftRing{centre - glm::vec3(0, 0, 0.5f * height), half, 2.8f},
@@ -191,12 +198,20 @@ void add_stripes(MeshBuilder& b, const PartExtent& torso, const PartExtent& leg)
            14);
   };
   const float h = 2.0f * torso.half.z;
-  for (const float share : {0.28f, 0.55f, 0.82f}) {
+  constexpr float kWide = 0.0095f;
+  for (const float share : {0.24f, 0.72f}) {
     hoop({torso.centre.x, torso.centre.y, torso.bottom() + share * h},
-         {0.93f * torso.half.x, 0.92f * torso.half.y}, 0.0055f);
+         {0.95f * torso.half.x, 0.94f * torso.half.y}, kWide);
   }
-  hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.3f * leg.half.z},
-       {1.0f * leg.half.x, 1.0f * leg.half.y}, 0.0055f);
+  hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.1f * leg.half.z},
+       {1.02f * leg.half.x, 1.02f * leg.half.y}, kWide);
+  // Above the eyes; the helmet's top stays of the team's colour.
+  const glm::vec3 r = helmet_radii(head);
+  const auto ring = [&](float up, float out) {
+    return LoftRing{
+        {head.centre.x, head.centre.y, head.centre.z + up * r.z}, out * glm::vec2(r.x, r.y), 2.0f};
+  };
+  b.loft(std::array{ring(0.34f, 0.99f), ring(0.66f, 0.80f)}, 16);
 }
 
 void add_legs(MeshBuilder& b, const PartExtent& leg, const PartExtent& torso,
@@ -258,7 +273,7 @@ MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,
   add_torso(b, torso);
   add_arms(b, torso);
   add_head(b, head, torso, look);
-  if (look.stripes) add_stripes(b, torso, leg);
+  if (look.stripes) add_stripes(b, head, torso, leg);
   add_legs(b, leg, torso, foot);
   add_foot(b, foot);
   // The clamp on the rod, as wide as the man, so that no box of the physics is left unseen.

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <vector>
 
 #include "foosball/table.h"
 #include "render/hud_screens.h"
 #include "render/match_words.h"
+#include "render/scene.h"
 #include "render/sentences.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
@@ -18,6 +21,14 @@ namespace {
 void draw_possession(const HudPen& pen, const PossessionClock& clock, const glm::vec2& at) {
   pen.text(std::to_string(clock.seconds) + " s", {Face::bold, 23.0f, 0.0f, Align::centre}, at,
            clock.hurries ? kWarning : kInk, 0.55f, 108.0f);
+}
+
+// From the lower edge up, where the board stands there.
+constexpr float kBoardRoom = 74.0f;
+
+// Half of the board's width, and how far it reaches from its edge of the picture.
+glm::vec2 board_size(const HudPen& whole) {
+  return glm::vec2(204.0f, 76.0f) * (whole.fitting(204.0f, 90.0f).scale / whole.scale);
 }
 
 // The board's upper edge is at y.
@@ -36,15 +47,18 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
     const bool counted = possession && possession->team == team;
+    const TextStyle small{Face::regular, std::max(11.5f, kLeastRead / pen.scale), 0.01f,
+                          Align::centre};
+    const bool crew = small.size <= 13.0f;  // larger ones have no room
+    const float name_at = counted ? 23.0f : crew ? 31.0f : 37.0f;
     pen.text(team_with_mark(team), {Face::bold, counted ? 15.0f : 18.0f, 0.06f, Align::centre},
-             {side * 137.0f, y + (counted ? 23.0f : 31.0f)}, kTeamInk[t], 0.55f, 108.0f);
+             {side * 137.0f, y + name_at}, kTeamInk[t], 0.55f, 108.0f);
     if (counted) {
       draw_possession(pen, *possession, {side * 137.0f, y + 49.0f});
       continue;
     }
     const std::string& name = foosball::nearest(*hud.characters, state.character[t]).name;
-    pen.text(tr(name.c_str()), {Face::regular, 11.5f, 0.01f, Align::centre},
-             {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
+    if (crew) pen.text(tr(name.c_str()), small, {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
   // At the end of a match of one set there is nothing to count.
   const int least_sets = state.screen == number(wire::Screen::end) ? 2 : 1;
@@ -79,22 +93,38 @@ void draw_rules_line(const HudPen& whole, const HudState& hud, bool at_the_botto
   pen.text(line, style, {0.0f, y + 19.0f}, kWarning, 0.55f, 2.0f * half - 12.0f);
 }
 
+bool shows_score(const HudState& hud) {
+  return hud.state != nullptr && (hud.state->screen == number(wire::Screen::play) ||
+                                  hud.state->screen == number(wire::Screen::ceremony) ||
+                                  hud.state->screen == number(wire::Screen::end));
+}
+
+// What the board and the rules' line take of the lower edge, where they stand there.
+float lower_room(const HudState& hud) {
+  if (!shows_score(hud) || hud.view != View::above) return 0.0f;
+  const bool play = hud.state->screen == number(wire::Screen::play);
+  return kBoardRoom + (play && !rules_line(hud).empty() ? 30.0f : 0.0f);
+}
+
 // Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
-void draw_held_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+void draw_held_rods(const HudPen& whole, const HudState& hud, const glm::ivec2& screen) {
+  const HudPen pen = whole.readable(0.85f, 200.0f);
+  const TextStyle style{Face::bold, 13.0f, 0.06f, Align::centre};
+  const float half = 0.5f * pen.width(tr("HELD"), style) + 8.0f;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(hud.state->layout));
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const auto r = static_cast<std::size_t>(rod);
-    const auto& driven = hud.state->rods[r];
-    if (driven.status != number(wire::RodStatus::held)) continue;
+    if (!rod_is_held(hud.state->rods[r])) continue;
     const float y = hud.state->rods[r].slide + 0.9f * handle_offset(table, rod);
     const glm::vec3 p = hud.camera.project(
         {static_cast<float>(table.rods[r].x), y, static_cast<float>(table.rod_height)}, screen);
+    const float side = (half + 19.0f) * pen.scale;
     const glm::vec2 at = pen.from_pixels(
-        {std::clamp(p.x, 50.0f * pen.scale, static_cast<float>(screen.x) - 50.0f * pen.scale),
+        {std::clamp(p.x, side, std::max(static_cast<float>(screen.x) - side, side)),
          std::clamp(p.y, 100.0f * pen.scale, static_cast<float>(screen.y) - 60.0f * pen.scale)});
-    pen.panel(at + glm::vec2(-31, -12), at + glm::vec2(31, 11), 6.0f, {0.22f, 0.15f, 0.02f, 0.88f});
-    pen.text(tr("HELD"), {Face::bold, 13.0f, 0.06f, Align::centre}, at + glm::vec2(0, 5), kWarning,
-             0.55f, 58.0f);
+    pen.panel(at + glm::vec2(-half, -12), at + glm::vec2(half, 11), 6.0f,
+              {0.22f, 0.15f, 0.02f, 0.88f});
+    pen.text(tr("HELD"), style, at + glm::vec2(0, 5), kWarning);
   }
 }
 
@@ -128,17 +158,20 @@ float draw_help(const HudPen& pen, const HudState& hud) {
   if (hud.show_help) return draw_all_keys(pen, pen.bottom);
   if (plays && screen == ScreenKind::logo) return draw_all_keys(pen, pen.bottom - logo_height(pen));
   if (plays && screen == ScreenKind::selection) return draw_keys_of_selection(pen);
-  if (plays && screen == ScreenKind::play && hud.state->paused) return draw_keys_of_pause(pen);
+  if (plays && screen == ScreenKind::play && hud.state->paused) {
+    return draw_keys_of_pause(pen, lower_room(hud));
+  }
   return 0.0f;
 }
 
 // On the logo who plays best, below its title; where there is no room beside the keys, by turns.
 float draw_logo_panels(const HudPen& pen, const HudState& hud) {
-  constexpr float kBelowTitle = 262.0f, kKeysAtMost = 240.0f, kTurn = 7.0f;  // units, [s]
+  constexpr float kBelowTitle = 262.0f, kTurn = 7.0f;  // units, [s]
   const bool logo = hud.state != nullptr && hud.state->screen == number(wire::Screen::logo);
   if (!logo || hud.fame.empty() || hud.show_help) return draw_help(pen, hud);
   const bool keys = hud.viewer_team >= 0;
-  const float room = pen.bottom - (keys ? kKeysAtMost : 0.0f) - kBelowTitle - 10.0f;
+  const float taken = keys ? all_keys_height(pen, pen.bottom - logo_height(pen)) : 0.0f;
+  const float room = pen.bottom - taken - kBelowTitle - 10.0f;
   std::size_t players = hud.fame.size();
   while (players > 3 && fame_height(players) > room) --players;
   if (fame_height(players) <= room) {
@@ -155,9 +188,12 @@ float draw_logo_panels(const HudPen& pen, const HudState& hud) {
 }
 
 void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
-  float y = pen.bottom - 22.0f - room_below;
-  const std::size_t shown = std::min<std::size_t>(hud.notices.size(), 3);
-  for (std::size_t i = 0; i < shown; ++i) {
+  constexpr float kHighest = 22.0f;  // its panel is then at the upper edge
+  float y = std::max(pen.bottom - 22.0f - room_below, kHighest);
+  // From above they lie over the field: the newest alone.
+  const std::size_t most = hud.view == View::above ? 1 : 3;
+  const std::size_t shown = std::min(hud.notices.size(), most);
+  for (std::size_t i = 0; i < shown && y >= kHighest; ++i) {
     const std::string text = tr_sentence(hud.notices[hud.notices.size() - 1 - i]);
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};
     const float half = std::min(0.5f * pen.width(text, style) + 16.0f, pen.half_width - 4.0f);
@@ -181,26 +217,86 @@ void draw_connection(const HudPen& whole, const HudState& hud) {
   pen.text(detail, small, {0.0f, y + 30.0f}, kInk);
 }
 
-void draw_corner_texts(const HudPen& pen, const HudState& hud) {
-  const TextStyle small{Face::regular, 13.0f, 0.0f, Align::left};
-  const float x = -pen.half_width + 16.0f;
+// A short line in a corner, or by the board that stands between the corners.
+struct SideLine {
+  std::string text;
+  Colour ink;
+  Align side;
+  int row;  // from the corner
+};
+
+std::vector<SideLine> side_lines(const HudState& hud) {
+  std::vector<SideLine> lines;
   if (hud.fps > 0.0f) {
     char text[32];
     std::snprintf(text, sizeof text, "%.0f fps", static_cast<double>(hud.fps));
-    pen.text(text, {Face::regular, 13.0f, 0.0f, Align::right}, {pen.half_width - 16.0f, 26.0f},
-             kFaint);
+    lines.push_back({text, kFaint, Align::right, 0});
   }
-  if (hud.starving && hud.connection_message.empty()) {
-    pen.text(tr("no news from the physics server"), {Face::regular, 13.0f, 0.0f, Align::right},
-             {pen.half_width - 16.0f, 46.0f}, kWarning);
-  }
+  if (hud.starving && hud.connection_message.empty())
+    lines.push_back({tr("no news from the physics server"), kWarning, Align::right, 1});
   // Who has not joined yet, or is refused, is no watcher.
   if (hud.viewer_team < 0 && hud.connection_message.empty() && !hud.recorded)
-    pen.text(tr("watching"), small, {x, 26.0f}, kFaint);
-  if (hud.automatic_rod) pen.text(tr("automatic rod (Tab)"), small, {x, 26.0f}, kFaint);
+    lines.push_back({tr("watching"), kFaint, Align::left, 0});
+  if (hud.automatic_rod) lines.push_back({tr("automatic rod (Tab)"), kFaint, Align::left, 0});
   if (hud.mouse_free && hud.viewer_team >= 0)
-    pen.text(tr("mouse released: click to play, F1 for the keys, Esc to leave"), small, {x, 46.0f},
-             kFaint);
+    lines.push_back({tr("mouse released: click to play, F1 for the keys, Esc to leave"), kFaint,
+                     Align::left, 1});
+  return lines;
+}
+
+constexpr TextStyle kSideStyle{Face::regular, 13.0f, 0.0f, Align::left};
+
+void draw_in_corner(const HudPen& pen, const SideLine& line, float first_row) {
+  const float edge = pen.half_width - 16.0f, y = first_row + 21.0f * static_cast<float>(line.row);
+  const float wide = pen.width(line.text, kSideStyle);
+  const float left = line.side == Align::left ? -edge : edge - wide;
+  pen.panel({left - 8.0f, y - 15.0f}, {left + wide + 8.0f, y + 5.0f}, 6.0f, kPanel);
+  pen.text(line.text, kSideStyle, {left, y}, line.ink);
+}
+
+// Lines that are too long for the corners, one below the other from y on, or up to it. How high
+// they stand.
+float draw_side_stack(const HudPen& whole, std::span<const SideLine> lines, float y, bool up_to) {
+  if (lines.empty()) return 0.0f;
+  float half = 0.0f;
+  for (const SideLine& line : lines)
+    half = std::max(half, 0.5f * whole.width(line.text, kSideStyle) + 10.0f);
+  const HudPen pen = whole.fitting(half + 4.0f, 1.0f).readable(0.85f, half + 4.0f);
+  const float units = pen.scale / whole.scale;
+  const float height = 23.0f * static_cast<float>(lines.size());
+  float top = y / units - (up_to ? height : 0.0f);
+  for (const SideLine& line : lines) {
+    const float wide = 0.5f * pen.width(line.text, kSideStyle) + 10.0f;
+    pen.panel({-wide, top}, {wide, top + 20.0f}, 6.0f, kPanel);
+    pen.text(line.text, kSideStyle, {10.0f - wide, top + 14.5f}, line.ink);
+    top += 23.0f;
+  }
+  return height * units;
+}
+
+// From above, the upper edge is the middle of the table: there they stand by the board, or above
+// `room_below`. How high from the lower edge all reaches then.
+float draw_side_lines(const HudPen& pen, const HudState& hud, float room_below) {
+  const bool board = shows_score(hud), by_the_board = lower_room(hud) > 0.0f;
+  const bool choosing =
+      hud.state != nullptr && hud.state->screen == number(wire::Screen::selection);
+  const glm::vec2 block = board ? board_size(pen) : selection_title_size(pen);
+  // The logo leaves both corners free.
+  const float between = board || choosing ? block.x : -0.5f * pen.half_width;
+  std::vector<SideLine> stacked;
+  for (SideLine& line : side_lines(hud)) {
+    if (pen.width(line.text, kSideStyle) > pen.half_width - between - 32.0f)
+      stacked.push_back(std::move(line));
+    else
+      draw_in_corner(pen, line, by_the_board ? pen.bottom - 44.0f : 26.0f);
+  }
+  if (by_the_board)
+    return room_below + draw_side_stack(pen, stacked, pen.bottom - room_below, true);
+  // The bands of a goal and of the end leave no room for them, and are soon over.
+  const bool play = board && hud.state->screen == number(wire::Screen::play);
+  const float said = play && !rules_line(hud).empty() ? 38.0f : choosing ? 2.0f : 6.0f;
+  if (!board || play) draw_side_stack(pen, stacked, block.y + said, false);
+  return room_below;
 }
 
 void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
@@ -222,7 +318,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_end(pen, state, end_words(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report);
       break;
   }
-  draw_score(pen, hud, above);
+  if (hud.menu.rows.empty()) draw_score(pen, hud, above);  // a menu would stand half over it
   if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) {
     draw_rules_line(pen, hud, above);
     draw_mode(pen, hud);
@@ -234,12 +330,12 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
 // All that one side of the table reads.
 void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   if (hud.state != nullptr) draw_match(pen, hud, screen);
-  draw_corner_texts(pen, hud);
   // From above each side reads its own.
   const int reader = hud.view != View::above ? -1 : pen.left_is_team_0 ? 0 : 1;
   const float survey_height = draw_survey(pen, hud.survey, reader);
   const float help_height = survey_height > 0.0f ? survey_height : draw_logo_panels(pen, hud);
-  draw_notices(pen, hud, hud.view == View::above ? std::max(help_height, 74.0f) : help_height);
+  const float room_below = std::max(help_height, lower_room(hud));
+  draw_notices(pen, hud, draw_side_lines(pen, hud, room_below));
   if (!hud.connection_message.empty()) draw_connection(pen, hud);
   if (!hud.menu.rows.empty()) draw_menu(pen, hud.menu);
 }

@@ -39,6 +39,7 @@ struct HudState {
   float fps = 0.0f;              // 0: not shown
   std::uint8_t active_rods = 0;  // in a hand here, by bit
   View view = View::seat;
+  RodsShown rods = RodsShown::as_on_the_table;
   float text_scale = 1.0f;
   bool still = false;     // nothing pulses or grows
   bool replay = false;    // what is seen is the goal again

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 
 #include "render/hud_screens.h"
 
@@ -47,6 +48,26 @@ void HudPen::text(std::string_view utf8, TextStyle style, const glm::vec2& at, c
   if (wide > room) style.size *= room / wide;
   style.size *= scale;
   ui_.text(utf8, style, to_pixels(at), colour, glow);
+}
+
+std::vector<std::string> HudPen::wrapped(const std::string& text, const TextStyle& style,
+                                         float room) const {
+  std::vector<std::string> lines;
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::string longer = line;
+    if (!line.empty()) longer += ' ';
+    longer += word;
+    if (!line.empty() && width(longer, style) > room) {
+      lines.push_back(line);
+      line = word;
+    } else {
+      line = longer;
+    }
+  }
+  if (!line.empty()) lines.push_back(line);
+  return lines;
 }
 
 void HudPen::panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,

@@ -34,6 +34,22 @@ struct Pen {
     if (wide > room) written.size *= std::max(room, 1.0f) / wide;
     ui.text(text, written, at, colour);
   }
+  // A name: smaller only as far as it can be read, then cut.
+  void name(std::string text, float size, Align align, const glm::vec2& at, const Colour& colour,
+            float room, Face face = Face::regular) const {
+    constexpr float kLeastName = 11.0f;  // [px] of a letter's size
+    const float wide = width(text, size, face);
+    if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastName / scale));
+    if (width(text, size, face) > 1.01f * room) {  // not for a rounding
+      const auto shortened = [&] { return text + "\u2026"; };
+      while (!text.empty() && width(shortened(), size, face) > room) {
+        while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
+        text.pop_back();
+      }
+      text = shortened();
+    }
+    this->text(text, size, align, at, colour, room, face);
+  }
   void box(const ScreenBox& box, float corner, const Colour& colour, float outline = 0.0f) const {
     ui.panel(box.low, box.high, corner * scale, colour, outline * scale);
   }
@@ -299,12 +315,14 @@ void draw_replay_bar(UiBatch& ui, const ReplayBar& bar, const glm::ivec2& screen
 
 ReplayListLayout replay_list_layout(const glm::ivec2& screen) {
   ReplayListLayout layout;
-  const float s = layout.scale = scale_of(screen, 0.66f);
+  const float least = std::clamp(static_cast<float>(screen.x) / 630.0f, 0.66f, 0.76f);
+  const float s = layout.scale = scale_of(screen, least);
   const auto width = static_cast<float>(screen.x), height = static_cast<float>(screen.y);
   const float half = std::min(0.5f * width - 6.0f, 460.0f * s);
   layout.panel = {{0.5f * width - half, 10.0f * s}, {0.5f * width + half, height - 10.0f * s}};
   const glm::vec2 low = layout.panel.low, high = layout.panel.high;
-  layout.row_height = 32.0f * s;
+  layout.two_lines = width < 900.0f * s;
+  layout.row_height = (layout.two_lines ? 56.0f : 32.0f) * s;
   const float top = low.y + 70.0f * s, bottom = high.y - 62.0f * s;
   layout.shown = std::max(1, static_cast<int>((bottom - top) / layout.row_height));
   layout.rows = {{low.x + 12.0f * s, top},
@@ -336,31 +354,45 @@ std::string player_text(const ReplayList::Row& row, std::size_t team) {
   return text;
 }
 
-void draw_row(const Pen& pen, const ReplayList::Row& row, const ScreenBox& box, bool chosen) {
+// Where what is of a row, in shares of its width.
+struct RowPlaces {
+  float when, kept, middle, beside_score, side, seconds, state;
+};
+constexpr RowPlaces kInOneLine{0.164f, 0.187f, 0.43f, 0.045f, 0.175f, 0.745f, 0.225f};
+constexpr RowPlaces kInTwoLines{0.36f, 0.41f, 0.50f, 0.065f, 0.42f, 0.60f, 0.36f};
+
+void draw_row(const Pen& pen, const ReplayList::Row& row, const ScreenBox& box, bool chosen,
+              bool two_lines) {
+  const RowPlaces& at = two_lines ? kInTwoLines : kInOneLine;
   const float s = pen.scale, wide = box.high.x - box.low.x;
   if (chosen) pen.box(box, 6.0f, kChosen);
-  const float y = box.high.y - 10.0f * s;
+  const float y = two_lines ? box.low.y + 21.0f * s : box.high.y - 10.0f * s;
+  const float below = box.high.y - 10.0f * s;
   const Colour& ink = chosen ? kInk : kFaint;
   const auto x = [&](float share) { return box.low.x + share * wide; };
-  pen.text(row.when, 15.0f, Align::left, {x(0.012f), y}, ink, 0.165f * wide);
-  pen.text(row.kept ? "\u25CF" : "", 13.0f, Align::centre, {x(0.19f), y}, kWarning, 0.03f * wide);
+  pen.name(row.when, 15.0f, Align::left, {x(0.012f), below}, ink, at.when * wide);
+  pen.text(row.kept ? "\u25CF" : "", 13.0f, Align::centre, {x(at.kept), below}, kWarning,
+           0.03f * wide);
   if (row.bad) {
-    pen.text(row.name, 15.0f, Align::left, {x(0.21f), y}, kFaint, 0.45f * wide);
+    const float left = two_lines ? 0.012f : 0.21f;
+    pen.name(row.name, 15.0f, Align::left, {x(left), y}, kFaint,
+             (two_lines ? 0.95f : 0.45f) * wide);
   } else {
-    constexpr float kMiddle = 0.43f, kSide = 0.19f;
     char score[48];
     std::snprintf(score, sizeof score, "%d : %d", row.score[0], row.score[1]);
-    pen.text(score, 16.0f, Align::centre, {x(kMiddle), y}, kInk, 0.09f * wide, Face::bold);
+    pen.text(score, 16.0f, Align::centre, {x(at.middle), y}, kInk, 2.0f * at.beside_score * wide,
+             Face::bold);
     const Face face = chosen ? Face::bold : Face::regular;
-    pen.text(player_text(row, 0), 15.0f, Align::right, {x(kMiddle - 0.045f), y}, kTeamInk[0],
-             kSide * wide, face);
-    pen.text(player_text(row, 1), 15.0f, Align::left, {x(kMiddle + 0.045f), y}, kTeamInk[1],
-             kSide * wide, face);
-    pen.text(clock_text(row.seconds), 15.0f, Align::right, {x(0.745f), y}, ink, 0.09f * wide);
+    pen.name(player_text(row, 0), 15.0f, Align::right, {x(at.middle - at.beside_score), y},
+             kTeamInk[0], at.side * wide, face);
+    pen.name(player_text(row, 1), 15.0f, Align::left, {x(at.middle + at.beside_score), y},
+             kTeamInk[1], at.side * wide, face);
+    pen.text(clock_text(row.seconds), 15.0f, Align::right, {x(at.seconds), below}, ink,
+             0.12f * wide);
   }
   if (!row.state.empty())
-    pen.text(tr(row.state.c_str()), 14.0f, Align::right, {x(0.985f), y},
-             row.bad ? kWarning : kFaint, 0.225f * wide);
+    pen.text(tr(row.state.c_str()), 14.0f, Align::right, {x(0.985f), below},
+             row.bad ? kWarning : kFaint, at.state * wide);
 }
 
 void draw_rows(const Pen& pen, const ReplayList& list, const ReplayListLayout& layout) {
@@ -369,7 +401,7 @@ void draw_rows(const Pen& pen, const ReplayList& list, const ReplayListLayout& l
     const float top = layout.rows.low.y + layout.row_height * static_cast<float>(i - list.first);
     draw_row(pen, list.rows[static_cast<std::size_t>(i)],
              {{layout.rows.low.x, top}, {layout.rows.high.x, top + layout.row_height}},
-             i == list.chosen);
+             i == list.chosen, layout.two_lines);
   }
   if (all <= layout.shown) return;
   // How far down the list this is.

@@ -93,7 +93,8 @@ struct ReplayList {
 struct ReplayListLayout {
   float scale = 1.0f;
   ScreenBox panel;
-  ScreenBox rows;  // all that are seen
+  ScreenBox rows;          // all that are seen
+  bool two_lines = false;  // a row, in a narrow window
   float row_height = 1.0f;
   int shown = 1;  // rows that fit
   ScreenBox keep, share, leave;

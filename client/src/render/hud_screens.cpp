@@ -11,6 +11,7 @@
 #include "foosball/tuning.h"
 #include "render/hud.h"
 #include "render/match_words.h"
+#include "render/sentences.h"
 #include "render/translate.h"
 
 namespace client {
@@ -51,28 +52,37 @@ constexpr std::array<KeyHelp, 4> kPauseKeys{{{"P", N_("play on")},
                                              {"F2", N_("settings")},
                                              {"Esc", N_("release the mouse; again: leave")}}};
 
-// One line at the bottom of the screen; how high it stands.
-float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line) {
-  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
-  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
-  const float within = 7.0f, between = 24.0f;
-  float width = -between;
+constexpr TextStyle kKeyStyle{Face::bold, 14.0f, 0.0f, Align::left};
+constexpr TextStyle kMeaningStyle{Face::regular, 14.0f, 0.0f, Align::left};
+constexpr float kWithinKey = 7.0f, kBetweenKeys = 24.0f, kKeyLineHeight = 38.0f;
+
+float key_line_half(const HudPen& pen, std::span<const KeyHelp> line) {
+  float width = -kBetweenKeys;
   for (const KeyHelp& key : line) {
-    width +=
-        whole.width(tr(key.keys), bold) + within + whole.width(tr(key.meaning), regular) + between;
+    width += pen.width(tr(key.keys), kKeyStyle) + kWithinKey +
+             pen.width(tr(key.meaning), kMeaningStyle) + kBetweenKeys;
   }
-  const float half = 0.5f * width + 20.0f;
+  return 0.5f * width + 20.0f;
+}
+
+float key_line_height(const HudPen& whole, std::span<const KeyHelp> line) {
+  return kKeyLineHeight * whole.fitting(key_line_half(whole, line), 60.0f).scale / whole.scale;
+}
+
+// One line at the bottom of the screen, above what is there; how high it stands.
+float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line, float below = 0.0f) {
+  const float half = key_line_half(whole, line);
   const HudPen pen = whole.fitting(half, 60.0f);
-  const float y = pen.bottom - 24.0f;
+  const float y = pen.bottom - 24.0f - below * whole.scale / pen.scale;
   pen.panel({-half, y - 22.0f}, {half, y + 10.0f}, 10.0f, kPanel);
-  float x = -0.5f * width;
+  float x = 20.0f - half;
   for (const KeyHelp& key : line) {
-    pen.text(tr(key.keys), bold, {x, y}, kInk);
-    x += pen.width(tr(key.keys), bold) + within;
-    pen.text(tr(key.meaning), regular, {x, y}, kFaint);
-    x += pen.width(tr(key.meaning), regular) + between;
+    pen.text(tr(key.keys), kKeyStyle, {x, y}, kInk);
+    x += pen.width(tr(key.keys), kKeyStyle) + kWithinKey;
+    pen.text(tr(key.meaning), kMeaningStyle, {x, y}, kFaint);
+    x += pen.width(tr(key.meaning), kMeaningStyle) + kBetweenKeys;
   }
-  return 38.0f * pen.scale / whole.scale;
+  return below + key_line_height(whole, line);
 }
 
 std::string capitalised(std::string text) {
@@ -107,15 +117,22 @@ Traits traits_of(const foosball::Characters& characters, const foosball::Charact
       among([](const Body& b) { return std::min(b.slide_speed, 4.0) / (kRod + 4.0 * b.mass); })};
 }
 
-void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float width,
+void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec2& at, float room,
                 const Colour& colour, float text_size) {
-  pen.text(name, {Face::regular, text_size, 0.0f, Align::left}, at, kFaint, 0.55f, 56.0f);
-  const glm::vec2 low = at + glm::vec2(60.0f, -8.0f);
-  pen.panel(low, low + glm::vec2(width, 7.0f), 3.5f, {0.25f, 0.30f, 0.36f, 0.8f});
-  pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), 7.0f), 3.5f, colour);
+  const float label = 5.8f * text_size, high = 0.56f * text_size;
+  pen.text(name, {Face::regular, text_size, 0.0f, Align::left}, at, kFaint, 0.55f, label - 4.0f);
+  const glm::vec2 low = at + glm::vec2(label, -0.64f * text_size);
+  const float width = std::max(room - label, 10.0f);
+  pen.panel(low, low + glm::vec2(width, high), 0.5f * high, {0.25f, 0.30f, 0.36f, 0.8f});
+  pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), high), 0.5f * high, colour);
 }
 
-// The portrait, the name, and what the character is good at.
+// Of a row of that height, whose lines do not touch one another.
+float trait_text_size(float height) {
+  return std::min(14.0f, 0.175f * height);
+}
+
+// The portrait, the name, and what the character is good at, where that can be read.
 void draw_character(const HudPen& pen, const foosball::Characters& characters, int character,
                     int team, const glm::vec2& low, const glm::vec2& size, bool chosen) {
   const foosball::Character& shown = foosball::nearest(characters, character);
@@ -123,26 +140,30 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
   const glm::vec2 high = low + size;
   pen.panel(low, high, 12.0f,
             chosen ? Colour{0.07f, 0.10f, 0.15f, 0.92f} : Colour{0.03f, 0.045f, 0.07f, 0.72f});
-  const float tall = size.y - 8.0f, wide = 0.8f * tall;
-  pen.picture(character, team, low + 4.0f, low + 4.0f + glm::vec2(wide, tall));
+  const float tall = std::min(size.y - 8.0f, 0.34f * size.x), wide = 0.8f * tall;
+  const float above = 0.5f * (size.y - tall);
+  pen.picture(character, team, low + glm::vec2(4.0f, above),
+              low + glm::vec2(4.0f + wide, above + tall));
   if (chosen) pen.panel(low, high, 12.0f, colour, 2.0f);
   if (character < 10)  // its number key
     pen.text(std::to_string((character + 1) % 10), {Face::bold, 14.0f, 0.0f, Align::right},
              {high.x - 9.0f, low.y + 18.0f}, chosen ? kInk : kFaint);
   const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
-  const float room = size.x - wide - 20.0f;
-  pen.text(capitalised(tr(shown.name.c_str())), {Face::bold, 18.0f, 0.0f, Align::left},
-           text + glm::vec2(0.0f, 0.28f * size.y), chosen ? kInk : kFaint, 0.55f, room - 12.0f);
+  const float room = size.x - wide - 20.0f, line = trait_text_size(size.y);
+  const bool traits_shown = chosen || line * pen.scale >= kLeastRead;
+  pen.text(capitalised(tr(shown.name.c_str())),
+           {Face::bold, std::min(18.0f, 0.29f * size.y), 0.0f, Align::left},
+           text + glm::vec2(0.0f, traits_shown ? 0.22f * size.y + 6.5f : 0.5f * size.y + 6.5f),
+           chosen ? kInk : kFaint, 0.55f, room - 12.0f);
+  if (!traits_shown) return;
   const Traits traits = traits_of(characters, shown);
   const Colour bar = chosen ? colour : Colour{0.55f, 0.62f, 0.70f, 0.8f};
-  const float bars = std::max(room - 60.0f, 10.0f);
-  const float line = std::min(12.5f, 0.175f * size.y);  // no line touches the next
-  draw_trait(pen, tr("attack"), traits.attack, text + glm::vec2(0.0f, 0.50f * size.y), bars, bar,
-             line);
-  draw_trait(pen, tr("defence"), traits.guard, text + glm::vec2(0.0f, 0.68f * size.y), bars, bar,
-             line);
-  draw_trait(pen, tr("agility"), traits.agility, text + glm::vec2(0.0f, 0.86f * size.y), bars, bar,
-             line);
+  const auto trait = [&](const char* name, float share, float down) {
+    draw_trait(pen, name, share, text + glm::vec2(0.0f, down * size.y), room, bar, line);
+  };
+  trait(tr("attack"), traits.attack, 0.53f);
+  trait(tr("defence"), traits.guard, 0.72f);
+  trait(tr("agility"), traits.agility, 0.91f);
 }
 
 // The chosen one, large enough to see whose face it is: beside the list, where there is room.
@@ -155,43 +176,87 @@ void draw_chosen(const HudPen& pen, int character, int team, const glm::vec2& lo
 
 }  // namespace
 
-// In two columns where there is room, else in one; smaller where even that is too wide.
-float draw_all_keys(const HudPen& whole, float room) {
-  const TextStyle bold{Face::bold, 14.0f, 0.0f, Align::left};
-  const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
+namespace {
+
+// All keys, as they fit: in so many columns, with how much room they take.
+struct KeysLayout {
+  HudPen pen;
+  std::size_t columns, rows;
+  float half, height;
+  bool readable;  // else a line says less
+  float taken() const { return height + 18.0f; }
+};
+
+constexpr float kBetweenColumns = 34.0f;
+
+struct KeyColumn {
   float keys = 0.0f, meaning = 0.0f;
+  float width() const { return keys + 14.0f + meaning; }
+};
+
+KeyColumn key_column(const HudPen& pen) {
+  KeyColumn column;
   for (const KeyHelp& key : kAllKeys) {
-    keys = std::max(keys, whole.width(tr(key.keys), bold));
-    meaning = std::max(meaning, whole.width(tr(key.meaning), regular));
+    column.keys = std::max(column.keys, pen.width(tr(key.keys), kKeyStyle));
+    column.meaning = std::max(column.meaning, pen.width(tr(key.meaning), kMeaningStyle));
   }
-  const float column = keys + 14.0f + meaning, between = 34.0f;
-  const bool two = whole.half_width > column + 0.5f * between + 26.0f;
-  const std::size_t columns = two ? 2 : 1, rows = (kAllKeys.size() + columns - 1) / columns;
-  const float half = 0.5f * (two ? 2.0f * column + between : column) + 24.0f;
+  return column;
+}
+
+KeysLayout keys_in(std::size_t columns, const HudPen& whole, float room) {
+  const std::size_t rows = (kAllKeys.size() + columns - 1) / columns;
+  const float column = key_column(whole).width();
+  const float half = 0.5f * (columns == 2 ? 2.0f * column + kBetweenColumns : column) + 24.0f;
   const float height = 26.0f * static_cast<float>(rows) + 26.0f;
-  const float taken = height + 18.0f, fits = std::min(whole.bottom, room) / whole.bottom;
-  const HudPen pen = whole.fitting(half + 4.0f, (fits < 1.0f ? taken : height + 40.0f) / fits);
+  const HudPen large = columns == 1 ? whole.readable(0.8f, half + 4.0f) : whole;
+  const float fits = std::min(large.bottom, room * whole.scale / large.scale) / large.bottom;
+  const HudPen pen =
+      large.fitting(half + 4.0f, (fits < 0.999f ? height + 18.0f : height + 40.0f) / fits);
   const HudPen alone = whole.fitting(half + 4.0f, height + 40.0f);
   constexpr float kSmallest = 0.85f;  // of its size without such a bound; below, it is hard to read
-  if (pen.scale < kSmallest * alone.scale) return draw_key_line(whole, kLogoKeys);
-  const float top = pen.bottom - taken;
-  pen.panel({-half, top}, {half, top + height}, 14.0f, {kPanel.r, kPanel.g, kPanel.b, 0.88f});
+  return {pen, columns, rows, half, height, pen.scale >= kSmallest * alone.scale};
+}
+
+// In two columns where there is room, else in one, as where one can be clearly larger.
+KeysLayout keys_layout(const HudPen& whole, float room) {
+  const KeysLayout one = keys_in(1, whole, room);
+  if (whole.half_width <= key_column(whole).width() + 0.5f * kBetweenColumns + 26.0f) return one;
+  const KeysLayout two = keys_in(2, whole, room);
+  return one.readable && one.pen.scale > 1.15f * two.pen.scale ? one : two;
+}
+
+}  // namespace
+
+float all_keys_height(const HudPen& whole, float room) {
+  const KeysLayout layout = keys_layout(whole, room);
+  if (!layout.readable) return key_line_height(whole, kLogoKeys);
+  return layout.taken() * layout.pen.scale / whole.scale;
+}
+
+float draw_all_keys(const HudPen& whole, float room) {
+  const KeysLayout layout = keys_layout(whole, room);
+  if (!layout.readable) return draw_key_line(whole, kLogoKeys);
+  const HudPen& pen = layout.pen;
+  const KeyColumn column = key_column(pen);
+  const float half = layout.half, top = pen.bottom - layout.taken();
+  pen.panel({-half, top}, {half, top + layout.height}, 14.0f,
+            {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   for (std::size_t i = 0; i < kAllKeys.size(); ++i) {
-    const float x = -half + 24.0f + (i % columns == 0 ? 0.0f : column + between);
-    const std::size_t row = i / columns;
-    const float y = top + 31.0f + 26.0f * static_cast<float>(row);
-    pen.text(tr(kAllKeys[i].keys), bold, {x, y}, kInk);
-    pen.text(tr(kAllKeys[i].meaning), regular, {x + keys + 14.0f, y}, kFaint);
+    const std::size_t row = i / layout.columns;
+    const float right = i % layout.columns == 0 ? 0.0f : column.width() + kBetweenColumns;
+    const float x = -half + 24.0f + right, y = top + 31.0f + 26.0f * static_cast<float>(row);
+    pen.text(tr(kAllKeys[i].keys), kKeyStyle, {x, y}, kInk);
+    pen.text(tr(kAllKeys[i].meaning), kMeaningStyle, {x + column.keys + 14.0f, y}, kFaint);
   }
-  return (height + 18.0f) * pen.scale / whole.scale;
+  return layout.taken() * pen.scale / whole.scale;
 }
 
 float draw_keys_of_selection(const HudPen& pen) {
   return draw_key_line(pen, kSelectionKeys);
 }
 
-float draw_keys_of_pause(const HudPen& pen) {
-  return draw_key_line(pen, kPauseKeys);
+float draw_keys_of_pause(const HudPen& pen, float below) {
+  return draw_key_line(pen, kPauseKeys, below);
 }
 
 float logo_height(const HudPen& whole) {
@@ -215,13 +280,51 @@ void draw_logo(const HudPen& whole, const wire::Snapshot& state, bool watches, b
            {0.92f, 0.96f, 1.0f, pulse}, 0.8f);
 }
 
+namespace {
+
+constexpr float kBetweenRows = 6.0f;
+
+struct RowHeights {
+  float chosen, other;
+};
+
+// The chosen row is the higher one where not all have the room to be read in full.
+RowHeights row_heights(float room, int rows, float scale) {
+  const float even = std::min(124.0f, room / static_cast<float>(rows));
+  const float least = kLeastRead / (0.175f * scale) + kBetweenRows;
+  if (even >= least) return {even, even};
+  const float chosen = std::min(least, 0.4f * room);
+  return {chosen, (room - chosen) / static_cast<float>(rows - 1)};
+}
+
+// In two lines at most, below the list.
+void draw_specialty(const HudPen& pen, const foosball::Character& one, float middle, float y,
+                    float room) {
+  const TextStyle style{Face::regular, 13.5f, 0.0f, Align::centre};
+  std::vector<std::string> lines = pen.wrapped(capitalised(tr(one.specialty.c_str())), style, room);
+  for (; lines.size() > 2; lines.pop_back()) lines[lines.size() - 2] += " " + lines.back();
+  for (const std::string& line : lines) {
+    y += 17.0f;
+    pen.text(line, style, {middle, y}, kInk, 0.55f, room);
+  }
+}
+
+HudPen selection_pen(const HudPen& whole) {
+  return whole.readable(0.8f, 300.0f).fitting(300.0f, 660.0f);
+}
+
+}  // namespace
+
+glm::vec2 selection_title_size(const HudPen& whole) {
+  return glm::vec2(208.0f, 98.0f) * (selection_pen(whole).scale / whole.scale);
+}
+
 // Each team's characters on its side, as many as fit below one another.
 void draw_selection(const HudPen& whole, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team) {
   constexpr int kAtOnce = 6;
   const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
-  const auto rows = static_cast<float>(shown);
-  const HudPen pen = whole.fitting(450.0f, 660.0f);
+  const HudPen pen = selection_pen(whole);
   const auto mode = mode_lines(state, pen.left_is_team_0 ? 0 : 1);
   const float up = mode[0].empty() ? 0.0f : 10.0f;  // room for it
   pen.panel({-200.0f, 16.0f - up}, {200.0f, 88.0f + up}, 14.0f, kPanel);
@@ -232,43 +335,42 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
   if (!mode[0].empty())
     pen.text(mode[0] + ": " + mode[1], {Face::bold, 18.0f, 0.0f, Align::centre}, {0.0f, 80.0f + up},
              kWarning, 0.8f, 370.0f);
-  const float width = std::min(262.0f, pen.half_width - 160.0f), top = 108.0f, low = 606.0f;
-  const float between = 6.0f;
-  const float height =
-      std::min(118.0f, (low - top - 98.0f) / static_cast<float>(kAtOnce) - between);
+  const float width = 262.0f, top = 114.0f, header = 46.0f, footer = 76.0f;
+  const float keys = key_line_height(whole, kSelectionKeys) * whole.scale / pen.scale;
+  const RowHeights rows = row_heights(pen.bottom - keys - 10.0f - top - header - footer,
+                                      static_cast<int>(kAtOnce), pen.scale);
   for (int team = 0; team < 2; ++team) {
     const auto t = static_cast<std::size_t>(team);
-    const float x = (team == 0) == pen.left_is_team_0 ? -pen.half_width + 24.0f
-                                                      : pen.half_width - 24.0f - width;
-    const float end = top + 46.0f + rows * (height + between);
+    const bool at_left = (team == 0) == pen.left_is_team_0;
+    const float x = at_left ? -pen.half_width + 24.0f : pen.half_width - 24.0f - width;
+    const float end = top + header + rows.chosen + rows.other * static_cast<float>(shown - 1);
     const int chosen = std::min<int>(state.character[t], count - 1);
     const int first = std::clamp(chosen - kAtOnce / 2, 0, count - shown);
-    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + 56.0f}, 16.0f, kVeil);
+    pen.panel({x - 12.0f, top}, {x + width + 12.0f, end + footer}, 16.0f, kVeil);
     pen.text(team_with_mark(team), {Face::bold, 25.0f, 0.06f, Align::left}, {x + 2.0f, top + 34.0f},
              kTeamInk[t], 0.55f, width - 70.0f);
     if (team == viewer_team)
       pen.text(tr("you"), {Face::regular, 15.0f, 0.0f, Align::right}, {x + width, top + 34.0f},
                kInk);
-    for (int row = 0; row < shown; ++row) {
-      draw_character(pen, characters, first + row, team,
-                     {x, top + 46.0f + (height + between) * static_cast<float>(row)},
-                     {width, height}, chosen == first + row);
+    float y = top + header;
+    for (int one = first; one < first + shown; ++one) {
+      const float height = one == chosen ? rows.chosen : rows.other;
+      draw_character(pen, characters, one, team, {x, y}, {width, height - kBetweenRows},
+                     one == chosen);
+      y += height;
     }
-    const foosball::Character& one = foosball::nearest(characters, chosen);
-    pen.text(capitalised(tr(one.specialty.c_str())), {Face::regular, 13.5f, 0.0f, Align::centre},
-             {x + 0.5f * width, end + 16.0f}, kInk, 0.55f, width);
+    draw_specialty(pen, foosball::nearest(characters, chosen), x + 0.5f * width, end, width);
     constexpr float kPortrait = 168.0f;
-    const bool at_left = (team == 0) == pen.left_is_team_0;
     const float inner = at_left ? x + width + 26.0f : x - 26.0f - kPortrait;
     if (pen.half_width - 62.0f - width > kPortrait) {
       draw_chosen(pen, chosen, team, {inner, top}, kPortrait);
     }
     if (count > shown) {
       const std::string place = std::to_string(chosen + 1) + " / " + std::to_string(count);
-      pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 40.0f}, kFaint);
+      pen.text(place, {Face::regular, 13.0f, 0.0f, Align::right}, {x + width, end + 61.0f}, kFaint);
     }
     const char* status = state.confirmed[t] ? tr("READY") : tr("choosing ...");
-    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 41.0f},
+    pen.text(status, {Face::bold, 19.0f, 0.08f, Align::centre}, {x + 0.5f * width, end + 62.0f},
              state.confirmed[t] ? kTeamInk[t] : kFaint, 0.55f, width);
   }
 }
@@ -386,8 +488,8 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
     const Colour& ink = i == 0 ? kWarning : kInk;
     pen.text(std::to_string(i + 1), {Face::bold, 15.0f, 0.0f, Align::right}, {-half + 34.0f, line},
              kFaint);
-    pen.text(fame[i].name, {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line}, ink,
-             0.55f, 2.0f * half - kFastest - kRoom - 52.0f);
+    pen.text(tr_player(fame[i].name), {Face::bold, 15.0f, 0.0f, Align::left}, {-half + 46.0f, line},
+             ink, 0.55f, 2.0f * half - kFastest - kRoom - 52.0f);
     const std::string won = std::to_string(fame[i].wins) + " / " + std::to_string(fame[i].matches);
     const auto column = [&](const std::string& text, float at) {
       pen.text(text, {Face::regular, 14.0f, 0.0f, Align::right}, {half - at, line}, kFaint, 0.55f,

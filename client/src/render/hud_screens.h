@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/match_story.h"
 #include "foosball/character.h"
@@ -23,6 +24,7 @@ inline const Colour kWarning{1.0f, 0.80f, 0.36f, 1.0f};
 inline const Colour kPanel{0.030f, 0.045f, 0.070f, 0.74f};
 inline const std::array<Colour, 2> kTeamInk{Colour{1.0f, 0.60f, 0.22f, 1.0f},
                                             Colour{0.42f, 0.74f, 1.0f, 1.0f}};
+inline constexpr float kLeastRead = 8.0f;  // [px] of a letter's size: smaller ones are smears
 // Beside a team's name: told apart without colours.
 inline constexpr std::array<const char*, 2> kTeamMark{"●", "▲"};
 
@@ -40,6 +42,9 @@ class HudPen {
   // In units; a line wider than max_width (the region's, if 0) is written smaller.
   void text(std::string_view utf8, TextStyle style, const glm::vec2& at, const Colour& colour,
             float glow = 0.55f, float max_width = 0.0f) const;
+  // Words into lines that fit, at spaces.
+  std::vector<std::string> wrapped(const std::string& text, const TextStyle& style,
+                                   float room) const;
   void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
              float outline = 0.0f) const;
   void picture(int column, int row, const glm::vec2& low, const glm::vec2& high) const;
@@ -70,6 +75,8 @@ void draw_logo(const HudPen& pen, const wire::Snapshot& state, bool watches, boo
 // Six at a time of each team's characters, about the one that is chosen.
 void draw_selection(const HudPen& pen, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team);
+// Half of its title's width, and how far down it reaches.
+glm::vec2 selection_title_size(const HudPen& pen);
 // A band at the upper edge, or the lower: the field stays free.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const CeremonyWords& words,
                    bool replay, bool still, bool at_the_bottom);
@@ -84,7 +91,9 @@ void draw_paused(const HudPen& pen);
 // What the keys do, at the bottom of the screen; how high it stands.
 // room: from the bottom up; where it is too small to read all of them, a line says what they are.
 float draw_all_keys(const HudPen& pen, float room);
+float all_keys_height(const HudPen& pen, float room);
 float draw_keys_of_selection(const HudPen& pen);
-float draw_keys_of_pause(const HudPen& pen);
+// below: what stands under it.
+float draw_keys_of_pause(const HudPen& pen, float below);
 
 }  // namespace client

@@ -1,6 +1,5 @@
 // The menu, and the marks of the rods in a hand.
 #include <algorithm>
-#include <sstream>
 
 #include "foosball/table.h"
 #include "render/hud.h"
@@ -15,26 +14,6 @@ namespace {
 
 constexpr float kHalf = 330.0f, kLine = 27.0f;  // of the menu, in units
 constexpr TextStyle kNoteStyle{Face::regular, 13.5f, 0.0f, Align::left};
-
-// Words into lines that fit, at spaces.
-std::vector<std::string> wrapped(const HudPen& pen, const std::string& text, float room) {
-  std::vector<std::string> lines;
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    std::string longer = line;
-    if (!line.empty()) longer += ' ';
-    longer += word;
-    if (!line.empty() && pen.width(longer, kNoteStyle) > room) {
-      lines.push_back(line);
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  if (!line.empty()) lines.push_back(line);
-  return lines;
-}
 
 // A bar from the least to the most value, with a tick at the default.
 void draw_range(const HudPen& pen, const MenuRow& row, float y, const Colour& ink) {
@@ -76,14 +55,16 @@ void draw_menu_row(const HudPen& pen, const MenuRow& row, float y, bool here) {
 void draw_menu(const HudPen& whole, const MenuPage& page) {
   const HudPen pen = whole.fitting(kHalf + 10.0f, 420.0f).readable(0.62f, kHalf + 10.0f);
   std::vector<std::string> notes;
-  if (!page.note.empty()) notes = wrapped(pen, tr(page.note.c_str()), 2.0f * kHalf - 50.0f);
+  if (!page.note.empty())
+    notes = pen.wrapped(tr(page.note.c_str()), kNoteStyle, 2.0f * kHalf - 50.0f);
   if (!page.detail.empty()) {
-    for (std::string& line : wrapped(pen, tr_sentence(page.detail), 2.0f * kHalf - 50.0f))
+    for (std::string& line :
+         pen.wrapped(tr_sentence(page.detail), kNoteStyle, 2.0f * kHalf - 50.0f))
       notes.push_back(std::move(line));
   }
   const std::size_t problem_from = notes.size();
   if (!page.problem.empty()) {
-    for (std::string& line : wrapped(pen, page.problem, 2.0f * kHalf - 50.0f))
+    for (std::string& line : pen.wrapped(page.problem, kNoteStyle, 2.0f * kHalf - 50.0f))
       notes.push_back(std::move(line));
   }
   // Room for three lines is kept, so that the rows stand while one goes through them.
@@ -147,11 +128,16 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const g
     pen.text(sign, {Face::bold, size, 0.0f, Align::centre}, place + glm::vec2(0, 0.365f * size),
              colour, 0.0f);
   };
+  constexpr float kBeside = 0.036f;  // [m]
   for (const wire::ManState& man : state.men) {
     if (man.rod != active) continue;
     const auto& at = man.body.position;
-    mark("\u25BC", {at[0], at[1], at[2] + (above ? 0.0f : 0.085f)}, above ? 17.0f : 19.0f, kSignal);
+    // From above beside him, on the rod: his head stays free.
+    const glm::vec3 place =
+        above ? glm::vec3(at[0], at[1] + kBeside, at[2]) : glm::vec3(at[0], at[1], at[2] + 0.085f);
+    mark("\u25BC", place, above ? 17.0f : 19.0f, kSignal);
   }
+  if (!rods_are_drawn(hud.rods, table.layout)) return;  // there is no handle
   const float x = static_cast<float>(spec.x) + hud.rod_shift[rod],
               z = static_cast<float>(table.rod_height);
   const float end =

@@ -70,7 +70,9 @@ void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float r
   const float fade = std::clamp((speed - 1.2f) / 6.0f, 0.0f, 1.0f);
   const glm::vec3 light = (reduced_ ? 0.15f : 0.50f) * fade *
                           glm::mix(0.9f * colour, 0.5f * (colour + kHot), fade * fade);
-  const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, 12);
+  // No fewer at 30 frames a second: a trail, not dots.
+  constexpr int kMostBeads = 48;
+  const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, kMostBeads);
   for (int i = 0; i < beads; ++i) {
     const float back = dt * static_cast<float>(i) / static_cast<float>(beads);
     add({ball - velocity * back, glm::vec3(0), light, 0.80f * radius, back, 0.16f + 0.14f * fade,

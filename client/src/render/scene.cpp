@@ -69,6 +69,11 @@ bool ball_is_seen(const wire::Snapshot& state) {
   return state.ball_in_play || state.ball_visible;
 }
 
+bool rod_is_held(const wire::RodSnapshot& rod) {
+  return rod.status == number(wire::RodStatus::held) &&
+         rod.source != number(wire::RodSource::replay);
+}
+
 void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift) {
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
   for (wire::ManState& man : state.men)
@@ -177,7 +182,8 @@ void Scene::use_layout(foosball::Layout layout) {
   const float detail = quality_ == draw::Quality::high ? 1.0f : 0.4f;
   body_mesh_ = GpuMesh(body_mesh(table, detail));
   rim_mesh_ = GpuMesh(rim_mesh(table, detail));
-  for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_})
+  bearings_mesh_ = GpuMesh(bearings_mesh(table, detail));
+  for (GpuMesh* mesh : {&body_mesh_, &rim_mesh_, &bearings_mesh_})
     mesh->set_instances(std::array{make_instance(glm::mat4(1.0f), glm::vec3(1), 0)});
   glass_mesh_ = GpuMesh(glass_mesh(table));
   field_mesh_ = GpuMesh(field_mesh(table));
@@ -209,9 +215,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   const auto rod_glow = [&](std::size_t rod) { return glow(rod) > 0.0f ? 1.0f + glow(rod) : 0.0f; };
   const auto tint = [&](std::size_t rod) {
     const glm::vec3& team = kTeamColour[static_cast<std::size_t>(table_->rods[rod].team)];
-    const bool held = state.rods[rod].status == number(wire::RodStatus::held) &&
-                      state.rods[rod].source != number(wire::RodSource::replay);
-    return held ? glm::mix(team, kHeldColour, 0.35f) : team;
+    return rod_is_held(state.rods[rod]) ? glm::mix(team, kHeldColour, 0.35f) : team;
   };
   for (std::size_t rod = 0; rod < rod_meshes_.size(); ++rod) {
     const foosball::RodSpec& spec = table_->rods[rod];
@@ -238,6 +242,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
 void Scene::draw_standing() const {
   rim_mesh_.draw();
   if (rods_drawn_) {
+    bearings_mesh_.draw();
     for (const GpuMesh& rod : rod_meshes_) rod.draw();
   }
   for (const GpuMesh& figures : figure_meshes_) figures.draw();

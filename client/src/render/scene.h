@@ -42,6 +42,10 @@ void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift);
 // A scored ball lies in the goal until the next serve, a ball out of play is nowhere.
 bool ball_is_seen(const wire::Snapshot& state);
 
+// Its hand is gone: a warning for those who play. A recording does not have who drives a rod, and
+// a computer's two hands let go of the others all the time.
+bool rod_is_held(const wire::RodSnapshot& rod);
+
 class Scene {
  public:
   // Needs a current OpenGL ES 3.0 context. The error is a sentence.
@@ -102,7 +106,7 @@ class Scene {
   draw::ShadowTarget shadow_;
   glm::mat4 light_matrix_{1.0f};
   std::optional<draw::Target> portraits_;
-  GpuMesh body_mesh_, rim_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
+  GpuMesh body_mesh_, rim_mesh_, bearings_mesh_, glass_mesh_, field_mesh_, ball_mesh_;
   std::array<GpuMesh, foosball::kRods> rod_meshes_;
   foosball::Characters characters_ = foosball::built_in_characters();
   std::vector<GpuMesh> figure_meshes_;  // by team, then character

@@ -131,4 +131,22 @@ std::string tr_sentence(const std::string& english) {
   return translated(english, 0).value_or(english);
 }
 
+std::string tr_player(const std::string& name) {
+  for (const char* nobody : {N_("computer"), N_("cabinet"), N_("nobody")}) {
+    if (name == nobody) return tr(nobody);
+  }
+  constexpr std::string_view kComputer = "computer ";
+  if (!name.starts_with(kComputer)) return name;
+  const std::size_t colon = name.find(':');
+  std::string text =
+      std::string(tr("computer")) + " " +
+      name.substr(kComputer.size(), colon == std::string::npos ? colon : colon - kComputer.size());
+  if (colon == std::string::npos) return text;
+  const std::string style = name.substr(colon + 1);
+  for (const char* known : {N_("wall"), N_("shooter"), N_("passer"), N_("gambler")}) {
+    if (style == known) return text + ", " + tr(known);
+  }
+  return name;
+}
+
 }  // namespace client

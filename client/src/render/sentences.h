@@ -15,5 +15,8 @@ std::string tr_sentence(const std::string& english);
 
 // The form with the words at its places %1 .. %9.
 std::string filled(std::string_view form, const std::vector<std::string>& words);
+// Who played, as results have it: a person's name as it is, "computer 4:gambler" and the like in
+// the language in use.
+std::string tr_player(const std::string& name);
 
 }  // namespace client

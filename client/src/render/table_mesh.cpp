@@ -63,15 +63,21 @@ void add_body(MeshBuilder& b, const Sizes& s) {
   }
 }
 
-void add_side_walls(MeshBuilder& b, const Sizes& s, const TableSpec& table) {
+void add_side_walls(MeshBuilder& b, const Sizes& s) {
+  b.paint(kWall);
   for (const float side : {-1.0f, 1.0f}) {
     const float in = side * s.half_width, out = side * s.outer_y;
-    b.paint(kWall);
     add_box(b, {-s.outer_x, std::min(in, out), -0.006f},
             {s.outer_x, std::max(in, out), kSolidWallHeight}, 0.004f);
+  }
+}
+
+void add_bearings(MeshBuilder& b, const Sizes& s, const TableSpec& table) {
+  b.paint(kBearing);
+  for (const float side : {-1.0f, 1.0f}) {
     for (const foosball::RodSpec& rod : table.rods) {
-      const float x = f(rod.x), z = f(table.rod_height), y = 0.5f * (in + out);
-      b.paint(kBearing);
+      const float x = f(rod.x), z = f(table.rod_height);
+      const float y = 0.5f * side * (s.half_width + s.outer_y);
       add_box(b, {x - 0.010f, y - 0.010f, kSolidWallHeight - 0.004f}, {x + 0.010f, y + 0.010f, z},
               0.002f);
       glm::mat4 place = axis_along_y();
@@ -155,10 +161,16 @@ MeshData body_mesh(const TableSpec& table, float detail) {
 MeshData rim_mesh(const TableSpec& table, float detail) {
   const Sizes s(table);
   MeshBuilder b(detail);
-  add_side_walls(b, s, table);
+  add_side_walls(b, s);
   add_end(b, s, table, 0);
   add_end(b, s, table, 1);
   add_corners(b, s, table);
+  return b.take();
+}
+
+MeshData bearings_mesh(const TableSpec& table, float detail) {
+  MeshBuilder b(detail);
+  add_bearings(b, Sizes(table), table);
   return b.take();
 }
 

@@ -16,6 +16,8 @@ inline constexpr float kSolidWallHeight = 0.024f;
 // What lies below the field, and what stands around it: the field mirrors only the latter.
 MeshData body_mesh(const foosball::TableSpec& table, float detail);
 MeshData rim_mesh(const foosball::TableSpec& table, float detail);
+// What carries the rods on the side walls.
+MeshData bearings_mesh(const foosball::TableSpec& table, float detail);
 // The side walls above that, drawn blended.
 MeshData glass_mesh(const foosball::TableSpec& table);
 // The surface between the walls.
