@@ -232,6 +232,10 @@ play_refusals() { # play_refusals FOLDER
 --seed -1
 --seed 18446744073709551616
 --headless --out $1/no.sfr
+--minutes 0.05
+--minutes 1e1
+--sets 18
+--headless --change-sides
 --headless --calibration $1/no.sfr
 --headless --record $1
 --headless --replay $1/no.sfr
