@@ -52,7 +52,7 @@ step_doxygen() {
 
 step_scripts() {
   local files
-  mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench .ci/run))
+  mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench packaging/space-foosball-play .ci/run))
   shellcheck -x "${files[@]}"
   python3 -m py_compile scripts/*.py
   said "${#files[@]} scripts"
