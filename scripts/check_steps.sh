@@ -52,7 +52,7 @@ step_doxygen() {
 
 step_scripts() {
   local files
-  mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench .ci/run))
+  mapfile -t files < <(our_files '*.sh' | cat - <(printf '%s\n' play check bench packaging/space-foosball-play .ci/run))
   shellcheck -x "${files[@]}"
   python3 -m py_compile scripts/*.py
   said "${#files[@]} scripts"
@@ -232,6 +232,10 @@ play_refusals() { # play_refusals FOLDER
 --seed -1
 --seed 18446744073709551616
 --headless --out $1/no.sfr
+--minutes 0.05
+--minutes 1e1
+--sets 18
+--headless --change-sides
 --headless --calibration $1/no.sfr
 --headless --record $1
 --headless --replay $1/no.sfr

@@ -456,12 +456,15 @@ void StatisticsObserver::watch_reach(const MatchView& view) {
       std::max(totals_.longest_unreachable_ticks, ++unreachable_ticks_);
 }
 
+// As the referee sees it (BallWatch): a touch begins the time again, not the place.
 void StatisticsObserver::watch_stuck(const MatchView& view) {
-  if (touched_now_ || vp::norm(view.ball_position - stuck_at_) > kStuckDistance) {
+  if (vp::norm(view.ball_position - stuck_at_) > kStuckDistance) {
     stuck_at_ = view.ball_position;
     stuck_ticks_ = 0;
   }
-  totals_.longest_stuck_ticks = std::max(totals_.longest_stuck_ticks, ++stuck_ticks_);
+  ++stuck_ticks_;
+  if (touched_now_) stuck_ticks_ = 0;
+  totals_.longest_stuck_ticks = std::max(totals_.longest_stuck_ticks, stuck_ticks_);
 }
 
 }  // namespace foosball

@@ -10,6 +10,7 @@
 
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
+#include "foosball/statistics.h"
 
 namespace foosball {
 namespace {
@@ -81,7 +82,40 @@ TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
   EXPECT_GT(tally.per_minute(EventKind::goal), 3.0);
   EXPECT_LT(tally.per_minute(EventKind::goal), 10.0);
   EXPECT_LT(tally.per_minute(EventKind::dead_ball), 1.0);
-  EXPECT_LT(tally.per_minute(EventKind::ball_out), 3.0);
+  EXPECT_LE(tally.per_minute(EventKind::ball_out), 1.0);
+}
+
+// Larger than life and bounded, as the paper has them: docs/match-runner.md.
+TEST_P(Exhibition, HasBouncesThatAreSeenAndABallThatStaysOnTheTable) {
+  for (const char* player : {"3", "5"}) {
+    StatisticsObserver observer;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      Match match = *Match::create({.layout = GetParam(), .seed = seed});
+      ComputerPlayer home({.team = 0, .seed = 2 * seed, .player = *parse_player(player)});
+      ComputerPlayer away({.team = 1, .seed = 2 * seed + 1, .player = *parse_player(player)});
+      TickInput input;
+      for (int tick = 0; tick < 60'000; ++tick) {
+        home.play(match.view(), input.rods);
+        away.play(match.view(), input.rods);
+        match.step(input);
+        observer.observe(match.view(), match.events(), input.rods);
+      }
+      observer.abandon();
+    }
+    const Statistics& s = observer.totals();
+    const double median = 1e3 * s.hop_height.quantile(0.5);
+    const double high = 1e3 * s.hop_height.quantile(0.9);
+    const double out =
+        static_cast<double>(s.balls_out) / (static_cast<double>(s.play_ticks) * kTick / 60.0);
+    std::printf("%s: %llu hops, median %.1f mm, 90th percentile %.1f mm, %.2f balls out a minute\n",
+                player, static_cast<unsigned long long>(s.hop_height.count()), median, high, out);
+    EXPECT_GE(s.hop_height.count(), 300u) << player;
+    EXPECT_GE(median, 20.0) << player;
+    EXPECT_LE(median, 45.0) << player;
+    EXPECT_GE(high, 80.0) << player;
+    EXPECT_LE(high, 160.0) << player;
+    EXPECT_LE(out, 1.0) << player;
+  }
 }
 
 TEST_P(Exhibition, OfTwentySecondsShowsShots) {

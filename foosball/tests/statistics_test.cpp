@@ -299,6 +299,18 @@ TEST(Statistics, ABallThatNobodyTouchesIsStuckForAsLongAsItStays) {
   EXPECT_GE(script.totals().still_ticks, 1500u);
 }
 
+// As the referee counts: from the touch on, but about the place where the ball was before it.
+TEST(Statistics, ATouchBeginsTheTimeOfAStuckBallAgainAndNotItsPlace) {
+  Script script;
+  script.serve(0);
+  script.view.ball_position = {0.075 * 2.0, -0.1, script.table().ball_radius};
+  script.view.ball_velocity = {0.0, 0.02, 0.0};  // 80 mm in 4 s
+  script.tick(2000);
+  script.event(EventKind::man_hit, 0, rod_of(0, Line::midfield), 2);
+  script.tick(3900);
+  EXPECT_NEAR(static_cast<double>(script.totals().longest_stuck_ticks), 2000.0, 5.0);
+}
+
 // --- reach ---------------------------------------------------------------------------------------
 
 bool some_pose_touches(const TableSpec& table, int rod, const CharacterBody& body, const Vec3& ball,

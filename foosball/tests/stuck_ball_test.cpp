@@ -1,9 +1,11 @@
 // A ball that nobody can reach is freed by rule, whoever plays: computers, an absent side, rods
-// that spin, rods held aside. The runner's report has the same figure for any number of matches.
+// that spin, rods held aside. The runner has the same figures for any number of matches of all
+// levels (space-foosball-match --stuck-balls).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
 #include "bodies.h"
 #include "foosball/computer_player.h"
@@ -29,11 +31,11 @@ void move(Side side, int team, const MatchView& view, ComputerPlayer& computer, 
   }
 }
 
-Longest play(const MatchDesc& desc, Side home, Side away, int ticks) {
+Longest play(const MatchDesc& desc, int level, Side home, Side away, int ticks) {
   Match match = *Match::create(desc);
-  ComputerPlayer first({.team = 0, .seed = 2 * desc.seed, .player = *parse_player("classic:0.9")});
-  ComputerPlayer second(
-      {.team = 1, .seed = 2 * desc.seed + 1, .player = *parse_player("classic:0.9")});
+  const PlayerSpec player = *parse_player(std::to_string(level));
+  ComputerPlayer first({.team = 0, .seed = 2 * desc.seed, .player = player});
+  ComputerPlayer second({.team = 1, .seed = 2 * desc.seed + 1, .player = player});
   const Command confirm[] = {{Command::Kind::push, 0, 0}, {Command::Kind::push, 1, 0}};
   const TableSpec& table = table_spec(desc.layout);
   TickInput input;
@@ -61,19 +63,29 @@ Longest play(const MatchDesc& desc, Side home, Side away, int ticks) {
   return longest;
 }
 
+struct Sides {
+  Side home, away;
+};
+constexpr Sides kSides[] = {{Side::computer, Side::computer}, {Side::computer, Side::absent},
+                            {Side::computer, Side::aside},    {Side::computer, Side::spins},
+                            {Side::aside, Side::computer},    {Side::aside, Side::absent},
+                            {Side::aside, Side::aside},       {Side::aside, Side::spins}};
+
 TEST(StuckBall, NoneIsOutOfReachOrHeldForLongerThanTheRulesAllow) {
   Longest longest;
+  std::uint64_t seed = 0;
   for (const Layout layout : {Layout::paper, Layout::tournament}) {
     for (const auto& rules : {arcade_rules(), itsf_rules(1)}) {
-      for (const Side away : {Side::computer, Side::absent, Side::aside, Side::spins}) {
-        for (const Side home : {Side::computer, Side::aside}) {
-          for (std::uint64_t seed = 1; seed <= 1; ++seed) {
-            MatchDesc desc{.layout = layout, .seed = seed, .rules = rules};
-            desc.rules.idle_seconds = 0.0;
-            const Longest here = play(desc, home, away, 45'000);
-            longest.unreachable = std::max(longest.unreachable, here.unreachable);
-            longest.held = std::max(longest.held, here.held);
-          }
+      for (const Sides& sides : kSides) {
+        const bool computers = sides.home == Side::computer && sides.away == Side::computer;
+        // Levels against themselves all five; beside others in turn.
+        for (int i = 0; i < (computers ? kLevels : 1); ++i) {
+          MatchDesc desc{.layout = layout, .seed = ++seed, .rules = rules};
+          desc.rules.idle_seconds = 0.0;
+          const int level = 1 + static_cast<int>(seed % kLevels);
+          const Longest here = play(desc, level, sides.home, sides.away, 45'000);
+          longest.unreachable = std::max(longest.unreachable, here.unreachable);
+          longest.held = std::max(longest.held, here.held);
         }
       }
     }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <thread>
 
@@ -26,7 +27,8 @@ std::string footer() {
   return text +
          "\nEvery seed is played twice with the sides changed over. What the figures mean:\n"
          "docs/match-runner.md.\n\n"
-         "Exit codes: 0 done; 1 something failed, or stopped before it was done; 2 a bad option.";
+         "Exit codes: 0 done; 1 something failed, a ball was stuck (--stuck-balls), or stopped\n"
+         "before it was done; 2 a bad option.";
 }
 
 // "5@FILE" with the file's values in place of its name.
@@ -57,9 +59,10 @@ void read_files(std::vector<std::string>& names) {
 }
 
 struct Raw {
-  std::string home = "classic", away = "classic", layout = "tournament", characters, tuning, vary,
-              seed;
+  std::string home = match::default_player(), away = home;
+  std::string layout = "tournament", characters, tuning, vary, seed;
   bool report = false, balance = false, study = false, traits = false, passive = false;
+  bool stuck_balls = false;
   bool screen = false, train = false, matches_given = false;
   std::vector<std::string> sprt, round_robin;
   std::string parameters, list_judgment;
@@ -89,6 +92,11 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   auto* report = cli.add_flag("--report", raw.report,
                               "figures of play, each beside its goal, also against an idle side, a "
                               "spinner, with one rod, and of each character against the others");
+  auto* stuck = cli.add_flag("--stuck-balls", raw.stuck_balls,
+                             "how long nobody can reach the ball, or nobody plays it: --matches of "
+                             "each level 1 to 5 against itself in each layout; exit code 1 if that "
+                             "is longer than the rules allow");
+  stuck->excludes(report)->excludes(home)->excludes(away)->excludes(passive);
   auto* sprt = cli.add_option("--sprt", raw.sprt,
                               "OLD NEW: play until it is clear whether NEW is the better one")
                    ->type_name("OLD NEW")
@@ -101,15 +109,17 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
           ->check(check_player);
   auto* balance = cli.add_flag("--balance", raw.balance,
                                "every pair of characters, played by --home: is any beyond 60:40?");
-  for (auto* mode : {sprt, robin, balance})
-    mode->excludes(report)->excludes(matches)->excludes(away)->excludes(passive);
+  for (auto* mode : {sprt, robin, balance}) {
+    mode->excludes(report)->excludes(stuck)->excludes(matches);
+    mode->excludes(away)->excludes(passive);
+  }
   for (auto* mode : {sprt, robin}) mode->excludes(home)->excludes(balance);
   sprt->excludes(robin);
   auto* study = cli.add_flag("--study", raw.study,
                              "what the tuning values do to play, varied about those of --tuning: "
                              "--matches at each point of a design, in both layouts, played by "
                              "--home (docs/tuning-study.md)");
-  study->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance);
+  study->excludes(report)->excludes(stuck)->excludes(sprt)->excludes(robin)->excludes(balance);
   study->excludes(away)->excludes(passive);
   auto* vary = cli.add_option(
       "--vary", raw.vary,
@@ -119,7 +129,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
                               "what sets characters apart: each against itself, --matches each, "
                               "played by --home");
   for (auto* mode : {vary, traits}) {
-    mode->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance)->excludes(study);
+    mode->excludes(report)->excludes(stuck)->excludes(sprt)->excludes(robin);
+    mode->excludes(balance)->excludes(study);
     mode->excludes(away)->excludes(passive);
   }
   vary->excludes(traits);
@@ -131,7 +142,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
                              "search for the judgment with which --home scores most against "
                              "--opponents, and test it on new seeds (docs/match-runner.md)");
   for (auto* mode : {screen, train}) {
-    mode->excludes(report)->excludes(sprt)->excludes(robin)->excludes(balance)->excludes(study);
+    mode->excludes(report)->excludes(stuck)->excludes(sprt)->excludes(robin);
+    mode->excludes(balance)->excludes(study);
     mode->excludes(vary)->excludes(traits)->excludes(away)->excludes(passive);
   }
   screen->excludes(train);
@@ -142,11 +154,8 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(check_player);
   cli.add_option("--parameters", raw.parameters,
                  "NAME,NAME,...: the values that --screen or --train may change; else all");
-  cli.add_option("--generations", t.generations, "of --train")
-      ->needs(train)
-      ->check(CLI::Range(1, 100'000));
+  cli.add_option("--generations", t.generations, "of --train")->check(CLI::Range(1, 100'000));
   cli.add_option("--population", t.population, "samples of a generation; else 4 + 3 ln n, even")
-      ->needs(train)
       ->check(CLI::Range(4, 10'000));
   cli.add_option("--step", t.step,
                  "as a share of each range: of --screen; of --train, the first samples' deviation")
@@ -154,15 +163,13 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(server::check_not_nan);
   cli.add_option("--validate", t.validation,
                  "matches of the trained player against --home in each layout, on new seeds")
-      ->needs(train)
       ->check(CLI::Range(0, 100'000'000));
-  cli.add_option("--write", o.write, "file for the trained values, for PLAYER@FILE")->needs(train);
+  cli.add_option("--write", o.write, "file for the trained values, for PLAYER@FILE");
   cli.add_option("--list-judgment", raw.list_judgment,
                  "print the values of a level's judgment, with ranges and meanings, as a file")
       ->type_name("PLAYER")
       ->check(check_player);
   cli.add_option("--samples", o.samples, "points of a study that fill the space of the values")
-      ->needs(study)
       ->check(CLI::Range(0, 100'000));
   cli.add_option("--elo0", o.elo0, "sequential test: H0, NEW is better by no more than this");
   cli.add_option("--elo1", o.elo1, "sequential test: H1, NEW is better by this");
@@ -183,6 +190,82 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--csv", o.csv, "write the results there too, - for standard output");
   cli.add_option("--json", o.json, "write the results there too, - for standard output");
   cli.add_flag("--quiet", o.quiet, "no progress");
+}
+
+struct NamedMode {
+  Mode mode;
+  const char* name;
+};
+constexpr NamedMode kModes[] = {{Mode::report, "--report"},   {Mode::stuck_balls, "--stuck-balls"},
+                                {Mode::sprt, "--sprt"},       {Mode::round_robin, "--round-robin"},
+                                {Mode::balance, "--balance"}, {Mode::study, "--study"},
+                                {Mode::vary, "--vary"},       {Mode::traits, "--traits"},
+                                {Mode::screen, "--screen"},   {Mode::train, "--train"}};
+
+std::string name_of(Mode mode) {
+  for (const NamedMode& named : kModes) {
+    if (named.mode == mode) return named.name;
+  }
+  return "matches";
+}
+
+// Options that only some modes read: elsewhere they would pass for something that they do not do.
+std::string objection_to_mode(const CLI::App& cli, Mode mode) {
+  struct Rule {
+    const char* option;
+    std::vector<Mode> modes;
+  };
+  const std::vector<Mode> search{Mode::screen, Mode::train}, train{Mode::train};
+  const std::vector<Mode> test{Mode::sprt, Mode::round_robin};
+  const std::vector<Mode> sequential{Mode::sprt, Mode::round_robin, Mode::balance};
+  const Rule rules[] = {{"--opponents", search},
+                        {"--parameters", search},
+                        {"--step", search},
+                        {"--generations", train},
+                        {"--population", train},
+                        {"--validate", train},
+                        {"--write", train},
+                        {"--samples", {Mode::study}},
+                        {"--elo0", test},
+                        {"--elo1", test},
+                        {"--beta", test},
+                        {"--alpha", sequential},
+                        {"--max-matches", sequential}};
+  for (const Rule& rule : rules) {
+    if (cli.get_option(rule.option)->count() == 0) continue;
+    if (std::ranges::find(rule.modes, mode) != rule.modes.end()) continue;
+    std::string names;
+    for (const Mode read : rule.modes) names += (names.empty() ? "" : " or ") + name_of(read);
+    return std::string(rule.option) + " is read with " + names + " only";
+  }
+  const Mode both[] = {Mode::stuck_balls, Mode::study, Mode::screen, Mode::train};
+  if (cli.get_option("--layout")->count() > 0 && std::ranges::find(both, mode) != std::end(both))
+    return name_of(mode) + " plays in both layouts: leave --layout out";
+  return {};
+}
+
+// Two outputs in one place would be mixed, or the later would replace the former.
+std::string objection_to_same_files(const Options& o) {
+  const std::pair<const char*, const std::string*> outputs[] = {{"--csv", &o.csv},
+                                                                {"--json", &o.json},
+                                                                {"--write", &o.write},
+                                                                {"--checkpoint", &o.checkpoint},
+                                                                {"--results", &o.results}};
+  const auto place = [](const std::string& path) {
+    std::error_code error;
+    const auto whole = std::filesystem::weakly_canonical(path, error);
+    return error ? std::filesystem::path(path).lexically_normal() : whole;
+  };
+  for (const auto& [option, path] : outputs) {
+    for (const auto& [before, other] : outputs) {
+      if (before == option) break;
+      if (path->empty() || other->empty() || place(*path) != place(*other)) continue;
+      const std::string where = *path == "-" ? "standard output" : *path;
+      return std::string(before) + " and " + option + " both go to " + where +
+             ": give one of them another file";
+    }
+  }
+  return {};
 }
 
 // What --screen and --train need besides.
@@ -213,6 +296,7 @@ std::string translate(Options& o, const Raw& raw) {
   if (!raw.seed.empty()) o.seed = *server::parse_seed(raw.seed);
   o.players = {raw.home, raw.passive ? "idle" : raw.away};
   if (raw.report) o.mode = Mode::report;
+  if (raw.stuck_balls) o.mode = Mode::stuck_balls;
   if (raw.balance) o.mode = Mode::balance;
   if (raw.study) o.mode = Mode::study;
   if (!raw.sprt.empty()) {
@@ -276,6 +360,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     cli.parse(argc, argv);
     raw.matches_given = cli.get_option("--matches")->count() > 0;
     objection = translate(options, raw);
+    if (objection.empty()) objection = objection_to_mode(cli, options.mode);
+    if (objection.empty()) objection = objection_to_same_files(options);
   } catch (const CLI::CallForHelp&) {
     return tl::unexpected(Leave{0, cli.help()});
   } catch (const CLI::ParseError& error) {

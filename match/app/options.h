@@ -10,16 +10,29 @@
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 #include "match/character_study.h"
+#include "match/player.h"
 #include "match/training.h"
 
 namespace app {
 
-enum class Mode { matches, report, sprt, round_robin, balance, study, vary, traits, screen, train };
+enum class Mode {
+  matches,
+  report,
+  stuck_balls,
+  sprt,
+  round_robin,
+  balance,
+  study,
+  vary,
+  traits,
+  screen,
+  train
+};
 
 struct Options {
   Mode mode = Mode::matches;
-  std::vector<std::string> players{"classic",
-                                   "classic"};  // by the mode: home and away, old and new
+  std::vector<std::string> players{match::default_player(),
+                                   match::default_player()};  // home and away; new and old; ...
   foosball::Layout layout = foosball::Layout::tournament;
   foosball::Tuning tuning{};
   foosball::Characters character_list = foosball::built_in_characters();

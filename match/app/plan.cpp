@@ -172,7 +172,6 @@ Results of_round_robin(const Options& o, const std::vector<Series>& series) {
   return results;
 }
 
-// The best points by playability, and all figures for the files.
 // Of all series in order.
 std::string digest_text(const std::vector<Series>& series) {
   std::uint64_t digest = 0;
@@ -180,6 +179,7 @@ std::string digest_text(const std::vector<Series>& series) {
   return line("\ndigest of all matches %016llx\n", static_cast<unsigned long long>(digest));
 }
 
+// The best points by playability, and all figures for the files.
 Results of_study(const Options& o, const std::vector<Series>& series) {
   Results results;
   results.figures = match::study_figures(study_plan(o), series);
@@ -253,7 +253,7 @@ Results of_balance(const Options& o, const std::vector<Series>& series) {
     within += verdict == match::Verdict::h0;
     const auto judgment = verdict == match::Verdict::h0   ? match::Figure::Judgment::pass
                           : verdict == match::Verdict::h1 ? match::Figure::Judgment::falls_short
-                                                          : match::Figure::Judgment::unknown;
+                                                          : match::Figure::Judgment::open;
     results.figures.push_back(
         {"balance", name, 100.0 * mean_score(s.pairs()), "% points", "40 to 60", judgment});
   }
@@ -278,6 +278,8 @@ std::vector<SeriesDesc> series_of(const Options& o) {
       return {desc};
     case Mode::report:
       return match::report_series(report_plan(o));
+    case Mode::stuck_balls:
+      return match::stuck_ball_series(report_plan(o));
     case Mode::sprt:
       desc.max_games = o.max_matches;
       desc.test = {match::score_of_elo(o.elo0), match::score_of_elo(o.elo1), o.alpha, o.beta};
@@ -308,6 +310,13 @@ Results results_of(const Options& o, const std::vector<Series>& series) {
       Results results;
       results.figures = match::report_figures(report_plan(o), series);
       results.text = match::as_table(results.figures);
+      return results;
+    }
+    case Mode::stuck_balls: {
+      Results results;
+      results.figures = match::stuck_ball_figures(series);
+      results.text = match::as_table(results.figures) + digest_text(series);
+      results.falls_short = match::any_short(results.figures);
       return results;
     }
     case Mode::sprt:

@@ -18,6 +18,7 @@ match::TrainPlan train_plan(const Options& options);
 struct Results {
   std::string text;                    // tables for a person
   std::vector<match::Figure> figures;  // the same for CSV and JSON
+  bool falls_short = false;            // of what the mode demands: exit code 1
 };
 // Precondition: the series of these options, in their order.
 Results results_of(const Options& options, const std::vector<match::Series>& series);

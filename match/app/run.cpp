@@ -182,7 +182,7 @@ int run(const Options& options, const PlayAll& play_all) {
     return fail(1, "the trained values could not be written to " + options.write);
   }
   if (!schedule.finished()) return fail(1, "stopped before all matches were played");
-  return unsaved.empty() ? 0 : 1;
+  return unsaved.empty() && !results.falls_short ? 0 : 1;
 }
 
 }  // namespace app

@@ -216,6 +216,10 @@ tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc&
   return tl::unexpected("\"" + desc.name + "\" is no player: give one of " + all_syntax());
 }
 
+std::string default_player() {
+  return std::to_string(foosball::PlayerSpec{}.level);
+}
+
 std::vector<PlayerKind> player_kinds() {
   std::vector<PlayerKind> kinds{
       {"1..5[:STYLE]", "the computer player of a level; STYLE wall, shooter, passer or gambler"},

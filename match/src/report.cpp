@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <limits>
 #include <numeric>
+#include <span>
 
+#include "foosball/computer_player.h"
 #include "foosball/playability.h"
 
 namespace match {
@@ -28,16 +30,42 @@ std::string format(double value) {
   return text;
 }
 
+// What is printed of a goal is what it is judged by.
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+std::string with_note(const std::string& text, const char* note) {
+  return *note == 0 ? text : text + " (" + note + ")";
+}
 struct Goal {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  std::string text{};
+  std::string text{};  // empty: no goal
 };
-Goal at_most(double high, const std::string& text) {
-  return {.high = high, .text = text};
+Goal at_most(double high, const char* note = "") {
+  return {.high = high, .text = with_note("at most " + number(high), note)};
 }
-Goal at_least(double low, const char* text) {
-  return {.low = low, .text = text};
+Goal at_least(double low, const char* note = "") {
+  return {.low = low, .text = with_note("at least " + number(low), note)};
+}
+Goal within(double low, double high) {
+  return {low, high, number(low) + " to " + number(high)};
+}
+Goal around(double value, double low, double high) {
+  return {low, high, with_note(number(value), within(low, high).text.c_str())};
+}
+
+// Open: a bound is within two standard errors of the value, so chance alone may have decided.
+Figure::Judgment judge(const Goal& goal, double value, double error) {
+  if (goal.text.empty()) return Figure::Judgment::none;
+  if (std::isnan(value)) return Figure::Judgment::unknown;
+  const double doubt = std::isnan(error) ? -1.0 : 2.0 * error;
+  if (std::fabs(value - goal.low) <= doubt || std::fabs(value - goal.high) <= doubt)
+    return Figure::Judgment::open;
+  return value >= goal.low && value <= goal.high ? Figure::Judgment::pass
+                                                 : Figure::Judgment::falls_short;
 }
 
 double ratio(std::uint64_t part, std::uint64_t whole) {
@@ -53,21 +81,17 @@ class List {
   void add(const char* name, double value, const char* unit) {
     figures.push_back({section_, name, value, unit, "", Figure::Judgment::none});
   }
-  void add(const char* name, double value, const char* unit, const Goal& goal) {
-    const Figure::Judgment judgment = goal.text.empty()   ? Figure::Judgment::none
-                                      : std::isnan(value) ? Figure::Judgment::unknown
-                                      : value >= goal.low && value <= goal.high
-                                          ? Figure::Judgment::pass
-                                          : Figure::Judgment::falls_short;
-    figures.push_back({section_, name, value, unit, goal.text, judgment});
+  // error: standard error of the value, where one is known.
+  void add(const char* name, double value, const char* unit, const Goal& goal,
+           double error = kNone) {
+    figures.push_back({section_, name, value, unit, goal.text, judge(goal, value, error), error});
   }
   // Of a share of n, each by itself [%]. One more of either kind is counted for the error, so that
   // three of three are not exact (Agresti and Coull).
   void add_share(const char* name, std::uint64_t part, std::uint64_t n, const Goal& goal) {
-    add(name, percent(part, n), "%", goal);
-    if (n == 0) return;
     const double p = ratio(part + 1, n + 2);
-    figures.back().error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n + 2));
+    const double error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n + 2));
+    add(name, percent(part, n), "%", goal, n == 0 ? kNone : error);
   }
   std::vector<Figure> figures;
 
@@ -93,12 +117,10 @@ double quantile(const Histogram& histogram, double fraction) {
 void add_goals(List& list, const Statistics& s) {
   const std::uint64_t goals = sum(s.goals);
   list.add("goals a minute of play", per_minute(goals, s.play_ticks), "");
-  list.add_share("own goals by swing, of all goals", sum(s.own_goals_swing), goals,
-                 at_most(3.0, "below 3"));
+  list.add_share("own goals by swing, of all goals", sum(s.own_goals_swing), goals, at_most(3.0));
   list.add_share("own goals by deflection, of all goals", sum(s.own_goals_deflected), goals, {});
   const std::uint64_t served = sum(s.goals_of_server) + sum(s.goals_of_receiver);
-  list.add_share("the server scores next", sum(s.goals_of_server), served,
-                 {48.0, 52.0, "48 to 52"});
+  list.add_share("the server scores next", sum(s.goals_of_server), served, within(48.0, 52.0));
 }
 
 void add_hands(List& list, const Statistics& s) {
@@ -106,43 +128,43 @@ void add_hands(List& list, const Statistics& s) {
     const auto& moving = s.moving_ticks[team];
     list.add(
         team == 0 ? "team 0 moves 3 rods or more at once" : "team 1 moves 3 rods or more at once",
-        percent(moving[3] + moving[4], sum(moving)), "% of play", at_most(0.5, "none (two hands)"));
+        percent(moving[3] + moving[4], sum(moving)), "% of play", at_most(0.5, "two hands"));
   }
   const double rod_seconds = foosball::kRods * static_cast<double>(s.play_ticks) * foosball::kTick;
   const double slide = static_cast<double>(sum(s.slide_reversals)) / rod_seconds;
   const double swing = static_cast<double>(sum(s.swing_reversals)) / rod_seconds;
-  list.add("reversals a rod and second", slide + swing, "1/s", at_most(2.0, "at most 2"));
+  list.add("reversals a rod and second", slide + swing, "1/s", at_most(2.0));
   list.add("  of the slide", slide, "1/s");
   list.add("  of the swing", swing, "1/s");
   const double held = static_cast<double>(sum(s.hand_ticks)) * foosball::kTick / rod_seconds;
   list.add("  of a rod while a hand holds it", held > 0.0 ? (slide + swing) / held : 0.0, "1/s");
-  list.add("spins beyond a turn", per_minute(sum(s.spins), s.play_ticks), "a minute",
-           at_most(0.0, "none"));
+  list.add("spins beyond a turn", per_minute(sum(s.spins), s.play_ticks), "a minute", at_most(0.0));
+}
+
+// By the rules that the matches are played by: a ball out of reach is dead after so long, one in
+// reach that nobody plays on after so long.
+void add_longest(List& list, const Statistics& s, const char* name) {
+  list.add(name, static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
+           at_most(foosball::arcade_rules().dead_ball_seconds, "rule"));
+}
+void add_longest_stuck(List& list, const Statistics& s) {
+  list.add("longest stuck", static_cast<double>(s.longest_stuck_ticks) * foosball::kTick, "s",
+           at_most(foosball::arcade_rules().still_seconds, "rule"));
 }
 
 void add_ball(List& list, const Statistics& s) {
-  list.add("hop, median", 1e3 * quantile(s.hop_height, 0.5), "mm", {20.0, 45.0, "30 (20 to 45)"});
+  list.add("hop, median", 1e3 * quantile(s.hop_height, 0.5), "mm", around(30.0, 20.0, 45.0));
   list.add("hop, 90th percentile", 1e3 * quantile(s.hop_height, 0.9), "mm",
-           {80.0, 160.0, "120 (80 to 160)"});
+           around(120.0, 80.0, 160.0));
   list.add("bounce, height after to before, median", 100.0 * quantile(s.bounce_ratio, 0.5), "%");
   list.add("fouls", per_minute(s.fouls, s.play_ticks), "a minute");
-  list.add("balls out", per_minute(s.balls_out, s.play_ticks), "a minute",
-           at_most(1.0, "at most 1"));
+  list.add("balls out", per_minute(s.balls_out, s.play_ticks), "a minute", at_most(1.0));
   list.add("nobody can reach the ball", percent(s.unreachable_ticks, s.ball_ticks), "% of ball",
-           at_most(10.0, "below 10"));
-  // By the rules that the matches are played by: a ball out of reach is dead after so long, one in
-  // reach that nobody plays on after so long.
-  const foosball::Rules rules = foosball::arcade_rules();
-  const auto within = [](double limit) {
-    return at_most(limit + 0.1, "at most " + format(limit) + " (rule)");
-  };
-  list.add("  longest", static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
-           within(rules.dead_ball_seconds));
+           at_most(10.0));
+  add_longest(list, s, "  longest");
   list.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball");
-  list.add("longest stuck", static_cast<double>(s.longest_stuck_ticks) * foosball::kTick, "s",
-           within(rules.still_seconds > 0.0 ? rules.still_seconds : rules.possession_seconds));
-  list.add("dead balls", per_minute(s.dead_balls, s.play_ticks), "a minute",
-           at_most(1.0, "below 1"));
+  add_longest_stuck(list, s);
+  list.add("dead balls", per_minute(s.dead_balls, s.play_ticks), "a minute", at_most(1.0));
 }
 
 void add_play(List& list, const Statistics& s) {
@@ -165,7 +187,7 @@ void add_play(List& list, const Statistics& s) {
   list.add_share("team 1 wins", s.wins[1], decided, {});
   const double n = static_cast<double>(decided);
   const double z = n > 0 ? (static_cast<double>(s.wins[1]) - 0.5 * n) / std::sqrt(0.25 * n) : kNone;
-  list.add("  from chance", z, "z", {-2.0, 2.0, "-2 to 2"});
+  list.add("  from chance", z, "z", within(-2.0, 2.0));
 }
 
 const char* word(Figure::Judgment judgment) {
@@ -176,6 +198,8 @@ const char* word(Figure::Judgment judgment) {
       return "pass";
     case Figure::Judgment::falls_short:
       return "short";
+    case Figure::Judgment::open:
+      return "open";
     case Figure::Judgment::unknown:
       return "no data";
   }
@@ -265,12 +289,21 @@ std::string as_json(const std::vector<Figure>& figures) {
 
 namespace {
 
-// Behind them one of each character.
-enum Part { kMain, kPaper, kPassive, kSpinner, kOneRod, kParts };
+enum class Part { main, other_layout, passive, spinner, one_rod, characters };
 
-}  // namespace
+// Of the plan's series those that tell something: a report of a player who has no hand, spins or
+// has one rod already leaves out what cannot be, or would be the same again.
+std::vector<Part> parts_of(const ReportPlan& plan) {
+  std::vector<Part> parts{Part::main, Part::other_layout};
+  if (plan.home == "idle") return parts;
+  if (plan.away != "idle") parts.push_back(Part::passive);
+  if (plan.home != "spinner") parts.push_back(Part::spinner);
+  if (!plan.home.starts_with("one-rod")) parts.push_back(Part::one_rod);
+  parts.push_back(Part::characters);
+  return parts;
+}
 
-std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
+SeriesDesc base_of(const ReportPlan& plan) {
   SeriesDesc base;
   base.players = {plan.home, plan.away};
   base.layout = plan.layout;
@@ -279,83 +312,161 @@ std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
   base.max_games = plan.matches;
   base.tuning = plan.tuning;
   base.character_list = plan.character_list;
-  std::vector<SeriesDesc> series(kParts, base);
-  series[kPaper].layout = plan.layout == foosball::Layout::paper ? foosball::Layout::tournament
-                                                                 : foosball::Layout::paper;
-  series[kPassive].players[1] = "idle";
-  series[kPassive].max_games = std::min<std::uint64_t>(plan.matches, 8);  // they are long
-  series[kSpinner].players = {"spinner", plan.home};
-  series[kOneRod].players = {"one-rod:" + plan.home, plan.away};
-  // Each character against the others, half as many matches each: equal players.
-  base.players[1] = plan.home;
-  base.max_games = std::max<std::uint64_t>(2, plan.matches / 4 * 2);
-  base.draw_characters = false;
+  return base;
+}
+
+foosball::Layout other(foosball::Layout layout) {
+  return layout == foosball::Layout::paper ? foosball::Layout::tournament : foosball::Layout::paper;
+}
+
+// Of all parts but the characters.
+SeriesDesc series_of(const ReportPlan& plan, Part part) {
+  SeriesDesc desc = base_of(plan);
+  if (part == Part::other_layout) desc.layout = other(plan.layout);
+  if (part == Part::passive) {
+    desc.players[1] = "idle";
+    desc.max_games = std::min<std::uint64_t>(plan.matches, 8);  // they are long
+  }
+  if (part == Part::spinner) desc.players = {"spinner", plan.home};
+  if (part == Part::one_rod) desc.players = {"one-rod:" + plan.home, plan.away};
+  return desc;
+}
+
+std::string title(const Series& series) {
+  const SeriesDesc& desc = series.desc();
+  return desc.players[0] + " against " + desc.players[1] + ", " + std::to_string(series.taken()) +
+         " matches" +
+         (desc.layout == foosball::Layout::paper ? ", paper layout" : ", tournament layout");
+}
+
+void add_points(List& list, const char* name, const Series& series, const Goal& goal) {
+  if (series.taken() < 2) return list.add(name, kNone, "% points", goal);
+  // With a pair lost and a pair won added: pairs that ended alike are few, not exact.
+  PairCounts pairs = series.pairs();
+  ++pairs.front();
+  ++pairs.back();
+  list.add(name, 100.0 * mean_score(series.pairs()), "% points", goal, 100.0 * score_error(pairs));
+}
+
+List in_other_layout(const Series& series) {
+  List list(title(series));
+  for (Figure& f : figures_of(title(series), series.statistics())) {
+    if (f.name == "the server scores next" || f.name == "team 1 wins" ||
+        f.name == "  from chance" || f.name == "nobody can reach the ball" ||
+        f.name == "own goals by swing, of all goals") {
+      list.figures.push_back(f);
+    }
+  }
+  return list;
+}
+
+List against_idle(const Series& series) {
+  List list(title(series));
+  const Statistics& s = series.statistics();
+  list.add("minutes of play", minutes(s.play_ticks), "");
+  list.add("goals", static_cast<double>(sum(s.goals)), "");
+  list.add("goals a minute", per_minute(sum(s.goals), s.play_ticks), "", at_least(1.0));
+  list.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball", at_most(30.0));
+  return list;
+}
+
+// One series each.
+List of_characters(const ReportPlan& plan, std::span<const Series> series) {
+  List list("characters, each against all others, played by " + plan.home + ", " +
+            std::to_string(series.front().taken()) + " matches each");
   for (std::size_t c = 0; c < plan.character_list.size(); ++c) {
-    base.characters = {static_cast<int>(c), kAnyOther};
-    series.push_back(base);
+    add_points(list, plan.character_list[c].name.c_str(), series[c], within(40.0, 60.0));
+  }
+  return list;
+}
+
+List list_of(const ReportPlan& plan, Part part, std::span<const Series> series) {
+  const Series& first = series.front();
+  List list(title(first));
+  switch (part) {
+    case Part::main:
+      list.figures = figures_of(title(first), first.statistics());
+      break;
+    case Part::other_layout:
+      return in_other_layout(first);
+    case Part::passive:
+      return against_idle(first);
+    case Part::spinner:
+      add_points(list, "points of the spinner", first, at_most(35.0));
+      break;
+    case Part::one_rod:
+      add_points(list, "points of the player with one rod", first, at_least(50.0));
+      break;
+    case Part::characters:
+      return of_characters(plan, series);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
+  std::vector<SeriesDesc> series;
+  for (const Part part : parts_of(plan)) {
+    if (part != Part::characters) {
+      series.push_back(series_of(plan, part));
+      continue;
+    }
+    // Each character against the others, half as many matches each: equal players.
+    SeriesDesc desc = base_of(plan);
+    desc.players[1] = plan.home;
+    desc.max_games = std::max<std::uint64_t>(2, plan.matches / 4 * 2);
+    desc.draw_characters = false;
+    for (std::size_t c = 0; c < plan.character_list.size(); ++c) {
+      desc.characters = {static_cast<int>(c), kAnyOther};
+      series.push_back(desc);
+    }
   }
   return series;
 }
 
 std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Series>& series) {
-  const auto players = [&](Part part) {
-    const SeriesDesc& desc = series[part].desc();
-    return desc.players[0] + " against " + desc.players[1] + ", " +
-           std::to_string(series[part].taken()) + " matches" +
-           (desc.layout == foosball::Layout::paper ? ", paper layout" : ", tournament layout");
-  };
-  std::vector<Figure> all = figures_of(players(kMain), series[kMain].statistics());
-  const auto append = [&](List& list) {
-    all.insert(all.end(), list.figures.begin(), list.figures.end());
-  };
-  List paper(players(kPaper));
-  for (Figure& f : figures_of(players(kPaper), series[kPaper].statistics())) {
-    if (f.name == "the server scores next" || f.name == "team 1 wins" ||
-        f.name == "  from chance" || f.name == "nobody can reach the ball" ||
-        f.name == "own goals by swing, of all goals") {
-      paper.figures.push_back(f);
+  std::vector<Figure> all;
+  std::span<const Series> left(series);
+  for (const Part part : parts_of(plan)) {
+    const std::vector<Figure> figures = list_of(plan, part, left).figures;
+    all.insert(all.end(), figures.begin(), figures.end());
+    left = left.subspan(part == Part::characters ? plan.character_list.size() : 1);
+  }
+  return all;
+}
+
+// --- stuck balls ---------------------------------------------------------------------------------
+
+std::vector<SeriesDesc> stuck_ball_series(const ReportPlan& plan) {
+  std::vector<SeriesDesc> series;
+  for (const auto layout : {foosball::Layout::tournament, foosball::Layout::paper}) {
+    for (int level = 1; level <= foosball::kLevels; ++level) {
+      SeriesDesc desc = base_of(plan);
+      desc.players.fill(std::to_string(level));
+      desc.layout = layout;
+      series.push_back(desc);
     }
   }
-  append(paper);
+  return series;
+}
 
-  List passive(players(kPassive));
-  const Statistics& s = series[kPassive].statistics();
-  passive.add("minutes of play", minutes(s.play_ticks), "");
-  passive.add("goals", static_cast<double>(sum(s.goals)), "");
-  passive.add("goals a minute", per_minute(sum(s.goals), s.play_ticks), "",
-              at_least(1.0, "at least 1"));
-  passive.add("ball still", percent(s.still_ticks, s.ball_ticks), "% of ball",
-              at_most(30.0, "below 30"));
-  append(passive);
-
-  const auto score = [&](std::size_t part) {
-    return series[part].taken() < 2 ? kNone : 100.0 * mean_score(series[part].pairs());
-  };
-  // With a pair lost and a pair won added: pairs that ended alike are few, not exact.
-  const auto error = [&](std::size_t part) {
-    PairCounts pairs = series[part].pairs();
-    ++pairs.front();
-    ++pairs.back();
-    return series[part].taken() < 2 ? kNone : 100.0 * score_error(pairs);
-  };
-  const auto add_points = [&](List& list, const char* name, std::size_t part, const Goal& goal) {
-    list.add(name, score(part), "% points", goal);
-    list.figures.back().error = error(part);
-  };
-  List spinner(players(kSpinner));
-  add_points(spinner, "points of the spinner", kSpinner, at_most(35.0, "at most 35"));
-  append(spinner);
-  List one(players(kOneRod));
-  add_points(one, "points of the player with one rod", kOneRod, at_least(45.0, "half"));
-  append(one);
-  List characters("characters, each against all others, played by " + plan.home + ", " +
-                  std::to_string(series[kParts].taken()) + " matches each");
-  for (std::size_t c = 0; c < plan.character_list.size(); ++c) {
-    add_points(characters, plan.character_list[c].name.c_str(), kParts + c,
-               {40.0, 60.0, "40 to 60"});
+std::vector<Figure> stuck_ball_figures(const std::vector<Series>& series) {
+  std::vector<Figure> all;
+  for (const Series& s : series) {
+    List list(title(s));
+    list.add("minutes of play", minutes(s.statistics().play_ticks), "");
+    add_longest(list, s.statistics(), "longest out of reach");
+    add_longest_stuck(list, s.statistics());
+    list.add("dead balls", static_cast<double>(s.statistics().dead_balls), "");
+    all.insert(all.end(), list.figures.begin(), list.figures.end());
   }
-  append(characters);
   return all;
+}
+
+bool any_short(const std::vector<Figure>& figures) {
+  return std::ranges::any_of(
+      figures, [](const Figure& f) { return f.judgment == Figure::Judgment::falls_short; });
 }
 
 }  // namespace match

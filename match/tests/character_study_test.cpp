@@ -113,28 +113,5 @@ TEST(Traits, AreMeasuredOfEachCharacterAgainstItself) {
   }
 }
 
-TEST(Report, CallsNoShareOfFewMatchesExact) {
-  ReportPlan plan{.matches = 4};
-  std::vector<Series> series;
-  for (const SeriesDesc& desc : report_series(plan)) {
-    series.emplace_back(desc);
-    GameResult won;  // by the first player, in both games of the pair
-    won.statistics.wins[1] = 2;
-    for (const int team : {0, 1}) {
-      won.winner = team;
-      series.back().take(won);
-    }
-  }
-  int shares = 0;
-  for (const Figure& figure : report_figures(plan, series)) {
-    if (figure.unit != "% points" && figure.name != "team 1 wins") continue;
-    EXPECT_EQ(figure.value, 100.0) << figure.name;
-    EXPECT_GT(figure.error, 5.0) << figure.section << figure.name;
-    EXPECT_LT(figure.error, 50.0) << figure.section << figure.name;
-    ++shares;
-  }
-  EXPECT_EQ(shares, 2 + 2 + 6) << "both layouts, spinner, one rod, each character";
-}
-
 }  // namespace
 }  // namespace match

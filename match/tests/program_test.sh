@@ -38,6 +38,18 @@ refuses 'is no number' --max-minutes nan
 refuses 'is no number' --sprt idle classic --alpha nan
 refuses 'is no number' --sprt idle classic --beta nan
 refuses 'is no number' --train --home 5 --step nan
+# What the mode does not read is not taken in silence.
+refuses '--opponents is read with --screen or --train only' --opponents 5
+refuses '--step is read with' --report --step 0.2
+refuses '--parameters is read with' --parameters shot_bar
+refuses '--write is read with --train only' --screen --write "$folder/file"
+refuses '--samples is read with --study only' --samples 3
+refuses '--max-matches is read with --sprt or --round-robin or --balance only' --max-matches 10
+refuses '--alpha is read with' --report --alpha 0.1
+for option in --elo0 --elo1 --beta; do refuses "$option is read with --sprt or --round-robin only" --balance $option 0.1; done
+refuses 'leave --layout out' --stuck-balls --layout paper
+refuses 'both go to standard output' --csv - --json -
+refuses "--csv and --json both go to $folder/./same" --csv "$folder/same" --json "$folder/./same"
 mkfifo "$folder/pipe"
 for path in "$folder" "$folder/pipe" /dev/null; do refuses 'give another file' --checkpoint "$path"; done
 # What cannot be written in the end is refused before hours of play.
@@ -55,6 +67,29 @@ refuses 'excludes' --train --home 5 --report
 printf 'shot_bar = 0.4\n\npatience = "long"\n' >"$folder/hasty.toml"
 refuses 'hasty.toml:3: patience must be a number from 0.1 to 3 s' --home "5@$folder/hasty.toml"
 refuses 'cannot be read' --away "one-rod:5@$folder/none.toml"
+
+# Every figure of the report is a row, whoever it is of; what cannot be is left out.
+report() { # report ROWS OPTION...: the sections that it has
+  local rows=$1
+  shift
+  "$match" --report --matches 2 --max-minutes 0.05 --quiet --csv "$folder/report.csv" "$@" >"$folder/out" ||
+    fail "--report $*: ended with $?"
+  [[ $(grep -c . "$folder/report.csv") == "$rows" ]] || fail "--report $*: $(grep -c . "$folder/report.csv") rows"
+  odd=$(tail -n +2 "$folder/report.csv" | grep -vE '^("[^"]*",){2}[-0-9.]*,[0-9.]*,("[^"]*",){2}(pass|short|open|no data)?$' || true)
+  [[ -z $odd ]] || fail "--report $*: $odd"
+}
+report 62 --away 1
+grep -q '^"one-rod:2 against 1, 2 matches, tournament layout","points of the player with one rod",' "$folder/report.csv" ||
+  fail "--report is not of the level that the game offers"
+report 61 --home one-rod:2
+report 57 --home one-rod:spinner --away idle
+report 61 --home spinner
+report 50 --home idle
+report 62 --home 5:wall@shot_bar=0.4 --away classic:0.9 --layout paper
+
+code=0
+"$match" --stuck-balls --matches 2 --max-minutes 0.05 --quiet --csv "$folder/stuck.csv" >"$folder/out" || code=$?
+[[ $code == 0 && $(grep -c 'longest' "$folder/stuck.csv") == 20 ]] || fail "--stuck-balls: ended with $code"
 
 # A few seconds of play a match; the totals with all distributions are in the JSON.
 options=(--quiet --matches 8 --max-minutes 0.05 --home classic:0.9 --away classic:0.3)

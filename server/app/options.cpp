@@ -311,6 +311,13 @@ void translate(Options& o, const Raw& raw) {
   for (std::string& device : o.devices) device = with_scheme(device);
 }
 
+// Sides are changed between sets alone. A challenge has its own rules.
+std::string objection_to_sides(const Options& o, const Raw& raw) {
+  if (!raw.change_sides || o.match.rules.sets_to_win > 1) return {};
+  return "--change-sides: there is one set, and sides are changed between sets; add --sets 3, or "
+         "leave it out";
+}
+
 // $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
 std::string own_characters() {
   const auto folder = [](const char* variable) -> std::string {
@@ -363,6 +370,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   if (std::string why = contradiction(cli, raw); !why.empty())
     return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   translate(options, raw);
+  if (const auto objection = objection_to_sides(options, raw); !objection.empty())
+    return tl::unexpected(Leave{server::kExitUsage, objection + "; --help explains the options"});
   if (!raw.tuning.empty()) {
     auto tuning = profile::load_tuning(raw.tuning);
     if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});

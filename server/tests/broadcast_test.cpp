@@ -3,9 +3,16 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "lockstep.h"
+#include "os/file_descriptor.h"
+#include "os/socket_address.h"
+#include "wire/device_frame.h"
 
 namespace server {
 namespace {
@@ -171,6 +178,65 @@ TEST_F(InputTest, CountsAndIgnoresStrangersAndWatchers) {
   const InputCounters c = counters();
   EXPECT_EQ(c.foreign, 3u);
   EXPECT_EQ(c.accepted, 0u);
+}
+
+// All that a stranger may have at hand, by what it is.
+std::vector<std::pair<std::string, std::vector<std::byte>>> requests_of_a_stranger(
+    ProbeClient& player, const wire::InputDatagram& input) {
+  std::vector<std::pair<std::string, std::vector<std::byte>>> all;
+  for (const std::size_t size : {0, 1, 2, 8, 15, 16, 17, 24, 32, 40, 64, 120, 200, 512, 1400, 9000})
+    all.emplace_back(std::to_string(size) + " bytes", std::vector(size, std::byte{0x5A}));
+  std::vector<std::byte> clear(wire::kMaxInputDatagram);
+  clear.resize(wire::encode_input(input, clear));
+  all.emplace_back("an input in the clear", clear);
+  all.emplace_back("a player's sealed input", player.sealed(input));
+  auto turned = player.sealed(input);
+  turned.back() ^= std::byte{1};
+  all.emplace_back("a forged input", turned);
+  std::vector<std::byte> snapshot(wire::kMaxDatagram + wire::kSealBytes);
+  const ssize_t heard = ::recv(player.udp(), snapshot.data(), snapshot.size(), MSG_DONTWAIT);
+  EXPECT_GT(heard, 0);
+  snapshot.resize(static_cast<std::size_t>(std::max<ssize_t>(heard, 0)));
+  all.emplace_back("a snapshot sent back", snapshot);
+  wire::DeviceFrame frame{};
+  std::array<std::uint8_t, wire::kDeviceFrameBytes> device{};
+  wire::encode_device_frame(frame, device.data());
+  const auto bytes = std::as_bytes(std::span(device));
+  all.emplace_back("a device frame", std::vector(bytes.begin(), bytes.end()));
+  wire::Knock knock;
+  wire::Ping ping;
+  const wire::Hello hello = player.hello(0);
+  for (const wire::ControlMessage& message :
+       {wire::ControlMessage(hello), wire::ControlMessage(knock), wire::ControlMessage(ping)}) {
+    std::vector<std::byte> control;
+    wire::encode_control(message, control);
+    all.emplace_back("control message " + std::to_string(message.index()), control);
+  }
+  return all;
+}
+
+// docs/decisions/0040: nothing that a stranger sends from a made-up address floods who has it.
+TEST_F(InputTest, NoDatagramOfAStrangerIsAnsweredByMoreThanItself) {
+  const os::FileDescriptor stranger(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const auto any = os::loopback(0), server = os::loopback(table.port());
+  ASSERT_EQ(::bind(stranger.get(), any.generic(), any.size()), 0);
+  std::uint64_t sent = 0;
+  for (const auto& [what, request] : requests_of_a_stranger(player, input(1, 0.02f))) {
+    ASSERT_EQ(::sendto(stranger.get(), request.data(), request.size(), 0, server.generic(),
+                       server.size()),
+              static_cast<ssize_t>(request.size()))
+        << what;
+    ++sent;
+    const InputCounters c = counters();
+    ASSERT_EQ(c.bad + c.foreign, sent) << what << " was read";
+    table.tick(5);
+    std::size_t answered = 0;
+    std::array<std::byte, 65536> bytes;
+    for (ssize_t got; (got = ::recv(stranger.get(), bytes.data(), bytes.size(), MSG_DONTWAIT)) > 0;)
+      answered += static_cast<std::size_t>(got);
+    EXPECT_LE(answered, request.size()) << what;
+  }
+  EXPECT_EQ(counters().accepted, 0u);
 }
 
 TEST_F(InputTest, CountsEveryTruncationTurnedBitAndOversize) {

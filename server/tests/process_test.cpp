@@ -59,6 +59,8 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--seconds", "0"},
       {"--seconds", "nan"},
       {"--minutes", "nan"},
+      {"--change-sides"},
+      {"--change-sides", "--sets", "1"},
       {"--keep-seats", "nan"},
       {"--mode", "challenge", "--date", "20260231"},
       {"--mode", "challenge", "--date", "2026112"},
@@ -336,6 +338,52 @@ TEST(ServerProgram, SaysThatAGroupCannotBeReached) {
   Process families(serve({"--port", "0", "--multicast", "[ff15::7531]:7532"}));
   EXPECT_EQ(families.wait(), 2);
   EXPECT_NE(families.output().find("different families"), std::string::npos) << families.output();
+}
+
+TEST(ServerProgram, ChangesSidesWhereThereAreSets) {
+  for (const auto& sets : {std::vector<std::string>{"--sets", "3"}, {"--rules", "itsf"}}) {
+    auto options = serve({"--port", "0", "--seconds", "0.01", "--change-sides"});
+    options.insert(options.end(), sets.begin(), sets.end());
+    Process process(options);
+    EXPECT_EQ(process.wait(), 0) << process.output();
+  }
+}
+
+// In a network of its own, whose route to the group goes once the server runs, and comes back.
+constexpr const char* kLosesItsRoute = R"(
+ip link set lo up && ip route add 224.0.0.0/4 dev lo && echo 'a network of its own' || exit 0
+coproc "$0" "$@" 2>&1
+server=$COPROC_PID
+while read -r line <&"${COPROC[0]}"; do
+  echo "$line"
+  case $line in
+    *'memory '*) ip route del 224.0.0.0/4 dev lo ;;
+    *'no snapshot can be sent'*) ip route add 224.0.0.0/4 dev lo ;;
+    *'snapshots are sent again'*) kill -TERM "$server" ;;
+  esac
+done)";
+
+TEST(ServerProgram, SaysThatNothingIsSentWhenTheRouteToItsGroupGoesAndWhenItIsBack) {
+  Process server({"/usr/bin/unshare", "--map-root-user", "--net", "/bin/bash", "-c", kLosesItsRoute,
+                  SERVER_BINARY, "--port", "0", "--listen", "0.0.0.0", "--multicast",
+                  "239.7.5.31:7532"});
+  if (!server.says("a network of its own"))
+    GTEST_SKIP() << "no network of its own can be made here: " << server.output();
+  EXPECT_TRUE(server.says("warning no snapshot can be sent: Network is unreachable"))
+      << server.output();
+  EXPECT_TRUE(server.says("snapshots are sent again")) << server.output();
+  EXPECT_TRUE(server.says("the server was stopped")) << server.output();
+}
+
+TEST(ServerProgram, SaysThatAGroupWithoutARouteCannotBeReached) {
+  Process server({"/usr/bin/unshare", "--map-root-user", "--net", SERVER_BINARY, "--port", "0",
+                  "--listen", "0.0.0.0", "--multicast", "239.7.5.31:7532"});
+  const int code = server.wait();
+  if (server.output().find("unshare: ") != std::string::npos)
+    GTEST_SKIP() << "no network of its own can be made here: " << server.output();
+  EXPECT_EQ(code, kExitUsage) << server.output();
+  EXPECT_NE(server.output().find("Network is unreachable; add a route"), std::string::npos)
+      << server.output();
 }
 
 TEST(ServerProgram, SaysThePasswordThatItMadeWhereItListensBeyondThisMachine) {

@@ -36,6 +36,14 @@ for ending in mp4 mkv webm; do
   loudest=$(ffmpeg -i "$work/whole.$ending" -vn -af volumedetect -f null - 2>&1 | sed -n 's/.*max_volume: \(.*\) dB/\1/p')
   awk -v db="$loudest" 'BEGIN { exit !(db != "" && db > -60) }' || fail "$ending is silent ($loudest dB)"
 done
+# Another view is another picture of the same moments.
+for view in seat above; do
+  video "$work/match.sfr" "$work/$view.mp4" --mute --to 0.3 --view "$view" >"$work/out"
+  ffmpeg -loglevel error -i "$work/$view.mp4" -f rawvideo "$work/$view.raw"
+done
+[[ $(wc -c <"$work/seat.raw") == "$(wc -c <"$work/above.raw")" ]] || fail "another view has another length"
+! cmp -s "$work/seat.raw" "$work/above.raw" || fail "--view changes nothing"
+refused 2 view "$work/match.sfr" "$work/no.mp4" --view below
 video "$work/match.sfr" "$work/part.mp4" --from 0.5 --to 1.0 >"$work/out"
 frames=$(ffprobe -loglevel error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 "$work/part.mp4")
 [[ $frames == 5 ]] || fail "half a second has $frames frames, not 5"

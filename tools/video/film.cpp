@@ -42,7 +42,7 @@ void Staging::advance(const wire::Snapshot& state, std::span<const wire::EventSn
   story_.update(events, state, dt);
   effects_.show(events, state, story_, particles_, sounds, state.paused ? 0.0f : dt);
   if (!state.paused) particles_.step(dt);
-  view_ = motion_.step(&state, team_, dt);
+  motion_.step(&state, team_, dt);
 }
 
 void Staging::jump(const client::MatchStory& story) {
@@ -50,10 +50,6 @@ void Staging::jump(const client::MatchStory& story) {
   particles_ = {};
   effects_ = {};
   effects_.set_characters(characters_);
-}
-
-client::Camera Staging::camera(const glm::ivec2& size) const {
-  return client::player_camera(view_, size);
 }
 
 draw::Image Film::frame(const wire::Snapshot& state, Staging& staging, float time) {

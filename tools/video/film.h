@@ -20,14 +20,15 @@ namespace video {
 // What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
 class Staging {
  public:
-  Staging(int team, const foosball::Characters& characters) : team_(team), characters_(characters) {
+  Staging(int team, const foosball::Characters& characters, client::View view = client::View::seat)
+      : team_(team), view_(view), characters_(characters) {
     effects_.set_characters(characters_);
   }
 
   // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
   void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
                client::SoundPlayer* sounds);
-  client::Camera camera(const glm::ivec2& size) const;
+  client::Camera camera(const glm::ivec2& size) const { return camera(view_, size); }
   client::Camera camera(client::View view, const glm::ivec2& size) const {
     return motion_.camera(view, size);
   }
@@ -38,12 +39,12 @@ class Staging {
 
  private:
   int team_;
+  client::View view_;
   foosball::Characters characters_;
   client::MatchStory story_;
   client::Effects effects_;
   client::Particles particles_;
   client::ViewMotion motion_;
-  client::CameraView view_;
 };
 
 struct FilmOptions {

@@ -53,8 +53,9 @@ std::uint64_t ticks_of(double seconds) {
 os::FileDescriptor sound_of(const video::Options& options, const video::Span& span) {
   if (options.mute) return {};
   auto scene = server::RecordedScene::open(options.recording);
-  auto sound = scene ? video::soundtrack(*scene, span, options.team, options.encoder.size)
-                     : tl::unexpected(scene.error());
+  auto sound =
+      scene ? video::soundtrack(*scene, span, options.team, options.view, options.encoder.size)
+            : tl::unexpected(scene.error());
   if (!sound) {
     fail(0, sound.error() + " The video has no sound.");
     return {};
@@ -80,7 +81,7 @@ int run(const video::Options& options) {
   auto encoder = video::Encoder::start(options.encoder, sound.get());
   if (!encoder) return fail(server::kExitFailed, encoder.error());
 
-  video::Staging staging(options.team, scene->characters());
+  video::Staging staging(options.team, scene->characters(), options.view);
   Progress progress(span.frames());
   const float dt = 1.0f / static_cast<float>(span.frames_per_second);
   scene->advance_to(from);

@@ -1,12 +1,14 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 
 namespace video {
 
 tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* argv) {
   Options options;
-  std::string size = "1280x720", quality = "high";
+  std::string size = "1280x720", quality = "high", view = "seat";
   CLI::App cli(
       "Draws a recorded match into a video, frame by frame, however long that takes: the picture "
       "is\n"
@@ -31,6 +33,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.add_option("--team", options.team, "the side that the camera stands on")
       ->capture_default_str()
       ->check(CLI::IsMember({0, 1}));
+  cli.add_option("--view", view, "seat, above, follow or spectator")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"seat", "above", "follow", "spectator"}));
   cli.add_flag("--mute", options.mute, "no sound");
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   const auto pixels = draw::parse_size(size);
@@ -39,6 +44,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   if (pixels->x % 2 != 0 || pixels->y % 2 != 0)
     return tl::unexpected(draw::refuse("--size wants an even width and height, not " + size + "."));
   options.encoder.size = *pixels;
+  constexpr std::array<const char*, client::kViews> kNames{"seat", "above", "follow", "spectator"};
+  options.view =
+      static_cast<client::View>(std::ranges::find(kNames, view) - std::ranges::begin(kNames));
   options.quality = quality == "high" ? draw::Quality::high : draw::Quality::low;
   if (options.to && *options.to <= options.from)
     return tl::unexpected(draw::refuse("--to must come after --from."));

@@ -5,6 +5,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "client/settings.h"
 #include "draw/command_line.h"
 #include "draw/quality.h"
 #include "encoder.h"
@@ -15,7 +16,8 @@ struct Options {
   std::string recording;
   EncoderOptions encoder;
   draw::Quality quality = draw::Quality::high;
-  int team = 0;              // whose side the camera stands on
+  int team = 0;  // whose side the camera stands on
+  client::View view = client::View::seat;
   double from = 0.0;         // [s] of the recording
   std::optional<double> to;  // [s]; none: to its end
   bool mute = false;

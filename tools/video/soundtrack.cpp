@@ -31,12 +31,13 @@ std::uint64_t Span::frames() const {
 
 tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& scene,
                                                          const Span& span, int team,
+                                                         client::View view,
                                                          const glm::ivec2& size) {
   auto sounds = client::SoundPlayer::open_offline();
   if (!sounds) return tl::unexpected(sounds.error());
   os::FileDescriptor file(::memfd_create("soundtrack", MFD_CLOEXEC));
   if (!file) return tl::unexpected(std::string("No room for the sound: ") + std::strerror(errno));
-  Staging staging(team, scene.characters());
+  Staging staging(team, scene.characters(), view);
   scene.advance_to(span.from);
   scene.take_events();  // of what is not shown
   const auto fps = static_cast<float>(span.frames_per_second);

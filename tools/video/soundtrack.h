@@ -5,6 +5,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "client/settings.h"
 #include "os/file_descriptor.h"
 #include "server/recorded_scene.h"
 
@@ -25,6 +26,6 @@ struct Span {
 // sentence: of a system whose OpenAL cannot do it, or of a lack of room.
 tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& scene,
                                                          const Span& span, int team,
-                                                         const glm::ivec2& size);
+                                                         client::View view, const glm::ivec2& size);
 
 }  // namespace video

@@ -66,20 +66,22 @@ int run(const char* recording) {
     std::fprintf(stderr, "space-foosball-visibility: %s\n", scene.error().c_str());
     return 4;
   }
-  std::array<WatchedView, 4> views{{{"seat, team 0", 0, client::View::seat, {}},
+  std::array<WatchedView, 6> views{{{"seat, team 0", 0, client::View::seat, {}},
                                     {"seat, team 1", 1, client::View::seat, {}},
-                                    {"above", 0, client::View::above, {}},
-                                    {"follow", 0, client::View::follow, {}}}};
+                                    {"above, team 0", 0, client::View::above, {}},
+                                    {"above, team 1", 1, client::View::above, {}},
+                                    {"follow, team 0", 0, client::View::follow, {}},
+                                    {"follow, team 1", 1, client::View::follow, {}}}};
   for (std::uint64_t tick = kStepTicks; match->advance_to(tick); tick += kStepTicks) {
     for (WatchedView& watched : views) look(watched, **scene, match->snapshot());
     match->take_events();
   }
-  std::printf("view          looks  seen, mean  least  hidden  longest [s], goal %.1f\n",
+  std::printf("view            looks  seen, mean  least  hidden  longest [s], goal %.1f\n",
               kLongestHidden);
   bool good = true;
   for (const WatchedView& v : views) {
     const double looks = std::max(v.looks, 1);
-    std::printf("%-12s %6d %9.1f %% %4.0f %% %5.2f %%  %.2f\n", v.name, v.looks,
+    std::printf("%-14s %6d %9.1f %% %4.0f %% %5.2f %%  %.2f\n", v.name, v.looks,
                 100.0 * v.sum / looks, 100.0 * v.least, 100.0 * v.times_hidden / looks, v.longest);
     good = good && v.looks > 0 && v.longest <= kLongestHidden;
   }

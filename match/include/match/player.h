@@ -44,6 +44,9 @@ struct PlayerDesc {
 // The error is a sentence that lists what may be given.
 tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc& desc);
 
+// Whom the game itself offers where none is named.
+std::string default_player();
+
 struct PlayerKind {
   std::string syntax, meaning;
 };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "match/player.h"
 #include "match/schedule.h"
 
 namespace match {
@@ -14,7 +15,8 @@ struct Figure {
   double value = 0.0;
   std::string unit;
   std::string goal;  // as text; empty: none
-  enum class Judgment { none, pass, falls_short, unknown } judgment = Judgment::none;
+  // Open: the goal's bound is within two standard errors of the value.
+  enum class Judgment { none, pass, falls_short, open, unknown } judgment = Judgment::none;
   double error = std::numeric_limits<double>::quiet_NaN();  // standard error, where known
 };
 
@@ -26,7 +28,7 @@ std::string as_json(const std::vector<Figure>& figures);
 
 // The matches of --report: the two players, and what a reviewer of play tried against them.
 struct ReportPlan {
-  std::string home = "classic", away = "classic";
+  std::string home = default_player(), away = default_player();
   foosball::Layout layout = foosball::Layout::tournament;
   std::uint64_t seed = 1, max_ticks = 600'000;
   std::uint64_t matches = 100;
@@ -36,5 +38,12 @@ struct ReportPlan {
 std::vector<SeriesDesc> report_series(const ReportPlan& plan);
 // Precondition: the series of that plan, in their order.
 std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Series>& series);
+
+// The matches of --stuck-balls: every level against itself in both layouts; how long nobody could
+// reach the ball, or nobody played it. Of the plan, not its players and layout.
+std::vector<SeriesDesc> stuck_ball_series(const ReportPlan& plan);
+std::vector<Figure> stuck_ball_figures(const std::vector<Series>& series);
+
+bool any_short(const std::vector<Figure>& figures);
 
 }  // namespace match

@@ -6,15 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "match/player.h"
 #include "match/report.h"
 #include "match/schedule.h"
 
 namespace match {
 
 struct StudyPlan {
-  std::string player = "classic";  // plays both sides
-  std::uint64_t seed = 1;          // of the first pair at every point: all points play the same
-                                   // serves and characters
+  std::string player = default_player();  // plays both sides
+  std::uint64_t seed = 1;  // of the first pair at every point: all points play the same serves and
+                           // characters
   std::uint64_t max_ticks = 600'000;
   std::uint64_t matches = 100;  // at each point, in each layout
   std::uint64_t samples = 64;   // points that fill the space
