@@ -321,7 +321,7 @@ TEST_F(ModesTest, ASpunRodChoosesNobodyInAMatch) {
 }
 
 TEST_F(ModesTest, CountsEveryBeginningOfAMatchHoweverFewTicksItTakes) {
-  desc = challenge_of(20261122, Layout::tournament);
+  desc = challenge_of(20261122);
   match = std::make_unique<Match>(*Match::create(desc));
   EXPECT_EQ(view().matches_begun, 0u);
   command(Command::Kind::push, 0);

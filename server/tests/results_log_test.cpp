@@ -216,7 +216,7 @@ results::MatchResult challenge_played(foosball::Match& match, MatchScribe& scrib
 
 // Found by a reviewer: from the second try on a challenge's result had all tries before in it.
 TEST(MatchScribe, BeginsAnewWithEveryChallenge) {
-  foosball::MatchDesc desc = foosball::challenge_of(20261122, foosball::Layout::tournament);
+  foosball::MatchDesc desc = foosball::challenge_of(20261122);
   desc.rules.match_seconds = 10.0;
   desc.rules.end_seconds = 1.0;
   foosball::Match match = *foosball::Match::create(desc);
