@@ -120,14 +120,19 @@ TEST_P(Exhibition, HasBouncesThatAreSeenAndABallThatStaysOnTheTable) {
 
 TEST_P(Exhibition, OfTwentySecondsShowsShots) {
   constexpr int kExhibitions = 32;  // of eight, one code in twenty has three with a goal by chance
-  int with_goal = 0;
+  int with_goal = 0, shots = 0, fewest = 1000;
   for (std::uint64_t seed = 1; seed <= kExhibitions; ++seed) {
     Tally tally;
     play(GetParam(), seed, "5:shooter", 20000, false, tally);
-    EXPECT_GE(tally.shots, 3) << "seed " << seed;
+    shots += tally.shots;
+    fewest = std::min(fewest, tally.shots);
     with_goal += tally.per_minute(EventKind::goal) > 0.0 ? 1 : 0;
   }
-  std::printf("a goal in %d of %d\n", with_goal, kExhibitions);
+  const double mean = static_cast<double>(shots) / kExhibitions;
+  std::printf("%.1f shots, %d at least, a goal in %d of %d\n", mean, fewest, with_goal,
+              kExhibitions);
+  EXPECT_GE(mean, 7.0);  // measured: 9.7 and 8.5, with a deviation of 3
+  EXPECT_GE(fewest, 1);
   EXPECT_GE(with_goal, kExhibitions / 2);
 }
 

@@ -299,7 +299,8 @@ float draw_side_lines(const HudPen& pen, const HudState& hud, float room_below) 
   return room_below;
 }
 
-void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
+// room: of the height, what the questionnaire leaves.
+void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen, float room) {
   const wire::Snapshot& state = *hud.state;
   const bool above = hud.view == View::above;
   switch (static_cast<ScreenKind>(state.screen)) {
@@ -315,10 +316,13 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
       draw_ceremony(pen, state, ceremony_words(hud), hud.replay, hud.still, above);
       break;
     case ScreenKind::end:
-      draw_end(pen, state, end_words(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report);
+      draw_end(pen, state, end_words(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report,
+               room);
       break;
   }
-  if (hud.menu.rows.empty()) draw_score(pen, hud, above);  // a menu would stand half over it
+  // A menu would stand half over the board; at the end the panel has the score.
+  const bool board = static_cast<ScreenKind>(state.screen) != ScreenKind::end;
+  if (board && hud.menu.rows.empty()) draw_score(pen, hud, above);
   if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) {
     draw_rules_line(pen, hud, above);
     draw_mode(pen, hud);
@@ -329,11 +333,12 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
 
 // All that one side of the table reads.
 void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
-  if (hud.state != nullptr) draw_match(pen, hud, screen);
   // From above each side reads its own.
   const int reader = hud.view != View::above ? -1 : pen.left_is_team_0 ? 0 : 1;
-  const float survey_height = draw_survey(pen, hud.survey, reader);
-  const float help_height = survey_height > 0.0f ? survey_height : draw_logo_panels(pen, hud);
+  const float asked = survey_height(pen, hud.survey, reader);
+  if (hud.state != nullptr) draw_match(pen, hud, screen, pen.bottom - asked);
+  draw_survey(pen, hud.survey, reader);
+  const float help_height = asked > 0.0f ? asked : draw_logo_panels(pen, hud);
   const float room_below = std::max(help_height, lower_room(hud));
   draw_notices(pen, hud, draw_side_lines(pen, hud, room_below));
   if (!hud.connection_message.empty()) draw_connection(pen, hud);

@@ -62,8 +62,9 @@ void tell_story(HudState& hud, const MatchStory& story);
 
 class HudPen;
 void draw_menu(const HudPen& pen, const MenuPage& page);
-// Of this team's people, at the lower edge; -1: of both. How high it stands.
-float draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
+// Of this team's people, at the lower edge; -1: of both.
+void draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
+float survey_height(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
 void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 

@@ -509,14 +509,21 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
 }
 
 void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& words,
-              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report) {
+              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report,
+              float room) {
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
   std::vector<EndRow> rows = end_rows(statistics);
   if (report != nullptr) take_report(rows, *report);
   const float details = 26.0f * static_cast<float>(words.details.size());
-  const float half = 310.0f, height = 210.0f + details + 28.0f * static_cast<float>(rows.size());
-  const HudPen pen = whole.fitting(half + 10.0f, height + 120.0f);
-  const float top = 0.5f * (pen.bottom - height);
+  constexpr float kHalf = 310.0f, kAround = 24.0f;
+  const auto height_of = [&] { return 210.0f + details + 28.0f * static_cast<float>(rows.size()); };
+  const auto fitted = [&] {
+    return whole.fitting(kHalf + 10.0f, (height_of() + kAround) * whole.bottom / room);
+  };
+  while (rows.size() > 1 && 16.0f * fitted().scale < kLeastRead) rows.pop_back();
+  const HudPen pen = fitted();
+  const float half = kHalf, height = height_of();
+  const float top = 0.5f * (room * whole.scale / pen.scale - height);
   pen.panel({-half, top}, {half, top + height}, 20.0f, {0.03f, 0.045f, 0.07f, 0.86f});
   const bool drawn = state.score[0] == state.score[1];
   pen.panel({-half, top}, {half, top + height}, 20.0f, drawn ? kFaint : kTeamInk[team], 2.0f);

@@ -80,9 +80,11 @@ glm::vec2 selection_title_size(const HudPen& pen);
 // A band at the upper edge, or the lower: the field stays free.
 void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const CeremonyWords& words,
                    bool replay, bool still, bool at_the_bottom);
-// report: as it is kept, or null: what was seen here.
+// report: as it is kept, or null: what was seen here. room: from the top down; where it is small,
+// fewer statistics are shown.
 void draw_end(const HudPen& pen, const wire::Snapshot& state, const EndWords& words,
-              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report);
+              const std::array<TeamStatistics, 2>& statistics, const wire::Report* report,
+              float room);
 // Its upper edge at y; how high it is with so many players.
 void draw_fame(const HudPen& pen, std::span<const wire::Fame> fame, float y);
 float fame_height(std::size_t players);

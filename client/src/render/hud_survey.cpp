@@ -96,15 +96,21 @@ void draw_panel(const HudPen& pen, const SurveyPanel& panel, float x, float y) {
   }
 }
 
-}  // namespace
+struct SurveyLayout {
+  HudPen pen;
+  std::vector<const SurveyPanel*> shown;
+  std::size_t columns = 0;
+  float high = 0.0f;
+  float taken() const { return high + 4.0f; }
+};
 
 // Beside one another where there is room, two in a row, smaller where there is not.
-float draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int team) {
+SurveyLayout layout_of(const HudPen& whole, std::span<const SurveyPanel> panels, int team) {
   std::vector<const SurveyPanel*> shown;
   for (const SurveyPanel& panel : panels) {
     if (team < 0 || panel.team == team) shown.push_back(&panel);
   }
-  if (shown.empty()) return 0.0f;
+  if (shown.empty()) return {whole, shown};
   // One below another where two beside one another would be too small to read.
   const bool narrow = whole.half_width < 1.6f * kPanelHalf;
   const std::size_t columns = narrow ? 1 : std::min<std::size_t>(shown.size(), 2);
@@ -114,14 +120,26 @@ float draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int 
   const float half = 0.5f * wide + 4.0f;
   const HudPen pen =
       whole.fitting(half, std::max(high + 10.0f, 1.25f * high)).readable(0.75f, half);
-  const float top = pen.bottom - high - 4.0f;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const std::size_t column = i % columns, row = i / columns;
-    const float beside = static_cast<float>(column) - 0.5f * static_cast<float>(columns - 1);
+  return {pen, shown, columns, high};
+}
+
+}  // namespace
+
+float survey_height(const HudPen& whole, std::span<const SurveyPanel> panels, int team) {
+  const SurveyLayout layout = layout_of(whole, panels, team);
+  return layout.shown.empty() ? 0.0f : layout.taken() * layout.pen.scale / whole.scale;
+}
+
+void draw_survey(const HudPen& whole, std::span<const SurveyPanel> panels, int team) {
+  const SurveyLayout layout = layout_of(whole, panels, team);
+  const HudPen& pen = layout.pen;
+  const float top = pen.bottom - layout.taken();
+  for (std::size_t i = 0; i < layout.shown.size(); ++i) {
+    const std::size_t column = i % layout.columns, row = i / layout.columns;
+    const float beside = static_cast<float>(column) - 0.5f * static_cast<float>(layout.columns - 1);
     const float below = static_cast<float>(row) * (kPanelHeight + kBetween);
-    draw_panel(pen, *shown[i], beside * (2.0f * kPanelHalf + kBetween), top + below);
+    draw_panel(pen, *layout.shown[i], beside * (2.0f * kPanelHalf + kBetween), top + below);
   }
-  return (high + 4.0f) * pen.scale / whole.scale;
 }
 
 }  // namespace client
