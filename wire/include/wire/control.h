@@ -214,8 +214,7 @@ struct Report {
 
 using ControlMessage =
     std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game,
-                 Names>;
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game, Names>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.
