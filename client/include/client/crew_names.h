@@ -17,7 +17,7 @@ class CrewNames {
  public:
   // Once a frame. What the server is to be told now; none: it knows.
   std::optional<wire::Names> update(const Crew& crew, const Settings& settings, bool in_match);
-  // The server was joined anew: a seat that is taken again may have names of before.
+  // The server was joined again: a seat that is taken again may have names of before.
   void joined() { told_.reset(); }
   // By rod: of whoever has set a name; empty: of nobody.
   const wire::RodPlayers& set_names() const { return set_; }

@@ -4,7 +4,7 @@
 
 namespace client {
 
-// Between matches people are counted anew, in the order of their devices; in a match whoever comes
+// Between matches people are counted again, in the order of their devices; in a match whoever comes
 // is the next one.
 void CrewNames::place_people(const Crew& crew, bool in_match) {
   if (!in_match) places_ = none();
