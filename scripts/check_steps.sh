@@ -235,7 +235,9 @@ play_refusals() { # play_refusals FOLDER
 --minutes 0.05
 --minutes 1e1
 --sets 18
---headless --change-sides
+--headless --change-sides --sets 3
+--mode ladder --level 3
+--mode challenge --minutes 1
 --headless --calibration $1/no.sfr
 --headless --record $1
 --headless --replay $1/no.sfr

@@ -38,7 +38,8 @@ build() {
   mkdir -p "$(dirname "$log")"
   : >"$log"
   set +o pipefail
-  NINJA_STATUS='[%f/%t] ' nice -n 5 ninja -C "build/$preset" -j "${SF_JOBS:-$(nproc)}" "$@" 2>&1 |
+  flock -n "build/$preset.lock" true || echo "  another build of build/$preset is under way: waiting for it"
+  NINJA_STATUS='[%f/%t] ' nice -n 5 flock "build/$preset.lock" ninja -C "build/$preset" -j "${SF_JOBS:-$(nproc)}" "$@" 2>&1 |
     tee -a "$log" | while IFS= read -r line; do
       [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
       now=$((BASH_REMATCH[1] * 100 / BASH_REMATCH[2]))

@@ -129,7 +129,8 @@ void Match::Impl::read_gestures() {
     if (gesture.push) {
       const bool chooses = mode() == Mode::training && state.screen == Screen::selection;
       push(team);
-      if (chooses) feed_to(rod, middle_man(rod));  // who begins with a rod has the ball there
+      // Who begins with a rod has the ball there.
+      if (chooses && state.screen != Screen::selection) feed_to(rod, middle_man(rod));
     }
   }
 }
@@ -142,6 +143,9 @@ void Match::Impl::push(int team) {
       if (mode() == Mode::challenge) start_match();
       break;
     case Screen::selection:
+      // In training a computer waits until the person has chosen.
+      if (mode() == Mode::training && state.computer[team] && !state.computer[opponent(team)])
+        break;
       state.confirmed[team] = true;
       if (mode() == Mode::training) begin_training(team);
       if (state.confirmed[0] && state.confirmed[1]) start_match();

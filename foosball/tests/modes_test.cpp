@@ -335,6 +335,21 @@ TEST_F(ModesTest, CountsEveryBeginningOfAMatchHoweverFewTicksItTakes) {
   EXPECT_EQ(view().matches_begun, 1u) << "a choice of characters begins nothing yet";
 }
 
+TEST_F(ModesTest, TrainingWaitsForThePersonWhateverTheComputerDoes) {
+  make(Mode::training);
+  command(Command::Kind::seat, 1, 1);
+  ComputerPlayer computer({.team = 1, .seed = 5, .opens_match = false});
+  command(Command::Kind::push, 0);
+  for (int tick = 0; tick < 8000; ++tick) {
+    computer.play(view(), input.rods);
+    step();
+  }
+  EXPECT_EQ(view().screen, Screen::selection);
+  command(Command::Kind::push, 0);
+  EXPECT_EQ(view().screen, Screen::play);
+  EXPECT_EQ(table().rods[static_cast<std::size_t>(view().feed_rod)].team, 0);
+}
+
 TEST_F(ModesTest, TrainingServesToTheSideThatBeganItUntilAManIsAskedFor) {
   for (const int team : {0, 1}) {
     make(Mode::training);

@@ -260,10 +260,12 @@ void GameMenu::change(int row, int way) {
       break;
     }
     case row_minutes: {
-      const auto at = std::ranges::lower_bound(kMinutes, kept_.match_ms, {},
-                                               [](std::uint32_t m) { return m * kMinuteMs; });
+      const auto of = [](std::uint32_t m) { return m * kMinuteMs; };
+      const auto next = std::ranges::upper_bound(kMinutes, kept_.match_ms, {}, of);
+      const auto here = std::ranges::lower_bound(kMinutes, kept_.match_ms, {}, of);
       const auto last = static_cast<int>(kMinutes.size()) - 1;
-      const int place = std::clamp(static_cast<int>(at - kMinutes.begin()) + way, 0, last);
+      const auto at = static_cast<int>((way > 0 ? next : here) - kMinutes.begin());
+      const int place = std::clamp(way > 0 ? at + way - 1 : at + way, 0, last);
       const bool was_timed = kept_.match_ms > 0;
       kept_.match_ms = kMinutes[static_cast<std::size_t>(place)] * kMinuteMs;
       // As many goals as the rules have without a time, none with one.
