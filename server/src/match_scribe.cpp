@@ -57,13 +57,16 @@ results::MatchResult MatchScribe::result(const foosball::MatchView& view,
                                          const Players& players) const {
   results::MatchResult result;
   result.layout = name_of(match_.layout);
-  result.goals_to_win = static_cast<std::uint32_t>(view.rules.goals_to_win);
-  result.max_goals = static_cast<std::uint32_t>(view.rules.max_goals);
+  const bool in_sets = view.rules.sets_to_win > 1;  // then they are what is counted
+  const int to_win = in_sets ? view.rules.sets_to_win : view.rules.goals_to_win;
+  result.goals_to_win = static_cast<std::uint32_t>(to_win);
+  result.max_goals = static_cast<std::uint32_t>(in_sets ? to_win : view.rules.max_goals);
   result.seed = view.mode == foosball::Mode::challenge ? view.challenge : match_.seed;
   result.play_seconds = view.play_seconds;
   const auto statistics = statistics_of_teams(before_, statistics_.totals());
   for (std::size_t t = 0; t < result.teams.size(); ++t) {
-    result.teams[t] = {players[t], static_cast<std::uint32_t>(view.score[t]), statistics[t]};
+    const int counted = in_sets ? view.sets[t] : view.score[t];
+    result.teams[t] = {players[t], static_cast<std::uint32_t>(counted), statistics[t]};
     result.teams[t].statistics->fastest_shot = statistics_.fastest_shots()[t];
   }
   result.shot_speeds = shot_speeds(before_, statistics_.totals());

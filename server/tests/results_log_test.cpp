@@ -193,14 +193,14 @@ TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
   EXPECT_NEAR(speeds->fastest, 9.0, 0.11);
 }
 
-// Two computers at the challenge of a day, for as long as each match lasts.
-results::MatchResult challenge_played(foosball::Match& match, MatchScribe& scribe, int& begun) {
+// Two computers play a match to its end.
+results::MatchResult played_to_the_end(foosball::Match& match, MatchScribe& scribe, int& begun) {
   std::array<foosball::ComputerPlayer, 2> players{
       foosball::ComputerPlayer({.team = 0, .seed = 1, .player = *foosball::parse_player("2")}),
       foosball::ComputerPlayer({.team = 1, .seed = 2, .player = *foosball::parse_player("2")})};
   foosball::TickInput input;
   const foosball::Command push{foosball::Command::Kind::push, 0};
-  for (int tick = 0; tick < 60'000; ++tick) {
+  for (int tick = 0; tick < 240'000; ++tick) {
     for (auto& player : players) player.play(match.view(), input.rods);
     const bool waits = match.view().screen == foosball::Screen::logo ||
                        match.view().screen == foosball::Screen::end;
@@ -223,7 +223,7 @@ TEST(MatchScribe, BeginsAnewWithEveryChallenge) {
   MatchScribe scribe(desc);
   for (int attempt = 1; attempt <= 3; ++attempt) {
     int begun = 0;
-    const results::MatchResult result = challenge_played(match, scribe, begun);
+    const results::MatchResult result = played_to_the_end(match, scribe, begun);
     EXPECT_EQ(begun, 1) << attempt;
     double possession = 0.0;
     for (const results::Team& team : result.teams) {
@@ -233,6 +233,23 @@ TEST(MatchScribe, BeginsAnewWithEveryChallenge) {
     EXPECT_GT(possession, 5.0) << attempt;
     EXPECT_LE(possession, 10.001) << attempt << ": no more than the match lasts";
   }
+}
+
+// The last set alone would be 1:0 or 0:1.
+TEST(MatchScribe, CountsTheSetsOfAMatchOfSeveral) {
+  foosball::MatchDesc desc;
+  desc.rules.goals_to_win = desc.rules.max_goals = 1;
+  desc.rules.sets_to_win = 2;
+  desc.rules.ceremony_seconds = 1.0;
+  foosball::Match match = *foosball::Match::create(desc);
+  MatchScribe scribe(desc);
+  int begun = 0;
+  const results::MatchResult result = played_to_the_end(match, scribe, begun);
+  EXPECT_EQ(result.goals_to_win, 2u);
+  ASSERT_TRUE(result.winner());
+  const auto winner = static_cast<std::size_t>(*result.winner());
+  EXPECT_EQ(result.teams[winner].goals, 2u);
+  EXPECT_LE(result.teams[1 - winner].goals, 1u);
 }
 
 }  // namespace

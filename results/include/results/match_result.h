@@ -35,7 +35,7 @@ struct TeamStatistics {
 
 struct Team {
   std::vector<Player> players;  // at most kMaxPlayersOfTeam
-  std::uint32_t goals = 0;
+  std::uint32_t goals = 0;      // of a match of several sets: the sets won
   std::optional<TeamStatistics> statistics;
   bool operator==(const Team&) const = default;
 };
@@ -49,7 +49,7 @@ struct MatchResult {
   std::int64_t id = 0;      // given by the store
   std::string finished_at;  // UTC, as 2026-11-22T23:59:59Z; the caller's clock
   std::string layout;       // as "tournament"
-  std::uint32_t goals_to_win = 0, max_goals = 0;
+  std::uint32_t goals_to_win = 0, max_goals = 0;  // or sets, as Team::goals
   std::uint64_t seed = 0;
   double play_seconds = 0.0;  // of the match clock
   std::array<Team, kTeams> teams;
