@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "foosball/rules.h"
@@ -96,12 +97,12 @@ constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
 }
 
 // The other way round, as near as a setup can say it. date: of a challenge.
-constexpr GameSetup setup_of(Mode mode, const Rules& rules, std::uint32_t date = 0) {
+inline GameSetup setup_of(Mode mode, const Rules& rules, std::uint32_t date = 0) {
   GameSetup setup{.mode = mode, .rules = rules.set};
   const bool timed = rules.match_seconds > 0.0;
   setup.goals = timed && rules.goals_to_win == kMostGoals ? 0 : rules.goals_to_win;
   setup.sets = 2 * rules.sets_to_win - 1;
-  setup.match_ms = static_cast<std::uint32_t>(rules.match_seconds * 1000.0 + 0.5);
+  setup.match_ms = static_cast<std::uint32_t>(std::lround(rules.match_seconds * 1000.0));
   setup.change_sides = rules.change_sides;
   setup.date = mode == Mode::challenge ? date : 0;
   return only_chosen(setup);
