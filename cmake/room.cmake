@@ -20,6 +20,13 @@ if(SF_BUILD_TESTS)
                             <vector>)
 endif()
 
+# A test that opens a window runs behind ${SF_DISPLAY}: a display of its own, which stays as it is when
+# its last window closes (without -noreset it starts anew and refuses the next window for a moment).
+if(SF_BUILD_TESTS)
+  find_program(XVFB_RUN xvfb-run REQUIRED)
+  set(SF_DISPLAY ${XVFB_RUN} -a -s "-screen 0 1280x720x24 -noreset")
+endif()
+
 # sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SHARDS n] [SERIAL]):
 # one GoogleTest program, each of its tests known to ctest; with the address sanitizer, whose programs
 # are slow to start, the program alone, or so many equal parts of it, which are begun first. Label "fast"

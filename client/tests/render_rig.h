@@ -21,25 +21,35 @@ namespace client {
 
 inline constexpr glm::ivec2 kSize{960, 540};
 
-class RenderTest : public ::testing::TestWithParam<draw::Quality> {
- protected:
-  static void SetUpTestSuite() {
+// What all tests draw with. Opened once for all suites: a display server starts anew, and refuses
+// for a moment, when its last window closes.
+class Display : public ::testing::Environment {
+ public:
+  void SetUp() override {
     draw::WindowOptions options;
     options.size = kSize;
     auto opened = Window::open(options);
     ASSERT_TRUE(opened) << opened.error().sentence;
     window = std::make_unique<Window>(std::move(*opened));
   }
-  static void TearDownTestSuite() {
+  void TearDown() override {
     scenes = {};
     ui.reset();
     window.reset();
   }
 
+  static inline std::unique_ptr<Window> window;
+  static inline std::array<std::unique_ptr<Scene>, 2> scenes;  // by quality
+  static inline std::unique_ptr<UiBatch> ui;
+};
+inline ::testing::Environment* const display = ::testing::AddGlobalTestEnvironment(new Display);
+
+class RenderTest : public ::testing::TestWithParam<draw::Quality> {
+ protected:
   // Made once for all tests of a quality: setting up takes longer than drawing.
   void SetUp() override {
-    ASSERT_TRUE(window);
-    std::unique_ptr<Scene>& shared = scenes[static_cast<std::size_t>(GetParam())];
+    ASSERT_TRUE(Display::window);
+    std::unique_ptr<Scene>& shared = Display::scenes[static_cast<std::size_t>(GetParam())];
     if (!shared) {
       auto made = Scene::create(GetParam());
       ASSERT_TRUE(made) << made.error();
@@ -73,7 +83,7 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
       (void)draw::write_png(image,
                             std::string(directory) + "/render-" + std::to_string(count++) + ".png");
     }
-    window->swap();
+    Display::window->swap();
     return image;
   }
 
@@ -119,9 +129,7 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
     return count;
   }
 
-  static inline std::unique_ptr<Window> window;
-  static inline std::array<std::unique_ptr<Scene>, 2> scenes;  // by quality
-  static inline std::unique_ptr<UiBatch> ui;
+  static inline std::unique_ptr<UiBatch>& ui = Display::ui;
   Scene* scene = nullptr;
   Camera camera;
 };
