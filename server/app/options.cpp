@@ -227,13 +227,6 @@ foosball::Mode mode_of(const std::string& name) {
   return name == "challenge" ? foosball::Mode::challenge : foosball::Mode::match;
 }
 
-// The first of these options that was given, or none.
-std::string given(const CLI::App& cli, std::initializer_list<const char*> names) {
-  for (const char* name : names)
-    if (cli.get_option(name)->count() > 0) return name;
-  return {};
-}
-
 foosball::GameSetup setup_of(const Raw& raw) {
   foosball::GameSetup setup;
   setup.mode = mode_of(raw.mode);
