@@ -176,7 +176,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
     wanted.record_by_default_bytes = options.recording_limits.bytes_of_one;
   }
   wanted.results = options.results;
-  wanted.date = utc_now;
+  wanted.date = app::utc_now;
   wanted.challenge_date = options.challenge_date;
   wanted.cabinet = !options.devices.empty();
   wanted.questionnaire = !options.no_questionnaire;
