@@ -270,11 +270,11 @@ std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw)
     asked.level = static_cast<std::uint8_t>(wanted.level);
     asked.style = static_cast<std::uint8_t>(wanted.style);
   }
-  const wire::Sentence why = why_not(asked, {.computer = o.computer[0] || o.computer[1],
-                                             .cabinet = !o.devices.empty(),
-                                             .tournament_table = raw.layout == "tournament",
-                                             .built_in_characters = !given("--characters"),
-                                             .default_tuning = !given("--tuning")});
+  const wire::Sentence why = server::why_not(asked, {.computer = o.computer[0] || o.computer[1],
+                                                     .cabinet = !o.devices.empty(),
+                                                     .tournament_table = raw.layout == "tournament",
+                                                     .built_in_characters = !given("--characters"),
+                                                     .default_tuning = !given("--tuning")});
   if (why.empty()) return {};
   std::string said;
   for (const char* name : options_of(why))

@@ -91,7 +91,7 @@ TEST(GameChoice, SidesAreChangedBetweenTheSetsOfACabinet) {
   const GameSite cabinet{.cabinet = true};
   EXPECT_TRUE(why_not(asked, cabinet).empty());
   EXPECT_EQ(why_not(asked, kHome), say<Said::sides_at_a_cabinet>());
-  for (const std::uint8_t sets : {0, 1}) {
+  for (const std::uint8_t sets : {std::uint8_t{0}, std::uint8_t{1}}) {
     asked.sets = sets;
     EXPECT_EQ(why_not(asked, cabinet), say<Said::sides_between_sets>()) << int{sets};
   }
