@@ -52,6 +52,8 @@ TEST(Options, BadOnesAreOneSentenceAndExitCodeTwo) {
                                                   {"--server", "host:65536"},
                                                   {"--server", "a:b:1"},
                                                   {"--server", ""},
+                                                  {"--name", " "},
+                                                  {"--name", "Ann, ,Ben"},
                                                   {"--server", "h:12x"},
                                                   {"--team", "2"},
                                                   {"--size", "1280"},

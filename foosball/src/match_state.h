@@ -16,7 +16,7 @@ namespace foosball {
 // A score that fits a byte and no match reaches.
 inline constexpr int kMaxScore = 99;
 static_assert(kMostGoals <= kMaxScore);
-inline constexpr int kMaxSets = 9;
+inline constexpr int kMostSetsToWin = (kMostSets + 1) / 2;
 inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counted no further
 inline constexpr double kMaxDuration = 3600.0;  // [s]
 // A rod turned further than this [rad] has been held by nobody: two million revolutions.
@@ -73,7 +73,7 @@ struct Tally {
   static void visit(Archive& archive, Self& self) {
     for (int team = 0; team < kTeams; ++team) {
       archive.choice(self.score[team], kMaxScore + 1);
-      archive.choice(self.sets[team], kMaxSets + 1);
+      archive.choice(self.sets[team], kMostSetsToWin + 1);
       archive.choice(self.time_outs[team], kMaxCount + 1);
       archive.choice(self.jars[team], kMaxCount + 1);
     }
@@ -170,7 +170,7 @@ void visit_rules(Archive& archive, R& rules) {
   archive.choice(rules.goals_to_win, kMaxScore + 1);
   archive.choice(rules.max_goals, kMaxScore + 1);
   archive.choice(rules.lead, kMaxScore + 1);
-  archive.choice(rules.sets_to_win, kMaxSets + 1);
+  archive.choice(rules.sets_to_win, kMostSetsToWin + 1);
   archive.real(rules.match_seconds, 0.0, kMaxDuration);
   archive.flag(rules.golden_goal);
   archive.flag(rules.change_sides);

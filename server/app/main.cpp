@@ -20,6 +20,7 @@
 #include "server/log_writer.h"
 #include "server/report.h"
 #include "server/run.h"
+#include "utc.h"
 
 namespace {
 
@@ -75,15 +76,6 @@ server::Log make_log(Outputs& outputs, bool quiet) {
     if (quiet && info) return;
     outputs.err.write(fmt::format("{} {} {}\n", time_of_day(), info ? "info" : "warning", text));
   };
-}
-
-// Of now, in UTC.
-std::string date() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::array<char, 32> text;
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
 int fail(Outputs& outputs, int exit_code, const std::string& sentence) {
@@ -184,7 +176,9 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
     wanted.record_by_default_bytes = options.recording_limits.bytes_of_one;
   }
   wanted.results = options.results;
-  wanted.date = date;
+  wanted.date = app::utc_now;
+  wanted.challenge_date = options.challenge_date;
+  wanted.cabinet = !options.devices.empty();
   wanted.questionnaire = !options.no_questionnaire;
   wanted.await_client = options.await_client;
   // Below the tick, which it must never hold up, and above all else.

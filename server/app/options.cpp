@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -12,7 +11,9 @@
 #include "os/socket_address.h"
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
+#include "server/game_choice.h"
 #include "server/option_checks.h"
+#include "utc.h"
 #include "wire/sentence.h"
 
 namespace app {
@@ -77,14 +78,6 @@ std::string check_date(const std::string& text) {
   return ok ? "" : "\"" + text + "\" is no day of the calendar, such as 20261122";
 }
 
-// Today as the number that names a challenge, such as 20261122 (UTC).
-std::uint32_t today() {
-  const auto now = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
-  const std::chrono::year_month_day date(now);
-  return static_cast<std::uint32_t>(static_cast<int>(date.year()) * 10000) +
-         static_cast<unsigned>(date.month()) * 100 + static_cast<unsigned>(date.day());
-}
-
 struct Raw {
   std::string rules = "arcade", mode = "match";
   int goals = 0, sets = 0;
@@ -125,7 +118,8 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
                  "of play, then whoever leads has won; a draw goes on to the next goal")
       ->check(CLI::Range(0.1, 60.0))
       ->check(server::check_not_nan);
-  cli.add_flag("--change-sides", raw.change_sides, "the players change sides between sets");
+  cli.add_flag("--change-sides", raw.change_sides,
+               "between sets, at a cabinet (--device), whose players walk round it");
   cli.add_option(
          "--mode", raw.mode,
          "match; training: the ball is served to a man again and again; challenge: two "
@@ -233,45 +227,6 @@ foosball::Mode mode_of(const std::string& name) {
   return name == "challenge" ? foosball::Mode::challenge : foosball::Mode::match;
 }
 
-// The first of these options that was given, or none.
-std::string given(const CLI::App& cli, std::initializer_list<const char*> names) {
-  for (const char* name : names)
-    if (cli.get_option(name)->count() > 0) return name;
-  return {};
-}
-
-// Empty, or which option says what the mode decides by itself.
-std::string contradiction(const CLI::App& cli, const Raw& raw) {
-  using wire::Said;
-  const foosball::Mode mode = mode_of(raw.mode);
-  const auto refused = [&](const std::string& option, const wire::Sentence& why) {
-    return option + " and --mode " + raw.mode + ": " + why.text();
-  };
-  if (mode != foosball::Mode::challenge && raw.date > 0)
-    return "--date is the day of a challenge: give --mode challenge with it, or leave it out";
-  if (!foosball::chooses_rules(mode)) {
-    if (raw.layout != "tournament") return refused("--layout", wire::say<Said::challenge_table>());
-    const std::string own = given(cli, {"--tuning", "--characters", "--seed"});
-    if (!own.empty())
-      return own +
-             " and --mode challenge: the challenge of the day is the same for everybody; leave " +
-             own + " out";
-    if (raw.rules != "arcade") return refused("--rules", wire::say<Said::challenge_is_set>());
-    const std::string set =
-        given(cli, {"--goals", "--sets", "--minutes", "--change-sides", "--level", "--style"});
-    if (!set.empty()) return refused(set, wire::say<Said::challenge_is_set>());
-  }
-  if (!foosball::has_end(mode)) {
-    const std::string end = given(cli, {"--goals", "--sets", "--minutes", "--change-sides"});
-    if (!end.empty()) return refused(end, wire::say<Said::training_has_no_end>());
-  }
-  if (!foosball::chooses_opponent(mode)) {
-    const std::string opponent = given(cli, {"--level", "--style"});
-    if (!opponent.empty()) return refused(opponent, wire::say<Said::ladder_has_its_levels>());
-  }
-  return {};
-}
-
 foosball::GameSetup setup_of(const Raw& raw) {
   foosball::GameSetup setup;
   setup.mode = mode_of(raw.mode);
@@ -283,6 +238,50 @@ foosball::GameSetup setup_of(const Raw& raw) {
   return setup;
 }
 
+// The options that a refusal of a game is about.
+std::vector<const char*> options_of(const wire::Sentence& refusal) {
+  using wire::Said;
+  const std::vector<const char*> end{"--goals", "--sets", "--minutes", "--change-sides"},
+      opponent{"--level", "--style"};
+  if (refusal == wire::say<Said::challenge_is_set>())
+    return {"--goals", "--sets", "--minutes", "--change-sides", "--rules", "--level", "--style"};
+  if (refusal == wire::say<Said::training_has_no_end>()) return end;
+  if (refusal == wire::say<Said::ladder_has_its_levels>()) return opponent;
+  if (refusal == wire::say<Said::challenge_table>()) return {"--layout"};
+  if (refusal == wire::say<Said::challenge_characters>()) return {"--characters"};
+  if (refusal == wire::say<Said::challenge_tuning>()) return {"--tuning"};
+  return {"--change-sides"};
+}
+
+// Empty, or why the options cannot be played together: what a client would be told that asked for
+// the same.
+std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw) {
+  const auto given = [&](const char* name) { return cli.get_option(name)->count() > 0; };
+  const foosball::GameSetup setup = setup_of(raw);
+  const bool challenge = setup.mode == foosball::Mode::challenge;
+  if (!challenge && raw.date > 0)
+    return "--date is the day of a challenge: give --mode challenge with it, or leave it out";
+  if (challenge && given("--seed"))
+    return "--seed and --mode challenge: the challenge of the day has a seed of its own; leave "
+           "--seed out";
+  wire::Game asked = server::to_game(setup);
+  if (given("--level") || given("--style")) {
+    const server::Opponent wanted = server::opponent_of(o.computer_player);
+    asked.level = static_cast<std::uint8_t>(wanted.level);
+    asked.style = static_cast<std::uint8_t>(wanted.style);
+  }
+  const wire::Sentence why = server::why_not(asked, {.computer = o.computer[0] || o.computer[1],
+                                                     .cabinet = !o.devices.empty(),
+                                                     .tournament_table = raw.layout == "tournament",
+                                                     .built_in_characters = !given("--characters"),
+                                                     .default_tuning = !given("--tuning")});
+  if (why.empty()) return {};
+  std::string said;
+  for (const char* name : options_of(why))
+    if (said.empty() && given(name)) said = std::string(name) + " and ";
+  return said + "--mode " + raw.mode + ": " + why.text();
+}
+
 void translate(Options& o, const Raw& raw) {
   const auto layout =
       raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
@@ -290,8 +289,9 @@ void translate(Options& o, const Raw& raw) {
   const foosball::GameSetup setup = setup_of(raw);
   o.match.rules = foosball::rules_of(setup);
   o.match.mode = setup.mode;
+  o.challenge_date = raw.date;
   if (setup.mode == foosball::Mode::challenge)
-    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : today());
+    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : server::day_of(utc_now()));
   if (!raw.seed.empty()) o.match.seed = *server::parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   const std::string player = std::to_string(raw.level);
@@ -309,13 +309,6 @@ void translate(Options& o, const Raw& raw) {
   o.loop.real_time = !raw.no_real_time;
   o.loop.drop_rights = true;
   for (std::string& device : o.devices) device = with_scheme(device);
-}
-
-// Sides are changed between sets alone. A challenge has its own rules.
-std::string objection_to_sides(const Options& o, const Raw& raw) {
-  if (!raw.change_sides || o.match.rules.sets_to_win > 1) return {};
-  return "--change-sides: there is one set, and sides are changed between sets; add --sets 3, or "
-         "leave it out";
 }
 
 // $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
@@ -367,11 +360,9 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     return tl::unexpected(
         Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options"});
   }
-  if (std::string why = contradiction(cli, raw); !why.empty())
-    return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   translate(options, raw);
-  if (const auto objection = objection_to_sides(options, raw); !objection.empty())
-    return tl::unexpected(Leave{server::kExitUsage, objection + "; --help explains the options"});
+  if (std::string why = contradiction(cli, options, raw); !why.empty())
+    return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   if (!raw.tuning.empty()) {
     auto tuning = profile::load_tuning(raw.tuning);
     if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});

@@ -18,6 +18,7 @@ struct Options {
   std::array<bool, foosball::kTeams> computer{};
   bool computer_fills = false;
   foosball::PlayerSpec computer_player{};
+  std::uint32_t challenge_date = 0;  // given; 0: that of the day
   server::NetworkOptions network;
   server::AccessOptions access;
   server::ControlLimits limits;

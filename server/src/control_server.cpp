@@ -119,6 +119,7 @@ void ControlServer::run() {
     publish_notices();
     publish_tuning();
     publish_game();
+    follow_the_day();
     publish_questionnaires();
     publish_report();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
@@ -151,6 +152,7 @@ void ControlServer::wait() {
       votes_.any() || kicks_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
   if (waiting) until = std::min(until, now + kLookAtSeatsUs);
   if (roster_changed_) until = std::min(until, now + kRosterEveryUs);
+  if (in_challenge()) until = std::min(until, now + kLookAtTheDayUs);
   polled_.clear();
   polled_.push_back({wake_.get(), POLLIN, 0});
   polled_.push_back({accepting ? listener_.get() : -1, POLLIN, 0});

@@ -81,6 +81,7 @@ struct ControlOptions {
   wire::Characters characters;        // said to each who joins
   GameSite site;                      // at the start
   std::function<std::string()> date;  // ServerOptions::date; called on the control thread
+  std::uint32_t challenge_date = 0;   // ServerOptions::challenge_date
   std::optional<Endpoint> multicast;
   wire::SealKey group_key{};              // with multicast: everybody's
   bool teams_open = true;                 // false: a recording plays, nobody can take a team
@@ -188,7 +189,10 @@ class ControlServer {
   void tell_name(const Seat& seat, RodSet rods, const std::string& name);
   void take_wish(ControlConnection& connection, const wire::Wish& wish);
   void take_game(ControlConnection& connection, wire::Game game);
+  void choose(const wire::Game& game, std::uint32_t client);
   bool in_challenge() const;
+  std::uint32_t challenge_day() const;  // that of a challenge chosen now; 0: unknown
+  void follow_the_day();
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
   // control_kicks.cpp
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
@@ -226,6 +230,9 @@ class ControlServer {
   std::int64_t accept_after_us_ = 0;
   bool roster_changed_ = false;
   RateLimit roster_limit_;
+  static constexpr std::int64_t kLookAtTheDayUs = 1'000'000;
+  std::int64_t look_at_the_day_us_ = 0;
+  std::uint32_t followed_day_ = 0;
   RateLimit log_limit_;
   std::uint64_t unsaid_ = 0;  // lines that the log was spared
 

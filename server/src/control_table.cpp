@@ -486,18 +486,40 @@ void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
   if (tuning_) site.default_tuning = is_default(*tuning_);
   if (const wire::Sentence why = why_not(game, site); !why.empty()) return refuse_it(why);
   if (game.mode == number(wire::Mode::challenge)) {
-    game.date = options_.date ? day_of(options_.date()) : 0;
+    game.date = challenge_day();
     if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
   }
   if (untold_.size() > kMostUntold) return refuse_it(say<Said::server_overloaded>());
   count(Count::wishes);
   send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
+  choose(game, seat->client);
+}
+
+void ControlServer::choose(const wire::Game& game, std::uint32_t client) {
   ControlEvent event;
   event.kind = ControlEvent::Kind::game;
-  event.client = seat->client;
+  event.client = client;
   event.game = game;
   untold_.push_back(std::move(event));
   tell_tick();
+}
+
+std::uint32_t ControlServer::challenge_day() const {
+  if (options_.challenge_date != 0) return options_.challenge_date;
+  return options_.date ? day_of(options_.date()) : 0;
+}
+
+// At midnight the next day's challenge is chosen, for the matches that begin from then on.
+void ControlServer::follow_the_day() {
+  if (!in_challenge() || !options_.teams_open || os::monotonic_us() < look_at_the_day_us_) return;
+  look_at_the_day_us_ = os::monotonic_us() + kLookAtTheDayUs;
+  const std::uint32_t day = challenge_day();
+  if (day == 0 || day == game_->date || day == followed_day_) return;
+  followed_day_ = day;
+  wire::Game next;
+  next.mode = number(wire::Mode::challenge);
+  next.date = day;
+  choose(next, 0);
 }
 
 // --- the questionnaire

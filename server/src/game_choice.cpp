@@ -31,10 +31,11 @@ foosball::PlayerSpec player_in(foosball::Mode mode, int rung, std::uint64_t chal
   return chosen;
 }
 
-GameSite site_of(const foosball::MatchDesc& match, bool computer) {
+GameSite site_of(const foosball::MatchDesc& match, bool computer, bool cabinet) {
   const foosball::Characters built_in = foosball::built_in_characters();
   GameSite site;
   site.computer = computer;
+  site.cabinet = cabinet;
   site.tournament_table = match.layout == foosball::Layout::tournament;
   site.built_in_characters = match.characters.size() >= built_in.size() &&
                              std::equal(built_in.begin(), built_in.end(), match.characters.begin());
@@ -58,6 +59,9 @@ wire::Sentence why_not(const wire::Game& asked, const GameSite& site) {
   if (contradicts) return say<Said::training_has_no_end>();
   if (opponent && !chooses_opponent(setup.mode)) return say<Said::ladder_has_its_levels>();
   if (!chooses_opponent(setup.mode) && !site.computer) return say<Said::no_computer_here>();
+  if (setup.change_sides && !site.cabinet) return say<Said::sides_at_a_cabinet>();
+  if (setup.change_sides && rules_of(setup).sets_to_win == 1)
+    return say<Said::sides_between_sets>();
   if (setup.mode != Mode::challenge) return {};
   if (!site.tournament_table) return say<Said::challenge_table>();
   if (!site.built_in_characters) return say<Said::challenge_characters>();
@@ -77,7 +81,7 @@ foosball::GameSetup setup_of(const wire::Game& asked, std::uint32_t date) {
   return setup;
 }
 
-wire::Game to_game(const foosball::GameSetup& setup, const Opponent& opponent, bool waits) {
+wire::Game to_game(const foosball::GameSetup& setup) {
   wire::Game game;
   game.mode = static_cast<std::uint8_t>(setup.mode);
   game.rule_set = static_cast<std::uint8_t>(setup.rules);
@@ -85,6 +89,11 @@ wire::Game to_game(const foosball::GameSetup& setup, const Opponent& opponent, b
   game.sets = static_cast<std::uint8_t>(setup.sets);
   game.match_ms = setup.match_ms;
   game.change_sides = setup.change_sides;
+  return game;
+}
+
+wire::Game to_game(const foosball::GameSetup& setup, const Opponent& opponent, bool waits) {
+  wire::Game game = to_game(setup);
   game.date = setup.date;
   game.waits = waits;
   if (setup.mode == foosball::Mode::ladder) return game;

@@ -74,8 +74,9 @@ ControlOptions Server::Impl::control_options() const {
   out.layout = options.match.layout;
   out.characters = characters::to_record(options.match.characters);
   const bool computer = options.computer[0] || options.computer[1];
-  out.site = site_of(options.match, computer);
+  out.site = site_of(options.match, computer, options.cabinet);
   out.date = options.date;
+  out.challenge_date = options.challenge_date;
   out.multicast = options.network.multicast;
   out.teams_open = options.replay == nullptr;
   out.random = options.random;

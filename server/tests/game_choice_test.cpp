@@ -64,21 +64,40 @@ TEST(GameChoice, AChallengeIsPlayedOnlyWhereItIsTheSameAsEverywhere) {
   using wire::Said;
   using wire::say;
   foosball::MatchDesc match;
-  EXPECT_TRUE(why_not(game(kChallenge), site_of(match, true)).empty());
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, false)), say<Said::no_computer_here>());
-  EXPECT_EQ(why_not(game(kLadder), site_of(match, false)), say<Said::no_computer_here>());
-  EXPECT_TRUE(why_not(game(kTraining), site_of(match, false)).empty());
+  EXPECT_TRUE(why_not(game(kChallenge), site_of(match, true, false)).empty());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, false, false)), say<Said::no_computer_here>());
+  EXPECT_EQ(why_not(game(kLadder), site_of(match, false, false)), say<Said::no_computer_here>());
+  EXPECT_TRUE(why_not(game(kTraining), site_of(match, false, false)).empty());
   match.layout = foosball::Layout::paper;
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true)), say<Said::challenge_table>());
-  EXPECT_TRUE(why_not(game(kLadder), site_of(match, true)).empty());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)), say<Said::challenge_table>());
+  EXPECT_TRUE(why_not(game(kLadder), site_of(match, true, false)).empty());
   match = {};
   match.characters.push_back(match.characters.front());
-  EXPECT_TRUE(why_not(game(kChallenge), site_of(match, true)).empty()) << "own ones come after";
+  EXPECT_TRUE(why_not(game(kChallenge), site_of(match, true, false)).empty())
+      << "own ones come after";
   match.characters.front().body.mass *= 1.01;
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true)), say<Said::challenge_characters>());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)),
+            say<Said::challenge_characters>());
   match = {};
   match.tuning.gravity = 9.0;
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true)), say<Said::challenge_tuning>());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)), say<Said::challenge_tuning>());
+}
+
+TEST(GameChoice, SidesAreChangedBetweenTheSetsOfACabinet) {
+  using wire::Said;
+  using wire::say;
+  wire::Game asked = game(kMatch, 0, 3);
+  asked.change_sides = true;
+  const GameSite cabinet{.cabinet = true};
+  EXPECT_TRUE(why_not(asked, cabinet).empty());
+  EXPECT_EQ(why_not(asked, kHome), say<Said::sides_at_a_cabinet>());
+  for (const std::uint8_t sets : {std::uint8_t{0}, std::uint8_t{1}}) {
+    asked.sets = sets;
+    EXPECT_EQ(why_not(asked, cabinet), say<Said::sides_between_sets>()) << int{sets};
+  }
+  asked.sets = 0;
+  asked.rule_set = number(wire::RuleSet::itsf);
+  EXPECT_TRUE(why_not(asked, cabinet).empty()) << "the best of five";
 }
 
 TEST(GameChoice, WhoPlaysIsTheDaysInAChallengeAndByTheRungOnTheLadder) {

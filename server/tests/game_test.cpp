@@ -1,5 +1,6 @@
 // What is played, chosen by clients while the server runs.
 #include <algorithm>
+#include <atomic>
 
 #include "control_fixture.h"
 #include "server/game_choice.h"
@@ -15,6 +16,12 @@ wire::Game of(wire::Mode mode) {
   return game;
 }
 
+bool is_told(Lockstep& table, ProbeClient& client,
+             const std::function<bool(const wire::Game&)>& wanted) {
+  return table.tick_until(
+      [&] { return client.catch_up() && client.game() && wanted(*client.game()); });
+}
+
 class GameTest : public testing::Test {
  protected:
   GameTest()
@@ -26,8 +33,7 @@ class GameTest : public testing::Test {
         }) {}
   const foosball::MatchView& view() { return table->match().view(); }
   bool told(ProbeClient& client, const std::function<bool(const wire::Game&)>& wanted) {
-    return table.tick_until(
-        [&] { return client.catch_up() && client.game() && wanted(*client.game()); });
+    return is_told(table, client, wanted);
   }
   void wish(ProbeClient& client, wire::WishKind kind) {
     const auto before = table->counters().control.wishes;
@@ -127,6 +133,68 @@ TEST_F(GameTest, TheChallengeIsTodaysAndKeepsTheDefaultTuning) {
       [&] { return notice_of(host) == wire::say<wire::Said::challenge_keeps_tuning>().text(); }));
   table.tick(20);
   EXPECT_EQ(view().tuning.gravity, usual);
+}
+
+TEST_F(GameTest, AChangeOfSidesIsForACabinet) {
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join(0));
+  wire::Game game = of(wire::Mode::match);
+  game.sets = 3;
+  game.change_sides = true;
+  host.say(game);
+  EXPECT_EQ(notice_of(host), wire::say<wire::Said::sides_at_a_cabinet>().text());
+}
+
+// A server that runs over midnight.
+class Midnight : public testing::Test {
+ protected:
+  std::atomic<int> day{22};
+  Lockstep table{[this](ServerOptions& o) {
+    o.computer = {false, true};
+    o.match = foosball::challenge_of(20261122);
+    o.match.rules.attract_seconds = o.match.rules.idle_seconds = 0.0;
+    o.challenge_date = pinned;
+    o.date = [this] { return "2026-11-" + std::to_string(day) + "T12:00:00Z"; };
+  }};
+  static inline std::uint32_t pinned = 0;
+};
+
+TEST_F(Midnight, BringsTheNextDaysChallengeToTheMatchesThatBeginAfterIt) {
+  ProbeClient player(table.port());
+  ASSERT_TRUE(player.join(0));
+  player.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  const auto& view = table->match().view();
+  ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::play; }));
+  day = 23;
+  ASSERT_TRUE(table.tick_until(
+      [&] { return player.catch_up() && player.game() && player.game()->date == 20261123; }));
+  EXPECT_TRUE(player.game()->waits);
+  EXPECT_EQ(view.challenge, 20261122u) << "the match in hand stays that of its day";
+  player.say(wire::Wish{number(wire::WishKind::restart), 0, 0});
+  ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::logo; }));
+  ASSERT_TRUE(table.tick_until([&] { return player.catch_up() && !player.game()->waits; }));
+  EXPECT_EQ(view.challenge, 20261123u);
+  const auto opponent = foosball::challenge_opponent(20261123);
+  EXPECT_EQ(player.game()->level, opponent.level);
+}
+
+class GivenDay : public Midnight {
+ protected:
+  static void SetUpTestSuite() { pinned = 20261122; }
+  static void TearDownTestSuite() { pinned = 0; }
+};
+
+TEST_F(GivenDay, StaysAndIsWhatAHostChooses) {
+  day = 23;
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join(0));
+  host.say(of(wire::Mode::match));
+  ASSERT_TRUE(
+      is_told(table, host, [](const auto& g) { return g.mode == number(wire::Mode::match); }));
+  host.say(of(wire::Mode::challenge));
+  ASSERT_TRUE(
+      is_told(table, host, [](const auto& g) { return g.mode == number(wire::Mode::challenge); }));
+  EXPECT_EQ(host.game()->date, 20261122u);
 }
 
 // The same hands at every try: then the computer plays the same, though other things happened

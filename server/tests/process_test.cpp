@@ -60,7 +60,8 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--seconds", "nan"},
       {"--minutes", "nan"},
       {"--change-sides"},
-      {"--change-sides", "--sets", "1"},
+      {"--change-sides", "--sets", "3"},
+      {"--device", "serial:/dev/ttyNone", "--change-sides", "--sets", "1"},
       {"--keep-seats", "nan"},
       {"--mode", "challenge", "--date", "20260231"},
       {"--mode", "challenge", "--date", "2026112"},
@@ -77,6 +78,8 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--mode", "challenge", "--characters", "/nowhere"},
       {"--mode", "ladder", "--level", "2"},
       {"--mode", "ladder", "--style", "wall"},
+      {"--mode", "ladder"},
+      {"--mode", "challenge"},
       {"--mode", "training", "--minutes", "1"},
       {"--recordings", ".", "--recordings-gb", "nan"},
       {"--check-character", ""},
@@ -107,14 +110,18 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
 
 TEST(ServerProgram, NamesTheOptionThatTheModeDecides) {
   const auto said = [](std::vector<std::string> options) {
-    options.insert(options.begin(), {"--port", "0", "--quiet", "--mode"});
+    options.insert(options.begin(), {"--port", "0", "--quiet", "--team1", "computer", "--mode"});
     Process process(serve(options));
-    process.wait();
+    EXPECT_EQ(process.wait(), 2) << process.output();
     return process.output();
   };
   EXPECT_NE(said({"ladder", "--level", "3"}).find("--level"), std::string::npos);
   EXPECT_NE(said({"challenge", "--sets", "3"}).find("--sets"), std::string::npos);
   EXPECT_NE(said({"challenge", "--seed", "3"}).find("--seed"), std::string::npos);
+  EXPECT_NE(said({"challenge", "--layout", "paper"}).find("--layout"), std::string::npos);
+  EXPECT_NE(said({"challenge", "--tuning", "/nowhere.toml"}).find("--tuning"), std::string::npos);
+  EXPECT_NE(said({"training", "--minutes", "2"}).find("--minutes"), std::string::npos);
+  EXPECT_NE(said({"match", "--change-sides"}).find("--change-sides"), std::string::npos);
 }
 
 TEST(ServerProgram, PlaysWhatTheModeLeavesToBeChosen) {
@@ -122,7 +129,8 @@ TEST(ServerProgram, PlaysWhatTheModeLeavesToBeChosen) {
            {"challenge", "--layout", "tournament", "--date", "20240229"},
            {"ladder", "--goals", "2", "--sets", "3", "--rules", "itsf"},
            {"training", "--level", "3", "--style", "wall", "--layout", "paper"}}) {
-    std::vector<std::string> all{"--port", "0", "--seconds", "0.01", "--mode"};
+    std::vector<std::string> all{"--port",  "0",        "--seconds", "0.01",
+                                 "--team1", "computer", "--mode"};
     all.insert(all.end(), options.begin(), options.end());
     Process process(serve(all));
     EXPECT_EQ(process.wait(), 0) << process.output();
@@ -340,9 +348,10 @@ TEST(ServerProgram, SaysThatAGroupCannotBeReached) {
   EXPECT_NE(families.output().find("different families"), std::string::npos) << families.output();
 }
 
-TEST(ServerProgram, ChangesSidesWhereThereAreSets) {
+TEST(ServerProgram, ChangesSidesAtACabinetWhereThereAreSets) {
   for (const auto& sets : {std::vector<std::string>{"--sets", "3"}, {"--rules", "itsf"}}) {
-    auto options = serve({"--port", "0", "--seconds", "0.01", "--change-sides"});
+    auto options = serve(
+        {"--port", "0", "--seconds", "0.01", "--device", "serial:/dev/ttyNone", "--change-sides"});
     options.insert(options.end(), sets.begin(), sets.end());
     Process process(options);
     EXPECT_EQ(process.wait(), 0) << process.output();

@@ -113,7 +113,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
     return tl::unexpected(draw::refuse("--name: at most " + std::to_string(kNamedPeople) +
                                        " people have names at one window."));
   for (std::string& name : options.names) {
-    if (name.empty() || name.size() > wire::kMaxName)
+    if (name.find_first_not_of(" \t") == name.npos || name.size() > wire::kMaxName)
       return tl::unexpected(draw::refuse("--name wants names of 1 to 64 bytes each."));
     name = wire::clean_name(name);
   }

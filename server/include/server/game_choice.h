@@ -32,17 +32,21 @@ foosball::PlayerSpec player_in(foosball::Mode mode, int rung, std::uint64_t chal
 // What a challenge is the same for everybody by, and what else is fixed at a server.
 struct GameSite {
   bool computer = false;            // plays a team
+  bool cabinet = false;             // its players walk round the table
   bool tournament_table = true;     // the challenge's
   bool built_in_characters = true;  // are the first in the list, as they are
   bool default_tuning = true;       // at this moment
 };
-GameSite site_of(const foosball::MatchDesc& match, bool computer);
+GameSite site_of(const foosball::MatchDesc& match, bool computer, bool cabinet);
 
-// Empty: it can be played here. Whatever numbers a stranger sends.
+// Empty: it can be played here, whether a client asks for it or the options do. Whatever numbers a
+// stranger sends.
 wire::Sentence why_not(const wire::Game& asked, const GameSite& site);
 
 // Precondition: its numbers are in their ranges. date: of a challenge.
 foosball::GameSetup setup_of(const wire::Game& asked, std::uint32_t date);
+// As a client asks for it, without an opponent or a date.
+wire::Game to_game(const foosball::GameSetup& setup);
 // As the match has it chosen; waits: another game is in hand.
 wire::Game to_game(const foosball::GameSetup& setup, const Opponent& opponent, bool waits);
 

@@ -29,6 +29,7 @@ namespace server {
 struct ServerOptions {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
+  bool cabinet = false;                           // stands here, whose players can change sides
   bool computer_fills = false;  // ... and its rods that nobody has while people have the others
   // At the start; clients may choose another. The ladder and the challenge have their own.
   foosball::PlayerSpec computer_player{};
@@ -48,6 +49,9 @@ struct ServerOptions {
   // What date it is, as 2026-11-22T23:59:59Z, for results and for the challenge of the day; any
   // thread. None: then there are neither.
   std::function<std::string()> date;
+  // The day of the challenge, such as 20261122, whatever date it is; 0: it is that of the date,
+  // from midnight on that of the next.
+  std::uint32_t challenge_date = 0;
   bool questionnaire = true;  // with results: asks who has played, after each match
   bool await_client = false;  // the first tick is when the first client has joined
   int send_priority = 0;      // real-time, of the thread that sends snapshots; 0: an ordinary one
