@@ -76,6 +76,7 @@ LAYERS = {
     'tools/': 'tools',
     'tools/video/': 'video',
     'tools/watch/': 'watch',
+    'tools/calibrate/': 'calibrate',
     'benchmarks/': 'benchmarks',
     'tests/': 'tests',
 }
@@ -119,6 +120,7 @@ MAY_USE = {
     'video': {ENGINE_FACE, 'characters', 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'server', 'client'},
     'watch': {ENGINE_FACE, 'characters', 'os', 'draw', 'table', 'foosball', 'wire', 'cabinet', 'hand', 'server',
               'client', 'video'},
+    'calibrate': {ENGINE_FACE, 'os', 'draw', 'table', 'device-frame', 'hand', 'cabinet', 'client'},
     'tools': {ENGINE_FACE, 'os', 'results', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
     'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',

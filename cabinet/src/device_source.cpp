@@ -67,6 +67,7 @@ struct DeviceSource::Impl {
   DeviceOptions options;
   DeviceOpener open;
   DeviceCloser close;
+  std::function<void(const wire::DeviceFrame&)> observer;
   RodTracker tracker;
   FrameReader reader;
   SourceCounters counters;
@@ -143,6 +144,7 @@ std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
 void DeviceSource::Impl::accept(std::int64_t now_us) {
   const std::int64_t due = recording ? due_us(now_us) : now_us;
   if (!tracker.accept(frame, now_us, counters)) return;
+  if (observer) observer(frame);
   last_due_us = due;
   if (!heard && ever_heard) ++counters.reopened;
   heard = ever_heard = fresh = true;
@@ -218,6 +220,9 @@ DeviceState DeviceSource::state() const {
   if (in.fd < 0) return means_absent(in.open_error) ? DeviceState::missing : DeviceState::refused;
   if (in.fresh || in.pending) return DeviceState::live;
   return in.garbled() ? DeviceState::garbled : DeviceState::silent;
+}
+void DeviceSource::observe(std::function<void(const wire::DeviceFrame&)> observer) {
+  impl_->observer = std::move(observer);
 }
 int DeviceSource::open_error() const {
   return impl_->open_error;

@@ -12,6 +12,10 @@
 #include "cabinet/calibration.h"
 #include "cabinet/rod_input.h"
 
+namespace wire {
+struct DeviceFrame;
+}
+
 namespace cabinet {
 
 enum class DeviceFraming : std::uint8_t { cobs, report };
@@ -62,6 +66,8 @@ class DeviceSource final : public InputSource {
   DeviceState state() const;
   int open_error() const;  // errno of the last attempt to open it, if that failed
   bool connected() const { return state() == DeviceState::live; }
+  // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
+  void observe(std::function<void(const wire::DeviceFrame&)> observer);
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 
