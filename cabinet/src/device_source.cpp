@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <optional>
 #include <utility>
@@ -21,6 +22,8 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
+// Two polls are no further apart, as far as anything is concluded from it.
+constexpr std::int64_t kLongestPollUs = 1'500;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
@@ -63,6 +66,7 @@ struct DeviceSource::Impl {
   std::int64_t due_us(std::int64_t now_us) const;
   void accept(std::int64_t now_us);
   bool garbled() const;
+  std::int64_t arrival_us(std::int64_t now_us) const;
 
   DeviceOptions options;
   DeviceOpener open;
@@ -76,8 +80,8 @@ struct DeviceSource::Impl {
   bool tried = false;
   bool heard = false;  // since it was opened
   bool ever_heard = false;
-  bool fresh = false;  // heard from within silence_us
-  std::int64_t heard_us = 0, polled_us = 0;
+  bool fresh = false;                                       // heard from within silence_us
+  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;  // the last two polls
   std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
@@ -140,9 +144,17 @@ std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
   return last_due_us + elapsed;
 }
 
+// Of the bytes that a poll finds.
+std::int64_t DeviceSource::Impl::arrival_us(std::int64_t now_us) const {
+  const std::int64_t since = std::max(before_us, now_us - kLongestPollUs);
+  const std::int64_t told = options.arrived_us ? options.arrived_us() : 0;
+  if (told > since && told <= now_us) return told;
+  return recording ? now_us : (since + now_us) / 2;
+}
+
 void DeviceSource::Impl::accept(std::int64_t now_us) {
   const std::int64_t due = recording ? due_us(now_us) : now_us;
-  if (!tracker.accept(frame, now_us, counters)) return;
+  if (!tracker.accept(frame, arrival_us(now_us), now_us, counters)) return;
   last_due_us = due;
   if (!heard && ever_heard) ++counters.reopened;
   heard = ever_heard = fresh = true;
@@ -194,13 +206,14 @@ DeviceSource::~DeviceSource() = default;
 
 void DeviceSource::poll(std::int64_t now_us) {
   Impl& in = *impl_;
-  in.polled_us = now_us;
+  in.before_us = std::exchange(in.polled_us, now_us);
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
   if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
     in.fresh = false;
     in.tracker.hold();
   }
+  if (in.fresh) in.tracker.predict(now_us);
 }
 
 const RodInputs& DeviceSource::rods() const {

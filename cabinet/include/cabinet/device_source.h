@@ -36,6 +36,9 @@ struct DeviceOptions {
   std::int64_t silence_us = 50'000;  // no frame for so long: the rods hold
   std::int64_t reopen_us = 200'000;  // between attempts to open a device that went away
   bool opener_sets_line = false;     // a tty comes as raw 1 Mbaud already
+  // When bytes last came on the line that is open, on the clock that is handed to poll() [us].
+  // None: only known to lie between two polls.
+  std::function<std::int64_t()> arrived_us;
 };
 
 // Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno

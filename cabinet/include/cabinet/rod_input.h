@@ -22,6 +22,9 @@ struct RodInput {
   double angle_rate = 0.0;   // [rad/s]
   std::int64_t time_us = 0;  // when it was received, on the clock handed to poll()
   RodStatus status = RodStatus::absent;
+  // Of slide and angle, what no report has said yet: the motion since the last one, by its rate.
+  double slide_ahead = 0.0;  // [m]
+  double angle_ahead = 0.0;  // [rad]
 };
 using RodInputs = std::array<RodInput, kRods>;
 
