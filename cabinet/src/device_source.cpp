@@ -27,11 +27,6 @@ constexpr std::int64_t kLongestPollUs = 1'500;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
-// What open(2) says of a device that is not plugged in; 0: it was open and hung up.
-bool means_absent(int error) {
-  return error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
-}
-
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
     int type = 0;
@@ -49,6 +44,12 @@ Packing packing_of_recording(int fd) {
 }
 
 }  // namespace
+
+DeviceState state_of_error(int error) {
+  const bool absent =
+      error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
+  return absent ? DeviceState::missing : DeviceState::refused;
+}
 
 struct DeviceSource::Impl {
   Impl(DeviceOptions with, DeviceOpener opener, DeviceCloser closer)
@@ -154,7 +155,9 @@ std::int64_t DeviceSource::Impl::arrival_us(std::int64_t now_us) const {
 
 void DeviceSource::Impl::accept(std::int64_t now_us) {
   const std::int64_t due = recording ? due_us(now_us) : now_us;
-  if (!tracker.accept(frame, arrival_us(now_us), now_us, counters)) return;
+  const std::int64_t arrived = arrival_us(now_us);
+  if (!tracker.accept(frame, arrived, now_us, counters)) return;
+  if (options.arrived_us) counters.add_latency(now_us - arrived);
   last_due_us = due;
   if (!heard && ever_heard) ++counters.reopened;
   heard = ever_heard = fresh = true;
@@ -228,7 +231,7 @@ const std::string& DeviceSource::name() const {
 DeviceState DeviceSource::state() const {
   const Impl& in = *impl_;
   if (in.fd < 0 && in.played) return DeviceState::over;
-  if (in.fd < 0) return means_absent(in.open_error) ? DeviceState::missing : DeviceState::refused;
+  if (in.fd < 0) return state_of_error(in.open_error);
   if (in.fresh || in.pending) return DeviceState::live;
   return in.garbled() ? DeviceState::garbled : DeviceState::silent;
 }

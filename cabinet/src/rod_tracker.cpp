@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "rod_limits.h"
+
 namespace cabinet {
 namespace {
 
@@ -36,8 +38,6 @@ constexpr std::int64_t kHalfClockUs = std::int64_t{1} << 31;
 // ... and so many frames followed each other: fewer could be a late duplicate.
 constexpr int kStraysOfNewRun = 4;
 
-// A mouse's report may be of so long before the frame that brings it: PS/2 at 200 a second.
-constexpr double kReportSeconds = 5e-3;
 // Between two runs of a device nobody knows how long it was: long enough for every motion to end.
 constexpr std::int64_t kBetweenRunsUs = 1'000'000;
 
@@ -51,19 +51,6 @@ int sequence_step(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
 
 int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
-}
-
-// No hand moves a rod faster: three times the 3 m/s of a hard push, and nearly twice the 140 rad/s
-// of the fastest shots. A frame may bring two reports of a mouse whose motion began before the
-// frame that it is seen from.
-constexpr double kFastestSlide = 10;  // [m/s]
-constexpr double kFastestTurn = 250;  // [rad/s]
-constexpr double kReportSlack = 2 * kReportSeconds;
-
-bool possible(const RodMotion& moved, double seconds) {
-  const double longest = seconds + kReportSlack;
-  return std::abs(moved.slide) <= kFastestSlide * longest &&
-         std::abs(moved.angle) <= kFastestTurn * longest;
 }
 
 RodMotion count_of(const RodCalibration& rod) {
@@ -116,16 +103,7 @@ void RodTracker::predict(std::int64_t now_us) {
   for (int rod = 0; rod < kRods; ++rod) {
     RodInput& input = rods_[rod];
     if (input.status != RodStatus::live) continue;
-    const RodAhead ahead = filters_[rod].at(device_us);
-    const RodMotion& measured = measured_[rod];
-    const double limit = slide_limit_[rod];
-    const double slide = measured.slide + ahead.slide;
-    input.slide = limit > 0 ? std::clamp(slide, -limit, limit) : slide;
-    input.angle = measured.angle + ahead.angle;
-    input.slide_ahead = input.slide - measured.slide;
-    input.angle_ahead = ahead.angle;
-    input.slide_rate = input.slide == slide ? ahead.slide_rate : 0;
-    input.angle_rate = ahead.angle_rate;
+    show_ahead(measured_[rod], filters_[rod].at(device_us), slide_limit_[rod], input);
   }
 }
 

@@ -39,7 +39,7 @@ void StateFilter::rest() {
 
 // A sensor that reports in every frame is read for it.
 bool StateFilter::synchronous() const {
-  return period_us_ < kSynchronous * interval_us_;
+  return !stamped_ && period_us_ < kSynchronous * interval_us_;
 }
 
 // When the report came: after one frame, until the next, and so many periods after the last one.
@@ -48,7 +48,7 @@ void StateFilter::locate(const Bounds& frames, bool fast) {
   if (located_) learn_period(frames.until_us, fast);
   const double since = possible.after_us - bounds_.until_us;
   const double periods = std::max(1.0, std::ceil(since / period_us_));
-  if (synchronous()) {
+  if (stamped_ || synchronous()) {
     bounds_ = {frames.until_us, frames.until_us};
     return;
   }

@@ -31,8 +31,10 @@ struct RodAhead {
 
 class StateFilter {
  public:
-  // A count of the sensor [m], [rad]: what is not told apart.
-  explicit StateFilter(RodMotion count) : count_{count.slide, count.angle} {}
+  // count: of the sensor [m], [rad], what is not told apart. stamped: frames with counts come at
+  // the reports' own times, others at any.
+  explicit StateFilter(RodMotion count, bool stamped = false)
+      : count_{count.slide, count.angle}, stamped_(stamped), period_us_(stamped ? 8'000 : 5'000) {}
 
   // A frame, of the device's clock [us], which does not fall; what the sensor moved since the one
   // before.
@@ -66,7 +68,8 @@ class StateFilter {
   bool due(double frame_us) const;
 
   std::array<double, 2> count_;
-  double period_us_ = 5'000;
+  bool stamped_;
+  double period_us_;                           // at first a USB mouse's, or a PS/2 mouse's
   double frame_us_ = 0, interval_us_ = 1'000;  // the last frame; between two
   double seen_us_ = 0;                         // the frame of the last report
   Bounds bounds_;                              // of the last report's time

@@ -14,6 +14,8 @@
 #include <new>
 #include <optional>
 
+#include "cabinet/device_source.h"
+#include "cabinet/mouse_source.h"
 #include "options.h"
 #include "os/socket_address.h"
 #include "server/exit_code.h"
@@ -127,7 +129,7 @@ int exit_code(server::StartError::Kind kind) {
   return server::kExitFailed;
 }
 
-using Devices = std::vector<std::unique_ptr<cabinet::DeviceSource>>;
+using Devices = std::vector<std::unique_ptr<cabinet::Device>>;
 
 tl::expected<Devices, std::string> open_devices(const app::Options& options) {
   cabinet::Calibration calibration = cabinet::nominal_calibration();
@@ -140,6 +142,21 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options) {
   const auto& table = foosball::table_spec(options.match.layout);
   for (int rod = 0; rod < cabinet::kRods; ++rod) slide_limit[rod] = table.rods[rod].slide_limit;
   Devices devices;
+  for (const app::Mouse& mouse : options.mice) {
+    const int team = table.rods[mouse.rod].team;
+    const auto rod = static_cast<std::size_t>(mouse.rod);
+    cabinet::MouseOptions wanted;
+    wanted.name = mouse.name;
+    wanted.rod = mouse.rod;
+    wanted.slide_limit = slide_limit[rod];
+    wanted.calibration =
+        options.calibration.empty()
+            ? cabinet::hand_mouse(foosball::push_sign(team), -foosball::attack_sign(team))
+            : calibration.rods[rod];
+    auto device = cabinet::open_mouse(mouse.path, std::move(wanted));
+    if (!device) return tl::unexpected(device.error());
+    devices.push_back(std::move(*device));
+  }
   for (const std::string& address : options.devices) {
     auto device = cabinet::open_device(address, calibration, slide_limit);
     if (!device) return tl::unexpected(device.error());

@@ -10,21 +10,11 @@
 #include <tl/expected.hpp>
 
 #include "cabinet/calibration.h"
-#include "cabinet/rod_input.h"
+#include "cabinet/device.h"
 
 namespace cabinet {
 
 enum class DeviceFraming : std::uint8_t { cobs, report };
-
-// What the descriptor shows of the device. A person is told something else for each.
-enum class DeviceState : std::uint8_t {
-  missing,  // not open: it is not there, or hung up
-  refused,  // not open, though it is there: open_error() says why
-  silent,   // open, but no byte comes
-  garbled,  // open, bytes come, but no frame among them is taken
-  live,     // frames come, or a recording waits for the time of its next one
-  over,     // a recording, played to its end
-};
 
 struct DeviceOptions {
   std::string name = "cabinet";
@@ -52,7 +42,7 @@ using DeviceCloser = std::function<void(int)>;
 // A rod is absent until its mouse was first heard; from then on live or held. Positions start at 0
 // and only ever change by the sensors' increments: after a pause, a replug or a restart of the
 // micro-controller they go on from where they were held. One thread at a time.
-class DeviceSource final : public InputSource {
+class DeviceSource final : public Device {
  public:
   DeviceSource(DeviceOptions options, DeviceOpener open, DeviceCloser close = {});
   ~DeviceSource() override;
@@ -61,10 +51,8 @@ class DeviceSource final : public InputSource {
   const RodInputs& rods() const override;
   const SourceCounters& counters() const override;
   const std::string& name() const override;
-  // As of the last poll.
-  DeviceState state() const;
-  int open_error() const;  // errno of the last attempt to open it, if that failed
-  bool connected() const { return state() == DeviceState::live; }
+  DeviceState state() const override;
+  int open_error() const override;
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 
