@@ -14,8 +14,8 @@ constexpr int kStrokesToAndFro = 3, kStrokes = 8, kEighths = 7, kTurns = 5;
 
 // A stroke is at least so many counts: one a millimetre, of rods that reach 100 mm.
 constexpr double kLeastStroke = 100;
-// A stop is where the strokes to and fro ended, within so much of a stroke: of a rod that is 0.15 mm
-// off centre a stroke has up to 4 % more or fewer counts, by its angle.
+// A stop is where the strokes to and fro ended, within so much of a stroke: of a rod that is 0.15
+// mm off centre a stroke has up to 4 % more or fewer counts, by its angle.
 constexpr double kAtStop = 0.12;
 // Strokes to and fro begin anew when one is longer by so much.
 constexpr double kLonger = 1.1;

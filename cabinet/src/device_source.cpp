@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <optional>
 #include <utility>
@@ -21,13 +22,10 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
+// Two polls are no further apart, as far as anything is concluded from it.
+constexpr std::int64_t kLongestPollUs = 1'500;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
-
-// What open(2) says of a device that is not plugged in; 0: it was open and hung up.
-bool means_absent(int error) {
-  return error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
-}
 
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
@@ -47,6 +45,12 @@ Packing packing_of_recording(int fd) {
 
 }  // namespace
 
+DeviceState state_of_error(int error) {
+  const bool absent =
+      error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
+  return absent ? DeviceState::missing : DeviceState::refused;
+}
+
 struct DeviceSource::Impl {
   Impl(DeviceOptions with, DeviceOpener opener, DeviceCloser closer)
       : options(std::move(with)),
@@ -63,6 +67,7 @@ struct DeviceSource::Impl {
   std::int64_t due_us(std::int64_t now_us) const;
   void accept(std::int64_t now_us);
   bool garbled() const;
+  std::int64_t arrival_us(std::int64_t now_us) const;
 
   DeviceOptions options;
   DeviceOpener open;
@@ -77,8 +82,8 @@ struct DeviceSource::Impl {
   bool tried = false;
   bool heard = false;  // since it was opened
   bool ever_heard = false;
-  bool fresh = false;  // heard from within silence_us
-  std::int64_t heard_us = 0, polled_us = 0;
+  bool fresh = false;                                       // heard from within silence_us
+  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;  // the last two polls
   std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
@@ -141,10 +146,20 @@ std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
   return last_due_us + elapsed;
 }
 
+// Of the bytes that a poll finds.
+std::int64_t DeviceSource::Impl::arrival_us(std::int64_t now_us) const {
+  const std::int64_t since = std::max(before_us, now_us - kLongestPollUs);
+  const std::int64_t told = options.arrived_us ? options.arrived_us() : 0;
+  if (told > since && told <= now_us) return told;
+  return recording ? now_us : (since + now_us) / 2;
+}
+
 void DeviceSource::Impl::accept(std::int64_t now_us) {
   const std::int64_t due = recording ? due_us(now_us) : now_us;
-  if (!tracker.accept(frame, now_us, counters)) return;
+  const std::int64_t arrived = arrival_us(now_us);
+  if (!tracker.accept(frame, arrived, now_us, counters)) return;
   if (observer) observer(frame);
+  if (options.arrived_us) counters.add_latency(now_us - arrived);
   last_due_us = due;
   if (!heard && ever_heard) ++counters.reopened;
   heard = ever_heard = fresh = true;
@@ -196,13 +211,14 @@ DeviceSource::~DeviceSource() = default;
 
 void DeviceSource::poll(std::int64_t now_us) {
   Impl& in = *impl_;
-  in.polled_us = now_us;
+  in.before_us = std::exchange(in.polled_us, now_us);
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
   if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
     in.fresh = false;
     in.tracker.hold();
   }
+  if (in.fresh) in.tracker.predict(now_us);
 }
 
 const RodInputs& DeviceSource::rods() const {
@@ -217,7 +233,7 @@ const std::string& DeviceSource::name() const {
 DeviceState DeviceSource::state() const {
   const Impl& in = *impl_;
   if (in.fd < 0 && in.played) return DeviceState::over;
-  if (in.fd < 0) return means_absent(in.open_error) ? DeviceState::missing : DeviceState::refused;
+  if (in.fd < 0) return state_of_error(in.open_error);
   if (in.fresh || in.pending) return DeviceState::live;
   return in.garbled() ? DeviceState::garbled : DeviceState::silent;
 }

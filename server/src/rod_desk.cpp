@@ -108,7 +108,7 @@ int RodDesk::add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver
   return mux_.add(source, origin);
 }
 
-void RodDesk::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
+void RodDesk::add_device(std::unique_ptr<cabinet::Device> device) {
   order_.insert(order_.end() - 1, add(*device, cabinet::Origin::relative, RodDriver::cabinet));
   devices_.push_back(std::move(device));
   hand_watch_.resize(places_.size() + devices_.size());

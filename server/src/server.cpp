@@ -319,7 +319,7 @@ Server::~Server() {
   finish(wire::say<wire::Said::server_ends>());
 }
 
-void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
+void Server::add_device(std::unique_ptr<cabinet::Device> device) {
   impl_->desk.add_device(std::move(device));
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <span>
 
+#include "cabinet/device_source.h"
 #include "lockstep.h"
 #include "wire/device_frame.h"
 

@@ -1,4 +1,5 @@
 // Who gets which rods, what a vote needs, and what a crowd at the door can do.
+#include "cabinet/device_source.h"
 #include "seats.h"
 
 #include <gtest/gtest.h>

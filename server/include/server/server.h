@@ -15,7 +15,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cabinet/device_source.h"
+#include "cabinet/device.h"
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
 #include "server/counters.h"
@@ -71,7 +71,7 @@ class Server {
   ~Server();  // as finish(), if that was not called
 
   // Precondition: before the first tick. It takes memory, and rods would change hands.
-  void add_device(std::unique_ptr<cabinet::DeviceSource> device);
+  void add_device(std::unique_ptr<cabinet::Device> device);
 
   // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
   void tick(std::int64_t now_us);
