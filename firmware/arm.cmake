@@ -9,7 +9,7 @@ if(NOT ARM_GXX OR NOT ARM_SIZE)
                       "the micro-controllers' firmware and its tests.")
 endif()
 
-set(ARM_FLAGS -std=gnu++17 -mcpu=cortex-m0plus -mthumb -O2 -Wall -Wextra -Werror -ffreestanding -nostdlib
+set(ARM_FLAGS -std=gnu++17 -mcpu=cortex-m0plus -mthumb -O3 -Wall -Wextra -Werror -ffreestanding -nostdlib
               -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-use-cxa-atexit -ffunction-sections
               -fdata-sections -Wl,--gc-sections)
 

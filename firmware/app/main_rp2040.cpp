@@ -56,13 +56,13 @@ void apply_settings() {
 }
 
 void report() {
-  const uint32_t now_us = rp2040::micros();
-  wire::DeviceFrame frame = {};
-  frame.sequence = g_sequence;
-  frame.time_us = now_us;
-  frame.quality = g_errors;
   if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
-  ++g_sequence;
+  static wire::DeviceFrame frame;     // rods without a sensor stay 0
+  frame.flags = 0;
+  frame.sequence = g_sequence++;
+  frame.time_us = rp2040::micros();
+  frame.overflow = 0;
+  frame.quality = g_errors;
   g_errors = 0;
   g_sensors.add_to_frame(frame);
   wire::encode_device_frame(frame, g_report);

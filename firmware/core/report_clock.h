@@ -13,10 +13,12 @@ namespace firmware {
 class ReportClock {
  public:
   static const uint16_t kPeriodUs = 1000;
+  static const uint16_t kTransferUs = 52;   // from the host's asking until it has 64 bytes
   static const uint16_t kMinMarginUs = 12;  // what the host may come early by
   static const uint16_t kMaxMarginUs = 300;
   static const uint16_t kMissedUs = 30;  // more of it for each report that was late
-  static const uint16_t kCalm = 256;     // reports in time, after which it is 1 us less
+  static const uint16_t kCalm = 16;      // reports in time, after which it is 1 us less
+  static const uint8_t kSettling = 8;    // reports after a silence that mean nothing
 
   bool due(uint32_t now_us) const { return static_cast<int32_t>(now_us - next_us_) >= 0; }
   uint32_t next_us() const { return next_us_; }
@@ -24,20 +26,26 @@ class ReportClock {
 
   // A sample began and its report was ready: the next is a period later, unless the host says more.
   void sampled(uint32_t began_us, uint32_t ready_us) {
-    const uint32_t work = ready_us - began_us;
+    uint32_t work = ready_us - began_us;
+    if (work > kPeriodUs / 2) work = kPeriodUs / 2;
     if (work > work_us_) {
-      work_us_ = work < kPeriodUs / 2 ? static_cast<uint16_t>(work) : kPeriodUs / 2;
+      // What that makes late says nothing about the host.
+      if (work - work_us_ > kMinMarginUs) settling_ = kSettling;
+      work_us_ = static_cast<uint16_t>(work);
     }
     next_us_ += kPeriodUs;
     // After a long stop, as for writing to flash: not all the samples that it cost.
     if (static_cast<int32_t>(ready_us - next_us_) >= 0) next_us_ = ready_us + kPeriodUs / 2;
   }
 
-  // The host took a report at that time.
+  // The host had taken a report by then.
   void taken(uint32_t at_us) {
     const uint32_t interval = at_us - taken_us_;
     taken_us_ = at_us;
-    if (interval < kPeriodUs - 1 && interval > kPeriodUs / 2) {
+    if (interval >= kPeriodUs * 5 / 2) settling_ = kSettling;
+    if (settling_ != 0) {
+      --settling_;
+    } else if (interval < kPeriodUs - 2 && interval > kPeriodUs / 2) {
       widen(static_cast<uint16_t>(kMinMarginUs + 2 * (kPeriodUs - interval)));
     } else if (interval > kPeriodUs * 3 / 2 && interval < kPeriodUs * 5 / 2) {
       widen(static_cast<uint16_t>(margin_us_ + kMissedUs));
@@ -46,7 +54,7 @@ class ReportClock {
       if (margin_us_ > kMinMarginUs) --margin_us_;
       if (work_us_ > 0) --work_us_;  // the longest of late: it comes back if it was usual
     }
-    next_us_ = at_us + kPeriodUs - work_us_ - margin_us_;
+    next_us_ = at_us + kPeriodUs - kTransferUs - work_us_ - margin_us_;
   }
 
  private:
@@ -61,6 +69,7 @@ class ReportClock {
   uint16_t work_us_ = 0;
   uint16_t margin_us_ = kMinMarginUs;
   uint16_t calm_ = 0;
+  uint8_t settling_ = kSettling;
 };
 
 }  // namespace firmware

@@ -24,19 +24,26 @@ uint8_t equal(const uint8_t* answers, uint8_t wanted) {
   return mask;
 }
 
-int16_t signed16(const uint8_t* bytes) {
-  return static_cast<int16_t>(wire::device_get16(bytes));
+int16_t signed16(uint8_t low, uint8_t high) {
+  return static_cast<int16_t>(static_cast<uint16_t>(low | high << 8));
+}
+
+// Little endian and aligned: one access.
+uint32_t word_at(const uint8_t* bytes) {
+  uint32_t word;
+  __builtin_memcpy(&word, __builtin_assume_aligned(bytes, 4), 4);
+  return word;
+}
+void put_word(uint32_t word, uint8_t* bytes) {
+  __builtin_memcpy(__builtin_assume_aligned(bytes, 4), &word, 4);
 }
 
 }  // namespace
 
-// Pairs, then nibbles, then bytes change places, four rows in a word at a time.
+// Bits, then pairs, then nibbles change places across the diagonal, four rows in a word at a time.
 void transpose8(const uint8_t* rows, uint8_t* out) {
-  uint32_t high = 0, low = 0;  // rows 0..3 and 4..7, the first in the most significant byte
-  for (uint8_t i = 0; i < 4; ++i) {
-    high = high << 8 | rows[i];
-    low = low << 8 | rows[4 + i];
-  }
+  // Rows 0..3 and 4..7, the first in the most significant byte.
+  uint32_t high = __builtin_bswap32(word_at(rows)), low = __builtin_bswap32(word_at(rows + 4));
   uint32_t moved = (high ^ high >> 7) & 0x00AA00AAu;
   high ^= moved ^ moved << 7;
   moved = (low ^ low >> 7) & 0x00AA00AAu;
@@ -45,12 +52,9 @@ void transpose8(const uint8_t* rows, uint8_t* out) {
   high ^= moved ^ moved << 14;
   moved = (low ^ low >> 14) & 0x0000CCCCu;
   low ^= moved ^ moved << 14;
-  const uint32_t left = (high & 0xF0F0F0F0u) | (low >> 4 & 0x0F0F0F0Fu);
-  const uint32_t right = (high << 4 & 0xF0F0F0F0u) | (low & 0x0F0F0F0Fu);
-  for (uint8_t i = 0; i < 4; ++i) {
-    out[7 - i] = static_cast<uint8_t>(left >> (24 - 8 * i));
-    out[3 - i] = static_cast<uint8_t>(right >> (24 - 8 * i));
-  }
+  // Columns 7..4 and 3..0, the first in the most significant byte, which the last of out is.
+  put_word((high << 4 & 0xF0F0F0F0u) | (low & 0x0F0F0F0Fu), out);
+  put_word((high & 0xF0F0F0F0u) | (low >> 4 & 0x0F0F0F0Fu), out + 4);
 }
 
 void SensorHost::begin(uint8_t used, uint8_t resolution) {
@@ -66,39 +70,34 @@ void SensorHost::begin(uint8_t used, uint8_t resolution) {
 
 void SensorHost::sample(uint8_t elapsed_ms) {
   if (live_ == 0) return;
-  uint8_t bits[8 * kBurstBytes], answers[kBurstBytes][kSensors];
+  alignas(4) uint8_t bits[8 * kBurstBytes];
+  alignas(4) uint8_t answers[kBurstBytes][kSensors];
   bus_.burst(live_, bits);
   for (uint8_t byte = 0; byte < kBurstBytes; ++byte) transpose8(bits + 8 * byte, answers[byte]);
-  for (uint8_t sensor = 0; sensor < kSensors; ++sensor) {
-    if ((live_ & 1u << sensor) == 0) continue;
-    uint8_t bytes[kBurstBytes];
-    for (uint8_t byte = 0; byte < kBurstBytes; ++byte) bytes[byte] = answers[byte][sensor];
-    take(sensor, bytes, elapsed_ms);
-  }
-}
-
-void SensorHost::take(uint8_t sensor, const uint8_t* bytes, uint8_t elapsed_ms) {
-  const uint8_t mask = static_cast<uint8_t>(1u << sensor);
-  if (bytes[0] == 0xFF && bytes[1] == 0xFF) {  // nobody drives the line
-    suspect_ = static_cast<uint8_t>(suspect_ | mask);
-    return;
-  }
-  if ((bytes[0] & kSeen) == 0) return;
-  const int16_t x = signed16(bytes + 2), y = signed16(bytes + 4);
-  slide_[sensor] = static_cast<uint16_t>(slide_[sensor] + static_cast<uint16_t>(x));
-  spin_[sensor] = static_cast<uint16_t>(spin_[sensor] + static_cast<uint16_t>(y));
-  // More than the sensor follows, with a quarter to spare: it has lost track, or the delta stands
-  // at its limit and counts are missing.
+  // More than the sensor follows, with a quarter to spare: it has lost track. At the most of 16
+  // bits the delta stands at its limit, and counts are missing.
   const int32_t most = static_cast<int32_t>(kMaxInchesPerSecond) * resolution_ * elapsed_ms / 8 + 8;
   const int32_t limit = most < 32767 ? most : 32767;
-  if (x >= limit || x <= -limit || y >= limit || y <= -limit) {
-    overflow_ = static_cast<uint8_t>(overflow_ | mask);
+  for (uint8_t i = 0; i < kSensors; ++i) {
+    const uint8_t mask = static_cast<uint8_t>(1u << i);
+    if ((live_ & mask) == 0) continue;
+    if (answers[0][i] == 0xFF && answers[1][i] == 0xFF) {  // nobody drives the line
+      suspect_ = static_cast<uint8_t>(suspect_ | mask);
+    } else if ((answers[0][i] & kSeen) != 0) {
+      const int16_t x = signed16(answers[2][i], answers[3][i]);
+      const int16_t y = signed16(answers[4][i], answers[5][i]);
+      slide_[i] = static_cast<uint16_t>(slide_[i] + static_cast<uint16_t>(x));
+      spin_[i] = static_cast<uint16_t>(spin_[i] + static_cast<uint16_t>(y));
+      if (x >= limit || x <= -limit || y >= limit || y <= -limit) {
+        overflow_ = static_cast<uint8_t>(overflow_ | mask);
+      }
+    }
   }
 }
 
 void SensorHost::service(uint32_t now_ms) {
   if (suspect_ != 0) {
-    uint8_t answers[kSensors];
+    alignas(4) uint8_t answers[kSensors];
     bus_.read(live_, kProductId, answers);
     bus_.write(live_, kMotionBurst, 0);
     const uint8_t gone = static_cast<uint8_t>(suspect_ & ~equal(answers, kProduct));
@@ -120,7 +119,7 @@ void SensorHost::ask() {
   const uint8_t address[kQuestions] = {kProductId, kInverseProductId, kConfig1};
   const uint8_t wanted[kQuestions] = {kProduct, static_cast<uint8_t>(~kProduct),
                                       static_cast<uint8_t>(resolution_ - 1)};
-  uint8_t answers[kSensors];
+  alignas(4) uint8_t answers[kSensors];
   bus_.read(live_, address[question_], answers);
   bus_.write(live_, kMotionBurst, 0);  // a register that is read ends the burst mode
   const uint8_t wrong = static_cast<uint8_t>(live_ & ~equal(answers, wanted[question_]));
@@ -134,7 +133,7 @@ void SensorHost::lose(uint8_t sensors) {
 }
 
 void SensorHost::set_up(uint32_t now_ms) {
-  uint8_t answers[kSensors];
+  alignas(4) uint8_t answers[kSensors];
   switch (step_) {
     case kIdle:
     case kReset:

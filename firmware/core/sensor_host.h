@@ -48,7 +48,6 @@ class SensorHost {
   void ask();
   void lose(uint8_t sensors);
   void count_errors(uint8_t errors);
-  void take(uint8_t sensor, const uint8_t* bytes, uint8_t elapsed_ms);
 
   SensorBus& bus_;
   uint8_t used_ = 0;

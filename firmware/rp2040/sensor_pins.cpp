@@ -78,7 +78,7 @@ void SensorPins::burst(uint8_t selected, uint8_t* out) {
 
 void SensorPins::read(uint8_t selected, uint8_t address, uint8_t* out) {
   rest_since_register();
-  uint8_t rows[8];
+  alignas(4) uint8_t rows[8];
   select(selected);
   send(address);
   wait_us(kReadDelayUs);
