@@ -165,6 +165,9 @@ void sample_and_report() {
 extern "C" void usb_interrupt() {
   g_usb.on_interrupt();
 }
+extern "C" void i2c0_interrupt() {
+  g_i2c.on_interrupt();
+}
 extern "C" void timer1_interrupt() {}
 
 int main() {

@@ -13,6 +13,8 @@ class I2c : public firmware::I2cBus {
   void start();
   void write(uint8_t address, const uint8_t* bytes, uint8_t size) override;
   State state() override;
+  // The end of a write: that the polling loop wakes is all that is needed.
+  void on_interrupt();
 
  private:
   bool busy_ = false;

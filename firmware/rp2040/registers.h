@@ -87,7 +87,7 @@ constexpr uint32_t kUsbAddress = kUsb, kUsbMainCtrl = kUsb + 0x40, kUsbSieCtrl =
 
 // ---- 2.4 the core's own
 constexpr uint32_t kNvicEnable = 0xE000E100, kNvicDisable = 0xE000E180, kVectorTable = 0xE000ED08;
-constexpr unsigned kIrqTimer0 = 0, kIrqTimer1 = 1, kIrqUsb = 5;
+constexpr unsigned kIrqTimer0 = 0, kIrqTimer1 = 1, kIrqUsb = 5, kIrqI2c0 = 23;
 
 }  // namespace rp2040
 

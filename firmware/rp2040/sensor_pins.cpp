@@ -24,6 +24,7 @@ constexpr uint32_t kLowCycles = 30, kHighCycles = 27;
 constexpr uint8_t kMotionBurst = 0x50, kWrite = 0x80;
 
 inline __attribute__((always_inline)) void send(uint32_t value) {
+#pragma GCC unroll 1
   for (uint32_t mask = 0x80; mask != 0; mask >>= 1) {
     reg(kGpioOutClear) = bit(kSensorClock);
     reg((value & mask) != 0 ? kGpioOutSet : kGpioOutClear) = bit(kSensorData);
@@ -35,6 +36,7 @@ inline __attribute__((always_inline)) void send(uint32_t value) {
 
 // What the data lines are before each rising edge: sensors change them at the falling one.
 inline __attribute__((always_inline)) void receive(uint8_t* rows, uint32_t count) {
+#pragma GCC unroll 1
   for (uint32_t i = 0; i < count; ++i) {
     reg(kGpioOutClear) = bit(kSensorClock);
     wait_cycles(kLowCycles);

@@ -12,6 +12,7 @@ int main();
 void timer0_interrupt();
 void timer1_interrupt();
 void usb_interrupt();
+void i2c0_interrupt();
 
 // The only code that runs from flash. It calls nothing, so that the compiler's memcpy is not asked
 // for before it is there.
@@ -55,12 +56,12 @@ namespace {
 typedef void (*Handler)();
 
 __attribute__((section(".vectors"), used, aligned(256))) const Handler kVectors[16 + 26] = {
-    nullptr,    unexpected, unexpected, unexpected,    unexpected,       unexpected,
-    unexpected, unexpected, unexpected, unexpected,    unexpected,       unexpected,
-    unexpected, unexpected, unexpected, unexpected,    timer0_interrupt, timer1_interrupt,
-    unexpected, unexpected, unexpected, usb_interrupt, unexpected,       unexpected,
-    unexpected, unexpected, unexpected, unexpected,    unexpected,       unexpected,
-    unexpected, unexpected, unexpected, unexpected,    unexpected,       unexpected,
-    unexpected, unexpected, unexpected, unexpected,    unexpected,       unexpected};
+    nullptr,    unexpected, unexpected, unexpected,     unexpected,       unexpected,
+    unexpected, unexpected, unexpected, unexpected,     unexpected,       unexpected,
+    unexpected, unexpected, unexpected, unexpected,     timer0_interrupt, timer1_interrupt,
+    unexpected, unexpected, unexpected, usb_interrupt,  unexpected,       unexpected,
+    unexpected, unexpected, unexpected, unexpected,     unexpected,       unexpected,
+    unexpected, unexpected, unexpected, unexpected,     unexpected,       unexpected,
+    unexpected, unexpected, unexpected, i2c0_interrupt, unexpected,       unexpected};
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A Raspberry Pi Pico in rp2040js: the .uf2 is put into its flash and started as the boot ROM does it.
-// The simulator has no boot ROM, no flash chip behind its SSI and no reset by its watchdog: here they
-// are. Time is simulated; nothing here looks at a clock.
+// The simulator has no boot ROM, no flash chip behind its SSI, no mask of I2C's interrupts and no reset
+// by its watchdog: here they are. Time is simulated; nothing here looks at a clock.
 import { readFileSync } from 'node:fs';
 import { GPIOPinState, RP2040 } from 'rp2040js';
 
@@ -82,6 +82,7 @@ export class Board {
     chip.flash.set(this.flash);
     this.addRom();
     this.addFlashCommands();
+    this.addI2cInterrupts();
     this.addWatchdog(watchdog);
     this.boot();
     for (const attach of this.attached) attach(this);
@@ -198,6 +199,18 @@ export class Board {
     };
   }
 
+  // IC_INTR_MASK, which the simulator knows and does not let a program write.
+  addI2cInterrupts() {
+    for (const i2c of this.rp2040.i2c) {
+      const write = i2c.writeUint32.bind(i2c);
+      i2c.writeUint32 = (offset, value) => {
+        if (offset !== 0x30) return write(offset, value);
+        i2c.intEnable = value;
+        return i2c.checkInterrupts();
+      };
+    }
+  }
+
   addWatchdog(before) {
     const dog = this.rp2040.peripherals[0x40058];
     if (before) {
@@ -220,8 +233,11 @@ export class Board {
   }
   runUntil(done, limitMs) {
     const end = this.clock.nanos + limitMs * 1e6;
-    while (!done() && this.clock.nanos < end) this.run(20e3);
-    return done();
+    for (;;) {
+      if (done()) return true;
+      if (this.clock.nanos >= end) return false;
+      this.run(20e3);
+    }
   }
 
   step(end) {
