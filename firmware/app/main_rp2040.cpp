@@ -69,35 +69,6 @@ void report() {
   g_usb.send_report(g_report);
 }
 
-void obey(const wire::DeviceCommand& command) {
-  switch (command.kind) {
-    case wire::kPulseCommand:
-      g_haptics.pulse(command.rod, command.amplitude, command.duration_ms, g_ms);
-      break;
-    case wire::kAllOffCommand:
-      g_haptics.all_off();
-      break;
-    case wire::kSettingsCommand:
-      g_settings = firmware::settings_of(command);
-      g_haptics.all_off();
-      rp2040::save_settings(g_settings);
-      apply_settings();
-      break;
-  }
-}
-
-void take_commands() {
-  uint8_t bytes[wire::kDeviceReportBytes];
-  wire::DeviceCommand command;
-  while (g_usb.take_command(bytes) != 0) {
-    if (wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
-      obey(command);
-    } else if (g_errors < 255) {
-      ++g_errors;
-    }
-  }
-}
-
 // Of ten ticks those with light. Steady: all is well. Five short ones: no host; one: a host, but no
 // sensor; nine: some of the sensors; with the watchdog's work two gaps in any of them.
 uint16_t led_pattern() {
@@ -147,6 +118,36 @@ void pass_time(uint32_t now_us) {
     g_ms_began_us += 1000;
     ++g_ms;
     each_ms();
+  }
+}
+
+void obey(const wire::DeviceCommand& command) {
+  switch (command.kind) {
+    case wire::kPulseCommand:
+      g_haptics.pulse(command.rod, command.amplitude, command.duration_ms, g_ms);
+      break;
+    case wire::kAllOffCommand:
+      g_haptics.all_off();
+      break;
+    case wire::kSettingsCommand:
+      g_settings = firmware::settings_of(command);
+      g_haptics.all_off();
+      rp2040::save_settings(g_settings);
+      pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
+      apply_settings();
+      break;
+  }
+}
+
+void take_commands() {
+  uint8_t bytes[wire::kDeviceReportBytes];
+  wire::DeviceCommand command;
+  while (g_usb.take_command(bytes) != 0) {
+    if (wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
+      obey(command);
+    } else if (g_errors < 255) {
+      ++g_errors;
+    }
   }
 }
 

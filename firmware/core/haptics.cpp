@@ -15,6 +15,7 @@ const uint8_t kSetUpWrites = sizeof kSetUp / sizeof kSetUp[0];
 }  // namespace
 
 void Haptics::pulse(uint8_t rod, uint8_t amplitude, uint16_t duration_ms, uint32_t now_ms) {
+  poll(now_ms);  // the time that has passed is not this pulse's
   if (!allowed_ || !safe_ || rod >= kMotors || (present_ & 1u << rod) == 0) return;
   Motor& motor = motors_[rod];
   if (motor.credit < amplitude) return;
@@ -78,7 +79,8 @@ void Haptics::begin_job(uint32_t now_ms) {
     return;
   }
   if (present_ == 0xFF || static_cast<int32_t>(now_ms - retry_ms_) < 0) return;
-  retry_ms_ = now_ms + kRetryMs;
+  retry_ms_ = now_ms + (tried_ < kMotors ? kFirstMs : kRetryMs);
+  if (tried_ < kMotors) ++tried_;
   do {
     probe_ = static_cast<uint8_t>((probe_ + 1) % kMotors);
   } while ((present_ & 1u << probe_) != 0);

@@ -45,11 +45,13 @@ class Haptics {
   bool safe() const { return safe_; }
   void made_safe();
 
-  static const uint8_t kMultiplexer = 0x70, kDriver = 0x5A;
-  static const uint16_t kRetryMs = 125;  // between attempts, of one absent driver after the other
+  static constexpr uint8_t kMultiplexer = 0x70, kDriver = 0x5A;
+  static constexpr uint16_t kRetryMs =
+      125;                                 // between attempts, of one absent driver after the other
+  static constexpr uint16_t kFirstMs = 2;  // the same in the first round
   // A motor at full amplitude for a pulse of the longest kind, then a quarter of that on average.
-  static const int32_t kMaxCredit = 255L * wire::kMaxPulseMs;
-  static const int32_t kCreditPerMs = 64;
+  static constexpr int32_t kMaxCredit = 255L * wire::kMaxPulseMs;
+  static constexpr int32_t kCreditPerMs = 64;
 
  private:
   struct Motor {
@@ -80,6 +82,7 @@ class Haptics {
   uint8_t step_ = 0;   // 0: the multiplexer
   uint8_t probe_ = 0;  // the next absent one to be tried
   uint8_t first_ = 0;  // where the search for work begins
+  uint8_t tried_ = 0;  // of the first round
   uint32_t retry_ms_ = 0;
 };
 

@@ -12,13 +12,13 @@ namespace firmware {
 
 class ReportClock {
  public:
-  static const uint16_t kPeriodUs = 1000;
-  static const uint16_t kTransferUs = 52;   // from the host's asking until it has 64 bytes
-  static const uint16_t kMinMarginUs = 12;  // what the host may come early by
-  static const uint16_t kMaxMarginUs = 300;
-  static const uint16_t kMissedUs = 30;  // more of it for each report that was late
-  static const uint16_t kCalm = 16;      // reports in time, after which it is 1 us less
-  static const uint8_t kSettling = 8;    // reports after a silence that mean nothing
+  static constexpr uint16_t kPeriodUs = 1000;
+  static constexpr uint16_t kTransferUs = 52;   // from the host's asking until it has 64 bytes
+  static constexpr uint16_t kMinMarginUs = 12;  // what the host may come early by
+  static constexpr uint16_t kMaxMarginUs = 300;
+  static constexpr uint16_t kMissedUs = 30;  // more of it for each report that was late
+  static constexpr uint16_t kCalm = 16;      // reports in time, after which it is 1 us less
+  static constexpr uint8_t kSettling = 8;    // reports after a silence that mean nothing
 
   bool due(uint32_t now_us) const { return static_cast<int32_t>(now_us - next_us_) >= 0; }
   uint32_t next_us() const { return next_us_; }

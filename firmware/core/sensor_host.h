@@ -36,10 +36,10 @@ class SensorHost {
   // The first round of setting up is over: present() means something.
   bool tried() const { return tried_; }
 
-  static const uint16_t kRetryMs = 100;  // between attempts at absent sensors
-  static const uint8_t kWakeMs = 50;     // a sensor starts up in that time after a reset
-  static const uint8_t kCheckMs = 8;     // between questions
-  static const uint8_t kQuestions = 3;   // product, inverse product, resolution: 24 ms for all
+  static constexpr uint16_t kRetryMs = 100;  // between attempts at absent sensors
+  static constexpr uint8_t kWakeMs = 52;     // a sensor starts up within 50 ms of a reset
+  static constexpr uint8_t kCheckMs = 8;     // between questions
+  static constexpr uint8_t kQuestions = 3;   // product, inverse product, resolution: 24 ms for all
 
  private:
   enum Step : uint8_t { kIdle, kReset, kWake, kFlush, kRest, kResolution, kIdentity, kBurst };
