@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Rig, kRods, randomNumbers, say } from './rig.mjs';
 
-const kSeconds = Number(process.env.SF_RP2040_SECONDS ?? 8);
+const kSeconds = Number(process.env.SF_RP2040_SECONDS ?? 20);
 
 test('sets all sensors up with their own program, at 2000 counts/inch and without rest modes', () => {
   const rig = new Rig().start();
