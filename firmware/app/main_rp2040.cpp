@@ -1,12 +1,14 @@
-// Raspberry Pi Pico: eight SPI motion sensors in, one 64-byte HID report a millisecond out, sampled
-// just before the host asks for it; commands in, for haptics and settings.
+// Raspberry Pi Pico: eight SPI motion sensors or PS/2 mice in, one 64-byte HID report a millisecond
+// out, sampled just before the host asks for it; commands in, for haptics and settings.
 #include "core/haptics.h"
+#include "core/mouse_host.h"
 #include "core/report_clock.h"
 #include "core/sensor_host.h"
 #include "core/settings.h"
 #include "rp2040/board.h"
 #include "rp2040/flash.h"
 #include "rp2040/i2c.h"
+#include "rp2040/ps2_pins.h"
 #include "rp2040/sensor_pins.h"
 #include "rp2040/system.h"
 #include "rp2040/usb_controller.h"
@@ -22,6 +24,7 @@ rp2040::UsbController g_usb;
 rp2040::SensorPins g_sensor_pins;
 rp2040::I2c g_i2c;
 firmware::SensorHost g_sensors(g_sensor_pins);
+firmware::MouseHost g_mice;
 firmware::Haptics g_haptics(g_i2c);
 firmware::ReportClock g_clock;
 firmware::Settings g_settings;
@@ -31,7 +34,8 @@ uint8_t g_serial[2 + 4 * rp2040::kUniqueIdBytes];       // a string descriptor
 uint32_t g_ms = 0;
 uint32_t g_ms_began_us = 0;
 uint16_t g_sequence = 0;
-uint8_t g_errors = 0;  // counted in the next frame
+wire::DeviceFrame g_frame;  // the last that was made
+uint8_t g_errors = 0;       // counted in the next frame
 uint16_t g_button_ms = 0;
 
 void make_serial() {
@@ -50,6 +54,7 @@ void make_serial() {
 
 void apply_settings() {
   const uint8_t sensors = static_cast<uint8_t>(~g_settings.ps2);
+  rp2040::Ps2Pins::begin(g_settings.ps2);
   g_sensor_pins.begin(sensors);
   g_sensors.begin(sensors, g_settings.resolution);
   g_haptics.allow((g_settings.switches & firmware::kPulsesOff) == 0);
@@ -57,25 +62,29 @@ void apply_settings() {
 
 void report() {
   if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
-  static wire::DeviceFrame frame;     // rods without a sensor stay 0
-  frame.flags = 0;
-  frame.sequence = g_sequence++;
-  frame.time_us = rp2040::micros();
-  frame.overflow = 0;
-  frame.quality = g_errors;
+  if (g_settings.ps2 != 0) {
+    g_mice.make_frame(rp2040::micros(), g_frame);
+  } else {
+    g_frame.flags = 0;
+    g_frame.time_us = rp2040::micros();
+    g_frame.overflow = 0;
+    g_frame.quality = 0;
+  }
+  g_frame.sequence = g_sequence++;
+  g_frame.quality =
+      static_cast<uint8_t>(g_errors > 255 - g_frame.quality ? 255 : g_frame.quality + g_errors);
   g_errors = 0;
-  g_sensors.add_to_frame(frame);
-  wire::encode_device_frame(frame, g_report);
+  g_sensors.add_to_frame(g_frame);
+  wire::encode_device_frame(g_frame, g_report);
   g_usb.send_report(g_report);
 }
 
 // Of ten ticks those with light. Steady: all is well. Five short ones: no host; one: a host, but no
 // sensor; nine: some of the sensors; with the watchdog's work two gaps in any of them.
 uint16_t led_pattern() {
-  const uint8_t used = static_cast<uint8_t>(~g_settings.ps2);
   if (!g_usb.configured()) return 0x155;
-  if (g_sensors.present() == 0) return 0x001;
-  return g_sensors.present() == used ? 0x3FF : 0x1FF;
+  if (g_frame.present == 0) return 0x001;
+  return g_frame.present == 0xFF ? 0x3FF : 0x1FF;
 }
 
 void show_state() {
@@ -169,7 +178,9 @@ extern "C" void usb_interrupt() {
 extern "C" void i2c0_interrupt() {
   g_i2c.on_interrupt();
 }
-extern "C" void timer1_interrupt() {}
+extern "C" void timer1_interrupt() {
+  rp2040::Ps2Pins::sample(g_mice.lines());
+}
 
 int main() {
   rp2040::start_system();
@@ -190,6 +201,11 @@ int main() {
     if (g_usb.take_report_time(taken_us)) g_clock.taken(taken_us);
     take_commands();
     g_haptics.poll(g_ms);
+    if (g_settings.ps2 != 0 && g_mice.due()) {
+      g_mice.poll(now_us);
+      // Enumeration first: the mice would fill counters that nobody reads.
+      g_mice.allow_streaming(g_usb.configured());
+    }
     if (g_clock.due(now_us)) {
       sample_and_report();
       served = false;

@@ -6,7 +6,7 @@ import { decodeFrame, encodeCommand } from './packets.mjs';
 import { SensorArray } from './sensors.mjs';
 import { UsbHost } from './usb_host.mjs';
 
-const kImage = readUf2(process.env.FIRMWARE_UF2 ?? 'space-foosball-rp2040.uf2');
+export const kImage = readUf2(process.env.FIRMWARE_UF2 ?? 'space-foosball-rp2040.uf2');
 export const kRods = [0, 1, 2, 3, 4, 5, 6, 7];
 
 // Numbers of 0..n-1, the same in each run.
@@ -62,9 +62,13 @@ export class Rig {
   }
 
   move(rod, slide, spin) {
-    this.sensors.move(rod, slide, spin);
-    this.slide[rod] = (this.slide[rod] + slide) & 0xffff;
-    this.spin[rod] = (this.spin[rod] + spin) & 0xffff;
+    this.moveSensor(this.sensors.sensors[rod], slide, spin);
+  }
+  moveSensor(sensor, slide, spin) {
+    this.sensors.advance();
+    sensor.move(slide, spin);
+    this.slide[sensor.index] = (this.slide[sensor.index] + slide) & 0xffff;
+    this.spin[sensor.index] = (this.spin[sensor.index] + spin) & 0xffff;
   }
   // Every so often, by the board's clock, until the returned function is called.
   every(us, act) {

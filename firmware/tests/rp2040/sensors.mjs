@@ -167,10 +167,11 @@ export class SensorArray {
     this.board = board;
     const { gpio } = board.rp2040;
     this.data = gpio.slice(kFirstData, kFirstData + 8);
-    this.sensors.forEach((sensor, i) => {
-      gpio[kFirstSelect + i].addListener(() => {
+    this.sensors.forEach((sensor) => {
+      const select = kFirstSelect + sensor.index;
+      gpio[select].addListener(() => {
         this.now = board.clock.nanos;
-        sensor.isSelected = !board.pinIsHigh(kFirstSelect + i);
+        sensor.isSelected = !board.pinIsHigh(select);
         if (sensor.plugged) sensor.selected(sensor.isSelected);
         this.drive();
       });
@@ -207,9 +208,5 @@ export class SensorArray {
       const pin = this.data[sensor.index];
       if (pin.rawInputValue !== level) pin.setInputValue(level);
     }
-  }
-  move(index, x, y) {
-    this.advance();
-    this.sensors[index].move(x, y);
   }
 }
