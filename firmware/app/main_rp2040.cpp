@@ -19,6 +19,7 @@ namespace {
 
 const uint16_t kButtonHoldMs = 1000;  // then the boot loader
 const uint16_t kBlinkMs = 100;        // a tick of the LED's patterns
+const uint32_t kQuietUs = 50;         // nothing else begins so short before a sample
 
 rp2040::UsbController g_usb;
 rp2040::SensorPins g_sensor_pins;
@@ -37,6 +38,7 @@ uint16_t g_sequence = 0;
 wire::DeviceFrame g_frame;  // the last that was made
 uint8_t g_errors = 0;       // counted in the next frame
 uint16_t g_button_ms = 0;
+volatile uint8_t g_events = 0;  // interrupts that leave work to the loop
 
 void make_serial() {
   uint8_t id[rp2040::kUniqueIdBytes];
@@ -163,20 +165,22 @@ void take_commands() {
 void sample_and_report() {
   static uint32_t last_us = 0;
   const uint32_t began_us = rp2040::micros();
-  const uint32_t elapsed_ms = (began_us - last_us + 999) / 1000;
+  const uint32_t elapsed_ms = (began_us - last_us + 500) / 1000;
   last_us = began_us;
-  g_sensors.sample(static_cast<uint8_t>(elapsed_ms < 255 ? elapsed_ms : 255));
+  g_sensors.sample(static_cast<uint8_t>(elapsed_ms < 1 ? 1 : elapsed_ms < 255 ? elapsed_ms : 255));
   report();
-  g_clock.sampled(began_us, rp2040::micros());
+  g_clock.sampled(rp2040::micros());
 }
 
 }  // namespace
 
 extern "C" void usb_interrupt() {
   g_usb.on_interrupt();
+  g_events = static_cast<uint8_t>(g_events + 1);
 }
 extern "C" void i2c0_interrupt() {
   g_i2c.on_interrupt();
+  g_events = static_cast<uint8_t>(g_events + 1);
 }
 extern "C" void timer1_interrupt() {
   rp2040::Ps2Pins::sample(g_mice.lines());
@@ -192,13 +196,21 @@ int main() {
   apply_settings();
   g_usb.start(g_serial);
   g_ms_began_us = rp2040::micros();
+  g_clock.begin(g_ms_began_us);
   bool served = false;
   for (;;) {
     rp2040::feed_watchdog();
-    const uint32_t now_us = rp2040::micros();
-    pass_time(now_us);
+    const uint8_t seen = g_events;
     uint32_t taken_us;
     if (g_usb.take_report_time(taken_us)) g_clock.taken(taken_us);
+    if (g_clock.due(rp2040::micros() + kQuietUs)) {
+      rp2040::sleep_until(g_clock.next_us());
+      sample_and_report();
+      served = false;
+      continue;
+    }
+    const uint32_t now_us = rp2040::micros();
+    pass_time(now_us);
     take_commands();
     g_haptics.poll(g_ms);
     if (g_settings.ps2 != 0 && g_mice.due()) {
@@ -206,14 +218,11 @@ int main() {
       // Enumeration first: the mice would fill counters that nobody reads.
       g_mice.allow_streaming(g_usb.configured());
     }
-    if (g_clock.due(now_us)) {
-      sample_and_report();
-      served = false;
-    } else if (!served) {
+    if (!served) {
       g_sensors.service(g_ms);
       served = true;
     } else {
-      rp2040::sleep_until_event(g_clock.next_us());
+      rp2040::sleep_until_event(g_clock.next_us() - kQuietUs, g_events, seen);
     }
   }
 }

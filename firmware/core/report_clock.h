@@ -20,21 +20,23 @@ class ReportClock {
   static constexpr uint16_t kCalm = 16;      // reports in time, after which it is 1 us less
   static constexpr uint8_t kSettling = 8;    // reports after a silence that mean nothing
 
+  void begin(uint32_t now_us) { next_us_ = now_us; }
   bool due(uint32_t now_us) const { return static_cast<int32_t>(now_us - next_us_) >= 0; }
   uint32_t next_us() const { return next_us_; }
   uint16_t margin_us() const { return margin_us_; }
 
-  // A sample began and its report was ready: the next is a period later, unless the host says more.
-  void sampled(uint32_t began_us, uint32_t ready_us) {
-    uint32_t work = ready_us - began_us;
-    if (work > kPeriodUs / 2) work = kPeriodUs / 2;
+  // A sample that was due has ended and its report was ready: the next is a period later, unless
+  // the host says more. What else delayed it counts as work, for it will again.
+  void sampled(uint32_t ready_us) {
+    uint32_t work = ready_us - next_us_;
+    if (work > kPeriodUs / 2) work = work_us_;  // a stop, as for writing to flash
     if (work > work_us_) {
       // What that makes late says nothing about the host.
       if (work - work_us_ > kMinMarginUs) settling_ = kSettling;
       work_us_ = static_cast<uint16_t>(work);
     }
     next_us_ += kPeriodUs;
-    // After a long stop, as for writing to flash: not all the samples that it cost.
+    // Not all the samples that a stop has cost.
     if (static_cast<int32_t>(ready_us - next_us_) >= 0) next_us_ = ready_us + kPeriodUs / 2;
   }
 

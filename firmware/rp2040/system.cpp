@@ -96,14 +96,15 @@ void start_system() {
 }
 
 void sleep_until(uint32_t at_us) {
-  while (static_cast<int32_t>(micros() - at_us) < 0) sleep_until_event(at_us);
+  const volatile uint8_t none = 0;
+  while (static_cast<int32_t>(micros() - at_us) < 0) sleep_until_event(at_us, none, 0);
 }
 
-void sleep_until_event(uint32_t at_us) {
+void sleep_until_event(uint32_t at_us, const volatile uint8_t& events, uint8_t seen) {
   hold_interrupts();
   reg(kTimerAlarm0) = at_us;
   // An interrupt that comes now ends the sleep at once, and is served once they are allowed.
-  if (static_cast<int32_t>(micros() - at_us) < 0) asm volatile("wfi");
+  if (events == seen && static_cast<int32_t>(micros() - at_us) < 0) asm volatile("wfi");
   allow_interrupts();
 }
 

@@ -18,8 +18,9 @@ inline uint32_t micros() {
 
 // Sleeps until then; interrupts are served meanwhile. Precondition: less than half an hour ahead.
 void sleep_until(uint32_t at_us);
-// The same, but any interrupt ends it.
-void sleep_until_event(uint32_t at_us);
+// The same, but any interrupt ends it. Does not sleep at all if events, which interrupts count, is
+// no longer what it was when the caller last looked for work.
+void sleep_until_event(uint32_t at_us, const volatile uint8_t& events, uint8_t seen);
 void wait_us(uint32_t duration_us);
 
 inline void hold_interrupts() {

@@ -36,7 +36,7 @@ struct Play {
  private:
   void sample() {
     const std::uint32_t began = clock.next_us();
-    clock.sampled(began, began + work_us);
+    clock.sampled(began + work_us);
     if (ready_) return;  // the host has not taken the last one
     began_us_ = began;
     ready_us_ = began + work_us;
@@ -110,7 +110,7 @@ TEST(ReportClock, WithoutAHostSamplesGoOnEachMillisecond) {
   int samples = 0;
   for (; now < 112'345; ++now) {
     if (!clock.due(now)) continue;
-    clock.sampled(now, now + 80);
+    clock.sampled(now + 80);
     ++samples;
   }
   EXPECT_NEAR(samples, 100, 2);
