@@ -56,6 +56,27 @@ test('a pulse begins at most 2 ms after its command, on all rods at once too, an
   rig.expectNoFault();
 });
 
+test('a command that comes just before the program sleeps does not wait for the next sample', () => {
+  const kDisableInterrupts = 0xb672; // CPSID i, ...
+  const kSleep = 0xbf30; // ... and WFI soon after it
+  const rig = withMotors();
+  const opcode = (i) => rig.board.rp2040.readUint16((rig.board.core.PC & ~1) + 2 * i);
+  const goesToSleep = () => opcode(0) === kDisableInterrupts &&
+    Array.from({ length: 24 }, (_, i) => opcode(i + 1)).includes(kSleep);
+  let longest = 0;
+  for (let round = 0; round < 60; ++round) {
+    rig.board.run(4e6 + 97e3 * round);
+    const { board } = rig;
+    do board.step(board.clock.nanos + 1e6);
+    while (board.core.waiting || !goesToSleep());
+    const sent = board.clock.nanos;
+    assert.ok(rig.command(pulse(round % 8, 100 + round, 1)));
+    assert.ok(board.runUntil(() => lastWrite(rig, round % 8).value === 100 + round, 3));
+    longest = Math.max(longest, lastWrite(rig, round % 8).at - sent);
+  }
+  assert.ok(longest <= 0.65e6, `${longest}`);
+});
+
 test('pulses without end get a quarter of a motor on average', () => {
   const rig = withMotors();
   const begun = rig.board.clock.nanos;
