@@ -49,6 +49,7 @@ LAYERS = {
     'foosball/src/': 'foosball',
     'foosball/include/': 'foosball',
     'wire/': 'wire',
+    'wire/include/wire/device_command.h': 'device-frame',
     'wire/include/wire/device_frame.h': 'device-frame',
     'cabinet/': 'cabinet',
     'cabinet/include/cabinet/hand.h': 'hand',

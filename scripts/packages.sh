@@ -4,7 +4,8 @@
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
 # Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
 # the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift
-# and rigid compare with), wasm (compile and run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
+# and rigid compare with), wasm (compile and run the engine as WebAssembly), node (for the peers in
+# WebAssembly and the simulator of the RP2040, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -61,6 +62,8 @@ check  gcc-avr               compiles the firmware
 check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
+check  gcc-arm-none-eabi     compiles the RP2040's firmware
+check  nodejs                runs that in a simulator, against simulated sensors
 check  libelf-dev            simavr reads the firmware through it
 video  ffmpeg                writes the videos of ./play --video
 deb    dpkg-dev              the libraries that the Debian package depends on
@@ -81,7 +84,7 @@ wasm   libc++abi-14-dev-wasm32 what that stands on
 wasm   libclang-rt-14-dev-wasm32 what clang's code calls
 wasm   nodejs                runs WebAssembly
 node   nodejs                runs the engines of ./bench rigid that are WebAssembly
-node   npm                   fetches them
+node   npm                   fetches them, and the simulator of the RP2040
 TABLE
 }
 

@@ -23,11 +23,11 @@ namespace {
 constexpr const char* kHead = R"(# The protocol
 
 <!-- Made by wire_protocol_doc from wire/include/wire/*_description.h, wire/control.fbs and
-     wire/include/wire/device_frame.h. Do not edit: change those, then run
+     wire/include/wire/device_frame.h and device_command.h. Do not edit: change those, then run
      `ninja -C build/release wire_protocol_doc && build/release/bin/wire_protocol_doc docs/protocol.md`. -->
 
-Five kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
-over TCP, the journal in a file, and the cabinet's frames over USB. Everything is little endian.
+Six kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
+over TCP, the journal in a file, the cabinet's frames and its commands over USB. Everything is little endian.
 )";
 
 constexpr const char* kVocabulary = R"(
@@ -236,8 +236,8 @@ std::string control() {
 }
 
 // The comment that opens the header: the words before its include guard.
-std::string device_frame() {
-  std::istringstream header(file_text(WIRE_DEVICE_FRAME_H));
+std::string opening_comment(const char* path) {
+  std::istringstream header(file_text(path));
   std::string text = "\n```\n";
   for (std::string line; std::getline(header, line) && line.starts_with("//");) {
     text += line.size() > 3 ? line.substr(3) + "\n" : "\n";
@@ -259,7 +259,8 @@ std::string protocol_document() {
   text += datagram(input_layout(), kMaxInputDatagram);
   text += "\n## Control messages\n" + control();
   text += "\n## Journal\n" + journal();
-  text += "\n## Device frame\n" + device_frame();
+  text += "\n## Device frame\n" + opening_comment(WIRE_DEVICE_FRAME_H);
+  text += "\n## Device command\n" + opening_comment(WIRE_DEVICE_COMMAND_H);
   return text;
 }
 
