@@ -4,7 +4,8 @@
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
 # Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
 # the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift
-# and rigid compare with), wasm (compile and run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
+# and rigid compare with), docs (the printed parts and pictures of the build guide), wasm (compile and
+# run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -80,6 +81,12 @@ wasm   libc++-14-dev-wasm32  the C++ library
 wasm   libc++abi-14-dev-wasm32 what that stands on
 wasm   libclang-rt-14-dev-wasm32 what clang's code calls
 wasm   nodejs                runs WebAssembly
+docs   openscad              the printed parts of cabinet/parts, as STL files and pictures
+docs   xvfb                  the display that openscad draws on
+docs   xauth                 who may draw on that display
+docs   libgl1-mesa-dri       OpenGL in software for it
+docs   ffmpeg                makes the pictures smaller
+docs   pngquant              the same, by fewer colours
 node   nodejs                runs the engines of ./bench rigid that are WebAssembly
 node   npm                   fetches them
 TABLE
@@ -172,7 +179,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     list) packages_table | awk -v groups=" ${*:-build play check bench} " 'index(groups, " " $1 " ")' ;;
     install) packages_install build/log/packages.log "${@:-build}" ;;
     *)
-      echo "usage: scripts/packages.sh list|install [build|play|check|bench|node]..." >&2
+      echo "usage: scripts/packages.sh list|install [build|play|check|bench|docs|node]..." >&2
       exit 2
       ;;
   esac
