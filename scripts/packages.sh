@@ -2,10 +2,11 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
-# the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift
-# and rigid compare with), docs (the printed parts and pictures of the build guide), wasm (compile and
-# run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), firmware
+# (compile the micro-controllers' programs), deb (make the Debian package), video (recordings as videos),
+# bench (the engines that ./bench multibody, drift and rigid compare with), docs (the printed parts and
+# pictures of the build guide), wasm (compile and run the engine as WebAssembly), node (for the peers in
+# WebAssembly, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -63,6 +64,9 @@ check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
 check  libelf-dev            simavr reads the firmware through it
+firmware gcc-avr             compiles the firmware
+firmware binutils-avr        links the firmware
+firmware avr-libc            the firmware's C library
 video  ffmpeg                writes the videos of ./play --video
 deb    dpkg-dev              the libraries that the Debian package depends on
 bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
@@ -179,7 +183,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     list) packages_table | awk -v groups=" ${*:-build play check bench} " 'index(groups, " " $1 " ")' ;;
     install) packages_install build/log/packages.log "${@:-build}" ;;
     *)
-      echo "usage: scripts/packages.sh list|install [build|play|check|bench|docs|node]..." >&2
+      echo "usage: scripts/packages.sh list|install [build|play|check|bench|firmware|docs|node]..." >&2
       exit 2
       ;;
   esac
