@@ -20,7 +20,8 @@ print_2 = [0.88, 0.52, 0.20];
 board_green = [0.10, 0.45, 0.25];
 black = [0.15, 0.15, 0.17];
 
-clamp_x = flange_thickness + barrel_length - clamp_width;
+// Flush but for what would flicker in the picture.
+clamp_x = flange_thickness + barrel_length - clamp_width - 0.4;
 plate_x = clamp_x + clamp_width + 3;
 board_top = rod_diameter / 2 + lens_distance + 3.4;
 

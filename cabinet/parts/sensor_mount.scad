@@ -110,4 +110,4 @@ module lens_gauge() {
 // As printed.
 if (part == "clamp") rotate([0, -90, 0]) sensor_clamp();
 if (part == "plate") translate([0, 0, -plate_bottom]) sensor_plate();
-if (part == "gauge") rotate([0, -90, 0]) lens_gauge();
+if (part == "gauge") translate([0, 0, 5]) rotate([90, 0, 0]) lens_gauge();
