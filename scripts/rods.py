@@ -198,8 +198,12 @@ def make_calibration(options):
     else:
         if None in (options.stroke, options.travel_mm, options.turn, options.turns):
             sys.exit('--rod needs --stroke, --travel-mm, --turn and --turns: what was measured.')
-        with open(options.file, encoding='utf-8') as file:
-            rods = json.load(file)['rods']
+        try:
+            with open(options.file, encoding='utf-8') as file:
+                rods = json.load(file)['rods']
+            rods[options.rod]
+        except (OSError, ValueError, LookupError, TypeError):
+            sys.exit(f'{options.file} is no calibration yet: write one first, without --rod.')
         rods[options.rod] = solved(options.stroke, 1e-3 * options.travel_mm, options.turn, options.turns)
     rows = ',\n'.join('    ' + json.dumps(rod) for rod in rods)
     with open(options.file, 'w', encoding='utf-8') as file:
@@ -232,6 +236,8 @@ def self_test():
     frame = encode(7, 123456, [(i, -i) for i in range(8)])
     assert len(frame) == FRAME_BYTES and decode(frame)[1][3] == (3, 0xFFFD)
     assert cobs_decode(cobs_encode(frame)[:-1]) == frame and len(cobs_encode(frame)) == 48
+    report = frame + bytes(REPORT_BYTES - FRAME_BYTES)
+    assert list(Frames(True).cut(report * 2)) == [frame, frame]
     assert decode(frame[:-1] + bytes([frame[-1] ^ 1])) is None
     counter, frames = Counter(), Frames(False)
     stream = b'xx\0' + simulated(1.5)
