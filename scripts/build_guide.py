@@ -205,24 +205,38 @@ def pin_faults():
             if unknown:
                 yield f'pins.json: {name}: printed names of pins that are not used: {sorted(unknown)}'
         else:
-            yield from spi_faults(name, board)
+            yield from spi_faults(name, board, pico_source())
 
 
-def spi_faults(name, board):
-    """What the RP2040 can do: its data sheet, "GPIO functions": SPI and I2C repeat each 8 and 4 pins."""
-    spi, i2c = board['spi'], board['i2c']
-    used = [*board['select'], spi['sck'], spi['tx'], spi['rx'], i2c['sda'], i2c['scl'], board['button'], board['led']]
-    if len(set(used)) != len(used) or len(board['select']) != 8:
-        yield f'pins.json: {name}: a pin is used twice, or there are not eight select lines'
-    for role, at in [('rx', 0), ('sck', 2), ('tx', 3)]:
-        if spi[role] % 4 != at or spi[role] // 8 % 2 != spi['unit']:
-            yield f'pins.json: {name}: GP{spi[role]} cannot be {role} of SPI{spi["unit"]}'
+def spi_faults(name, board, source=None):
+    """What the RP2040 can do (its data sheet, "GPIO functions"), and what its firmware does: source."""
+    used = {'kSensorClock': board['spi']['sck'], 'kSensorData': board['spi']['mosi'], 'kI2cData': board['i2c']['sda'],
+            'kI2cClock': board['i2c']['scl'], 'kMotorsEnable': board['motors_enable'], 'kButton': board['button'],
+            'kLed': board['led']}
+    for role, first in (('data', 'kFirstData'), ('select', 'kFirstSelect')):
+        used[first] = board[role][0]
+        if board[role] != [board[role][0] + rod for rod in range(8)]:
+            yield f'pins.json: {name}: the {role} lines are not eight pins side by side'
+    numbers = [*board['data'], *board['select'], *(n for key, n in used.items() if 'First' not in key)]
+    if len(set(numbers)) != len(numbers):
+        yield f'pins.json: {name}: a pin is used twice'
     for role, at in [('sda', 0), ('scl', 1)]:
-        if i2c[role] % 2 != at or i2c[role] // 2 % 2 != i2c['unit']:
-            yield f'pins.json: {name}: GP{i2c[role]} cannot be {role} of I2C{i2c["unit"]}'
-    for number in used:
+        if board['i2c'][role] % 2 != at or board['i2c'][role] // 2 % 2 != board['i2c']['unit']:
+            yield f'pins.json: {name}: GP{board["i2c"][role]} cannot be {role} of I2C{board["i2c"]["unit"]}'
+    for number in numbers:
         if number != board['led'] and not (0 <= number <= 22 or 26 <= number <= 28):
             yield f'pins.json: {name}: GP{number} is not at the Pico\'s edge'
+    if source is not None:
+        there = {key: int(n) for key, n in re.findall(r'\b(k\w+) = (\d+)\b', source)}
+        for key, number in used.items():
+            if there.get(key) != number:
+                yield f'pins.json: {name}: {key} is {number}, in the firmware {there.get(key)}'
+
+
+def pico_source():
+    """None while this version has no firmware for the Pico."""
+    file = ROOT / pins()['pico']['source']
+    return file.read_text() if file.exists() else None
 
 
 def pins_table():
@@ -236,14 +250,22 @@ def pins_table():
 
 
 def pico_table():
-    board = pins()['pico']
-    rows = [(f'select of rod {rod}', number) for rod, number in enumerate(board['select'])]
-    rows += [(f'SPI{board["spi"]["unit"]} {role.upper()}', board['spi'][key])
-             for role, key in [('SCK', 'sck'), ('TX, to MOSI of all sensors', 'tx'), ('RX, from MISO of all sensors', 'rx')]]
-    rows += [(f'I2C{board["i2c"]["unit"]} {role}', board['i2c'][key]) for role, key in [('SDA', 'sda'), ('SCL', 'scl')]]
-    rows.append(('button to ground', board['button']))
-    return ['| signal | GPIO | pin |', '| --- | --- | ---: |',
-            *(f'| {what} | GP{number} | {wiring_svg.pico_pin(number)} |' for what, number in rows)]
+    board, pin = pins()['pico'], wiring_svg.pico_pin
+    lines = ['| rod | data (MISO) | select (NCS) |', '| ---: | --- | --- |']
+    lines += [f'| {rod} | GP{data}, pin {pin(data)} | GP{select}, pin {pin(select)} |'
+              for rod, (data, select) in enumerate(zip(board['data'], board['select']))]
+    rows = [('SCLK of all sensors', board['spi']['sck']), ('MOSI of all sensors', board['spi']['mosi']),
+            (f'SDA of the multiplexer (I2C{board["i2c"]["unit"]})', board['i2c']['sda']),
+            ('SCL of the multiplexer', board['i2c']['scl']), ('EN of all drivers', board['motors_enable']),
+            ('button, to ground', board['button'])]
+    return [*lines, '', '| signal | pin |', '| --- | --- |',
+            *(f'| {what} | GP{number}, pin {pin(number)} |' for what, number in rows)]
+
+
+def pico_state():
+    if pico_source() is None:
+        return ['This version has no firmware for the Pico: its wiring is what the firmware is planned with.']
+    return ['The firmware for the Pico is `space-foosball-rp2040`.']
 
 
 def drawings():
@@ -257,7 +279,7 @@ def drawings():
 # --- pages ---
 
 MAKERS = {'bill': bill_table, 'sums': sums_table, 'rods': rods_table, 'screens': screens_table, 'pins': pins_table,
-          'pico-pins': pico_table}
+          'pico-pins': pico_table, 'pico-state': pico_state}
 
 
 def filled(text):
@@ -284,11 +306,13 @@ def self_test():
     assert ports_in(head + six.replace('DDRD', 'DDRC') + '#endif', 'M') is None
     assert ports_in(head + six.replace('BOARD_DATA_PIN PIND', 'BOARD_DATA_PIN DDRD') + '#endif', 'M') is None
     assert ports_in(head + six + '#endif', 'N') is None
-    pico = {'select': [6, 7, 8, 9, 10, 11, 12, 13], 'spi': {'unit': 0, 'sck': 18, 'tx': 19, 'rx': 16},
-            'i2c': {'unit': 0, 'sda': 20, 'scl': 21}, 'button': 22, 'led': 25}
-    assert not list(spi_faults('p', pico))
+    pico = {'data': list(range(8)), 'select': list(range(8, 16)), 'spi': {'sck': 18, 'mosi': 19},
+            'i2c': {'unit': 0, 'sda': 20, 'scl': 21}, 'motors_enable': 17, 'button': 22, 'led': 25}
+    firmware = ('constexpr unsigned kFirstData = 0, kFirstSelect = 8;\nconstexpr unsigned kMotorsEnable = 17, '
+                'kSensorClock = 18, kSensorData = 19, kI2cData = 20,\n kI2cClock = 21, kButton = 22, kLed = 25;')
+    assert not list(spi_faults('p', pico)) and not list(spi_faults('p', pico, firmware))
+    assert list(spi_faults('p', pico, firmware.replace('19', '16')))
     assert list(spi_faults('p', {**pico, 'button': 6})) and list(spi_faults('p', {**pico, 'button': 24}))
-    assert list(spi_faults('p', {**pico, 'spi': {**pico['spi'], 'sck': 10}}))  # of SPI1
     assert list(spi_faults('p', {**pico, 'i2c': {**pico['i2c'], 'sda': 26}}))  # of I2C1
     assert filled('a\n<!-- guide: sums -->\nold\n<!-- end of guide -->\nb').count('\n') > 5
     assert [r['travel'] for r in rods()][:2] == [540, 393]

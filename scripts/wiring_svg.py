@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 RODS = 8
 COLOURS = {'+5 V': '#b3261e', 'ground': '#222222', 'clock': '#1a56b0', 'data': '#0b7a3b', 'SCK': '#1a56b0',
            'MOSI': '#0b7a3b', 'MISO': '#8a4b08', 'select': '#6a2c91', 'SDA': '#0b7a3b', 'SCL': '#1a56b0',
-           'button': '#555555'}
+           'button': '#555555', 'EN': '#6a2c91'}
 
 
 class Svg:
@@ -119,11 +119,11 @@ def spi_wiring(board):
     svg.words(20, 34, f'Eight SPI sensors and eight motors at a {board["name"]}', 20, bold=True)
     svg.words(20, 60, 'Sensor: PMW3360 class on a breakout board with a regulator of its own; VIN is 5 V or 3.3 V, as '
               'the board asks. A dot joins; lines that cross do not.', 14)
-    svg.words(20, 80, '33 Ohm in series in SCK and MOSI at the Pico. 10 kOhm from each select line to 3.3 V: no '
-              'sensor listens while the Pico starts.', 14)
+    svg.words(20, 80, '33 Ohm in series in SCK and MOSI at the Pico. 10 kOhm from each select line to 3.3 V, and '
+              'from the drivers\' EN to ground: nothing listens or shakes while the Pico starts.', 14)
     right, board_x, board_w = 190, 640, 210
-    buses = {'SCK': 330, 'MOSI': 370, 'MISO': 410, '+5 V': 250, 'ground': 290}
-    spi_pins = {'SCK': spi['sck'], 'MOSI': spi['tx'], 'MISO': spi['rx']}
+    buses = {'SCK': 340, 'MOSI': 390, '+5 V': 240, 'ground': 290}
+    spi_pins = {'SCK': spi['sck'], 'MOSI': spi['mosi']}
     svg.box(board_x, top - 30, board_w, low - top + 160, '#e8f0e8')
     svg.words(board_x + board_w // 2, top - 6, 'Raspberry Pi Pico', 16, 'middle', bold=True)
     for rod in range(RODS):
@@ -131,20 +131,20 @@ def spi_wiring(board):
         svg.box(40, y - 16, right - 40, 5 * gap + 30)
         svg.words(50, y + 4, f'rod {rod}', 15, bold=True)
         svg.words(50, y + 24, 'sensor', 13)
-        for i, (net, pin) in enumerate([('select', 'NCS'), ('SCK', 'SCLK'), ('MOSI', 'MOSI'), ('MISO', 'MISO'),
+        for i, (net, pin) in enumerate([('select', 'NCS'), ('MISO', 'MISO'), ('SCK', 'SCLK'), ('MOSI', 'MOSI'),
                                         ('+5 V', 'VIN'), ('ground', 'GND')]):
             at, colour = y + i * gap, COLOURS[net]
             svg.words(right - 6, at + 5, pin, 12, 'end', colour)
-            if net == 'select':
+            if net in ('select', 'MISO'):
                 svg.line([(right, at), (board_x, at)], colour)
-                number = board['select'][rod]
+                number = board['select' if net == 'select' else 'data'][rod]
                 svg.words(board_x + 8, at + 5, f'GP{number}  pin {pico_pin(number)}', 14, colour=colour)
             else:
                 svg.line([(right, at), (buses[net], at)], colour)
                 svg.dot(buses[net], at, colour)
     for i, (net, number) in enumerate(spi_pins.items()):
         at = low + 20 + 28 * i
-        first = top + 20 + gap * (1 + i)
+        first = top + 20 + gap * (2 + i)
         svg.line([(buses[net], first), (buses[net], at), (board_x, at)], COLOURS[net])
         svg.words(board_x + 8, at + 5, f'GP{number}  pin {pico_pin(number)}  {net}', 14, colour=COLOURS[net])
         svg.words(480, at - 5, net, 12, colour=COLOURS[net])
@@ -186,12 +186,12 @@ def spi_wiring(board):
     svg.words(mux_x + 48, mux_y + mux_h - 8, 'GND', 13)
     for rod in range(RODS):
         y = top + rod * pitch + 32
-        svg.box(drive_x, y - 12, 130, 84)
+        svg.box(drive_x, y - 12, 130, 92)
         svg.words(drive_x + 65, y + 8, 'DRV2605L', 14, 'middle', bold=True)
         svg.words(drive_x + 65, y + 26, f'rod {rod}, 0x5A', 12, 'middle')
-        svg.words(drive_x + 65, y + 60, 'VIN 5 V, GND', 11, 'middle')
+        svg.words(drive_x + 122, y + 70, 'VIN 5 V, GND', 11, 'end')
         for i, net in enumerate(['SDA', 'SCL']):
-            at = y + 10 + 34 * i
+            at = y + 2 + 24 * i
             svg.line([(mux_x + 120, at), (drive_x, at)], COLOURS[net])
             svg.words(mux_x + 112, at + 5, ('SD' if net == 'SDA' else 'SC') + str(rod), 13, 'end', COLOURS[net])
             svg.words(mux_x + 150, at - 5, net, 11, colour=COLOURS[net])
@@ -199,6 +199,17 @@ def spi_wiring(board):
             svg.line([(drive_x + 130, at), (1410, at)], '#555555')
         svg.add(f'<circle cx="1428" cy="{y + 30}" r="23" fill="#f4f6f8" stroke="#333333" stroke-width="1.5"/>')
         svg.words(1428, y + 36, 'M', 16, 'middle', bold=True)
+    # EN of all drivers, round the multiplexer.
+    en_y, en_x = low + 80, 1216
+    number = board['motors_enable']
+    svg.words(board_x + board_w - 8, en_y + 5, f'pin {pico_pin(number)}  GP{number}', 14, 'end', COLOURS['EN'])
+    svg.line([(board_x + board_w, en_y), (en_x, en_y), (en_x, top + 80)], COLOURS['EN'])
+    svg.words(900, en_y - 6, 'EN of all drivers', 12, colour=COLOURS['EN'])
+    for rod in range(RODS):
+        y = top + rod * pitch + 80
+        svg.line([(en_x, y), (drive_x, y)], COLOURS['EN'])
+        svg.dot(en_x, y, COLOURS['EN'])
+        svg.words(drive_x + 6, y + 5, 'EN', 12, colour=COLOURS['EN'])
     # Button and PC.
     at = top + 5 * pitch + 40
     svg.line([(board_x + board_w, at), (900, at)], COLOURS['button'])
