@@ -41,6 +41,11 @@ step_docs() {
   python3 scripts/plot_study.py --self-test
   python3 scripts/readme_figures.py --self-test
   python3 scripts/readme_figures.py --check
+  python3 scripts/build_guide.py --self-test
+  python3 scripts/build_guide.py --check
+  python3 scripts/render_parts.py --self-test
+  python3 scripts/render_parts.py --pictures-current
+  python3 scripts/rods.py --self-test
 }
 
 step_doxygen() {
