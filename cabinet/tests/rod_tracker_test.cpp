@@ -265,6 +265,25 @@ TEST(RodTracker, TheEndStopTakesOutDrift) {
   EXPECT_NEAR(t.rod(1).slide, 0.0, 1e-12);
 }
 
+TEST(RodTracker, APredictionEndsAtTheStop) {
+  Tracked t;
+  std::array<double, kRods> limit{};
+  limit[1] = 0.1;
+  t.tracker = RodTracker(nominal_calibration(), limit);
+  t.take(t.device.frame());
+  for (int report = 0; report < 8; ++report) {
+    t.device.slide[1] += 88;  // 11 mm in 4 ms: 88 mm in all
+    t.take(t.device.frame());
+  }
+  EXPECT_NEAR(t.rod(1).slide, 0.088, 1e-12);
+  t.tracker.predict(t.now_us + 4'000);  // 104 mm, if nothing were in the way
+  EXPECT_EQ(t.tracker.rods()[1].slide, 0.1);
+  EXPECT_EQ(t.tracker.rods()[1].slide_rate, 0);
+  t.tracker.predict(t.now_us + 500);
+  EXPECT_GT(t.tracker.rods()[1].slide, 0.088);
+  EXPECT_GT(t.tracker.rods()[1].slide_rate, 2);
+}
+
 TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
   Tracked t;
   t.take(t.device.frame());

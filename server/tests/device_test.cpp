@@ -1,5 +1,6 @@
 // A cabinet's controller on a socket pair: from its report to the snapshot, unplugged and back.
 #include <gtest/gtest.h>
+#include <linux/input.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <span>
 
 #include "cabinet/device_source.h"
+#include "cabinet/mouse_source.h"
 #include "lockstep.h"
 #include "wire/device_frame.h"
 
@@ -232,6 +234,71 @@ TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   const auto notice = notice_of(std::move(*device), 10);
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
+}
+
+// Two mice on the desk, each on a socket pair: each moves its rod, and one that is unplugged is
+// told.
+class MiceTest : public testing::Test {
+ protected:
+  struct Mouse {
+    int own_end = -1, pc_end = -1;
+  };
+  void SetUp() override {
+    for (std::size_t i = 0; i < mice.size(); ++i) {
+      std::array<int, 2> ends{-1, -1};
+      ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+      mice[i] = {ends[0], ends[1]};
+      cabinet::MouseOptions options;
+      options.name = "mouse " + std::to_string(i + 1);
+      options.rod = kRods[i];
+      table->add_device(std::make_unique<cabinet::MouseSource>(
+          options, [this, i] { return std::exchange(mice[i].pc_end, -1); }));
+    }
+    ASSERT_TRUE(watcher.join());
+    table.tick(20);
+  }
+  ~MiceTest() override {
+    for (const Mouse& mouse : mice) {
+      for (const int fd : {mouse.own_end, mouse.pc_end})
+        if (fd >= 0) ::close(fd);
+    }
+  }
+  void move(std::size_t mouse, int right) const {
+    std::array<input_event, 2> events{};
+    events[0].type = EV_REL;
+    events[0].code = REL_X;
+    events[0].value = right;
+    ASSERT_EQ(::send(mice[mouse].own_end, events.data(), sizeof events, MSG_DONTWAIT),
+              static_cast<ssize_t>(sizeof events));
+  }
+  static constexpr std::array<int, 2> kRods = {3, 5};
+  std::array<Mouse, 2> mice;  // outlive the server
+  Lockstep table;
+  ProbeClient watcher{table.port()};
+};
+
+TEST_F(MiceTest, EachMovesItsRodAndNoOther) {
+  for (int ms = 0; ms < 40; ++ms) {
+    move(0, 20);
+    move(1, -10);
+    table.tick();
+  }
+  table.tick(1000);
+  const double metres = 40 * 1.5 * 25.4e-6;  // of one count a millisecond
+  EXPECT_NEAR(table->match().view().rods[3].slide, 20 * metres, 0.0005);
+  EXPECT_NEAR(table->match().view().rods[5].slide, -10 * metres, 0.0005);
+  EXPECT_NEAR(table->match().view().rods[2].slide, 0, 0.0005);
+}
+
+TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
+  ::close(std::exchange(mice[0].own_end, -1));
+  table.tick();
+  const auto notice = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(notice);
+  EXPECT_EQ(notice->text, "mouse 1 unplugged: its rods hold; plug it in again");
+  move(1, 100);
+  table.tick(1000);
+  EXPECT_NEAR(table->match().view().rods[5].slide, 100 * 1.5 * 25.4e-6, 0.0005);
 }
 
 }  // namespace
