@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "cabinet/controller.h"
 #include "cabinet/doctor.h"
 #include "server/exit_code.h"
 #include "server/option_checks.h"
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
   cabinet::DoctorOptions options;
   bool json = false;
   cli.add_flag("--json", json, "print one JSON object");
-  cli.add_option("--calibration", options.calibration, "the calibration of the cabinet's sensors");
+  cli.add_option("--calibration", options.calibration,
+                 "of the cabinet's sensors; without it, the one that is kept for the controller");
   cli.add_option("--seconds", options.seconds, "to listen to each controller")
       ->check(CLI::Range(0.1, 3600.0))
       ->check(server::check_not_nan)
@@ -36,6 +38,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "space-foosball-doctor: %s; --help explains the options\n", error.what());
     return server::kExitUsage;
   }
+  options.calibrations = cabinet::calibrations_folder();
   options.now_s = std::time(nullptr);
   const cabinet::Diagnosis diagnosis = cabinet::examine(options);
   const std::string text =

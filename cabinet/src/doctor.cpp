@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "arrival_watch.h"
+#include "cabinet/controller.h"
 #include "cabinet/device_source.h"
 #include "doctor_find.h"
 #include "exclusive_line.h"
@@ -206,29 +208,48 @@ void judge(const FoundDevice& device, bool another_is_live, std::vector<Trouble>
               : "plug it in anew, and flash the firmware of this version"});
 }
 
-CalibrationCheck check_calibration(const DoctorOptions& options, Calibration& into) {
+std::string address_of(const FoundDevice& device) {
+  return (device.kind == DeviceKind::hid_controller ? "hid:" : "serial:") + device.path;
+}
+
+// The one that was named, else the one that is kept for a controller that is here; or empty.
+std::string calibration_to_judge(const DoctorOptions& options,
+                                 const std::vector<FoundDevice>& devices) {
+  if (!options.calibration.empty() || options.calibrations.empty()) return options.calibration;
+  for (const FoundDevice& device : devices) {
+    if (!is_controller(device)) continue;
+    const std::string serial = controller_serial(address_of(device), options.sys);
+    std::string path = calibration_file(options.calibrations, serial);
+    if (::access(path.c_str(), F_OK) == 0) return path;
+  }
+  return {};
+}
+
+CalibrationCheck check_calibration(const DoctorOptions& options, const std::string& path,
+                                   Calibration& into) {
   CalibrationCheck check;
-  check.path = options.calibration;
-  auto loaded = load_calibration(options.calibration);
+  check.path = path;
+  auto loaded = load_calibration(path);
   if (!loaded) {
     check.error = loaded.error();
     return check;
   }
   into = *loaded;
   struct stat about {};
-  if (::stat(options.calibration.c_str(), &about) == 0) {
+  if (::stat(path.c_str(), &about) == 0) {
     check.days = static_cast<double>(options.now_s - about.st_mtime) / 86'400;
   }
   return check;
 }
 
 void judge_calibration(const Diagnosis& diagnosis, std::vector<Trouble>& troubles) {
-  const bool controller = std::ranges::any_of(diagnosis.devices, is_controller);
+  const auto controller = std::ranges::find_if(diagnosis.devices, is_controller);
   if (!diagnosis.calibration) {
-    if (controller)
+    if (controller != diagnosis.devices.end())
       troubles.push_back(
-          {"", "no calibration was given, so that every rod is off by its sensor's mounting",
-           "calibrate (docs/cabinet.md) and name the file by --calibration"});
+          {"", "there is no calibration, so that every rod is off by its sensor's mounting",
+           "run space-foosball calibrate --device " + address_of(*controller) +
+               ", or name a file by --calibration"});
     return;
   }
   const CalibrationCheck& check = *diagnosis.calibration;
@@ -245,10 +266,9 @@ void judge_calibration(const Diagnosis& diagnosis, std::vector<Trouble>& trouble
 Diagnosis examine(const DoctorOptions& options) {
   Diagnosis diagnosis;
   Calibration calibration = nominal_calibration();
-  if (!options.calibration.empty()) {
-    diagnosis.calibration = check_calibration(options, calibration);
-  }
   diagnosis.devices = find_devices(options.dev, options.sys);
+  const std::string path = calibration_to_judge(options, diagnosis.devices);
+  if (!path.empty()) diagnosis.calibration = check_calibration(options, path, calibration);
   for (FoundDevice& device : diagnosis.devices) {
     if (is_controller(device) && device.error == 0) listen(device, calibration, options);
   }

@@ -282,7 +282,14 @@ TEST_F(Doctor, NoCalibrationABadOneAndAnOldOneAreSaid) {
   write("table.json", "{}");
   expect_trouble("table.json", "name another file");
   options.calibration.clear();
-  expect_trouble("no calibration was given", "--calibration");
+  expect_trouble("there is no calibration", "space-foosball calibrate --device ");
+  write("kept/unnumbered.json", "");
+  fs::copy_file(fs::path(CABINET_DIR) / "calibration.example.json", root_ / "kept/unnumbered.json",
+                fs::copy_options::overwrite_existing);
+  options.calibrations = (root_ / "kept").string();
+  const Diagnosis kept = examine(options);
+  ASSERT_TRUE(kept.calibration);
+  EXPECT_EQ(kept.calibration->path, options.calibrations + "/unnumbered.json");
 }
 
 TEST_F(Doctor, ANameOfAStrangerHarmsNothing) {
