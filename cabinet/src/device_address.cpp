@@ -67,7 +67,10 @@ constexpr std::int64_t kReopenUs = 100'000;
 
 std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path) {
   auto keeper = std::make_shared<LineKeeper>([path] {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    constexpr int kHow = O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+    int fd = ::open(path.c_str(), O_RDWR | kHow);
+    // One that may only be read plays all the same, without haptics.
+    if (fd < 0 && (errno == EACCES || errno == EROFS)) fd = ::open(path.c_str(), O_RDONLY | kHow);
     if (fd >= 0 && isatty(fd) != 0) make_raw(fd);
     return fd;
   });

@@ -1,6 +1,7 @@
 #include "cabinet/device_source.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,6 +22,8 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
+// A line that has so many bytes to send yet gets no more: 10 ms at 1 Mbaud.
+constexpr int kMostQueuedBytes = 1024;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
@@ -81,6 +84,7 @@ struct DeviceSource::Impl {
   std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
+  bool socket = false, hidraw = false;  // what is open
   bool recording = false, played = false;
   bool pending = false;
   wire::DeviceFrame frame{};
@@ -106,6 +110,8 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
     return;
   }
   recording = S_ISREG(about.st_mode);
+  socket = S_ISSOCK(about.st_mode);
+  hidraw = S_ISCHR(about.st_mode) && isatty(fd) == 0;
   Packing packing = Packing::cobs;
   if (recording) {
     packing = packing_of_recording(fd);
@@ -201,6 +207,19 @@ void DeviceSource::poll(std::int64_t now_us) {
     in.fresh = false;
     in.tracker.hold();
   }
+}
+
+bool DeviceSource::send(std::span<const std::byte> packet) {
+  const Impl& in = *impl_;
+  if (in.fd < 0 || in.recording || in.hidraw || packet.empty()) return false;
+  if (in.socket)
+    return ::send(in.fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(packet.size());
+  // A part of a packet would spoil the next one too: none goes into a queue that may not hold all
+  // of it.
+  int queued = 0;
+  if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMostQueuedBytes) return false;
+  return ::write(in.fd, packet.data(), packet.size()) == static_cast<ssize_t>(packet.size());
 }
 
 const RodInputs& DeviceSource::rods() const {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -58,6 +60,11 @@ class DeviceSource final : public InputSource {
   const RodInputs& rods() const override;
   const SourceCounters& counters() const override;
   const std::string& name() const override;
+  // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on
+  // the line. Never waits and never sends a part of one: false where nothing is attached, where the
+  // line has no room for all of it, at a recording, and at hidraw, whose write(2) waits for the USB
+  // transfer and needs a thread of its own. Between polls, on their thread.
+  bool send(std::span<const std::byte> packet);
   // As of the last poll.
   DeviceState state() const;
   int open_error() const;  // errno of the last attempt to open it, if that failed
