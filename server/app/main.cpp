@@ -253,9 +253,11 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   }
   if (options.phones.open) {
     log(server::LogLevel::info, "phones join at " + server.phones());
-    if (address->is_loopback()) {
+    const auto& own = options.phones.listen;
+    const auto listen = own.empty() ? address : os::parse_address(own, 0);
+    if (listen->is_loopback()) {
       log(server::LogLevel::warning,
-          "phones reach this machine only with --listen, such as --listen 0.0.0.0");
+          "no phone can reach this machine: give --phone-listen 0.0.0.0 too");
     }
   }
   server::TickLoop loop(options.loop, log);

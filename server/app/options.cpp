@@ -181,6 +181,11 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
                  "TCP, for phones; 0: any free one; without it, the one after --port")
       ->needs(phones)
       ->check(CLI::Range(0, 65535));
+  cli.add_option("--phone-listen", o.phones.listen,
+                 "address to listen at for phones; without it, that of --listen: so phones play "
+                 "from afar where nobody else joins")
+      ->needs(phones)
+      ->check(check_address);
   cli.add_flag("--no-haptics", raw.no_haptics,
                "neither the cabinet's rods nor phones shake when the ball is hit");
   cli.add_flag("--mixed-teams", o.access.mixed_teams,

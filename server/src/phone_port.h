@@ -8,7 +8,7 @@
 // new at each start of the server, and goes to players' screens as a QR code. The line is not
 // sealed (docs/phones.md says what that means).
 //
-// Boost.Beast on one io_context: see docs/decisions/0060.
+// Boost.Beast on one io_context: see docs/decisions/0060-phones.md.
 #pragma once
 
 #include <array>

@@ -29,8 +29,11 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
 }
 
 tl::expected<std::unique_ptr<PhonePort>, StartError> open_phones(const ServerOptions& options) {
+  using Kind = StartError::Kind;
+  const std::string& listen =
+      options.phones.listen.empty() ? options.network.listen : options.phones.listen;
   PhonePortOptions wanted;
-  wanted.listen = options.network.listen;
+  wanted.listen = listen;
   wanted.port = options.phones.port;
   wanted.limits = options.phones.limits;
   wanted.layout = options.match.layout;
@@ -40,9 +43,9 @@ tl::expected<std::unique_ptr<PhonePort>, StartError> open_phones(const ServerOpt
   if (opened) return std::move(*opened);
   const SocketError& error = opened.error();
   return tl::unexpected(
-      StartError{error.occupied() ? StartError::Kind::port_taken : StartError::Kind::bad_option,
+      StartError{error.occupied() ? Kind::port_taken : Kind::bad_option,
                  "cannot listen for phones at port " + std::to_string(options.phones.port) +
-                     " on " + options.network.listen + ": " + std::strerror(error.number) +
+                     " on " + listen + ": " + std::strerror(error.number) +
                      "; choose another port with --phone-port, or leave --phones out"});
 }
 

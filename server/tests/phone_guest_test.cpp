@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, PhoneAtATable,
 
 TEST_P(PhoneAtATable, TheFourPairsAreTheEightRodsEachOfOneTeam) {
   RodSet all = 0;
-  for (const std::uint8_t team : {0, 1}) {
+  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
     for (const RodPair pair : {RodPair::defence, RodPair::attack}) {
       const RodPairOf rods = rods_of_pair(GetParam(), team, pair);
       EXPECT_EQ(std::popcount(rods.rods), 2);
@@ -101,7 +101,7 @@ TEST_P(PhoneAtATable, IsToldOfPairsThatNobodyElseHas) {
 }
 
 TEST_P(PhoneAtATable, DrivesTheTwoRodsThatItHasAndNoOther) {
-  for (const std::uint8_t team : {0, 1}) {
+  for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
     for (const RodPair pair : {RodPair::defence, RodPair::attack}) {
       PhoneGuest fresh(GetParam());
       guest = fresh;

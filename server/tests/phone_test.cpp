@@ -523,6 +523,18 @@ TEST_F(PacedPhones, AFloodOfInputsIsReadAtItsPace) {
   EXPECT_EQ(phones().inputs_dropped, 0u);
 }
 
+// Open to the network where the control port is not.
+TEST(PhonePort, ListensWhereItIsTold) {
+  Lockstep table([](ServerOptions& o) {
+    with_phones(o);
+    o.phones.listen = "127.0.0.3";
+  });
+  EXPECT_TRUE(table->phones().starts_with("http://127.0.0.3:")) << table->phones();
+  PhoneProbe phone(table->phones());
+  EXPECT_TRUE(phone.join());
+  EXPECT_FALSE(ProbeClient(table.port(), "127.0.0.1", "127.0.0.3").connected());
+}
+
 TEST(PhonePort, OneThatIsTakenIsToldWithTheOptionThatChoosesAnother) {
   Lockstep first(with_phones);
   const std::string url = first->phones();

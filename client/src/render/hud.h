@@ -67,8 +67,8 @@ void draw_menu(const HudPen& pen, const MenuPage& page);
 // Of this team's people, at the lower edge; -1: of both.
 void draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
 float survey_height(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
-// At the right edge, above the keys; left out where its modules would be smaller than two pixels,
-// or where there is no room beside the menu.
+// At the right edge, below the title and above the keys; left out where its modules would be
+// smaller than two pixels, or where there is no room beside the menu.
 void draw_phone_code(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);

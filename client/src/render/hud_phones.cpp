@@ -8,7 +8,7 @@
 namespace client {
 
 void draw_phone_code(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
-  constexpr float kSide = 176.0f, kFromRight = 22.0f, kFromBottom = 84.0f;  // units
+  constexpr float kSide = 176.0f, kFromRight = 22.0f, kTop = 250.0f;  // units: below the title
   constexpr float kMenuHalf = 340.0f;
   constexpr int kQuiet = 4;  // light modules around, as the standard wants them
   if (hud.phones == nullptr || hud.phones->size == 0) return;
@@ -19,8 +19,8 @@ void draw_phone_code(const HudPen& pen, const HudState& hud, const glm::ivec2& s
   const bool beside_menu = hud.menu.rows.empty() || pen.half_width - kSide - kFromRight > kMenuHalf;
   if (module < 2.0f || !beside_menu) return;
   const float side = module * static_cast<float>(modules);
-  const glm::vec2 low =
-      glm::floor(glm::vec2(screen) - glm::vec2(kFromRight, kFromBottom) * pen.scale - side);
+  const glm::vec2 low = glm::floor(
+      glm::vec2(static_cast<float>(screen.x) - kFromRight * pen.scale - side, kTop * pen.scale));
   const auto box = [&](const glm::vec2& from, const glm::vec2& to, const Colour& colour) {
     pen.panel(pen.from_pixels(low + from), pen.from_pixels(low + to), 0.0f, colour);
   };

@@ -46,6 +46,7 @@ struct PhoneLimits {
 };
 struct PhoneOptions {
   bool open = false;
+  std::string listen;      // empty: where the control port does
   std::uint16_t port = 0;  // TCP; 0: any free one
   PhoneLimits limits;
 };

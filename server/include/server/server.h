@@ -36,7 +36,7 @@ struct ServerOptions {
   NetworkOptions network;
   AccessOptions access;
   ControlLimits limits;
-  PhoneOptions phones;  // listens where network does
+  PhoneOptions phones;
   bool haptics =
       true;  // hands of cabinets and phones feel hits; clients have a switch of their own
   std::uint64_t session = 0;              // random, other at every start
