@@ -53,6 +53,7 @@ LAYERS = {
     'wire/include/wire/device_frame.h': 'device-frame',
     'cabinet/': 'cabinet',
     'cabinet/include/cabinet/hand.h': 'hand',
+    'cabinet/include/cabinet/haptics.h': 'hand',
     'cabinet/include/cabinet/rod_input.h': 'hand',
     'cabinet/include/cabinet/rate_filter.h': 'hand',
     'firmware/': 'firmware',

@@ -16,6 +16,8 @@ build  ninja-build           runs the build
 build  pkg-config            finds libraries that have no CMake package
 build  flatbuffers-compiler  the control messages' code from their description
 build  libflatbuffers-dev    control messages
+build  libboost-dev          Asio and Beast: the WebSocket that phones play over
+build  libqrencode-dev       the QR code of where phones join
 build  libsodium-dev         encryption and authentication of what goes over a network
 build  libcli11-dev          command lines
 build  libtomlplusplus-dev   profiles that people edit

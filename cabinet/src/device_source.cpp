@@ -1,6 +1,7 @@
 #include "cabinet/device_source.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,6 +25,8 @@ constexpr int kMostReadsPerPoll = 512;
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
 // Two polls are no further apart, as far as anything is concluded from it.
 constexpr std::int64_t kLongestPollUs = 1'500;
+// A line that has so many bytes to send yet gets no more: 10 ms at 1 Mbaud.
+constexpr int kMostQueuedBytes = 1024;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
@@ -87,6 +90,7 @@ struct DeviceSource::Impl {
   std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
+  bool socket = false, hidraw = false;  // what is open
   bool recording = false, played = false;
   bool pending = false;
   wire::DeviceFrame frame{};
@@ -112,6 +116,8 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
     return;
   }
   recording = S_ISREG(about.st_mode);
+  socket = S_ISSOCK(about.st_mode);
+  hidraw = S_ISCHR(about.st_mode) && isatty(fd) == 0;
   Packing packing = Packing::cobs;
   if (recording) {
     packing = packing_of_recording(fd);
@@ -219,6 +225,19 @@ void DeviceSource::poll(std::int64_t now_us) {
     in.tracker.hold();
   }
   if (in.fresh) in.tracker.predict(now_us);
+}
+
+bool DeviceSource::send(std::span<const std::byte> packet) {
+  const Impl& in = *impl_;
+  if (in.fd < 0 || in.recording || in.hidraw || packet.empty()) return false;
+  if (in.socket)
+    return ::send(in.fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(packet.size());
+  // A part of a packet would spoil the next one too: none goes into a queue that may not hold all
+  // of it.
+  int queued = 0;
+  if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMostQueuedBytes) return false;
+  return ::write(in.fd, packet.data(), packet.size()) == static_cast<ssize_t>(packet.size());
 }
 
 const RodInputs& DeviceSource::rods() const {

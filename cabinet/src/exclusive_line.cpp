@@ -13,7 +13,11 @@
 namespace cabinet {
 
 int open_exclusively(const char* path) {
-  os::FileDescriptor fd(::open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  constexpr int kHow = O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+  os::FileDescriptor fd(::open(path, O_RDWR | kHow));
+  // One that may only be read plays all the same, without haptics.
+  if (!fd && (errno == EACCES || errno == EROFS))
+    fd = os::FileDescriptor(::open(path, O_RDONLY | kHow));
   if (!fd) return -1;
   if (::flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK) errno = EBUSY;

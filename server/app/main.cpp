@@ -201,6 +201,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.network = options.network;
   wanted.access = options.access;
   wanted.limits = options.limits;
+  wanted.phones = options.phones;
+  wanted.haptics = options.haptics;
   wanted.session = random_number();
   wanted.random = random_number;
   wanted.record = options.record;
@@ -269,8 +271,9 @@ int judge_sending(const server::Server& server, const server::Log& log) {
 int serve(server::Server& server, const app::Options& options, Outputs& outputs,
           const server::Log& log) {
   if (!options.ready_file.empty()) {
-    const auto written =
-        server::write_whole(options.ready_file, "port=" + std::to_string(server.port()) + "\n");
+    std::string text = "port=" + std::to_string(server.port()) + "\n";
+    if (options.phones.open) text += "phones=" + server.phones() + "\n";
+    const auto written = server::write_whole(options.ready_file, text);
     if (!written) return fail(outputs, server::kExitUsage, written.error());
   }
   const auto address = os::parse_address(options.network.listen, server.port());
@@ -278,6 +281,15 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   if (options.password_was_made) {
     log(server::LogLevel::warning, "from another machine, join with the password " +
                                        *options.access.password + " (--password-file chooses one)");
+  }
+  if (options.phones.open) {
+    log(server::LogLevel::info, "phones join at " + server.phones());
+    const auto& own = options.phones.listen;
+    const auto listen = own.empty() ? address : os::parse_address(own, 0);
+    if (listen->is_loopback()) {
+      log(server::LogLevel::warning,
+          "no phone can reach this machine: give --phone-listen 0.0.0.0 too");
+    }
   }
   server::TickLoop loop(options.loop, log);
   const server::RunEnd end = server::run(server, loop, options.run, stop_requested);

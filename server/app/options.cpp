@@ -92,7 +92,8 @@ struct Raw {
   double seconds = 0.0, keep_seats = 30.0, recordings_gb = 2.0;
   int level = foosball::PlayerSpec{}.level;
   std::string style;
-  bool fast = false, no_real_time = false, list_tuning = false;
+  bool fast = false, no_real_time = false, list_tuning = false, no_haptics = false;
+  int phone_port = -1;  // not given
 };
 
 void add_match(CLI::App& cli, Options& o, Raw& raw) {
@@ -168,6 +169,21 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(0.0, 3600.0))
       ->check(server::check_not_nan)
       ->capture_default_str();
+  auto* phones = cli.add_flag(
+      "--phones", o.phones.open,
+      "phones play as pairs of rods: the screen shows a QR code; from other machines with --listen "
+      "(docs/phones.md)");
+  cli.add_option("--phone-port", raw.phone_port,
+                 "TCP, for phones; 0: any free one; without it, the one after --port")
+      ->needs(phones)
+      ->check(CLI::Range(0, 65535));
+  cli.add_option("--phone-listen", o.phones.listen,
+                 "address to listen at for phones; without it, that of --listen: so phones play "
+                 "from afar where nobody else joins")
+      ->needs(phones)
+      ->check(check_address);
+  cli.add_flag("--no-haptics", raw.no_haptics,
+               "neither the cabinet's rods nor phones shake when the ball is hit");
   cli.add_flag("--mixed-teams", o.access.mixed_teams,
                "who joins from another machine may have rods of both teams");
 }
@@ -185,6 +201,7 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)
+          ->excludes("--phones")
           ->excludes("--device");
   auto* recordings =
       cli.add_option("--recordings", o.recordings,
@@ -308,6 +325,10 @@ void translate(Options& o, const Raw& raw) {
   o.limits.seat_kept_us = std::llround(raw.keep_seats * 1e6);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
   o.recording_limits.bytes = static_cast<std::uint64_t>(raw.recordings_gb * (1 << 30));
+  // Beside the control port; of a free one any other.
+  const int beside = o.network.port == 0 || o.network.port == 65535 ? 0 : o.network.port + 1;
+  o.phones.port = static_cast<std::uint16_t>(raw.phone_port >= 0 ? raw.phone_port : beside);
+  o.haptics = !raw.no_haptics;
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
   o.loop.drop_rights = true;

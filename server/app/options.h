@@ -28,6 +28,8 @@ struct Options {
   server::NetworkOptions network;
   server::AccessOptions access;
   server::ControlLimits limits;
+  server::PhoneOptions phones;
+  bool haptics = true;
   server::RunOptions run;
   server::LoopOptions loop;
   std::vector<std::string> devices;

@@ -332,6 +332,12 @@ void RodDesk::poll(std::int64_t now_us) {
   mux_.poll(now_us);
 }
 
+std::uint32_t RodDesk::client_of(int rod) const {
+  for (const Place& place : places_)
+    if ((place.rods >> rod & 1) != 0) return place.client;
+  return 0;
+}
+
 RodDriver RodDesk::driver(int rod) const {
   const int source = mux_.source_of(rod);
   return source == cabinet::SourceMux::kNobody ? RodDriver::none : kinds_[source];

@@ -80,7 +80,8 @@ class RodDesk {
   void poll(std::int64_t now_us);
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
   RodDriver driver(int rod) const;
-  bool of_device(int rod) const;  // a device has it, also while the computer stands in
+  std::uint32_t client_of(int rod) const;  // that has it; 0: none
+  bool of_device(int rod) const;           // a device has it, also while the computer stands in
 
  private:
   struct Place {

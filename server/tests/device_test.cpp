@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <span>
@@ -47,6 +48,14 @@ class Controller {
     std::array<std::uint8_t, wire::kDeviceReportBytes> bytes{};
     wire::encode_device_frame(frame_, bytes.data());
     send(bytes);
+  }
+  // One report; all rods are so far from where they began [counts].
+  void sweep(double slide, double spin) {
+    for (int rod = 0; rod < wire::kDeviceRods; ++rod) {
+      frame_.slide[rod] = static_cast<std::uint16_t>(static_cast<int>(slide));
+      frame_.spin[rod] = static_cast<std::uint16_t>(static_cast<int>(spin));
+    }
+    report(0);
   }
 
  private:
@@ -299,6 +308,53 @@ TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
   move(1, 100);
   table.tick(1000);
   EXPECT_NEAR(table->match().view().rods[5].slide, 100 * 1.5 * 25.4e-6, 0.0005);
+}
+
+// A ball that meets the rods of a cabinet: what its motors are told, and in which tick.
+TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
+  struct Motors final : cabinet::HapticSink {
+    explicit Motors(std::vector<cabinet::HapticPulse>& into) : felt(into) {}
+    void pulse(const cabinet::HapticPulse& pulse) override { felt.push_back(pulse); }
+    std::vector<cabinet::HapticPulse>& felt;
+  };
+  Lockstep table([](ServerOptions& o) {
+    o.match.rules.goals_to_win = 99;
+    o.match.rules.max_goals = 99;
+  });
+  std::vector<cabinet::HapticPulse> felt;
+  Controller controller;
+  controller.plug_in();
+  cabinet::DeviceOptions options;
+  options.framing = cabinet::DeviceFraming::report;
+  table->add_device(std::make_unique<cabinet::DeviceSource>(options, controller.opener()));
+  table->set_cabinet_haptics(std::make_unique<Motors>(felt));
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join());
+  for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
+    for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
+      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+    ASSERT_TRUE(table.tick_until([&] {
+      controller.report(0);
+      return table->match().view().screen == screen;
+    }));
+  }
+  std::size_t before = felt.size();
+  int ticks_with_hits = 0;
+  ASSERT_TRUE(table.tick_until([&] {
+    // The tick that has just been: a pulse in it means a hit in it.
+    bool hit = false;
+    for (const foosball::Event& event : table->match().events())
+      hit |= event.kind == foosball::EventKind::man_hit && event.value >= cabinet::kSoftestFelt;
+    ticks_with_hits += hit;
+    EXPECT_TRUE(hit || felt.size() == before) << "late";
+    before = felt.size();
+    const double t = 1e-6 * static_cast<double>(table.now_us());
+    controller.sweep(900.0 * std::sin(4.0 * t), 700.0 * std::sin(25.0 * t));
+    return felt.size() >= 3;
+  }));
+  EXPECT_GE(ticks_with_hits, 3);
+  for (const cabinet::HapticPulse& pulse : felt) EXPECT_LE(pulse.ms, cabinet::kLongestPulseMs);
+  EXPECT_EQ(table->counters().haptic_pulses, felt.size());
 }
 
 }  // namespace

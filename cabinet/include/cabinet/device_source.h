@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -59,6 +61,11 @@ class DeviceSource final : public Device {
   int open_error() const override;
   // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
   void observe(std::function<void(const wire::DeviceFrame&)> observer);
+  // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on
+  // the line. Never waits and never sends a part of one: false where nothing is attached, where the
+  // line has no room for all of it, at a recording, and at hidraw, whose write(2) waits for the USB
+  // transfer and needs a thread of its own. Between polls, on their thread.
+  bool send(std::span<const std::byte> packet);
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 
