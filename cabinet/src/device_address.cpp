@@ -76,6 +76,9 @@ std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::stri
   options.reopen_us = kReopenUs;
   options.opener_sets_line = true;
   options.arrived_us = [arrivals] { return arrivals->last_us(); };
+  options.send_apart = [keeper](int fd, std::span<const std::byte> packet) {
+    return keeper->send(fd, packet);
+  };
   return std::make_unique<DeviceSource>(
       std::move(options), [keeper] { return keeper->take(); },
       [keeper](int fd) { keeper->close(fd); });

@@ -229,7 +229,8 @@ void DeviceSource::poll(std::int64_t now_us) {
 
 bool DeviceSource::send(std::span<const std::byte> packet) {
   const Impl& in = *impl_;
-  if (in.fd < 0 || in.recording || in.hidraw || packet.empty()) return false;
+  if (in.fd < 0 || in.recording || packet.empty()) return false;
+  if (in.hidraw) return in.options.send_apart && in.options.send_apart(in.fd, packet);
   if (in.socket)
     return ::send(in.fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
            static_cast<ssize_t>(packet.size());
@@ -258,6 +259,9 @@ DeviceState DeviceSource::state() const {
 }
 void DeviceSource::observe(std::function<void(const wire::DeviceFrame&)> observer) {
   impl_->observer = std::move(observer);
+}
+DeviceFraming DeviceSource::framing() const {
+  return impl_->options.framing;
 }
 int DeviceSource::open_error() const {
   return impl_->open_error;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cabinet/device_haptics.h"
+#include "wire/device_command.h"
 
 namespace cabinet {
 namespace {
@@ -52,6 +53,38 @@ void DeviceHaptics::pulse(const HapticPulse& pulse) {
   const std::size_t size = encode_ ? encode_(pulse, packet) : 0;
   if (size == 0 || size > packet.size()) return;
   ++(device_.send(std::span(packet).first(size)) ? sent_ : unsent_);
+}
+
+HapticEncoder command_encoder(DeviceFraming framing) {
+  return [framing](const HapticPulse& pulse, std::span<std::byte> out) -> std::size_t {
+    wire::DeviceCommand command{};
+    command.kind = wire::kPulseCommand;
+    command.rod = static_cast<std::uint8_t>(pulse.rod);
+    command.amplitude =
+        static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(pulse.strength, 0.0f, 1.0f)));
+    command.duration_ms = pulse.ms;
+    if (!wire::valid_device_command(command)) return 0;
+    std::array<std::uint8_t, wire::kDeviceCommandBytes> plain{};
+    wire::encode_device_command(command, plain.data());
+    auto* bytes = reinterpret_cast<std::uint8_t*>(out.data());
+    if (framing == DeviceFraming::cobs) return wire::cobs_encode(plain.data(), plain.size(), bytes);
+    // Report number 0: there is one kind of report.
+    std::ranges::fill(out.first(1 + wire::kDeviceReportBytes), std::byte{0});
+    std::ranges::copy(plain, bytes + 1);
+    return 1 + wire::kDeviceReportBytes;
+  };
+}
+
+void CabinetHaptics::add(DeviceSource& device) {
+  devices_.emplace_back(device, command_encoder(device.framing()));
+}
+
+void CabinetHaptics::pulse(const HapticPulse& pulse) {
+  if (pulse.rod < 0 || pulse.rod >= kRods) return;
+  for (DeviceHaptics& haptics : devices_) {
+    const RodInput& rod = haptics.device().rods()[static_cast<std::size_t>(pulse.rod)];
+    if (rod.status == RodStatus::live) haptics.pulse(pulse);
+  }
 }
 
 }  // namespace cabinet

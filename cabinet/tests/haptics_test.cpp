@@ -11,6 +11,7 @@
 
 #include "cabinet/device_haptics.h"
 #include "simulated_device.h"
+#include "wire/device_command.h"
 
 using namespace cabinet;
 using namespace cabinet_test;
@@ -178,6 +179,32 @@ TEST(DeviceHaptics, WithoutAnEncoderOrWithARecordingNothingIsSent) {
   EXPECT_EQ(::stat(path.c_str(), &about), 0);
   EXPECT_EQ(about.st_size, 0) << "a recording is not written to";
   ::unlink(path.c_str());
+}
+
+TEST(DeviceHaptics, AControllerIsToldAsItsCommandsAreDescribed) {
+  for (const auto framing : {DeviceFraming::cobs, DeviceFraming::report}) {
+    std::array<std::byte, DeviceHaptics::kMaxPacket> out{};
+    const std::size_t size = command_encoder(framing)({6, 0.5f, 40}, out);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(out.data());
+    std::array<std::uint8_t, wire::kDeviceCommandBytes> plain{};
+    if (framing == DeviceFraming::cobs) {
+      ASSERT_EQ(size, wire::kDeviceCommandBytes + 2);
+      EXPECT_EQ(bytes[size - 1], 0);
+      ASSERT_EQ(wire::cobs_decode(bytes, size - 1, plain.data(), plain.size()), plain.size());
+    } else {
+      ASSERT_EQ(size, 1 + wire::kDeviceReportBytes);
+      EXPECT_EQ(bytes[0], 0) << "the report's number";
+      std::copy_n(bytes + 1, plain.size(), plain.begin());
+    }
+    wire::DeviceCommand command{};
+    ASSERT_TRUE(wire::decode_device_command(plain.data(), plain.size(), command));
+    EXPECT_EQ(command.kind, wire::kPulseCommand);
+    EXPECT_EQ(command.rod, 6);
+    EXPECT_EQ(command.amplitude, 128);
+    EXPECT_EQ(command.duration_ms, 40);
+  }
+  std::array<std::byte, DeviceHaptics::kMaxPacket> out{};
+  EXPECT_EQ(command_encoder(DeviceFraming::report)({6, 0.5f, 0}, out), 0u) << "no length";
 }
 
 }  // namespace

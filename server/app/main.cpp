@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "cabinet/controller.h"
+#include "cabinet/device_haptics.h"
 #include "cabinet/device_source.h"
 #include "cabinet/mouse_source.h"
 #include "options.h"
@@ -123,7 +124,10 @@ int exit_code(server::StartError::Kind kind) {
   return server::kExitFailed;
 }
 
-using Devices = std::vector<std::unique_ptr<cabinet::Device>>;
+struct Devices {
+  std::vector<std::unique_ptr<cabinet::Device>> all;
+  std::unique_ptr<cabinet::CabinetHaptics> haptics = std::make_unique<cabinet::CabinetHaptics>();
+};
 
 // That which space-foosball calibrate has kept for the controller, else that of a sensor as it
 // comes.
@@ -165,14 +169,15 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options,
             : calibration->rods[rod];
     auto device = cabinet::open_mouse(mouse.path, std::move(wanted));
     if (!device) return tl::unexpected(device.error());
-    devices.push_back(std::move(*device));
+    devices.all.push_back(std::move(*device));
   }
   for (const std::string& address : options.devices) {
     auto own = options.calibration.empty() ? calibration_of(address, log) : calibration;
     if (!own) return tl::unexpected(own.error());
     auto device = cabinet::open_device(address, *own, slide_limit);
     if (!device) return tl::unexpected(device.error());
-    devices.push_back(std::move(*device));
+    devices.haptics->add(**device);
+    devices.all.push_back(std::move(*device));
   }
   return devices;
 }
@@ -231,7 +236,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   }
   auto made = server::Server::create(std::move(wanted));
   if (!made) return made;
-  for (auto& device : *devices) (*made)->add_device(std::move(device));
+  for (auto& device : devices->all) (*made)->add_device(std::move(device));
+  (*made)->set_cabinet_haptics(std::move(devices->haptics));
   return made;
 }
 

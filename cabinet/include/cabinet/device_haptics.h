@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "cabinet/device_source.h"
 #include "cabinet/haptics.h"
@@ -20,11 +21,12 @@ using HapticEncoder = std::function<std::size_t(const HapticPulse&, std::span<st
 // outlive it.
 class DeviceHaptics final : public HapticSink {
  public:
-  static constexpr std::size_t kMaxPacket = 64;  // bytes; a HID report
+  static constexpr std::size_t kMaxPacket = 65;  // bytes; a HID report and its number
 
   DeviceHaptics(DeviceSource& device, HapticEncoder encode)
       : device_(device), encode_(std::move(encode)) {}
   void pulse(const HapticPulse& pulse) override;
+  const DeviceSource& device() const { return device_; }
   std::uint64_t sent() const { return sent_; }
   std::uint64_t unsent() const { return unsent_; }  // nothing attached, or its line was full
 
@@ -32,6 +34,20 @@ class DeviceHaptics final : public HapticSink {
   DeviceSource& device_;
   HapticEncoder encode_;
   std::uint64_t sent_ = 0, unsent_ = 0;
+};
+
+// The command of wire/device_command.h, as a line of this framing carries it.
+HapticEncoder command_encoder(DeviceFraming framing);
+
+// The motors of all controllers: each pulse to those that have its rod at this time. They must
+// outlive it.
+class CabinetHaptics final : public HapticSink {
+ public:
+  void add(DeviceSource& device);
+  void pulse(const HapticPulse& pulse) override;
+
+ private:
+  std::vector<DeviceHaptics> devices_;
 };
 
 }  // namespace cabinet

@@ -35,6 +35,9 @@ struct DeviceOptions {
   // When bytes last came on the line that is open, on the clock that is handed to poll() [us].
   // None: only known to lie between two polls.
   std::function<std::int64_t()> arrived_us;
+  // Sends a packet to the descriptor from another thread, where write(2) would wait, as at hidraw;
+  // false: not now. None: nothing is sent to such a device.
+  std::function<bool(int, std::span<const std::byte>)> send_apart;
 };
 
 // Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno
@@ -62,10 +65,11 @@ class DeviceSource final : public Device {
   // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
   void observe(std::function<void(const wire::DeviceFrame&)> observer);
   // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on
-  // the line. Never waits and never sends a part of one: false where nothing is attached, where the
-  // line has no room for all of it, at a recording, and at hidraw, whose write(2) waits for the USB
-  // transfer and needs a thread of its own. Between polls, on their thread.
+  // the line; at hidraw, whose write(2) waits for the USB transfer, by DeviceOptions::send_apart.
+  // Never waits and never sends a part of one: false where nothing is attached, where the line has
+  // no room for all of it, and at a recording. Between polls, on their thread.
   bool send(std::span<const std::byte> packet);
+  DeviceFraming framing() const;
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 

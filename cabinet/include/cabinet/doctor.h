@@ -54,8 +54,8 @@ struct DoctorOptions {
   std::string dev = "/dev", sys = "/sys";
   std::string calibration;   // a file, or empty
   std::string calibrations;  // the folder of those that are kept (cabinet/controller.h), or empty
-  double seconds = 2;       // for each controller
-  std::int64_t now_s = 0;   // time of day, for the calibration's age
+  double seconds = 2;        // for each controller
+  std::int64_t now_s = 0;    // time of day, for the calibration's age
   // Waits for the next poll and returns its time on a monotonic clock [us]. None: each millisecond.
   std::function<std::int64_t()> next_poll;
 };
