@@ -32,6 +32,6 @@ function(firmware_elf board mcu)
   set(FIRMWARE_ELFS ${FIRMWARE_ELFS} ${elf} PARENT_SCOPE)
 endfunction()
 
-firmware_elf(32u4 atmega32u4 hal/timing.cpp hal/usb_device.cpp hal/usb_descriptors.cpp app/main_32u4.cpp)
+firmware_elf(32u4 atmega32u4 hal/timing.cpp hal/usb_device.cpp core/usb_descriptors.cpp app/main_32u4.cpp)
 firmware_elf(2560 atmega2560 hal/timing.cpp hal/uart.cpp app/main_2560.cpp)
 add_custom_target(firmware_elfs ALL DEPENDS ${FIRMWARE_ELFS})

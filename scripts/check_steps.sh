@@ -13,7 +13,11 @@ our_files() { # our_files PATTERN...: tracked and new files, without build outpu
   done
 }
 
-step_packages() { packages_install "$LOGS/packages-apt.log" build play check wasm; }
+step_packages() {
+  packages_install "$LOGS/packages-apt.log" build play check wasm
+  # A node that is not Debian's brings its own npm, which Debian's would not go beside.
+  command -v npm >/dev/null || packages_install "$LOGS/packages-apt.log" node
+}
 
 step_format() {
   local files
@@ -37,6 +41,11 @@ step_docs() {
   python3 scripts/plot_study.py --self-test
   python3 scripts/readme_figures.py --self-test
   python3 scripts/readme_figures.py --check
+  python3 scripts/build_guide.py --self-test
+  python3 scripts/build_guide.py --check
+  python3 scripts/render_parts.py --self-test
+  python3 scripts/render_parts.py --pictures-current
+  python3 scripts/rods.py --self-test
 }
 
 step_doxygen() {

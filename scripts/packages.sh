@@ -2,9 +2,11 @@
 # The Debian packages that this project uses: the one list of them, each with its reason, and how
 # they are installed. Sourced by play, check and bench; by itself it prints the list or installs:
 #   scripts/packages.sh list [GROUP...]      scripts/packages.sh install GROUP...
-# Groups: build (compile it), play (run it), check (compile and run all that ./check does), deb (make
-# the Debian package), video (recordings as videos), bench (the engines that ./bench multibody, drift
-# and rigid compare with), wasm (compile and run the engine as WebAssembly), node (for the peers in WebAssembly, where there is no node already).
+# Groups: build (compile it), play (run it), check (compile and run all that ./check does), firmware
+# (compile the micro-controllers' programs), deb (make the Debian package), video (recordings as videos),
+# bench (the engines that ./bench multibody, drift and rigid compare with), docs (the printed parts and
+# pictures of the build guide), wasm (compile and run the engine as WebAssembly), node (for the peers in
+# WebAssembly and the simulator of the RP2040, where there is no node already).
 
 packages_table() {
   cat <<'TABLE'
@@ -14,6 +16,8 @@ build  ninja-build           runs the build
 build  pkg-config            finds libraries that have no CMake package
 build  flatbuffers-compiler  the control messages' code from their description
 build  libflatbuffers-dev    control messages
+build  libboost-dev          Asio and Beast: the WebSocket that phones play over
+build  libqrencode-dev       the QR code of where phones join
 build  libsodium-dev         encryption and authentication of what goes over a network
 build  libcli11-dev          command lines
 build  libtomlplusplus-dev   profiles that people edit
@@ -61,7 +65,13 @@ check  gcc-avr               compiles the firmware
 check  binutils-avr          links the firmware
 check  avr-libc              the firmware's C library
 check  libsimavr-dev         runs the firmware against simulated mice
+check  gcc-arm-none-eabi     compiles the RP2040's firmware
+check  nodejs                runs that in a simulator, against simulated sensors
 check  libelf-dev            simavr reads the firmware through it
+firmware gcc-avr             compiles the firmware
+firmware binutils-avr        links the firmware
+firmware avr-libc            the firmware's C library
+firmware gcc-arm-none-eabi    compiles the RP2040's firmware
 video  ffmpeg                writes the videos of ./play --video
 deb    dpkg-dev              the libraries that the Debian package depends on
 bench  libmujoco-dev         MuJoCo, the engine that ./bench multibody sets its goals by
@@ -80,8 +90,14 @@ wasm   libc++-14-dev-wasm32  the C++ library
 wasm   libc++abi-14-dev-wasm32 what that stands on
 wasm   libclang-rt-14-dev-wasm32 what clang's code calls
 wasm   nodejs                runs WebAssembly
+docs   openscad              the printed parts of cabinet/parts, as STL files and pictures
+docs   xvfb                  the display that openscad draws on
+docs   xauth                 who may draw on that display
+docs   libgl1-mesa-dri       OpenGL in software for it
+docs   ffmpeg                makes the pictures smaller
+docs   pngquant              the same, by fewer colours
 node   nodejs                runs the engines of ./bench rigid that are WebAssembly
-node   npm                   fetches them
+node   npm                   fetches them, and the simulator of the RP2040
 TABLE
 }
 
@@ -172,7 +188,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     list) packages_table | awk -v groups=" ${*:-build play check bench} " 'index(groups, " " $1 " ")' ;;
     install) packages_install build/log/packages.log "${@:-build}" ;;
     *)
-      echo "usage: scripts/packages.sh list|install [build|play|check|bench|node]..." >&2
+      echo "usage: scripts/packages.sh list|install [build|play|check|bench|firmware|docs|node]..." >&2
       exit 2
       ;;
   esac

@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 using Failure = std::optional<std::string>;  // what is wrong and what to do
 
-constexpr int kVersion = 2;  // 1 had no gains and no dead band
+constexpr int kVersion = 3;  // 1 had no gains and no dead band, 2 no serial number and no date
 // Eight rods are 2 KiB; what is far longer is another file.
 constexpr std::size_t kMostBytes = 64 * 1024;
 // Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
@@ -38,6 +38,10 @@ constexpr double kMostDeadBand = 4000;  // [counts / s] 50 mm/s at 78.7 counts/m
 // Counts that are further apart belong to two motions, the second of which has just begun.
 constexpr double kLongestMotion = 0.05;  // [s] ten reports of a PS/2 mouse
 
+constexpr std::size_t kMostWord = 64;  // bytes
+
+const char* const kSerialKey = "serial";
+const char* const kMadeKey = "made";
 const char* const kSlideKey = "slide_m_per_count";
 const char* const kAngleKey = "angle_rad_per_count";
 const char* const kSlideGainKey = "slide_gain";
@@ -121,18 +125,31 @@ Failure read_corrections(const json& rod, RodCalibration& calibration) {
   return {};
 }
 
+// Left out, it stays empty.
+Failure read_word(const json& file, const char* key, std::string& word) {
+  const auto found = file.find(key);
+  if (found == file.end()) return {};
+  if (!found->is_string() || found->get_ref<const std::string&>().size() > kMostWord) {
+    return std::string("has a \"") + key + "\" that is no text of up to 64 bytes; leave it out";
+  }
+  word = found->get<std::string>();
+  return {};
+}
+
 Failure read_json(const json& file, Calibration& calibration) {
   if (!file.is_object()) return "is not a calibration; see cabinet/calibration.example.json";
   const auto version = file.find("version");
   if (version == file.end() || !version->is_number_integer() || *version < 1) {
-    return "has no \"version\": 2; write it with this program or see "
+    return "has no \"version\": 3; write it with this program or see "
            "cabinet/calibration.example.json";
   }
   if (*version > kVersion) {
     return "is of version " + version->dump() +
-           ", this program reads up to 2; calibrate again, or "
+           ", this program reads up to 3; calibrate again, or "
            "take a newer program";
   }
+  if (const Failure wrong = read_word(file, kSerialKey, calibration.serial)) return wrong;
+  if (const Failure wrong = read_word(file, kMadeKey, calibration.made)) return wrong;
   const auto rods = file.find("rods");
   const std::size_t count = rods != file.end() && rods->is_array() ? rods->size() : 0;
   if (count != kRods) {
@@ -269,6 +286,8 @@ tl::expected<void, std::string> save_calibration(const Calibration& calibration,
     return tl::unexpected(sentence(path, "was not written: it " + *wrong));
   }
   json file{{"version", kVersion}, {"rods", json::array()}};
+  if (!calibration.serial.empty()) file[kSerialKey] = calibration.serial;
+  if (!calibration.made.empty()) file[kMadeKey] = calibration.made;
   for (const RodCalibration& rod : calibration.rods) {
     file["rods"].push_back(json{{kSlideKey, {rod.m[0][0], rod.m[0][1]}},
                                 {kAngleKey, {rod.m[1][0], rod.m[1][1]}},

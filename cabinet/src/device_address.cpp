@@ -12,10 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "arrival_watch.h"
 #include "cabinet/device_source.h"
+#include "exclusive_line.h"
 #include "line_keeper.h"
 #include "os/file_descriptor.h"
-#include "raw_line.h"
 
 namespace cabinet {
 namespace {
@@ -66,13 +67,18 @@ std::string objection(const std::string& text, const Address& address) {
 constexpr std::int64_t kReopenUs = 100'000;
 
 std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path) {
-  auto keeper = std::make_shared<LineKeeper>([path] {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (fd >= 0 && isatty(fd) != 0) make_raw(fd);
+  auto arrivals = std::make_shared<ArrivalWatch>();
+  auto keeper = std::make_shared<LineKeeper>([path, arrivals] {
+    const int fd = open_exclusively(path.c_str());
+    if (fd >= 0) arrivals->watch(fd);
     return fd;
   });
   options.reopen_us = kReopenUs;
   options.opener_sets_line = true;
+  options.arrived_us = [arrivals] { return arrivals->last_us(); };
+  options.send_apart = [keeper](int fd, std::span<const std::byte> packet) {
+    return keeper->send(fd, packet);
+  };
   return std::make_unique<DeviceSource>(
       std::move(options), [keeper] { return keeper->take(); },
       [keeper](int fd) { keeper->close(fd); });

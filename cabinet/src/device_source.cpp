@@ -1,10 +1,12 @@
 #include "cabinet/device_source.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <optional>
 #include <utility>
@@ -21,13 +23,12 @@ constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
 // A recording's pause is played in full up to this; a longer one is a break between two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
+// Two polls are no further apart, as far as anything is concluded from it.
+constexpr std::int64_t kLongestPollUs = 1'500;
+// A line that has so many bytes to send yet gets no more: 10 ms at 1 Mbaud.
+constexpr int kMostQueuedBytes = 1024;
 // A device that sends noise is not called silent between two pieces of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
-
-// What open(2) says of a device that is not plugged in; 0: it was open and hung up.
-bool means_absent(int error) {
-  return error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
-}
 
 bool keeps_message_bounds(int fd, const struct stat& about) {
   if (S_ISSOCK(about.st_mode)) {
@@ -47,6 +48,12 @@ Packing packing_of_recording(int fd) {
 
 }  // namespace
 
+DeviceState state_of_error(int error) {
+  const bool absent =
+      error == 0 || error == ENOENT || error == ENOTDIR || error == ENODEV || error == ENXIO;
+  return absent ? DeviceState::missing : DeviceState::refused;
+}
+
 struct DeviceSource::Impl {
   Impl(DeviceOptions with, DeviceOpener opener, DeviceCloser closer)
       : options(std::move(with)),
@@ -63,10 +70,12 @@ struct DeviceSource::Impl {
   std::int64_t due_us(std::int64_t now_us) const;
   void accept(std::int64_t now_us);
   bool garbled() const;
+  std::int64_t arrival_us(std::int64_t now_us) const;
 
   DeviceOptions options;
   DeviceOpener open;
   DeviceCloser close;
+  std::function<void(const wire::DeviceFrame&)> observer;
   RodTracker tracker;
   FrameReader reader;
   SourceCounters counters;
@@ -76,11 +85,12 @@ struct DeviceSource::Impl {
   bool tried = false;
   bool heard = false;  // since it was opened
   bool ever_heard = false;
-  bool fresh = false;  // heard from within silence_us
-  std::int64_t heard_us = 0, polled_us = 0;
+  bool fresh = false;                                       // heard from within silence_us
+  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;  // the last two polls
   std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
 
   // A recording: one frame is looked at ahead of its time.
+  bool socket = false, hidraw = false;  // what is open
   bool recording = false, played = false;
   bool pending = false;
   wire::DeviceFrame frame{};
@@ -106,6 +116,8 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
     return;
   }
   recording = S_ISREG(about.st_mode);
+  socket = S_ISSOCK(about.st_mode);
+  hidraw = S_ISCHR(about.st_mode) && isatty(fd) == 0;
   Packing packing = Packing::cobs;
   if (recording) {
     packing = packing_of_recording(fd);
@@ -140,9 +152,20 @@ std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
   return last_due_us + elapsed;
 }
 
+// Of the bytes that a poll finds.
+std::int64_t DeviceSource::Impl::arrival_us(std::int64_t now_us) const {
+  const std::int64_t since = std::max(before_us, now_us - kLongestPollUs);
+  const std::int64_t told = options.arrived_us ? options.arrived_us() : 0;
+  if (told > since && told <= now_us) return told;
+  return recording ? now_us : (since + now_us) / 2;
+}
+
 void DeviceSource::Impl::accept(std::int64_t now_us) {
   const std::int64_t due = recording ? due_us(now_us) : now_us;
-  if (!tracker.accept(frame, now_us, counters)) return;
+  const std::int64_t arrived = arrival_us(now_us);
+  if (!tracker.accept(frame, arrived, now_us, counters)) return;
+  if (observer) observer(frame);
+  if (options.arrived_us) counters.add_latency(now_us - arrived);
   last_due_us = due;
   if (!heard && ever_heard) ++counters.reopened;
   heard = ever_heard = fresh = true;
@@ -194,13 +217,28 @@ DeviceSource::~DeviceSource() = default;
 
 void DeviceSource::poll(std::int64_t now_us) {
   Impl& in = *impl_;
-  in.polled_us = now_us;
+  in.before_us = std::exchange(in.polled_us, now_us);
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
   if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
     in.fresh = false;
     in.tracker.hold();
   }
+  if (in.fresh) in.tracker.predict(now_us);
+}
+
+bool DeviceSource::send(std::span<const std::byte> packet) {
+  const Impl& in = *impl_;
+  if (in.fd < 0 || in.recording || packet.empty()) return false;
+  if (in.hidraw) return in.options.send_apart && in.options.send_apart(in.fd, packet);
+  if (in.socket)
+    return ::send(in.fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(packet.size());
+  // A part of a packet would spoil the next one too: none goes into a queue that may not hold all
+  // of it.
+  int queued = 0;
+  if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMostQueuedBytes) return false;
+  return ::write(in.fd, packet.data(), packet.size()) == static_cast<ssize_t>(packet.size());
 }
 
 const RodInputs& DeviceSource::rods() const {
@@ -215,9 +253,15 @@ const std::string& DeviceSource::name() const {
 DeviceState DeviceSource::state() const {
   const Impl& in = *impl_;
   if (in.fd < 0 && in.played) return DeviceState::over;
-  if (in.fd < 0) return means_absent(in.open_error) ? DeviceState::missing : DeviceState::refused;
+  if (in.fd < 0) return state_of_error(in.open_error);
   if (in.fresh || in.pending) return DeviceState::live;
   return in.garbled() ? DeviceState::garbled : DeviceState::silent;
+}
+void DeviceSource::observe(std::function<void(const wire::DeviceFrame&)> observer) {
+  impl_->observer = std::move(observer);
+}
+DeviceFraming DeviceSource::framing() const {
+  return impl_->options.framing;
 }
 int DeviceSource::open_error() const {
   return impl_->open_error;

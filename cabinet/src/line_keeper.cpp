@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -47,6 +48,30 @@ void LineKeeper::close(int fd) {
   work_.post();
 }
 
+bool LineKeeper::send(int fd, std::span<const std::byte> packet) {
+  const std::uint32_t put = put_.load(std::memory_order_relaxed);
+  if (packet.size() > kMostPacket || fd < 0 ||
+      put - taken_.load(std::memory_order_acquire) >= packets_.size())
+    return false;
+  Packet& place = packets_[put % packets_.size()];
+  place.fd = fd;
+  place.size = packet.size();
+  std::ranges::copy(packet, place.bytes.begin());
+  put_.store(put + 1, std::memory_order_release);
+  work_.post();
+  return true;
+}
+
+// A device that takes none of them loses them: a pulse that comes late is none.
+void LineKeeper::write_packets() {
+  std::uint32_t taken = taken_.load(std::memory_order_relaxed);
+  while (taken != put_.load(std::memory_order_acquire)) {
+    const Packet& packet = packets_[taken % packets_.size()];
+    [[maybe_unused]] const ssize_t written = ::write(packet.fd, packet.bytes.data(), packet.size);
+    taken_.store(++taken, std::memory_order_release);
+  }
+}
+
 void LineKeeper::run() {
   os::drop_capabilities(true);  // a device may be root's to open
   while (true) {
@@ -54,6 +79,7 @@ void LineKeeper::run() {
     // Asked first: who asks has said before what is to be closed. An ask after this look wakes
     // anew.
     const bool asked = handover_.load(std::memory_order_acquire) == kAsked;
+    write_packets();
     close_if_open(to_close_.exchange(-1, std::memory_order_acq_rel));
     if (ending_.load(std::memory_order_acquire)) return;
     if (!asked) continue;

@@ -1,9 +1,14 @@
 // Opens and closes a device on a thread of its own: on a USB serial line either may take from
-// milliseconds to seconds, and so may setting the line up. The thread that polls never waits.
+// milliseconds to seconds, and so may setting the line up. It also writes to those whose write(2)
+// waits for the device. The thread that polls never waits.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <thread>
 
 #include "os/thread_signal.h"
@@ -23,9 +28,20 @@ class LineKeeper {
   // failed (ENOENT while there was none).
   int take();
   void close(int fd);  // closed before the next is opened
+  // Writes a packet to a descriptor that was taken and not closed. False: as many wait already as
+  // there is room for, or it is longer than kMostPacket.
+  bool send(int fd, std::span<const std::byte> packet);
+  static constexpr std::size_t kMostPacket = 65;  // bytes; a HID report and its number
 
  private:
   void run();
+  void write_packets();
+
+  struct Packet {
+    int fd = -1;
+    std::size_t size = 0;
+    std::array<std::byte, kMostPacket> bytes{};
+  };
 
   // handover_ is a descriptor, or one of these. The poller moves it from idle to asked and from a
   // descriptor to idle, the thread from asked to a descriptor or, in vain, to idle.
@@ -35,6 +51,10 @@ class LineKeeper {
   std::atomic<int> to_close_{-1};
   std::atomic<int> error_;  // of the last attempt
   std::atomic<bool> ending_{false};
+  // Written by the poller up to put_, by the thread taken out up to taken_: counters, of the places
+  // modulo their number.
+  std::array<Packet, 16> packets_{};
+  std::atomic<std::uint32_t> put_{0}, taken_{0};
   os::ThreadSignal work_;
   std::thread thread_;
 };

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "rod_limits.h"
+
 namespace cabinet {
 namespace {
 
@@ -36,10 +38,8 @@ constexpr std::int64_t kHalfClockUs = std::int64_t{1} << 31;
 // ... and so many frames followed each other: fewer could be a late duplicate.
 constexpr int kStraysOfNewRun = 4;
 
-// RateFilter's figures for PS/2 at 200 reports a second: a report spans 5 ms, and seen through 4 ms
-// frames two lie at most 8 ms apart.
-constexpr std::int64_t kReportUs = 5'000;
-constexpr std::int64_t kRateHoldUs = 9'000;
+// Between two runs of a device nobody knows how long it was: long enough for every motion to end.
+constexpr std::int64_t kBetweenRunsUs = 1'000'000;
 
 std::int32_t elapsed_us(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
   return static_cast<std::int32_t>(to.time_us - from.time_us);
@@ -53,22 +53,14 @@ int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
 }
 
-// No hand moves a rod faster: three times the 3 m/s of a hard push, and nearly twice the 140 rad/s
-// of the fastest shots. A frame may bring two reports of a mouse whose motion began before the
-// frame that it is seen from.
-constexpr double kFastestSlide = 10;  // [m/s]
-constexpr double kFastestTurn = 250;  // [rad/s]
-constexpr double kReportSlack = 2e-6 * kReportUs;
-
-bool possible(const RodMotion& moved, double seconds) {
-  const double longest = seconds + kReportSlack;
-  return std::abs(moved.slide) <= kFastestSlide * longest &&
-         std::abs(moved.angle) <= kFastestTurn * longest;
+RodMotion count_of(const RodCalibration& rod) {
+  return {std::hypot(rod.m[0][0], rod.m[0][1]), std::hypot(rod.m[1][0], rod.m[1][1])};
 }
 
 template <std::size_t... I>
-std::array<RateFilter, kRods> make_filters(std::index_sequence<I...>) {
-  return {((void)I, RateFilter(kReportUs, kRateHoldUs))...};
+std::array<StateFilter, kRods> make_filters(const Calibration& calibration,
+                                            std::index_sequence<I...>) {
+  return {StateFilter(count_of(calibration.rods[I]))...};
 }
 template <std::size_t... I>
 std::array<RodIntegrator, kRods> make_integrators(const Calibration& calibration,
@@ -82,7 +74,7 @@ RodTracker::RodTracker(const Calibration& calibration, const std::array<double, 
     : slide_limit_(slide_limit),
       longest_gap_us_(longest_gap_us(calibration)),
       integrators_(make_integrators(calibration, std::make_index_sequence<kRods>())),
-      rates_(make_filters(std::make_index_sequence<kRods>())) {}
+      filters_(make_filters(calibration, std::make_index_sequence<kRods>())) {}
 
 bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const {
   const std::int32_t elapsed = elapsed_us(last, frame);
@@ -91,10 +83,27 @@ bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame&
 
 void RodTracker::hold() {
   for (int rod = 0; rod < kRods; ++rod) {
+    filters_[rod].rest();
+    stand(rod);
+    if (rods_[rod].status == RodStatus::live) rods_[rod].status = RodStatus::held;
+  }
+}
+
+// Where the last report said.
+void RodTracker::stand(int rod) {
+  RodInput& input = rods_[rod];
+  input.slide = measured_[rod].slide;
+  input.angle = measured_[rod].angle;
+  input.slide_ahead = input.angle_ahead = 0;
+  input.slide_rate = input.angle_rate = 0;
+}
+
+void RodTracker::predict(std::int64_t now_us) {
+  const std::int64_t device_us = clock_.device_us(now_us);
+  for (int rod = 0; rod < kRods; ++rod) {
     RodInput& input = rods_[rod];
-    rates_[rod].rest();
-    input.slide_rate = input.angle_rate = 0;
-    if (input.status == RodStatus::live) input.status = RodStatus::held;
+    if (input.status != RodStatus::live) continue;
+    show_ahead(measured_[rod], filters_[rod].at(device_us), slide_limit_[rod], input);
   }
 }
 
@@ -108,8 +117,8 @@ bool RodTracker::starts_new_run(const wire::DeviceFrame& frame, std::int64_t sil
   return strays_ >= kStraysOfNewRun && (later || frame.time_us < kBootUs);
 }
 
-bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t now_us,
-                        SourceCounters& counters) {
+bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t arrived_us,
+                        std::int64_t now_us, SourceCounters& counters) {
   const std::int64_t silent_us = now_us - accepted_us_;
   if (have_last_ && (silent_us > kHalfClockUs || !follows(last_, frame))) {
     if (!starts_new_run(frame, silent_us)) {
@@ -123,13 +132,16 @@ bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t now_us,
     clock_us_ += elapsed_us(last_, frame);
   } else {
     based_.fill(false);
-    clock_us_ += kRateHoldUs + 1;
+    clock_us_ += kBetweenRunsUs;
+    clock_.reset();
   }
   strays_ = 0;
   ++counters.frames;
   counters.overflows += static_cast<std::uint64_t>(std::popcount(frame.overflow));
   counters.line_errors += frame.quality;
+  clock_.frame(clock_us_, arrived_us);
   for (int rod = 0; rod < kRods; ++rod) advance(rod, frame, now_us, counters);
+  predict(now_us);
   last_ = frame;
   accepted_us_ = now_us;
   have_last_ = true;
@@ -143,7 +155,7 @@ RodMotion RodTracker::motion(int rod, const wire::DeviceFrame& frame, SourceCoun
   const int slide = increment(last_.slide[rod], frame.slide[rod]);
   const int spin = increment(last_.spin[rod], frame.spin[rod]);
   const double seconds = elapsed_us(last_, frame) * 1e-6;
-  const RodMotion moved = integrators_[rod].add(slide, spin, seconds, rods_[rod].angle);
+  const RodMotion moved = integrators_[rod].add(slide, spin, seconds, measured_[rod].angle);
   if (slide != kHalfRange && spin != kHalfRange && possible(moved, seconds)) return moved;
   ++counters.impossible;
   return {0, 0};
@@ -153,8 +165,8 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
                          SourceCounters& counters) {
   RodInput& input = rods_[rod];
   if ((frame.present >> rod & 1) == 0) {  // this mouse was unplugged: others go on
-    rates_[rod].rest();
-    input.slide_rate = input.angle_rate = 0;
+    filters_[rod].rest();
+    stand(rod);
     if (input.status == RodStatus::live) input.status = RodStatus::held;
     based_[rod] = false;
     return;
@@ -162,14 +174,13 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
   const RodMotion moved = based_[rod] ? motion(rod, frame, counters) : RodMotion{0, 0};
   based_[rod] = true;
 
-  rates_[rod].update(moved.slide, moved.angle, clock_us_);
-  input.slide += moved.slide;
+  filters_[rod].update(moved.slide, moved.angle, clock_us_);
+  RodMotion& measured = measured_[rod];
+  measured.slide += moved.slide;
   if (slide_limit_[rod] > 0) {
-    input.slide = std::clamp(input.slide, -slide_limit_[rod], slide_limit_[rod]);
+    measured.slide = std::clamp(measured.slide, -slide_limit_[rod], slide_limit_[rod]);
   }
-  input.angle += moved.angle;
-  input.slide_rate = rates_[rod].slide_rate();
-  input.angle_rate = rates_[rod].angle_rate();
+  measured.angle += moved.angle;
   input.time_us = now_us;
   input.status = RodStatus::live;
 }

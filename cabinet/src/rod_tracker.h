@@ -8,8 +8,9 @@
 #include <cstdint>
 
 #include "cabinet/calibration.h"
-#include "cabinet/rate_filter.h"
 #include "cabinet/rod_input.h"
+#include "clock_map.h"
+#include "state_filter.h"
 #include "wire/device_frame.h"
 
 namespace cabinet {
@@ -20,33 +21,41 @@ class RodTracker {
   // thereby brought back to zero error.
   RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit);
 
-  // False: stale, counted and dropped.
-  bool accept(const wire::DeviceFrame& frame, std::int64_t now_us, SourceCounters& counters);
+  // False: stale, counted and dropped. arrived_us: when the frame came, as far as is known; at
+  // most now_us, and on the same clock.
+  bool accept(const wire::DeviceFrame& frame, std::int64_t arrived_us, std::int64_t now_us,
+              SourceCounters& counters);
+  // Moves the rods on to where they are now, by the reports of before.
+  void predict(std::int64_t now_us);
   // The device is gone or silent: rods that were live are held, at once and with zero rates.
   void hold();
   // The next frame is of another run of the device: it moves nothing.
   void forget_base() { have_last_ = false; }
 
   const RodInputs& rods() const { return rods_; }
+  const RodMotion& measured(int rod) const { return measured_[rod]; }  // as of the last report
   std::uint32_t last_frame_time_us() const { return last_.time_us; }
 
  private:
   bool follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const;
   bool starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us);
   RodMotion motion(int rod, const wire::DeviceFrame& frame, SourceCounters& counters);
+  void stand(int rod);
   void advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us,
                SourceCounters& counters);
 
   std::array<double, kRods> slide_limit_;
   std::int64_t longest_gap_us_;  // over which counts are trusted
   std::array<RodIntegrator, kRods> integrators_;
+  std::array<RodMotion, kRods> measured_{};  // as of the last report
   RodInputs rods_{};
-  std::array<RateFilter, kRods> rates_;
+  std::array<StateFilter, kRods> filters_;
+  ClockMap clock_;
   wire::DeviceFrame last_{};
   bool have_last_ = false;
   std::int64_t accepted_us_ = 0;     // the host's clock at last_
   std::array<bool, kRods> based_{};  // last_ holds counts from which this rod may go on
-  std::int64_t clock_us_ = 0;        // the device's clock without its wraps
+  std::int64_t clock_us_ = 0;        // the device's clock without its wraps, at last_
   wire::DeviceFrame stray_{};        // the last frame that did not follow
   int strays_ = 0;                   // how many in a row followed each other
 };

@@ -81,11 +81,20 @@ void SourceMux::follow(int rod, double seconds) {
   const double limit = slide_limit_[rod];
   const double wanted = in.slide + slot.slide_offset;
   const double slide = std::clamp(wanted, -limit, limit);
-  if (slide != wanted) {  // at the stop: no wind-up, no rate into the wall
-    if (entry.origin == Origin::relative) slot.slide_offset = slide - in.slide;
-    if (slide_rate * wanted > 0) slide_rate = 0;
+  if (slide != wanted && slide_rate * wanted > 0)
+    slide_rate = 0;                        // at the stop: none into the wall
+  if (entry.origin == Origin::relative) {  // ... and no wind-up, by what was measured
+    const double measured = in.slide - in.slide_ahead;
+    slot.slide_offset = std::clamp(measured + slot.slide_offset, -limit, limit) - measured;
   }
-  out = {slide, in.angle + slot.angle_offset, slide_rate, angle_rate, in.time_us, in.status};
+  out = {.slide = slide,
+         .angle = in.angle + slot.angle_offset,
+         .slide_rate = slide_rate,
+         .angle_rate = angle_rate,
+         .time_us = in.time_us,
+         .status = in.status,
+         .slide_ahead = in.slide_ahead,
+         .angle_ahead = in.angle_ahead};
 }
 
 void SourceMux::poll(std::int64_t now_us) {

@@ -1,10 +1,14 @@
 // Once warm, a poll takes no memory: the server's loop calls it 1000 times a second.
 #include <gtest/gtest.h>
+#include <linux/input.h>
 
+#include <cstring>
 #include <memory>
+#include <utility>
 
 #include "cabinet/device_source.h"
 #include "cabinet/hand.h"
+#include "cabinet/mouse_source.h"
 #include "cabinet/source_mux.h"
 #include "counting_new.h"
 #include "simulated_device.h"
@@ -48,6 +52,30 @@ TEST(Allocation, PollingThroughFramesNoiseUnplugAndReplugTakesNoMemory) {
   const long before = os::testing::allocations();
   const auto held = std::make_unique<Bytes>(100);
   EXPECT_GT(os::testing::allocations(), before);  // the counter counts
+}
+
+TEST(Allocation, PollingAMouseTakesNoMemory) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  const Descriptor far(ends[0]);
+  MouseSource mouse(MouseOptions{}, [&ends] { return std::exchange(ends[1], -1); });
+  std::int64_t now_us = 1'000'000;
+  mouse.poll(now_us);
+  std::array<input_event, 2> events{};
+  events[0].type = EV_REL;
+  events[0].code = REL_X;
+  events[0].value = 3;
+  Bytes bytes(sizeof events);
+  std::memcpy(bytes.data(), events.data(), bytes.size());
+  long taken = 0;
+  for (int i = 0; i < 500; ++i) {
+    far.send(bytes);
+    const long before = os::testing::allocations();
+    mouse.poll(now_us += 1'000);
+    taken += os::testing::allocations() - before;
+  }
+  EXPECT_EQ(taken, 0);
+  EXPECT_EQ(mouse.counters().frames, 500u);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 #include "simulated_mount.h"
 
@@ -13,51 +12,6 @@ using namespace cabinet;
 using namespace cabinet_test;
 
 namespace {
-
-// As makers mount it: docs/cabinet.md, "Calibrate".
-Mount drawn_mount(std::mt19937& random, double counts_per_mm) {
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  Mount mount;
-  mount.counts_per_mm = counts_per_mm;
-  mount.tilt = between(-4, 4) * M_PI / 180;
-  mount.lean = between(0, 4) * M_PI / 180;
-  mount.lean_towards = between(0, 2 * M_PI);
-  mount.scale = between(0.97, 1.03);
-  mount.eccentricity = 0.15e-3;
-  mount.towards = between(0, 2 * M_PI);
-  mount.optical_distance = between(0.004, 0.006);
-  mount.noise = 0.004;
-  return mount;
-}
-
-struct Errors {
-  double slide = 0, angle = 0;  // [m], [rad] rms
-};
-
-// A hand that plays for so long, from rest in the middle with the feet down.
-Errors play(const Mount& mount, const RodCalibration& calibration, double seconds,
-            std::uint32_t seed) {
-  SimulatedRod rod(mount, seed);
-  RodIntegrator integrator(calibration);
-  double slide = 0, angle = 0, squares[2] = {0, 0};
-  std::size_t read = 0, samples = 0;
-  while (static_cast<double>(rod.increments.size()) * 0.005 < seconds) {
-    rod.move(rod.between(-0.1, 0.1), rod.between(-1.5, 1.5), rod.between(0.08, 0.4));
-    for (; read < rod.increments.size(); ++read) {
-      const CountIncrement& c = rod.increments[read];
-      const auto moved = integrator.add(c.slide, c.spin, static_cast<double>(c.seconds), angle);
-      slide += moved.slide;
-      angle += moved.angle;
-    }
-    squares[0] += (slide - rod.slide) * (slide - rod.slide);
-    squares[1] += (angle - rod.angle) * (angle - rod.angle);
-    ++samples;
-  }
-  const auto n = static_cast<double>(samples);
-  return {std::sqrt(squares[0] / n), std::sqrt(squares[1] / n)};
-}
 
 CalibrationRun good_run(const Mount& mount = {}, const RunDesc& desc = {}) {
   SimulatedRod rod(mount, 7);
@@ -82,7 +36,7 @@ TEST_P(MountErrors, OfFourDegreesThreePercentAndEccentricityAreFittedAway) {
     SimulatedRod rod(mount, static_cast<std::uint32_t>(100 + i));
     const auto fit = fit_rod(calibration_run(rod));
     ASSERT_TRUE(fit.has_value()) << fit.error();
-    const Errors e = play(mount, fit->calibration, kPlay, static_cast<std::uint32_t>(900 + i));
+    const PlayErrors e = play(mount, fit->calibration, kPlay, static_cast<std::uint32_t>(900 + i));
     slide += e.slide * e.slide / kMounts;
     angle += e.angle * e.angle / kMounts;
     worst_slide = std::max(worst_slide, e.slide);
@@ -103,7 +57,8 @@ TEST(CalibrationFit, ALinearMapLeavesMillimetres) {
   ASSERT_TRUE(fit.has_value()) << fit.error();
   RodCalibration linear = fit->calibration;
   for (int i = 0; i < 2; ++i) linear.slide_gain[i] = linear.spin_gain[i] = 0;
-  const Errors without = play(mount, linear, 20, 1), with = play(mount, fit->calibration, 20, 1);
+  const PlayErrors without = play(mount, linear, 20, 1),
+                   with = play(mount, fit->calibration, 20, 1);
   EXPECT_GT(without.slide, 3 * with.slide);
   EXPECT_GT(without.angle, 1.5 * with.angle);
 }
@@ -123,7 +78,7 @@ TEST(CalibrationFit, FindsASensorOfAnyOrientation) {
     const Mount mount{.tilt = tilt, .eccentricity = 1e-4, .towards = 1};
     const auto fit = fit_rod(good_run(mount));
     ASSERT_TRUE(fit.has_value()) << tilt << ": " << fit.error();
-    const Errors e = play(mount, fit->calibration, 20, 3);
+    const PlayErrors e = play(mount, fit->calibration, 20, 3);
     EXPECT_LT(e.slide, 0.5e-3) << tilt;
     EXPECT_LT(e.angle, 0.6 * M_PI / 180) << tilt;
   }

@@ -58,6 +58,8 @@ TEST(Calibration, SavedAndLoadedIsTheSameToTheBit) {
   calibration.rods[3].slide_gain[1] = -0.03;
   calibration.rods[3].spin_gain[0] = 0.05;
   calibration.rods[3].dead_band = 12.5;
+  calibration.serial = "SF-0042";
+  calibration.made = "2026-11-22T23:59:59Z";
   const auto saved = save_calibration(calibration, folder.file());
   ASSERT_TRUE(saved.has_value()) << saved.error();
   const auto loaded = load_calibration(folder.file());
@@ -65,6 +67,8 @@ TEST(Calibration, SavedAndLoadedIsTheSameToTheBit) {
   EXPECT_EQ(loaded->rods[3].slide_gain[1], -0.03);
   EXPECT_EQ(loaded->rods[3].spin_gain[0], 0.05);
   EXPECT_EQ(loaded->rods[3].dead_band, 12.5);
+  EXPECT_EQ(loaded->serial, "SF-0042");
+  EXPECT_EQ(loaded->made, "2026-11-22T23:59:59Z");
   EXPECT_EQ(loaded->rods[4].slide_gain[1], 0);
   for (int rod = 0; rod < kRods; ++rod) {
     for (int i = 0; i < 2; ++i) {
@@ -132,9 +136,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Nested", std::string(60'000, '['), "is not JSON"},
         BadFile{"Long", std::string(70'000, ' ') + "{}", "is longer than 64 KiB"},
         BadFile{"Array", "[1]", "is not a calibration"},
-        BadFile{"NoVersion", R"({"rods": []})", "has no \"version\": 2"},
-        BadFile{"LaterVersion", R"({"version": 3, "rods": []})", "is of version 3"},
-        BadFile{"VersionIsWord", R"({"version": "2", "rods": []})", "has no \"version\": 2"},
+        BadFile{"NoVersion", R"({"rods": []})", "has no \"version\": 3"},
+        BadFile{"LaterVersion", R"({"version": 4, "rods": []})", "is of version 4"},
+        BadFile{"VersionIsWord", R"({"version": "3", "rods": []})", "has no \"version\": 3"},
+        BadFile{"SerialIsNumber", R"({"version": 3, "serial": 7, "rods": []})", "\"serial\""},
+        BadFile{"LongDate",
+                R"({"version": 3, "made": ")" + std::string(65, '2') + R"(", "rods": []})",
+                "\"made\""},
         BadFile{"GainIsOneNumber", corrected(R"("slide_gain": [0.03])"),
                 "(rod 5) has no \"slide_gain\" of two numbers"},
         BadFile{"GainIsTooLarge", corrected(R"("spin_gain": [0.4, 0.4])"),

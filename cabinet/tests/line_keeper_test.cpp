@@ -96,4 +96,40 @@ TEST(LineKeeper, ClosesWhatNobodyTookWhenItEnds) {
   EXPECT_FALSE(is_open(last));
 }
 
+TEST(LineKeeper, WritesPacketsInTheirOrderThoughTheDeviceTakesItsTime) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const Descriptor reader(ends[0]);
+  ASSERT_GE(::fcntl(ends[1], F_SETPIPE_SZ, 4096), 4096);
+  LineKeeper keeper([fd = ends[1]] { return fd; });
+  const int line = take_when_ready(keeper);
+  std::array<std::byte, LineKeeper::kMostPacket> packet{};
+  const auto send = [&](int number) {
+    packet[0] = static_cast<std::byte>(number);
+    return keeper.send(line, packet);
+  };
+  // Nobody reads: the thread waits in write(2) once the pipe is full, and the sender never does.
+  int sent = 0;
+  ASSERT_TRUE(comes_true([&] {
+    if (send(sent)) ++sent;
+    return sent == 4096 / 65 + 16;
+  }));
+  EXPECT_FALSE(send(255)) << "sixteen wait already";
+  for (int i = 0; i < sent; ++i) {
+    std::array<std::byte, LineKeeper::kMostPacket> got{};
+    std::size_t size = 0;
+    while (size < got.size()) {
+      const ssize_t piece = ::read(reader.fd, got.data() + size, got.size() - size);
+      ASSERT_GT(piece, 0);
+      size += static_cast<std::size_t>(piece);
+    }
+    ASSERT_EQ(std::to_integer<int>(got[0]), i);
+  }
+  std::array<std::byte, 66> long_one{};
+  EXPECT_FALSE(keeper.send(line, long_one));
+  EXPECT_FALSE(keeper.send(-1, packet));
+  keeper.close(line);
+  EXPECT_TRUE(comes_true([&] { return !is_open(line); }));
+}
+
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "simulated_device.h"
 
@@ -21,11 +23,17 @@ struct Tracked {
   SourceCounters counters;
   std::int64_t now_us = 0;
 
-  bool take(const wire::DeviceFrame& frame) {
-    now_us += kFrameUs;
-    return tracker.accept(frame, now_us, counters);
+  bool take(const wire::DeviceFrame& frame, std::int64_t after_us = kFrameUs) {
+    now_us += after_us;
+    return tracker.accept(frame, now_us, now_us, counters);
   }
-  const RodInput& rod(int index) const { return tracker.rods()[index]; }
+  // As the last report said, with the rates of now.
+  RodInput rod(int index) const {
+    RodInput rod = tracker.rods()[index];
+    rod.slide = tracker.measured(index).slide;
+    rod.angle = tracker.measured(index).angle;
+    return rod;
+  }
 };
 
 TEST(RodTracker, FollowsAllRodsExactlyThroughWrapsBothWays) {
@@ -257,6 +265,25 @@ TEST(RodTracker, TheEndStopTakesOutDrift) {
   EXPECT_NEAR(t.rod(1).slide, 0.0, 1e-12);
 }
 
+TEST(RodTracker, APredictionEndsAtTheStop) {
+  Tracked t;
+  std::array<double, kRods> limit{};
+  limit[1] = 0.1;
+  t.tracker = RodTracker(nominal_calibration(), limit);
+  t.take(t.device.frame());
+  for (int report = 0; report < 8; ++report) {
+    t.device.slide[1] += 88;  // 11 mm in 4 ms: 88 mm in all
+    t.take(t.device.frame());
+  }
+  EXPECT_NEAR(t.rod(1).slide, 0.088, 1e-12);
+  t.tracker.predict(t.now_us + 4'000);  // 104 mm, if nothing were in the way
+  EXPECT_EQ(t.tracker.rods()[1].slide, 0.1);
+  EXPECT_EQ(t.tracker.rods()[1].slide_rate, 0);
+  t.tracker.predict(t.now_us + 500);
+  EXPECT_GT(t.tracker.rods()[1].slide, 0.088);
+  EXPECT_GT(t.tracker.rods()[1].slide_rate, 2);
+}
+
 TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
   Tracked t;
   t.take(t.device.frame());
@@ -291,29 +318,33 @@ TEST(RodTracker, ARodNeverHeardOfIsAbsent) {
   EXPECT_EQ(t.rod(4).status, RodStatus::absent);
 }
 
-// A steady motion, reported every 5 ms, seen through frames of another period.
-void expect_steady_rate(std::uint32_t frame_us, double tolerance) {
+// A steady motion, reported every 5 ms, seen through frames of another period: the rate falls by as
+// much as a hand may brake until the next report, and no further.
+void expect_steady_rate(std::uint32_t frame_us) {
   Tracked t;
   t.take(t.device.frame(frame_us));
   std::uint32_t reported_us = 0;
-  double worst = 0;
+  double least = 9, most = 0;
   for (std::uint32_t at = frame_us; at < 1'000'000; at += frame_us) {
     for (; reported_us + 5'000 <= at; reported_us += 5'000) {
       t.device.slide[0] += 40;  // 5 mm in 5 ms: 1 m/s
       t.device.spin[0] -= 80;
     }
-    t.take(t.device.frame(frame_us));
+    t.take(t.device.frame(frame_us), frame_us);
     if (at < 50'000) continue;
-    worst = std::max(worst, std::abs(t.rod(0).slide_rate - 1.0));
-    EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 250 * tolerance);
+    least = std::min(least, t.rod(0).slide_rate);
+    most = std::max(most, t.rod(0).slide_rate);
+    EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 18);  // 2000 rad/s^2, 5 ms, and what the phase lacks
   }
-  EXPECT_LT(worst, tolerance);
-  testing::Test::RecordProperty("worst_rate_error", std::to_string(worst));
+  EXPECT_GT(least, 0.7) << frame_us;  // 0.2 in a period, and twice in the 8 ms of two 4 ms frames
+  EXPECT_LT(most, 1.02) << frame_us;
+  std::printf("  frames of %u us: a steady 1 m/s is seen as %.3f to %.3f m/s\n", frame_us, least,
+              most);
 }
 
 TEST(RodTracker, RateOfASteadyMotionStandsThroughFramesOf1And4Ms) {
-  expect_steady_rate(1'000, 0.01);  // exact: every report falls on a frame
-  expect_steady_rate(4'000, 0.24);  // frames beat against reports: 4, 4, 4, 8 ms; measured 0.226
+  expect_steady_rate(1'000);
+  expect_steady_rate(4'000);
 }
 
 TEST(RodTracker, RateFallsToZeroWhenCountsStop) {

@@ -152,4 +152,49 @@ inline cabinet::CalibrationRun calibration_run(SimulatedRod& rod, const RunDesc&
   return run;
 }
 
+// As makers mount it: docs/cabinet.md, "Calibrate".
+inline Mount drawn_mount(std::mt19937& random, double counts_per_mm) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Mount mount;
+  mount.counts_per_mm = counts_per_mm;
+  mount.tilt = between(-4, 4) * M_PI / 180;
+  mount.lean = between(0, 4) * M_PI / 180;
+  mount.lean_towards = between(0, 2 * M_PI);
+  mount.scale = between(0.97, 1.03);
+  mount.eccentricity = 0.15e-3;
+  mount.towards = between(0, 2 * M_PI);
+  mount.optical_distance = between(0.004, 0.006);
+  mount.noise = 0.004;
+  return mount;
+}
+
+struct PlayErrors {
+  double slide = 0, angle = 0;  // [m], [rad] rms
+};
+
+// A hand that plays for so long, from rest in the middle with the feet down.
+inline PlayErrors play(const Mount& mount, const cabinet::RodCalibration& calibration,
+                       double seconds, std::uint32_t seed) {
+  SimulatedRod rod(mount, seed);
+  cabinet::RodIntegrator integrator(calibration);
+  double slide = 0, angle = 0, squares[2] = {0, 0};
+  std::size_t read = 0, samples = 0;
+  while (static_cast<double>(rod.increments.size()) * 0.005 < seconds) {
+    rod.move(rod.between(-0.1, 0.1), rod.between(-1.5, 1.5), rod.between(0.08, 0.4));
+    for (; read < rod.increments.size(); ++read) {
+      const cabinet::CountIncrement& c = rod.increments[read];
+      const auto moved = integrator.add(c.slide, c.spin, static_cast<double>(c.seconds), angle);
+      slide += moved.slide;
+      angle += moved.angle;
+    }
+    squares[0] += (slide - rod.slide) * (slide - rod.slide);
+    squares[1] += (angle - rod.angle) * (angle - rod.angle);
+    ++samples;
+  }
+  const auto n = static_cast<double>(samples);
+  return {std::sqrt(squares[0] / n), std::sqrt(squares[1] / n)};
+}
+
 }  // namespace cabinet_test

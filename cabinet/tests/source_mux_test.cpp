@@ -152,6 +152,21 @@ TEST(SourceMux, AHandlePushedToTheStopLosesItsOffset) {
   EXPECT_NEAR(b.step().slide, 0.0, 1e-12);  // back in register
 }
 
+// Seen at 0.14 m, and thought to be at 0.17 by now: the rod is at its stop, the handle is not.
+TEST(SourceMux, APredictionBeyondTheStopTakesNoOffset) {
+  Bench b;
+  b.cabinet.set(2, 0.17, 0);
+  b.cabinet.inputs[2].slide_ahead = 0.03;
+  b.step();
+  EXPECT_EQ(b.mux.rods()[2].slide, 0.0);  // where it was: 0.17 is the handle's
+  b.cabinet.set(2, 0.33, 0);
+  b.cabinet.inputs[2].slide_ahead = 0.03;
+  EXPECT_NEAR(b.step().slide, 0.15, 1e-12);
+  b.cabinet.set(2, 0.27, 0);
+  b.cabinet.inputs[2].slide_ahead = 0;
+  EXPECT_NEAR(b.step().slide, 0.10, 1e-12);
+}
+
 TEST(SourceMux, AnOffsetOnTheComputerFadesButForWholeTurns) {
   Bench b;
   b.mux.place(2, 0.1, 13.0);

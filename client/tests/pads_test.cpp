@@ -69,5 +69,57 @@ TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
   EXPECT_TRUE(input.connected(0)) << "has the place that it had";
 }
 
+struct Motors {
+  int calls = 0;
+  Uint16 low = 0, high = 0;
+};
+
+int SDLCALL shake(void* motors, Uint16 low, Uint16 high) {
+  auto& m = *static_cast<Motors*>(motors);
+  if (low > 0 || high > 0) m = {m.calls + 1, low, high};
+  return 0;
+}
+
+TEST(Pads, APadShakesOnlyInAHandAndNoStrongerThanItCan) {
+  Pads pads;
+  InputCollector input;
+  Motors motors;
+  SDL_VirtualJoystickDesc desc{};
+  desc.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
+  desc.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
+  desc.naxes = SDL_CONTROLLER_AXIS_MAX;
+  desc.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
+  desc.userdata = &motors;
+  desc.Rumble = shake;
+  const int device = SDL_JoystickAttachVirtualEx(&desc);
+  ASSERT_GE(device, 0) << SDL_GetError();
+  pads.poll(input);
+  ASSERT_TRUE(input.connected(0));
+  pads.rumble(0, 1.0f, 40);
+  EXPECT_EQ(pads.rumbles(), 0u) << "it lies on the desk";
+  SDL_Joystick* joystick = SDL_JoystickFromInstanceID(SDL_JoystickGetDeviceInstanceID(device));
+  ASSERT_EQ(SDL_JoystickSetVirtualButton(joystick, SDL_CONTROLLER_BUTTON_A, 1), 0);
+  SDL_JoystickUpdate();
+  pads.poll(input);
+  pads.rumble(0, 1.0f, 40);
+  EXPECT_EQ(pads.rumbles(), 1u);
+  EXPECT_EQ(motors.calls, 1);
+  EXPECT_EQ(motors.low, 65535);
+  pads.rumble(0, 7.0f, 40);
+  EXPECT_EQ(motors.low, 65535);
+  pads.rumble(0, 0.25f, 40);
+  EXPECT_NEAR(motors.low, 65535 / 4, 2);
+  const std::uint64_t before = pads.rumbles();
+  for (const int none : {-1, 1, kPads, 1000}) pads.rumble(none, 1.0f, 40);
+  pads.rumble(0, 0.0f, 40);
+  pads.rumble(0, 1.0f, 0);
+  EXPECT_EQ(pads.rumbles(), before);
+  SDL_JoystickDetachVirtual(device);
+  SDL_JoystickUpdate();
+  pads.poll(input);
+  pads.rumble(0, 1.0f, 40);
+  EXPECT_EQ(pads.rumbles(), before) << "unplugged";
+}
+
 }  // namespace
 }  // namespace client

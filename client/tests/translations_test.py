@@ -9,7 +9,8 @@ from pathlib import Path
 
 client = Path(sys.argv[1])
 sentences = set()
-for source in [*(client / 'src').rglob('*.cpp'), *(client.parent / 'tools/watch').glob('*.cpp')]:
+for source in [*(client / 'src').rglob('*.cpp'), *(client.parent / 'tools/watch').glob('*.cpp'),
+               *(client.parent / 'tools/calibrate').glob('*.cpp')]:
     # Adjacent string literals are one sentence.
     for call in re.findall(r'\b(?:tr|N_)\(((?:\s*"(?:[^"\\]|\\.)*")+)\s*\)', source.read_text(encoding='utf-8')):
         sentences.add(''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', call)))

@@ -2,8 +2,8 @@
 
 #include <avr/pgmspace.h>
 
+#include "core/usb_descriptors.h"
 #include "hal/board.h"
-#include "hal/usb_descriptors.h"
 
 namespace firmware {
 

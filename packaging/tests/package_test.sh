@@ -18,7 +18,7 @@ dpkg-deb -x "${deb[0]}" "$work/root"
 dpkg-deb -e "${deb[0]}" "$work/control"
 
 for file in usr/bin/space-foosball usr/bin/space-foosball-server usr/bin/foosball-replay usr/bin/space-foosball-results usr/bin/space-foosball-watch \
-  usr/bin/space-foosball-video usr/bin/space-foosball-match usr/bin/space-foosball-play \
+  usr/bin/space-foosball-video usr/bin/space-foosball-match usr/bin/space-foosball-doctor usr/bin/space-foosball-play \
   usr/share/applications/space-foosball.desktop usr/share/icons/hicolor/scalable/apps/space-foosball.svg \
   usr/share/locale/ko/LC_MESSAGES/space-foosball.mo \
   lib/systemd/system/space-foosball-server.service lib/udev/rules.d/70-space-foosball.rules \

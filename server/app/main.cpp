@@ -11,9 +11,14 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 
+#include "cabinet/controller.h"
+#include "cabinet/device_haptics.h"
+#include "cabinet/device_source.h"
+#include "cabinet/mouse_source.h"
 #include "options.h"
 #include "os/socket_address.h"
 #include "server/exit_code.h"
@@ -119,23 +124,60 @@ int exit_code(server::StartError::Kind kind) {
   return server::kExitFailed;
 }
 
-using Devices = std::vector<std::unique_ptr<cabinet::DeviceSource>>;
+struct Devices {
+  std::vector<std::unique_ptr<cabinet::Device>> all;
+  std::unique_ptr<cabinet::CabinetHaptics> haptics = std::make_unique<cabinet::CabinetHaptics>();
+};
 
-tl::expected<Devices, std::string> open_devices(const app::Options& options) {
-  cabinet::Calibration calibration = cabinet::nominal_calibration();
-  if (!options.calibration.empty()) {
-    auto loaded = cabinet::load_calibration(options.calibration);
-    if (!loaded) return tl::unexpected(loaded.error());
-    calibration = *loaded;
+// That which space-foosball calibrate has kept for the controller, else that of a sensor as it
+// comes.
+tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string& address,
+                                                               const server::Log& log) {
+  const std::string folder = cabinet::calibrations_folder();
+  const std::string serial = cabinet::controller_serial(address);
+  const std::string file = cabinet::calibration_file(folder, serial);
+  const bool recording = address.rfind("file:", 0) == 0;
+  if (!recording && !folder.empty() && std::filesystem::exists(file)) {
+    log(server::LogLevel::info, address + " is calibrated by " + file);
+    return cabinet::load_calibration(file);
   }
+  log(server::LogLevel::info,
+      address + " is not calibrated: its rods drift; run space-foosball calibrate --device " +
+          address + ", or name a file with --calibration");
+  return cabinet::nominal_calibration();
+}
+
+tl::expected<Devices, std::string> open_devices(const app::Options& options,
+                                                const server::Log& log) {
+  tl::expected<cabinet::Calibration, std::string> calibration = cabinet::nominal_calibration();
+  if (!options.calibration.empty()) calibration = cabinet::load_calibration(options.calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
   std::array<double, cabinet::kRods> slide_limit{};
   const auto& table = foosball::table_spec(options.match.layout);
   for (int rod = 0; rod < cabinet::kRods; ++rod) slide_limit[rod] = table.rods[rod].slide_limit;
   Devices devices;
-  for (const std::string& address : options.devices) {
-    auto device = cabinet::open_device(address, calibration, slide_limit);
+  for (const app::Mouse& mouse : options.mice) {
+    const int team = table.rods[mouse.rod].team;
+    const auto rod = static_cast<std::size_t>(mouse.rod);
+    cabinet::MouseOptions wanted;
+    wanted.name = mouse.name;
+    wanted.rod = mouse.rod;
+    wanted.slide_limit = slide_limit[rod];
+    wanted.calibration =
+        options.calibration.empty()
+            ? cabinet::hand_mouse(foosball::push_sign(team), -foosball::attack_sign(team))
+            : calibration->rods[rod];
+    auto device = cabinet::open_mouse(mouse.path, std::move(wanted));
     if (!device) return tl::unexpected(device.error());
-    devices.push_back(std::move(*device));
+    devices.all.push_back(std::move(*device));
+  }
+  for (const std::string& address : options.devices) {
+    auto own = options.calibration.empty() ? calibration_of(address, log) : calibration;
+    if (!own) return tl::unexpected(own.error());
+    auto device = cabinet::open_device(address, *own, slide_limit);
+    if (!device) return tl::unexpected(device.error());
+    devices.haptics->add(**device);
+    devices.all.push_back(std::move(*device));
   }
   return devices;
 }
@@ -153,7 +195,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
     const auto writable = server::can_write_whole(options.stats_file);
     if (!writable) return tl::unexpected(server::StartError{Kind::bad_option, writable.error()});
   }
-  auto devices = open_devices(options);
+  auto devices = open_devices(options, log);
   if (!devices) return tl::unexpected(server::StartError{Kind::bad_option, devices.error()});
 
   server::ServerOptions wanted;
@@ -164,6 +206,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.network = options.network;
   wanted.access = options.access;
   wanted.limits = options.limits;
+  wanted.phones = options.phones;
+  wanted.haptics = options.haptics;
   wanted.session = random_number();
   wanted.random = random_number;
   wanted.record = options.record;
@@ -192,7 +236,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   }
   auto made = server::Server::create(std::move(wanted));
   if (!made) return made;
-  for (auto& device : *devices) (*made)->add_device(std::move(device));
+  for (auto& device : devices->all) (*made)->add_device(std::move(device));
+  (*made)->set_cabinet_haptics(std::move(devices->haptics));
   return made;
 }
 
@@ -232,8 +277,9 @@ int judge_sending(const server::Server& server, const server::Log& log) {
 int serve(server::Server& server, const app::Options& options, Outputs& outputs,
           const server::Log& log) {
   if (!options.ready_file.empty()) {
-    const auto written =
-        server::write_whole(options.ready_file, "port=" + std::to_string(server.port()) + "\n");
+    std::string text = "port=" + std::to_string(server.port()) + "\n";
+    if (options.phones.open) text += "phones=" + server.phones() + "\n";
+    const auto written = server::write_whole(options.ready_file, text);
     if (!written) return fail(outputs, server::kExitUsage, written.error());
   }
   const auto address = os::parse_address(options.network.listen, server.port());
@@ -241,6 +287,15 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   if (options.password_was_made) {
     log(server::LogLevel::warning, "from another machine, join with the password " +
                                        *options.access.password + " (--password-file chooses one)");
+  }
+  if (options.phones.open) {
+    log(server::LogLevel::info, "phones join at " + server.phones());
+    const auto& own = options.phones.listen;
+    const auto listen = own.empty() ? address : os::parse_address(own, 0);
+    if (listen->is_loopback()) {
+      log(server::LogLevel::warning,
+          "no phone can reach this machine: give --phone-listen 0.0.0.0 too");
+    }
   }
   server::TickLoop loop(options.loop, log);
   const server::RunEnd end = server::run(server, loop, options.run, stop_requested);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "cabinet/mouse_source.h"
 #include "characters/character_file.h"
 #include "os/socket_address.h"
 #include "profile/tuning_profile.h"
@@ -91,7 +92,8 @@ struct Raw {
   double seconds = 0.0, keep_seats = 30.0, recordings_gb = 2.0;
   int level = foosball::PlayerSpec{}.level;
   std::string style;
-  bool fast = false, no_real_time = false, list_tuning = false;
+  bool fast = false, no_real_time = false, list_tuning = false, no_haptics = false;
+  int phone_port = -1;  // not given
 };
 
 void add_match(CLI::App& cli, Options& o, Raw& raw) {
@@ -136,9 +138,10 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::IsMember({"wall", "shooter", "passer", "gambler"}));
   cli.add_flag("--computer-fills", o.computer_fills,
                "the computer also plays rods that nobody has of a team that persons share");
-  cli.add_option("--device", o.devices,
-                 "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; may be given "
-                 "more than once");
+  cli.add_option(
+      "--device", o.devices,
+      "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; a mouse for a "
+      "rod from 1 to 8: evdev:/dev/input/event5:4; may be given more than once");
   cli.add_option("--calibration", o.calibration, "of the cabinet's sensors")->needs("--device");
 }
 
@@ -166,6 +169,21 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(0.0, 3600.0))
       ->check(server::check_not_nan)
       ->capture_default_str();
+  auto* phones = cli.add_flag(
+      "--phones", o.phones.open,
+      "phones play as pairs of rods: the screen shows a QR code; from other machines with --listen "
+      "(docs/phones.md)");
+  cli.add_option("--phone-port", raw.phone_port,
+                 "TCP, for phones; 0: any free one; without it, the one after --port")
+      ->needs(phones)
+      ->check(CLI::Range(0, 65535));
+  cli.add_option("--phone-listen", o.phones.listen,
+                 "address to listen at for phones; without it, that of --listen: so phones play "
+                 "from afar where nobody else joins")
+      ->needs(phones)
+      ->check(check_address);
+  cli.add_flag("--no-haptics", raw.no_haptics,
+               "neither the cabinet's rods nor phones shake when the ball is hit");
   cli.add_flag("--mixed-teams", o.access.mixed_teams,
                "who joins from another machine may have rods of both teams");
 }
@@ -183,6 +201,7 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* replay =
       cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
           ->excludes(record)
+          ->excludes("--phones")
           ->excludes("--device");
   auto* recordings =
       cli.add_option("--recordings", o.recordings,
@@ -216,8 +235,9 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
 
 // A bare path says by itself what it is.
 std::string with_scheme(const std::string& device) {
-  if (device.find(':') != std::string::npos) return device;
+  if (device[0] != '/' && device.find(':') != std::string::npos) return device;
   if (device.rfind("/dev/hidraw", 0) == 0) return "hid:" + device;
+  if (device.rfind("/dev/input/", 0) == 0) return "evdev:" + device;
   return (device.rfind("/dev/", 0) == 0 ? "serial:" : "file:") + device;
 }
 
@@ -305,10 +325,50 @@ void translate(Options& o, const Raw& raw) {
   o.limits.seat_kept_us = std::llround(raw.keep_seats * 1e6);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
   o.recording_limits.bytes = static_cast<std::uint64_t>(raw.recordings_gb * (1 << 30));
+  // Beside the control port; of a free one any other.
+  const int beside = o.network.port == 0 || o.network.port == 65535 ? 0 : o.network.port + 1;
+  o.phones.port = static_cast<std::uint16_t>(raw.phone_port >= 0 ? raw.phone_port : beside);
+  o.haptics = !raw.no_haptics;
   o.loop.paced = !raw.fast;
   o.loop.real_time = !raw.no_real_time;
   o.loop.drop_rights = true;
   for (std::string& device : o.devices) device = with_scheme(device);
+}
+
+// Takes the mice out of the devices: each its rod, those that name none a rod of team 0 that is
+// free, the midfield first. Empty, or what is wrong.
+std::string take_mice(Options& o) {
+  constexpr std::array<foosball::Line, 4> kOrder = {foosball::Line::midfield,
+                                                    foosball::Line::attack, foosball::Line::goalie,
+                                                    foosball::Line::defence};
+  const auto own = foosball::rods_of_team(foosball::table_spec(o.match.layout), 0);
+  unsigned taken = 0;
+  std::vector<std::string> others;
+  for (const std::string& device : o.devices) {
+    if (!cabinet::is_mouse_address(device)) {
+      others.push_back(device);
+      continue;
+    }
+    auto address = cabinet::parse_mouse_address(device);
+    if (!address) return address.error();
+    const int rod = address->rod;
+    if (rod >= 0 && (taken >> rod & 1) != 0)
+      return device + ": another mouse has rod " + std::to_string(rod + 1) +
+             " already; give each a rod of its own";
+    if (rod >= 0) taken |= 1U << rod;
+    o.mice.push_back({device, std::move(address->path), rod});
+  }
+  for (Mouse& mouse : o.mice) {
+    for (const foosball::Line line : kOrder) {
+      const int rod = own[static_cast<std::size_t>(line)];
+      if (mouse.rod >= 0 || (taken >> rod & 1) != 0) continue;
+      mouse.rod = rod;
+      taken |= 1U << rod;
+    }
+    if (mouse.rod < 0) return mouse.name + ": write the rod that it moves behind it, such as :5";
+  }
+  o.devices = std::move(others);
+  return {};
 }
 
 // $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
@@ -361,6 +421,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
         Leave{server::kExitUsage, std::string(error.what()) + "; --help explains the options"});
   }
   translate(options, raw);
+  if (const auto objection = take_mice(options); !objection.empty())
+    return tl::unexpected(Leave{server::kExitUsage, "--device " + objection});
   if (std::string why = contradiction(cli, options, raw); !why.empty())
     return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   if (!raw.tuning.empty()) {

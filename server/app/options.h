@@ -13,6 +13,12 @@
 
 namespace app {
 
+// A mouse of the machine and the rod that it moves, 0..7.
+struct Mouse {
+  std::string name, path;
+  int rod;
+};
+
 struct Options {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};
@@ -22,9 +28,12 @@ struct Options {
   server::NetworkOptions network;
   server::AccessOptions access;
   server::ControlLimits limits;
+  server::PhoneOptions phones;
+  bool haptics = true;
   server::RunOptions run;
   server::LoopOptions loop;
   std::vector<std::string> devices;
+  std::vector<Mouse> mice;
   std::string recordings;  // folder for a recording that is made without being asked for
   server::RecordingLimits recording_limits;
   std::string calibration, record, replay, results, ready_file, stats_file;

@@ -39,6 +39,15 @@ ControlConnection::ControlConnection(os::FileDescriptor socket, const os::Socket
   watch_for_silence(socket_.get());
 }
 
+os::SocketAddress ControlConnection::heard_at() const {
+  return vouched_at_ ? *vouched_at_ : os::local_address(socket_.get());
+}
+
+void ControlConnection::vouch(const os::SocketAddress& heard_at) {
+  vouched_at_ = heard_at;
+  role = wire::Role::player;
+}
+
 bool ControlConnection::receive() {
   std::array<std::byte, 16 * 1024> buffer;
   const ssize_t size = ::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);

@@ -52,6 +52,11 @@ class ControlConnection {
 
   int fd() const { return socket_.get(); }
   const os::SocketAddress& peer() const { return peer_; }
+  // At which of this machine's addresses.
+  os::SocketAddress heard_at() const;
+  // Another port has let it in, and has this peer at that address. Its inputs do not come by UDP.
+  void vouch(const os::SocketAddress& heard_at);
+  bool vouched() const { return vouched_at_.has_value(); }
 
   State state = State::greeting;
   std::int64_t deadline_us;               // greeting, closing
@@ -66,6 +71,7 @@ class ControlConnection {
 
   os::FileDescriptor socket_;
   os::SocketAddress peer_;
+  std::optional<os::SocketAddress> vouched_at_;
   wire::ControlReader reader_;
   std::optional<wire::StreamOpener> opener_;
   std::optional<wire::StreamSealer> sealer_;

@@ -77,6 +77,13 @@ void ControlServer::report(const wire::Report& report) {
   if (reports_.push(report)) ::eventfd_write(wake_.get(), 1);
 }
 
+bool ControlServer::adopt(VouchedConnection&& connection) {
+  if (stopping_.load(std::memory_order_acquire) || !vouched_.push(std::move(connection)))
+    return false;
+  ::eventfd_write(wake_.get(), 1);
+  return true;
+}
+
 void ControlServer::stop(const wire::Sentence& reason) {
   if (!thread_.joinable()) return;
   bye_reason_ = reason.text();
@@ -126,6 +133,7 @@ void ControlServer::run() {
       if (polled_[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) serve(*connections_[i]);
     }
     if (polled_[1].revents & POLLIN) accept_all();
+    admit_vouched();
     for (auto& connection : connections_) {
       expire(*connection);
       if (connection->state != State::dead && !connection->flush()) {
@@ -193,6 +201,14 @@ void ControlServer::admit(os::FileDescriptor socket, const os::SocketAddress& pe
       std::move(socket), peer, os::monotonic_us() + options_.limits.hello_us));
 }
 
+void ControlServer::admit_vouched() {
+  VouchedConnection vouched;
+  while (vouched_.pop(vouched)) {
+    admit(std::move(vouched.socket), vouched.peer);
+    connections_.back()->vouch(vouched.heard_at);
+  }
+}
+
 // Who comes may always knock: where too many stand at the door, the one that has stood there
 // longest goes, of the network that has most of them. A client says Hello at once, and is in before
 // that reaches it.
@@ -222,9 +238,10 @@ void ControlServer::make_room_at_the_door() {
   count(Count::crowded_out);
 }
 
-// At this machine there is no password to prove.
+// At this machine there is no password to prove; but whoever knows a phone's token is no host.
 bool ControlServer::trusted(const ControlConnection& connection) const {
-  return options_.access.trust_this_machine && connection.peer().is_loopback();
+  return !connection.vouched() && options_.access.trust_this_machine &&
+         connection.peer().is_loopback();
 }
 
 void ControlServer::serve(ControlConnection& connection) {

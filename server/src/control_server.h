@@ -34,6 +34,7 @@
 #include "server/network.h"
 #include "server/spsc_queue.h"
 #include "votes.h"
+#include "vouched_connection.h"
 #include "wire/control.h"
 #include "wire/seal.h"
 #include "wire/sentence.h"
@@ -85,6 +86,7 @@ struct ControlOptions {
   std::optional<Endpoint> multicast;
   wire::SealKey group_key{};              // with multicast: everybody's
   bool teams_open = true;                 // false: a recording plays, nobody can take a team
+  std::string phones;                     // where phones join, for players to see; empty: nowhere
   std::function<std::uint64_t()> random;  // secrets; called on the control thread
   Log log;                                // called on the control thread
 };
@@ -110,6 +112,9 @@ class ControlServer {
   void report(const wire::Report& report);
   // A match that was played is over: who was put out may play again.
   void match_is_over();
+  // A connection that another port has let in, as a player's: it says Hello as any other, needs no
+  // password, and is never the host. One thread of its own. False: 16 are waiting, or it ends.
+  bool adopt(VouchedConnection&& connection);
   // Says Bye to all, waits a moment for it to be sent, and ends the thread.
   void stop(const wire::Sentence& reason);
 
@@ -146,6 +151,7 @@ class ControlServer {
   void wait();
   void accept_all();
   void admit(os::FileDescriptor socket, const os::SocketAddress& peer);
+  void admit_vouched();
   void make_room_at_the_door();
   bool trusted(const ControlConnection& connection) const;
   void serve(ControlConnection& connection);
@@ -237,6 +243,7 @@ class ControlServer {
   std::uint64_t unsaid_ = 0;  // lines that the log was spared
 
   SpscQueue<ControlEvent, 1024> events_;
+  SpscQueue<VouchedConnection, 16> vouched_;
   SpscQueue<wire::Notice, 64> outbound_;
   SpscQueue<wire::Tuning, 8> tunings_;
   SpscQueue<wire::Game, 8> games_;

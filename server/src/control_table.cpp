@@ -99,7 +99,7 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
            say<Said::other_version>(wire::kControlVersion, hello.version));
   } else if (hello.snapshot_layout != wire::snapshot_layout_hash()) {
     refuse(connection, wire::Refusal::Code::layout, say<Said::other_snapshots>());
-  } else if (!connection.sealed() && !trusted(connection)) {
+  } else if (!connection.sealed() && !connection.vouched() && !trusted(connection)) {
     refuse(connection, wire::Refusal::Code::password, say<Said::password_wanted>());
   } else if (untold_.size() > kMostUntold) {
     refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
@@ -187,7 +187,7 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
 }
 
 std::string ControlServer::owner_of(const ControlConnection& connection) {
-  return connection.peer().owner(os::local_address(connection.fd()));
+  return connection.peer().owner(connection.heard_at());
 }
 
 // Whoever has left and is not known to have: his rods are free.
@@ -237,7 +237,7 @@ wire::SealKey ControlServer::random_key() {
 // For its inputs; none for who only watches.
 os::FileDescriptor ControlServer::client_socket(const ControlConnection& connection,
                                                 const os::SocketAddress& listener) {
-  auto local = os::local_address(connection.fd());
+  auto local = connection.heard_at();
   local.set_port(options_.udp_port);
   auto opened = open_client_socket(options_.udp, local, listener);
   return opened ? std::move(*opened) : os::FileDescriptor();
@@ -259,9 +259,9 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   event.snapshot_key = options_.multicast ? options_.group_key : random_key();
   event.listener = connection.peer();
   event.listener.set_port(udp_port);
-  event.heard_at = os::local_address(connection.fd());
-  seat.has_socket = seat.plays();
-  if (seat.plays()) {
+  event.heard_at = connection.heard_at();
+  seat.has_socket = seat.plays() && !connection.vouched();
+  if (seat.has_socket) {
     event.socket = client_socket(connection, event.listener);
     if (!event.socket) {
       refuse(connection, wire::Refusal::Code::full, say<Said::no_socket_left>());
@@ -293,6 +293,8 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   if (tuning_) send(connection, *tuning_);
   if (game_) send(connection, *game_);
   if (report_) send(connection, *report_);
+  const bool may_play = connection.role != wire::Role::watcher && !connection.vouched();
+  if (!options_.phones.empty() && may_play) send(connection, wire::Phones{options_.phones});
   roster_changed_ = true;
   return true;
 }
@@ -318,7 +320,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   if (grant.kind != Seats::Grant::Kind::granted) return refuse_it(grant.sentence);
   ControlEvent event;
   event.kind = ControlEvent::Kind::rods;
-  if (!seat->has_socket && grant.rods != 0) {
+  if (!seat->has_socket && !connection.vouched() && grant.rods != 0) {
     auto listener = connection.peer();
     listener.set_port(seat->udp_port);
     event.socket = client_socket(connection, listener);

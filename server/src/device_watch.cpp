@@ -24,7 +24,7 @@ Sentence refusal(const std::string& name, int error) {
   }
 }
 
-Sentence sentence(const cabinet::DeviceSource& device, DeviceState state, bool ever_live) {
+Sentence sentence(const cabinet::Device& device, DeviceState state, bool ever_live) {
   const std::string& name = device.name();
   switch (state) {
     case DeviceState::refused:
@@ -51,7 +51,7 @@ bool DeviceWatch::due(const Watched& watched, std::int64_t now_us) {
   return watched.told == DeviceState::live || now_us - watched.since_us > kPatienceUs;
 }
 
-void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices,
+void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
                        std::int64_t now_us, const Tell& tell) {
   while (watched_.size() < devices.size()) watched_.push_back({DeviceState::missing, now_us, {}});
   for (std::uint32_t i = 0; i < devices.size(); ++i) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cabinet/device_source.h"
+#include "cabinet/device.h"
 #include "wire/sentence.h"
 
 namespace server {
@@ -20,7 +20,7 @@ class DeviceWatch {
                                   const std::string& is_well)>;
 
   // At once when a device that was live no longer is, or is again; else what has lasted a while.
-  void look(const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices, std::int64_t now_us,
+  void look(const std::vector<std::unique_ptr<cabinet::Device>>& devices, std::int64_t now_us,
             const Tell& tell);
 
  private:

@@ -12,6 +12,10 @@
 namespace server {
 namespace {
 
+std::uint64_t mean_latency_us(const cabinet::SourceCounters& counters) {
+  return counters.stamped > 0 ? counters.latency_sum_us / counters.stamped : 0;
+}
+
 double us(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-3;
 }
@@ -81,6 +85,17 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"wishes_dropped", number(c.control.wishes_dropped)},
       {"answers", number(c.control.answers)},
       {"answers_refused", number(c.control.answers_refused)},
+      {"phones_joined", number(c.phones.joined)},
+      {"phones_refused", number(c.phones.refused)},
+      {"phones_bad", number(c.phones.bad_messages)},
+      {"phones_timed_out", number(c.phones.timed_out)},
+      {"phones_crowded_out", number(c.phones.crowded_out)},
+      {"phones_slow_dropped", number(c.phones.slow_dropped)},
+      {"phone_inputs", number(c.phones.inputs)},
+      {"phone_inputs_dropped", number(c.phones.inputs_dropped)},
+      {"phone_pulses", number(c.phones.pulses)},
+      {"phone_pulses_dropped", number(c.phones.pulses_dropped)},
+      {"haptic_pulses", number(c.haptic_pulses)},
       {"input_accepted", number(c.input.accepted)},
       {"input_bad", number(c.input.bad)},
       {"input_foreign", number(c.input.foreign)},
@@ -93,6 +108,8 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"device_overflows", number(devices.overflows)},
       {"device_impossible", number(devices.impossible)},
       {"device_line_errors", number(devices.line_errors)},
+      {"device_latency_mean_us", number(mean_latency_us(devices))},
+      {"device_latency_max_us", number(devices.latency_max_us)},
   };
 }
 
@@ -105,9 +122,10 @@ std::string line(const DeviceCounters& device) {
   const cabinet::SourceCounters& c = device.counters;
   return fmt::format(
       "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, "
-      "{} motions that no rod can make, {} errors on the sensors' lines",
+      "{} motions that no rod can make, {} errors on the sensors' lines, "
+      "{} us mean and {} us most from arrival to tick",
       device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.impossible,
-      c.line_errors);
+      c.line_errors, mean_latency_us(c), c.latency_max_us);
 }
 
 bool ends_with_csv(const std::string& path) {

@@ -108,7 +108,7 @@ int RodDesk::add(cabinet::InputSource& source, cabinet::Origin origin, RodDriver
   return mux_.add(source, origin);
 }
 
-void RodDesk::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
+void RodDesk::add_device(std::unique_ptr<cabinet::Device> device) {
   order_.insert(order_.end() - 1, add(*device, cabinet::Origin::relative, RodDriver::cabinet));
   devices_.push_back(std::move(device));
   hand_watch_.resize(places_.size() + devices_.size());
@@ -330,6 +330,12 @@ void RodDesk::poll(std::int64_t now_us) {
   }
   for (const auto& computer : computers_) computer->set_rods(static_cast<std::uint8_t>(rods));
   mux_.poll(now_us);
+}
+
+std::uint32_t RodDesk::client_of(int rod) const {
+  for (const Place& place : places_)
+    if ((place.rods >> rod & 1) != 0) return place.client;
+  return 0;
 }
 
 RodDriver RodDesk::driver(int rod) const {

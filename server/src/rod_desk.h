@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "cabinet/device_source.h"
+#include "cabinet/device.h"
 #include "cabinet/source_mux.h"
 #include "computer_source.h"
 #include "foosball/match.h"
@@ -29,8 +29,8 @@ class RodDesk {
           bool computer_fills, const foosball::PlayerSpec& computer_player,
           const foosball::MatchView& view);
 
-  void add_device(std::unique_ptr<cabinet::DeviceSource> device);
-  const std::vector<std::unique_ptr<cabinet::DeviceSource>>& devices() const { return devices_; }
+  void add_device(std::unique_ptr<cabinet::Device> device);
+  const std::vector<std::unique_ptr<cabinet::Device>>& devices() const { return devices_; }
 
   // The client has these rods, by bit, from now on, and no others; 0: none. Takes no memory.
   // Preconditions: no rod is another client's. Returns where its inputs go; null: it has no rod.
@@ -80,7 +80,8 @@ class RodDesk {
   void poll(std::int64_t now_us);
   const cabinet::RodInputs& rods() const { return mux_.rods(); }
   RodDriver driver(int rod) const;
-  bool of_device(int rod) const;  // a device has it, also while the computer stands in
+  std::uint32_t client_of(int rod) const;  // that has it; 0: none
+  bool of_device(int rod) const;           // a device has it, also while the computer stands in
 
  private:
   struct Place {
@@ -107,7 +108,7 @@ class RodDesk {
   const cabinet::RodInput& hand(std::size_t source, int rod) const;
 
   const foosball::TableSpec& table_;
-  std::vector<std::unique_ptr<cabinet::DeviceSource>> devices_;
+  std::vector<std::unique_ptr<cabinet::Device>> devices_;
   std::array<Place, foosball::kRods> places_;  // one for each client that has a rod
   std::array<std::unique_ptr<ComputerSource>, foosball::kTeams> computers_;
   std::uint8_t computed_ = 0;  // rods that a computer plays unless a device has them, by bit

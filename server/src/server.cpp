@@ -28,10 +28,32 @@ StartError port_error(const NetworkOptions& network, const SocketError& error) {
           sentence(network, error)};
 }
 
+tl::expected<std::unique_ptr<PhonePort>, StartError> open_phones(const ServerOptions& options) {
+  using Kind = StartError::Kind;
+  const std::string& listen =
+      options.phones.listen.empty() ? options.network.listen : options.phones.listen;
+  PhonePortOptions wanted;
+  wanted.listen = listen;
+  wanted.port = options.phones.port;
+  wanted.limits = options.phones.limits;
+  wanted.layout = options.match.layout;
+  wanted.random = options.random;
+  wanted.log = options.log;
+  auto opened = PhonePort::open(std::move(wanted));
+  if (opened) return std::move(*opened);
+  const SocketError& error = opened.error();
+  return tl::unexpected(
+      StartError{error.occupied() ? Kind::port_taken : Kind::bad_option,
+                 "cannot listen for phones at port " + std::to_string(options.phones.port) +
+                     " on " + listen + ": " + std::strerror(error.number) +
+                     "; choose another port with --phone-port, or leave --phones out"});
+}
+
 }  // namespace
 
 Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened,
-                   os::FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal)
+                   os::FileDescriptor&& wake, std::unique_ptr<Recorder>&& journal,
+                   std::unique_ptr<PhonePort>&& for_phones)
     : options(std::move(given)),
       group_key(options.network.multicast ? random_key(options.random) : wire::SealKey{}),
       everywhere(os::parse_address(options.network.listen, 0)->is_any()),
@@ -43,10 +65,19 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
                   options.send_priority),
       desk(options.match, options.computer, options.computer_fills, options.computer_player,
            match.view()),
+      haptics(options.haptics),
       recorder(std::move(journal)),
       scribe(options.match),
       opponent(opponent_of(options.computer_player)),
+      phones(std::move(for_phones)),
       control(control_options(), std::move(opened.tcp), std::move(wake)) {
+  if (phones) {
+    phones->start([this](VouchedConnection&& phone) { return control.adopt(std::move(phone)); });
+    haptics.to_clients([this](std::uint32_t client, const cabinet::HapticPulse& pulse) {
+      const auto strength = static_cast<std::uint8_t>(255.0f * pulse.strength + 0.5f);
+      phones->pulse({client, pulse.rod, strength, pulse.ms});
+    });
+  }
   clients.reserve(static_cast<std::size_t>(options.limits.connections));
   next.commands.reserve(wire::kMaxJournalCommands);
   snapshot.session = options.session;
@@ -79,6 +110,7 @@ ControlOptions Server::Impl::control_options() const {
   out.challenge_date = options.challenge_date;
   out.multicast = options.network.multicast;
   out.teams_open = options.replay == nullptr;
+  if (phones) out.phones = phones->url();
   out.random = options.random;
   out.log = options.log;
   return out;
@@ -171,9 +203,19 @@ void Server::Impl::take_game(const wire::Game& asked) {
   desk.choose_player(player_of(opponent));
 }
 
+// At most so many a tick, as of a client's socket; the rest waits.
+void Server::Impl::take_phone_inputs(std::int64_t now_us) {
+  constexpr int kMostPerTick = 64;
+  PhoneInputEvent event;
+  for (int i = 0; i < kMostPerTick && phones && phones->next_input(event); ++i) {
+    if (RemoteSource* source = desk.remote(event.client)) source->accept(event.input, now_us);
+  }
+}
+
 // False when there is no tick to step: a client is awaited, or a recording is over.
 bool Server::Impl::gather(std::int64_t now_us) {
   input.receive(now_us);
+  take_phone_inputs(now_us);
   const bool begun = !options.await_client || clients_ever > 0;
   if (!options.replay) {
     gather_live(now_us);  // before the beginning too: devices are not to run over
@@ -294,6 +336,13 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
                           "; close other programs and try again"});
   }
 
+  std::unique_ptr<PhonePort> phones;
+  if (options.phones.open) {
+    auto opened = open_phones(options);
+    if (!opened) return tl::unexpected(opened.error());
+    phones = std::move(*opened);
+  }
+
   std::unique_ptr<Recorder> recorder;
   if (!options.record.empty()) {
     JournalFileOptions wanted{.path = options.record, .overwrite = options.overwrite};
@@ -310,7 +359,7 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
   }
   return std::unique_ptr<Server>(
       new Server(std::make_unique<Impl>(std::move(options), std::move(*match), std::move(*ports),
-                                        std::move(wake), std::move(recorder))));
+                                        std::move(wake), std::move(recorder), std::move(phones))));
 }
 
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -319,8 +368,13 @@ Server::~Server() {
   finish(wire::say<wire::Said::server_ends>());
 }
 
-void Server::add_device(std::unique_ptr<cabinet::DeviceSource> device) {
+void Server::add_device(std::unique_ptr<cabinet::Device> device) {
   impl_->desk.add_device(std::move(device));
+}
+
+void Server::set_cabinet_haptics(std::unique_ptr<cabinet::HapticSink> sink) {
+  impl_->haptics.to_cabinet(sink.get());
+  impl_->cabinet_haptics = std::move(sink);
 }
 
 void Server::tick(std::int64_t now_us) {
@@ -334,6 +388,7 @@ void Server::tick(std::int64_t now_us) {
     ++s.ticks;
     s.events.add(s.match.events());
     s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
+    if (!s.options.replay) s.haptics.feel(s.match.events(), s.match.view(), s.desk, now_us);
     if (s.recorder) s.recorder->add(s.next, s.match);
     const foosball::MatchView& view = s.match.view();
     if (view.screen == foosball::Screen::play && !view.attract) s.was_played = s.playing = true;
@@ -369,6 +424,7 @@ void Server::finish(const wire::Sentence& reason) {
   impl_->finished = true;
   impl_->broadcaster.close();  // the last snapshot before the Bye
   impl_->control.stop(reason);
+  if (impl_->phones) impl_->phones->stop();  // has told them why
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
   if (impl_->recorder && impl_->options.record_by_default_bytes > 0 && !impl_->was_played)
     ::unlink(impl_->options.record.c_str());
@@ -377,6 +433,9 @@ void Server::finish(const wire::Sentence& reason) {
 
 std::uint16_t Server::port() const {
   return impl_->port;
+}
+std::string Server::phones() const {
+  return impl_->phones ? impl_->phones->url() : std::string{};
 }
 const foosball::Match& Server::match() const {
   return impl_->match;
@@ -425,6 +484,8 @@ Counters Server::counters() const {
   }
   out.input = s.input.counters();
   out.control = s.control.counters();
+  if (s.phones) out.phones = s.phones->counters();
+  out.haptic_pulses = s.haptics.pulses();
   return out;
 }
 

@@ -14,9 +14,11 @@
 #include "control_server.h"
 #include "device_watch.h"
 #include "event_repeater.h"
+#include "haptic_desk.h"
 #include "input_port.h"
 #include "lineup.h"
 #include "match_scribe.h"
+#include "phone_port.h"
 #include "recorder.h"
 #include "results_log.h"
 #include "rod_desk.h"
@@ -28,7 +30,7 @@ namespace server {
 
 struct Server::Impl {
   Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& opened, os::FileDescriptor&& wake,
-       std::unique_ptr<Recorder>&& journal);
+       std::unique_ptr<Recorder>&& journal, std::unique_ptr<PhonePort>&& for_phones);
 
   void take_control_events();
   void admit(ControlEvent& event);
@@ -43,6 +45,7 @@ struct Server::Impl {
   void take_wish(const ControlEvent& event);
   bool plays(std::uint32_t client) const;
   bool pause_is_abandoned() const;
+  void take_phone_inputs(std::int64_t now_us);
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
   void tell_match();
@@ -86,6 +89,8 @@ struct Server::Impl {
   InputPort input;
   Broadcaster broadcaster;
   RodDesk desk;
+  std::unique_ptr<cabinet::HapticSink> cabinet_haptics;  // or none
+  HapticDesk haptics;
   DeviceWatch device_watch;
   EventRepeater events;
   std::unique_ptr<Recorder> recorder;  // or none
@@ -115,7 +120,8 @@ struct Server::Impl {
   wire::JournalTick next;  // the inputs of the tick under way
   wire::Snapshot snapshot;
   std::array<std::byte, wire::kMaxDatagram> datagram;
-  ControlServer control;  // last: its thread ends first
+  std::unique_ptr<PhonePort> phones;  // or none; it hands connections to control
+  ControlServer control;              // last: its thread ends first
 };
 
 }  // namespace server

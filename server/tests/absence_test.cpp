@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "cabinet/device_source.h"
 #include "rod_desk.h"
 #include "seats.h"
 #include "wire/device_frame.h"

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "counting_new.h"
 #include "journal_file.h"
 #include "lockstep.h"
+#include "phone_probe.h"
 #include "seats.h"
 #include "wire/enums.h"
 
@@ -74,6 +76,47 @@ TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
     }));
     EXPECT_EQ(during, 0);
   }
+}
+
+// A phone that swings its rods, and feels three hits.
+TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
+  Lockstep table([](ServerOptions& o) {
+    o.phones.open = true;
+    o.computer[1] = true;
+    o.match.rules.goals_to_win = 99;
+    o.match.rules.max_goals = 99;
+  });
+  PhoneProbe phone(table->phones());
+  ASSERT_TRUE(phone.join());
+  ASSERT_TRUE(phone.claim(0, wire::RodPair::attack));
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join());
+  for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
+    for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
+      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+    ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
+  }
+  wire::PhoneInput input;
+  const auto swing = [&] {
+    ++input.sequence;
+    const double t = 1e-6 * static_cast<double>(table.now_us());
+    for (wire::PhoneRod& rod : input.rods)
+      rod = {true, static_cast<float>(0.08 * std::sin(3.0 * t)), 1.2 * std::sin(25.0 * t), 0, 0};
+    ASSERT_TRUE(phone.say(input));
+  };
+  for (int i = 0; i < 6'000; ++i) swing(), table.tick();  // once warm
+  long taken = 0;
+  const std::uint64_t before = table->counters().haptic_pulses;
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (table->counters().haptic_pulses < before + 3) {
+    ASSERT_LT(std::chrono::steady_clock::now(), patience);
+    swing();
+    const long now = os::testing::allocations();
+    table.tick();
+    taken += os::testing::allocations() - now;
+  }
+  EXPECT_EQ(taken, 0);
+  EXPECT_GT(table->counters().phones.inputs, 3'000u);
 }
 
 // The best players have worlds of their own (foosball/src/computer_forecast.h).

@@ -1,12 +1,16 @@
 // A cabinet's controller on a socket pair: from its report to the snapshot, unplugged and back.
 #include <gtest/gtest.h>
+#include <linux/input.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <span>
 
+#include "cabinet/device_source.h"
+#include "cabinet/mouse_source.h"
 #include "lockstep.h"
 #include "wire/device_frame.h"
 
@@ -44,6 +48,14 @@ class Controller {
     std::array<std::uint8_t, wire::kDeviceReportBytes> bytes{};
     wire::encode_device_frame(frame_, bytes.data());
     send(bytes);
+  }
+  // One report; all rods are so far from where they began [counts].
+  void sweep(double slide, double spin) {
+    for (int rod = 0; rod < wire::kDeviceRods; ++rod) {
+      frame_.slide[rod] = static_cast<std::uint16_t>(static_cast<int>(slide));
+      frame_.spin[rod] = static_cast<std::uint16_t>(static_cast<int>(spin));
+    }
+    report(0);
   }
 
  private:
@@ -231,6 +243,118 @@ TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   const auto notice = notice_of(std::move(*device), 10);
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
+}
+
+// Two mice on the desk, each on a socket pair: each moves its rod, and one that is unplugged is
+// told.
+class MiceTest : public testing::Test {
+ protected:
+  struct Mouse {
+    int own_end = -1, pc_end = -1;
+  };
+  void SetUp() override {
+    for (std::size_t i = 0; i < mice.size(); ++i) {
+      std::array<int, 2> ends{-1, -1};
+      ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+      mice[i] = {ends[0], ends[1]};
+      cabinet::MouseOptions options;
+      options.name = "mouse " + std::to_string(i + 1);
+      options.rod = kRods[i];
+      table->add_device(std::make_unique<cabinet::MouseSource>(
+          options, [this, i] { return std::exchange(mice[i].pc_end, -1); }));
+    }
+    ASSERT_TRUE(watcher.join());
+    table.tick(20);
+  }
+  ~MiceTest() override {
+    for (const Mouse& mouse : mice) {
+      for (const int fd : {mouse.own_end, mouse.pc_end})
+        if (fd >= 0) ::close(fd);
+    }
+  }
+  void move(std::size_t mouse, int right) const {
+    std::array<input_event, 2> events{};
+    events[0].type = EV_REL;
+    events[0].code = REL_X;
+    events[0].value = right;
+    ASSERT_EQ(::send(mice[mouse].own_end, events.data(), sizeof events, MSG_DONTWAIT),
+              static_cast<ssize_t>(sizeof events));
+  }
+  static constexpr std::array<int, 2> kRods = {3, 5};
+  std::array<Mouse, 2> mice;  // outlive the server
+  Lockstep table;
+  ProbeClient watcher{table.port()};
+};
+
+TEST_F(MiceTest, EachMovesItsRodAndNoOther) {
+  for (int ms = 0; ms < 40; ++ms) {
+    move(0, 20);
+    move(1, -10);
+    table.tick();
+  }
+  table.tick(1000);
+  const double metres = 40 * 1.5 * 25.4e-6;  // of one count a millisecond
+  EXPECT_NEAR(table->match().view().rods[3].slide, 20 * metres, 0.0005);
+  EXPECT_NEAR(table->match().view().rods[5].slide, -10 * metres, 0.0005);
+  EXPECT_NEAR(table->match().view().rods[2].slide, 0, 0.0005);
+}
+
+TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
+  ::close(std::exchange(mice[0].own_end, -1));
+  table.tick();
+  const auto notice = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(notice);
+  EXPECT_EQ(notice->text, "mouse 1 unplugged: its rods hold; plug it in again");
+  move(1, 100);
+  table.tick(1000);
+  EXPECT_NEAR(table->match().view().rods[5].slide, 100 * 1.5 * 25.4e-6, 0.0005);
+}
+
+// A ball that meets the rods of a cabinet: what its motors are told, and in which tick.
+TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
+  struct Motors final : cabinet::HapticSink {
+    explicit Motors(std::vector<cabinet::HapticPulse>& into) : felt(into) {}
+    void pulse(const cabinet::HapticPulse& pulse) override { felt.push_back(pulse); }
+    std::vector<cabinet::HapticPulse>& felt;
+  };
+  Lockstep table([](ServerOptions& o) {
+    o.match.rules.goals_to_win = 99;
+    o.match.rules.max_goals = 99;
+  });
+  std::vector<cabinet::HapticPulse> felt;
+  Controller controller;
+  controller.plug_in();
+  cabinet::DeviceOptions options;
+  options.framing = cabinet::DeviceFraming::report;
+  table->add_device(std::make_unique<cabinet::DeviceSource>(options, controller.opener()));
+  table->set_cabinet_haptics(std::make_unique<Motors>(felt));
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join());
+  for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
+    for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
+      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+    ASSERT_TRUE(table.tick_until([&] {
+      controller.report(0);
+      return table->match().view().screen == screen;
+    }));
+  }
+  std::size_t before = felt.size();
+  int ticks_with_hits = 0;
+  ASSERT_TRUE(table.tick_until([&] {
+    // The tick that has just been: a pulse in it means a hit in it.
+    bool hit = false;
+    for (const foosball::Event& event : table->match().events())
+      hit |= event.kind == foosball::EventKind::man_hit && event.value >= cabinet::kSoftestFelt;
+    ticks_with_hits += hit;
+    EXPECT_TRUE(hit || felt.size() == before) << "late";
+    before = felt.size();
+    const double t = 1e-6 * static_cast<double>(table.now_us());
+    controller.sweep(900.0 * std::sin(4.0 * t), 700.0 * std::sin(25.0 * t));
+    return felt.size() >= 3;
+  }));
+  EXPECT_GE(ticks_with_hits, 3);
+  for (const cabinet::HapticPulse& pulse : felt) EXPECT_LE(pulse.ms, cabinet::kLongestPulseMs);
+  EXPECT_EQ(table->counters().haptic_pulses, felt.size());
 }
 
 }  // namespace

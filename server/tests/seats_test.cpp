@@ -1,5 +1,6 @@
 // Who gets which rods, what a vote needs, and what a crowd at the door can do.
 #include "seats.h"
+#include "cabinet/device_source.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

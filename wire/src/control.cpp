@@ -102,6 +102,9 @@ auto build(Builder& b, const Notice& m) {
 auto build(Builder& b, const Bye& m) {
   return fb::CreateBye(b, text(b, m.reason, kMaxText));
 }
+auto build(Builder& b, const Phones& m) {
+  return fb::CreatePhones(b, text(b, m.url, kMaxUrl));
+}
 auto build(Builder& b, const Questionnaire& m) {
   return fb::CreateQuestionnaire(b, m.match, m.rods);
 }
@@ -261,6 +264,9 @@ bool take(const fb::Notice& t, Notice& m) {
 bool take(const fb::Bye& t, Bye& m) {
   return take(t.reason(), kMaxText, m.reason);
 }
+bool take(const fb::Phones& t, Phones& m) {
+  return take(t.url(), kMaxUrl, m.url);
+}
 bool take(const fb::Questionnaire& t, Questionnaire& m) {
   m = {t.match(), t.rods()};
   return m.rods != 0;
@@ -352,6 +358,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Game>(control.message_as_Game(), message);
     case fb::Message::Names:
       return take_as<Names>(control.message_as_Names(), message);
+    case fb::Message::Phones:
+      return take_as<Phones>(control.message_as_Phones(), message);
     case fb::Message::NONE:
       break;
   }

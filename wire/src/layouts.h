@@ -17,6 +17,9 @@ Layout characters_layout();
 // One for each kind of payload, and one for the ticks inside a record of ticks.
 std::vector<NamedLayout> journal_layouts();
 
+// One for each message between a phone and the server.
+std::vector<NamedLayout> phone_layouts();
+
 // Over all of journal_layouts(); computed once.
 std::uint32_t journal_layout_hash();
 

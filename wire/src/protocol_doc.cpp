@@ -14,6 +14,7 @@
 #include "wire/device_frame.h"
 #include "wire/input_datagram.h"
 #include "wire/journal.h"
+#include "wire/phone_message.h"
 #include "wire/seal.h"
 #include "wire/snapshot.h"
 
@@ -23,11 +24,12 @@ namespace {
 constexpr const char* kHead = R"(# The protocol
 
 <!-- Made by wire_protocol_doc from wire/include/wire/*_description.h, wire/control.fbs and
-     wire/include/wire/device_frame.h. Do not edit: change those, then run
+     wire/include/wire/device_frame.h and device_command.h. Do not edit: change those, then run
      `ninja -C build/release wire_protocol_doc && build/release/bin/wire_protocol_doc docs/protocol.md`. -->
 
-Five kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
-over TCP, the journal in a file, and the cabinet's frames over USB. Everything is little endian.
+Six kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
+over TCP, what phones say over a WebSocket, the journal in a file, and the cabinet's frames and its
+commands over USB. Everything is little endian.
 )";
 
 constexpr const char* kVocabulary = R"(
@@ -107,6 +109,13 @@ if play ended in order, an end; ticks count up from 0 without a gap. Ticks are g
 up to %d, each tick as the change against the one before; a record is closed early by any other entry.
 )";
 
+constexpr const char* kPhonesText = R"(
+A phone opens `ws://HOST:PORT/TOKEN/ws` of the address that the server's Phones message names
+(`http://HOST:PORT/TOKEN`, which serves the page). Each binary message is one of these; all fields are
+of whole bytes. A phone's are at most %zu bytes and 500 a second; a longer one, one that is cut short
+or out of range, and a text message end the connection.
+)";
+
 template <class... Values>
 std::string formatted(const char* format, Values... values) {
   const int size = std::snprintf(nullptr, 0, format, values...);
@@ -139,6 +148,13 @@ std::string journal() {
   for (const NamedLayout& part : journal_layouts()) {
     text += std::string("\n### ") + part.name + "\n\n" + part.meaning + "\n\n" + table(part.layout);
   }
+  return text;
+}
+
+std::string phones() {
+  std::string text = formatted(kPhonesText, kMaxPhoneRequest);
+  for (const NamedLayout& part : phone_layouts())
+    text += std::string("\n### ") + part.name + "\n\n" + part.meaning + "\n\n" + table(part.layout);
   return text;
 }
 
@@ -236,8 +252,8 @@ std::string control() {
 }
 
 // The comment that opens the header: the words before its include guard.
-std::string device_frame() {
-  std::istringstream header(file_text(WIRE_DEVICE_FRAME_H));
+std::string opening_comment(const char* path) {
+  std::istringstream header(file_text(path));
   std::string text = "\n```\n";
   for (std::string line; std::getline(header, line) && line.starts_with("//");) {
     text += line.size() > 3 ? line.substr(3) + "\n" : "\n";
@@ -258,8 +274,10 @@ std::string protocol_document() {
       "\n## Input datagram\n\nUDP, client to server, on every change and at least 20 a second.\n";
   text += datagram(input_layout(), kMaxInputDatagram);
   text += "\n## Control messages\n" + control();
+  text += "\n## Phones\n" + phones();
   text += "\n## Journal\n" + journal();
-  text += "\n## Device frame\n" + device_frame();
+  text += "\n## Device frame\n" + opening_comment(WIRE_DEVICE_FRAME_H);
+  text += "\n## Device command\n" + opening_comment(WIRE_DEVICE_COMMAND_H);
   return text;
 }
 

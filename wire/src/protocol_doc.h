@@ -1,5 +1,5 @@
 // docs/protocol.md, made from the descriptions, from control.fbs as flatc understood it, and from
-// the comment and the encoder of wire/device_frame.h.
+// the comments of wire/device_frame.h and wire/device_command.h.
 #pragma once
 
 #include <string>

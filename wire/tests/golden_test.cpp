@@ -57,6 +57,18 @@ TEST(Golden, Journal) {
   EXPECT_EQ(reader.problem(), "");
 }
 
+TEST(Golden, Phone) {
+  const auto check = [](const auto& named, auto decoded) {
+    for (const auto& [name, message] : named) {
+      EXPECT_EQ(hex(encoded(message)), golden::kPhone.at(name)) << name;
+      EXPECT_TRUE(decode_phone(from_hex(golden::kPhone.at(name)), decoded)) << name;
+      EXPECT_TRUE(samples::same(decoded, message)) << name;
+    }
+  };
+  check(samples::phone_requests(), PhoneRequest{});
+  check(samples::phone_replies(), PhoneReply{});
+}
+
 TEST(Golden, DeviceFrame) {
   EXPECT_EQ(hex(encoded(samples::device_frame())), golden::kDeviceFrame);
   EXPECT_EQ(hex(samples::encoded_cobs(samples::device_frame())), golden::kDeviceCobs);

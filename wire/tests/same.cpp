@@ -58,6 +58,9 @@ auto tied(const Kick& m) {
 auto tied(const Names& m) {
   return std::tie(m.name, m.players);
 }
+auto tied(const Phones& m) {
+  return std::tie(m.url);
+}
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }
@@ -125,6 +128,25 @@ auto tied(const JournalEnd& e) {
   return std::tie(e.ticks, e.state_hash);
 }
 
+auto tied(const PhoneHello& m) {
+  return std::tie(m.session, m.ticket, m.name);
+}
+auto tied(const PhoneClaim& m) {
+  return std::tie(m.team, m.pair);
+}
+auto tied(const PhoneRod& r) {
+  return std::tie(r.driven, r.slide, r.angle, r.slide_rate, r.angle_rate);
+}
+auto tied(const PhoneRodPlace& r) {
+  return std::tie(r.line, r.men, r.spacing, r.slide_limit);
+}
+auto tied(const PhoneNotice& m) {
+  return std::tie(m.level, m.text);
+}
+auto tied(const PhonePulse& m) {
+  return std::tie(m.rod, m.strength, m.ms);
+}
+
 template <class List>
 bool all_tied(const List& a, const List& b) {
   return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return tied(x) == tied(y); });
@@ -149,6 +171,29 @@ struct TiedReport {
   }
 };
 TiedReport tied(const Report& m) {
+  return {m};
+}
+
+struct TiedPhoneInput {
+  const PhoneInput& input;
+  friend bool operator==(const TiedPhoneInput& a, const TiedPhoneInput& b) {
+    return a.input.sequence == b.input.sequence && all_tied(a.input.rods, b.input.rods);
+  }
+};
+TiedPhoneInput tied(const PhoneInput& m) {
+  return {m};
+}
+
+struct TiedPhoneState {
+  const PhoneState& state;
+  friend bool operator==(const TiedPhoneState& a, const TiedPhoneState& b) {
+    const auto head = [](const PhoneState& s) {
+      return std::tie(s.session, s.ticket, s.team, s.pair, s.free, s.name);
+    };
+    return head(a.state) == head(b.state) && all_tied(a.state.rods, b.state.rods);
+  }
+};
+TiedPhoneState tied(const PhoneState& m) {
   return {m};
 }
 
@@ -186,6 +231,12 @@ bool same(const ControlMessage& a, const ControlMessage& b) {
   return same_variant(a, b);
 }
 bool same(const JournalEntry& a, const JournalEntry& b) {
+  return same_variant(a, b);
+}
+bool same(const PhoneRequest& a, const PhoneRequest& b) {
+  return same_variant(a, b);
+}
+bool same(const PhoneReply& a, const PhoneReply& b) {
   return same_variant(a, b);
 }
 

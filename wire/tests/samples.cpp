@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "crc32.h"
+#include "wire/description.h"
 #include "wire/limits.h"
 
 namespace wire::samples {
@@ -182,6 +183,28 @@ InputDatagram input() {
   return i;
 }
 
+std::vector<std::pair<std::string, PhoneRequest>> phone_requests() {
+  PhoneInput input{.sequence = 4242};
+  input.rods = {PhoneRod{true, 0.0625F, -kTurn / 4, 0.5F, -20.0F},
+                PhoneRod{false, -0.125F, 3 * kTurn, 0.0F, 8.0F}};
+  return {{"hello", PhoneHello{0x1122334455667788, 0x99AABBCCDDEEFF00, "J\xC3\xBCrgen"}},
+          {"claim", PhoneClaim{1, number(RodPair::attack)}},
+          {"input", input}};
+}
+
+std::vector<std::pair<std::string, PhoneReply>> phone_replies() {
+  PhoneState state{.session = 0x1122334455667788,
+                   .ticket = 0x99AABBCCDDEEFF00,
+                   .team = 1,
+                   .pair = number(RodPair::attack),
+                   .free = 0b0101,
+                   .name = "Ann 2"};
+  state.rods = {PhoneRodPlace{3, 3, 0.1875F, 0.125F}, PhoneRodPlace{2, 5, 0.125F, 0.0625F}};
+  return {{"state", state},
+          {"notice", PhoneNotice{number(PhoneNotice::Level::warning), "team 0 is taken"}},
+          {"pulse", PhonePulse{1, 200, 40}}};
+}
+
 template <std::size_t kSize>
 std::array<std::byte, kSize> octets(unsigned first) {
   std::array<std::byte, kSize> bytes;
@@ -221,6 +244,7 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"change_of_team", Claim{0xF0, 1}},
           {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}},
                             {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
+          {"phones", Phones{"http://192.168.1.5:7541/23456789abcdefghjkmnpqrstu"}},
           {"names", Names{"Ann", {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
           {"tuning", tuning()},
           {"game", Game{2, 0, 0, 0, 90'000, true, 4, 3, 20261122, true}},
@@ -378,6 +402,18 @@ std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
 Bytes encoded(const Snapshot& snapshot) {
   Bytes bytes(kMaxDatagram);
   bytes.resize(encode_snapshot(snapshot, bytes));
+  return bytes;
+}
+
+Bytes encoded(const PhoneRequest& request) {
+  Bytes bytes(kMaxPhoneRequest);
+  bytes.resize(encode_phone(request, bytes));
+  return bytes;
+}
+
+Bytes encoded(const PhoneReply& reply) {
+  Bytes bytes(kMaxPhoneReply);
+  bytes.resize(encode_phone(reply, bytes));
   return bytes;
 }
 

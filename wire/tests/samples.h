@@ -12,6 +12,7 @@
 #include "wire/device_frame.h"
 #include "wire/input_datagram.h"
 #include "wire/journal.h"
+#include "wire/phone_message.h"
 #include "wire/snapshot.h"
 
 namespace wire::samples {
@@ -25,6 +26,8 @@ std::vector<std::pair<std::string, ControlMessage>> control();  // one of each k
 std::vector<JournalEntry> journal();
 std::vector<CharacterRecord> characters();
 DeviceFrame device_frame();
+std::vector<std::pair<std::string, PhoneRequest>> phone_requests();  // one of each kind, named
+std::vector<std::pair<std::string, PhoneReply>> phone_replies();
 
 // Random within the ranges. full: every man and every event.
 Snapshot random_snapshot(std::mt19937_64& random, bool full);
@@ -34,6 +37,8 @@ bool same_but_for_ties(const Snapshot& a, const Snapshot& b);
 bool same(const InputDatagram& a, const InputDatagram& b);
 bool same(const ControlMessage& a, const ControlMessage& b);
 bool same(const JournalEntry& a, const JournalEntry& b);
+bool same(const PhoneRequest& a, const PhoneRequest& b);
+bool same(const PhoneReply& a, const PhoneReply& b);
 
 InputDatagram random_input(std::mt19937_64& random);
 // 1 to kMaxCharacterCount of them, their numbers any bits.
@@ -45,6 +50,8 @@ Bytes encoded(const Snapshot& snapshot);
 Bytes encoded(const InputDatagram& input);
 Bytes encoded(const ControlMessage& message);
 Bytes encoded(const std::vector<JournalEntry>& journal);
+Bytes encoded(const PhoneRequest& request);
+Bytes encoded(const PhoneReply& reply);
 Bytes encoded(const DeviceFrame& frame);       // the plain frame
 Bytes encoded_cobs(const DeviceFrame& frame);  // as on a serial line
 

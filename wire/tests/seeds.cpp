@@ -29,6 +29,10 @@ std::vector<Seed> seeds() {
       {"fuzz_device_frame", "plain", encoded(device_frame())},
       {"fuzz_device_frame", "cobs", encoded_cobs(device_frame())},
   };
+  for (const auto& [name, message] : phone_requests())
+    all.push_back({"fuzz_phone", name, encoded(message)});
+  for (const auto& [name, message] : phone_replies())
+    all.push_back({"fuzz_phone", name, encoded(message)});
   Bytes stream;
   for (const auto& [name, message] : control()) {
     all.push_back({"fuzz_control", name, chunked(7, encoded(message))});

@@ -45,6 +45,8 @@ class RodIntegrator {
 
 struct Calibration {
   std::array<RodCalibration, kRods> rods;
+  std::string serial;  // of the controller whose sensors these are; empty: not known
+  std::string made;    // when its last rod was calibrated, 2026-11-22T23:59:59Z; empty: not known
 };
 
 // Sensors mounted square, at so many counts a millimetre, on rods of the diameter [m].

@@ -3,28 +3,24 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 
 #include "cabinet/calibration.h"
-#include "cabinet/rod_input.h"
+#include "cabinet/device.h"
+
+namespace wire {
+struct DeviceFrame;
+}
 
 namespace cabinet {
 
 enum class DeviceFraming : std::uint8_t { cobs, report };
-
-// What the descriptor shows of the device. A person is told something else for each.
-enum class DeviceState : std::uint8_t {
-  missing,  // not open: it is not there, or hung up
-  refused,  // not open, though it is there: open_error() says why
-  silent,   // open, but no byte comes
-  garbled,  // open, bytes come, but no frame among them is taken
-  live,     // frames come, or a recording waits for the time of its next one
-  over,     // a recording, played to its end
-};
 
 struct DeviceOptions {
   std::string name = "cabinet";
@@ -36,6 +32,12 @@ struct DeviceOptions {
   std::int64_t silence_us = 50'000;  // no frame for so long: the rods hold
   std::int64_t reopen_us = 200'000;  // between attempts to open a device that went away
   bool opener_sets_line = false;     // a tty comes as raw 1 Mbaud already
+  // When bytes last came on the line that is open, on the clock that is handed to poll() [us].
+  // None: only known to lie between two polls.
+  std::function<std::int64_t()> arrived_us;
+  // Sends a packet to the descriptor from another thread, where write(2) would wait, as at hidraw;
+  // false: not now. None: nothing is sent to such a device.
+  std::function<bool(int, std::span<const std::byte>)> send_apart;
 };
 
 // Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno
@@ -49,7 +51,7 @@ using DeviceCloser = std::function<void(int)>;
 // A rod is absent until its mouse was first heard; from then on live or held. Positions start at 0
 // and only ever change by the sensors' increments: after a pause, a replug or a restart of the
 // micro-controller they go on from where they were held. One thread at a time.
-class DeviceSource final : public InputSource {
+class DeviceSource final : public Device {
  public:
   DeviceSource(DeviceOptions options, DeviceOpener open, DeviceCloser close = {});
   ~DeviceSource() override;
@@ -58,10 +60,16 @@ class DeviceSource final : public InputSource {
   const RodInputs& rods() const override;
   const SourceCounters& counters() const override;
   const std::string& name() const override;
-  // As of the last poll.
-  DeviceState state() const;
-  int open_error() const;  // errno of the last attempt to open it, if that failed
-  bool connected() const { return state() == DeviceState::live; }
+  DeviceState state() const override;
+  int open_error() const override;
+  // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
+  void observe(std::function<void(const wire::DeviceFrame&)> observer);
+  // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on
+  // the line; at hidraw, whose write(2) waits for the USB transfer, by DeviceOptions::send_apart.
+  // Never waits and never sends a part of one: false where nothing is attached, where the line has
+  // no room for all of it, and at a recording. Between polls, on their thread.
+  bool send(std::span<const std::byte> packet);
+  DeviceFraming framing() const;
   // For the latency test: the micro-controller's clock of the last accepted frame [us].
   std::uint32_t last_frame_time_us() const;
 

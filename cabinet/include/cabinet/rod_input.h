@@ -22,6 +22,9 @@ struct RodInput {
   double angle_rate = 0.0;   // [rad/s]
   std::int64_t time_us = 0;  // when it was received, on the clock handed to poll()
   RodStatus status = RodStatus::absent;
+  // Of slide and angle, what no report has said yet: the motion since the last one, by its rate.
+  double slide_ahead = 0.0;  // [m]
+  double angle_ahead = 0.0;  // [rad]
 };
 using RodInputs = std::array<RodInput, kRods>;
 
@@ -35,6 +38,15 @@ struct SourceCounters {
   std::uint64_t overflows = 0;    // reports in which a sensor said it had moved too far to tell
   std::uint64_t impossible = 0;   // increments of a rod that no rod can make: dropped
   std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
+  // From the arrival at this machine to the poll that takes it in, where that is known [us].
+  std::uint64_t stamped = 0, latency_sum_us = 0, latency_max_us = 0;
+
+  void add_latency(std::int64_t us) {
+    const auto latency = static_cast<std::uint64_t>(us > 0 ? us : 0);
+    ++stamped;
+    latency_sum_us += latency;
+    if (latency > latency_max_us) latency_max_us = latency;
+  }
 
   friend SourceCounters operator+(const SourceCounters& a, const SourceCounters& b) {
     return {a.frames + b.frames,
@@ -44,7 +56,10 @@ struct SourceCounters {
             a.reopened + b.reopened,
             a.overflows + b.overflows,
             a.impossible + b.impossible,
-            a.line_errors + b.line_errors};
+            a.line_errors + b.line_errors,
+            a.stamped + b.stamped,
+            a.latency_sum_us + b.latency_sum_us,
+            a.latency_max_us > b.latency_max_us ? a.latency_max_us : b.latency_max_us};
   }
 };
 

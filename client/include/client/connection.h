@@ -81,6 +81,8 @@ class Connection {
   std::optional<wire::Questionnaire> questionnaire() const;
   // What is kept of the last match, and who plays best, as its server said; empty: nothing yet.
   std::optional<wire::Report> report() const;
+  // Where phones join, as the server that is joined said; empty: nowhere, or not for this client.
+  std::string phones() const;
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one

@@ -21,6 +21,7 @@ class Menu {
   explicit Menu(std::string profiles) : tuning_(std::move(profiles)) {}
 
   bool open() const { return open_; }
+  bool shows(Page page) const { return open_ && page_ == page; }
   // The page's key was pressed: opens it, or closes the menu that shows it.
   void toggle(Page page);
   bool waits_for_key() const {

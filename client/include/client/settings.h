@@ -48,6 +48,7 @@ struct Settings {
   bool automatic_rod = false;  // assists, each by itself
   bool goalie_follows = false;
   bool aim = false;
+  bool vibration = true;       // a gamepad shakes when a man of its rods hits the ball
   bool questionnaire = true;   // may be asked for after a match
   bool record_matches = true;  // read by whatever starts the server, as ./play does
   // Of each handle outside the screen against its rod in the picture, along the table [m]: for the

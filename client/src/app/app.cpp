@@ -174,6 +174,7 @@ void App::say_when_in_step(std::int64_t now) {
 void App::hear(std::int64_t now) {
   follow_connection();
   follow_roster();
+  follow_phones();
   SceneSample sample = connection_->sample(now);
   if (sample.any) sample_ = std::move(sample);  // else the last scene stands
   tell_names();
@@ -217,6 +218,24 @@ void App::drive_rods(bool menu, std::int64_t now) {
   if (!crew_->begun() || !crew_->plays()) return;
   connection_->drive(crew_->session(), crew_->rods());
   for (const wire::Wish& wish : crew_->wishes()) connection_->wish(crew_->session(), wish);
+}
+
+void App::follow_phones() {
+  std::string phones = connection_->phones();
+  if (phones == phones_) return;
+  phones_ = std::move(phones);
+  phones_code_ = qr_code_of(phones_);
+}
+
+// Each pad that has a rod of its own, or that the first person may have in a hand.
+void App::shake_pads() {
+  if (!settings_.vibration || !crew_ || !crew_->plays() || !sample_.any || !characters_) return;
+  for (const cabinet::HapticPulse& pulse : haptics_.feel(
+           events_, sample_.state, *characters_, tuning_, crew_->granted(), os::monotonic_us())) {
+    const DeviceSet devices = crew_->devices_of(crew_->player_of(pulse.rod));
+    for (int pad = 0; pad < kPads; ++pad)
+      if ((devices & bit_of(pad_device(pad))) != 0) window_->rumble(pad, pulse.strength, pulse.ms);
+  }
 }
 
 // Last before drawing, so that what the hand did is in this very frame.
@@ -271,6 +290,9 @@ HudState App::hud(const Camera& camera) {
   hud.rod_shift = rod_shift();
   tell_story(hud, story_);
   hud.menu = menu_.page(menu_context());
+  const bool logo = sample_.any && drawn_.screen == number(wire::Screen::logo);
+  const bool asks = menu_.shows(Menu::Page::seats) || (logo && !menu_.open());
+  if (asks && phones_code_.size > 0) hud.phones = &phones_code_;
   hud.rod_names = rod_names();
   if (report_) hud.fame = report_->fame;
   if (report_ && report_->match != report_before_) hud.report = &*report_;
@@ -323,6 +345,7 @@ void App::draw(float dt) {
   const wire::Snapshot& state = sample_.any ? drawn_ : kNothing;
   const bool moves = !state.paused && status_.link == Link::joined;
   if (sample_.any) {
+    if (moves) shake_pads();
     story_.update(events_, state, dt);
     effects_.show(events_, state, story_, particles_, sounds_.get(), moves ? dt : 0.0f);
   }

@@ -18,8 +18,10 @@
 #include "client/crew.h"
 #include "client/crew_names.h"
 #include "client/menu.h"
+#include "client/qr_code.h"
 #include "client/rod_prediction.h"
 #include "client/survey.h"
+#include "core/pad_haptics.h"
 #include "core/replay_reel.h"
 #include "draw/image.h"
 #include "os/clock.h"
@@ -74,6 +76,8 @@ class App {
   void choose_game(std::int64_t now);
   void hear_of_pads();
   void tell(std::vector<std::string> lines);
+  void shake_pads();
+  void follow_phones();
   void predict(std::int64_t now);
   void draw(float dt);
   std::uint8_t active_rods() const;
@@ -100,6 +104,9 @@ class App {
   std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
   Effects effects_;
+  PadHaptics haptics_;
+  std::string phones_;  // where they join, as the server says
+  QrCode phones_code_;
   MatchStory story_;
   std::vector<wire::EventSnapshot> events_;  // reached, not shown yet
   ViewMotion motion_;

@@ -44,7 +44,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
               quality = "auto", view;
   CLI::App cli(
       "Space Foosball: the renderer. Draws what the physics server simulates, and sends it your "
-      "hands.",
+      "hands.\n\"space-foosball doctor\" says what is connected that can move rods.",
       "space-foosball");
   cli.add_option("--server", server, "the physics server, HOST:PORT")->capture_default_str();
   cli.add_option("--team", team, "0 or 1 to play, watch to look on")

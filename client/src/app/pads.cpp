@@ -4,13 +4,17 @@
 #include <SDL2/SDL.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
 #include "app/log.h"
+#include "os/clock.h"
 
 namespace client {
 namespace {
+
+constexpr int kStickMoved = 8000;  // of 32767: more than a stick's rest wanders
 
 std::optional<PadButton> meaning_of(int button) {
   switch (button) {
@@ -88,7 +92,7 @@ void Pads::plug_in(int device, InputCollector& into) {
   const std::int32_t instance = SDL_JoystickInstanceID(SDL_GameControllerGetJoystick(pad));
   if (place_of(instance) >= 0) return SDL_GameControllerClose(pad);  // was told twice
   const int number = static_cast<int>(best - places_.data());
-  *best = {instance, pad, guid, {}};
+  *best = {instance, pad, guid, {}, 0};
   into.connect(number, true);
   log_info("gamepad " + std::to_string(number + 1) + ": " + SDL_GameControllerName(pad));
 }
@@ -98,10 +102,28 @@ void Pads::unplug(std::int32_t instance, InputCollector& into) {
   if (number < 0) return;
   Place& place = places_[static_cast<std::size_t>(number)];
   SDL_GameControllerClose(static_cast<SDL_GameController*>(place.pad));
-  place = {-1, nullptr, place.guid, {}};
+  place = {-1, nullptr, place.guid, {}, 0};
   into.connect(number, false);
   news_.push_back("gamepad " + std::to_string(number + 1) +
                   " was unplugged: its rods stay where they are");
+}
+
+void Pads::use(std::int32_t instance) {
+  if (const int number = place_of(instance); number >= 0)
+    places_[static_cast<std::size_t>(number)].used_us = os::monotonic_us();
+}
+
+// Both motors: the slow one is what a hand feels of a hit, the fast one its edge. SDL ends it by
+// itself.
+void Pads::rumble(int pad, float strength, std::uint16_t ms) {
+  if (pad < 0 || pad >= kPads || ms == 0 || !(strength > 0.0f)) return;
+  const Place& place = places_[static_cast<std::size_t>(pad)];
+  const bool in_hand = place.used_us != 0 && os::monotonic_us() - place.used_us < kInHandUs;
+  if (place.pad == nullptr || !in_hand) return;
+  const auto level = static_cast<Uint16>(65535.0f * std::min(strength, 1.0f));
+  auto* controller = static_cast<SDL_GameController*>(place.pad);
+  if (SDL_GameControllerRumble(controller, level, static_cast<Uint16>(level / 2), ms) == 0)
+    ++rumbles_;
 }
 
 void Pads::turn_axis(std::int32_t instance, int axis, int value, InputCollector& into) {
@@ -132,8 +154,10 @@ void Pads::poll(InputCollector& into) {
         if (const auto button = meaning_of(event.cbutton.button))
           into.button(place_of(event.cbutton.which), *button,
                       event.type == SDL_CONTROLLERBUTTONDOWN);
+        use(event.cbutton.which);
         break;
       case SDL_CONTROLLERAXISMOTION:
+        if (std::abs(event.caxis.value) > kStickMoved) use(event.caxis.which);
         turn_axis(event.caxis.which, event.caxis.axis, event.caxis.value, into);
         break;
       default:

@@ -20,6 +20,11 @@ class Pads {
   Pads& operator=(const Pads&) = delete;
 
   void poll(InputCollector& into);
+  // Shakes this pad, 0 .. kPads - 1, for so long, if it has motors and was used within kInHandUs:
+  // one that lies on the desk does not rattle. strength 0..1.
+  static constexpr std::int64_t kInHandUs = 10'000'000;
+  void rumble(int pad, float strength, std::uint16_t ms);
+  std::uint64_t rumbles() const { return rumbles_; }  // that a pad took
   // Since the last call: what a person should read, such as that one was unplugged.
   std::vector<std::string> take_news();
 
@@ -29,15 +34,18 @@ class Pads {
     void* pad = nullptr;         // SDL_GameController
     std::string guid;            // of the model that was here last
     cabinet::PadState sticks;
+    std::int64_t used_us = 0;  // os::monotonic_us() when it was last pressed or moved; 0: never
   };
   int place_of(std::int32_t instance) const;  // -1: none
   void plug_in(int device, InputCollector& into);
   void unplug(std::int32_t instance, InputCollector& into);
+  void use(std::int32_t instance);
   void turn_axis(std::int32_t instance, int axis, int value, InputCollector& into);
 
   bool started_ = false;
   std::array<Place, kPads> places_;
   std::vector<std::string> news_;
+  std::uint64_t rumbles_ = 0;
 };
 
 }  // namespace client

@@ -142,6 +142,10 @@ void Window::forget_input() {
 const InputCollector& Window::input() const {
   return impl_->input;
 }
+void Window::rumble(int pad, float strength, std::uint16_t ms) {
+  impl_->pads.rumble(pad, strength, ms);
+}
+
 std::vector<std::string> Window::take_news() {
   return impl_->pads.take_news();
 }

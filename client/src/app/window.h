@@ -28,8 +28,9 @@ class Window {
   void set_keys(const KeyBindings& keys);
   // Takes what has happened, by events: nothing that is over by now is lost.
   void poll();
-  const InputCollector& input() const;   // since the last forget_input()
-  void forget_input();                   // a frame has taken it
+  const InputCollector& input() const;                     // since the last forget_input()
+  void forget_input();                                     // a frame has taken it
+  void rumble(int pad, float strength, std::uint16_t ms);  // as Pads has it
   std::vector<std::string> take_news();  // what a person should read: a gamepad that was unplugged
   void wait(double seconds);             // until the window has news, at most so long
   bool captured() const;

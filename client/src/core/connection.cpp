@@ -65,6 +65,9 @@ std::optional<wire::Game> Connection::game() const {
 std::optional<wire::Questionnaire> Connection::questionnaire() const {
   return impl_->link.questionnaire();
 }
+std::string Connection::phones() const {
+  return impl_->link.phones();
+}
 std::optional<wire::Report> Connection::report() const {
   return impl_->link.report();
 }

@@ -102,6 +102,11 @@ std::optional<wire::Report> ControlLink::report() const {
   return report_;
 }
 
+std::string ControlLink::phones() const {
+  const std::lock_guard lock(mutex_);
+  return status_.link == Link::joined ? phones_ : std::string();
+}
+
 std::optional<wire::Tuning> ControlLink::tuning() const {
   const std::lock_guard lock(mutex_);
   return tuning_;
@@ -303,6 +308,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     report_ = *report;
   }
+  if (const auto* phones = std::get_if<wire::Phones>(&message)) {
+    const std::lock_guard lock(mutex_);
+    phones_ = phones->url;
+  }
   if (const auto* record = std::get_if<wire::Characters>(&message)) {
     return on_characters(*record, now_us);
   }
@@ -327,6 +336,7 @@ void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) 
   stage_ = Stage::joined;
   joined_at_us_ = now_us;
   const std::lock_guard lock(mutex_);
+  phones_.clear();
   status_.link = Link::joined;
   status_.server_ended = false;
   status_.detail.clear();

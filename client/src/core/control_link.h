@@ -31,6 +31,7 @@ class ControlLink {
   std::optional<wire::Game> game() const;
   std::optional<wire::Questionnaire> questionnaire() const;
   std::optional<wire::Report> report() const;
+  std::string phones() const;
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
   void kick(std::uint64_t session, const wire::Kick& kick);
@@ -94,6 +95,7 @@ class ControlLink {
   std::optional<wire::Game> game_;
   std::optional<wire::Questionnaire> questionnaire_;
   std::optional<wire::Report> report_;
+  std::string phones_;                       // of the server that is joined; empty: not told
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

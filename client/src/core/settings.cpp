@@ -130,6 +130,7 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "automatic_rod") return flag(s.automatic_rod);
   if (name == "goalie_follows") return flag(s.goalie_follows);
   if (name == "aim") return flag(s.aim);
+  if (name == "vibration") return flag(s.vibration);
   if (name == "questionnaire") return flag(s.questionnaire);
   if (name == "record_matches") return flag(s.record_matches);
   if (name == "handle_offset_mm")
@@ -253,6 +254,7 @@ std::string format_settings(const Settings& s) {
   out << "automatic_rod = " << yes_no(s.automatic_rod) << "\n";
   out << "goalie_follows = " << yes_no(s.goalie_follows) << "\n";
   out << "aim = " << yes_no(s.aim) << "\n";
+  out << "vibration = " << yes_no(s.vibration) << "\n";
   out << "questionnaire = " << yes_no(s.questionnaire) << "\n";
   out << "record_matches = " << yes_no(s.record_matches) << "\n";
   out << "handle_offset_mm =";

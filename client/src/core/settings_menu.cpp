@@ -27,6 +27,7 @@ enum Row : int {
   row_automatic,
   row_goalie,
   row_aim,
+  row_vibration,
   row_questionnaire,
   first_name,
   first_offset = first_name + static_cast<int>(kNamedPeople),
@@ -164,6 +165,7 @@ std::vector<MenuRow> SettingsMenu::rows(const Settings& s) const {
       {N_("Assist: automatic rod"), on_off(s.automatic_rod)},
       {N_("Assist: goalie follows"), on_off(s.goalie_follows)},
       {N_("Assist: aim"), on_off(s.aim)},
+      {N_("Vibration of gamepads"), on_off(s.vibration)},
       {N_("Questions after a match"), on_off(s.questionnaire)},
   };
   for (std::size_t i = 0; i < s.names.size(); ++i) {
@@ -226,6 +228,9 @@ bool SettingsMenu::change(int way, Settings& s) {
       break;
     case row_aim:
       flip(s.aim);
+      break;
+    case row_vibration:
+      flip(s.vibration);
       break;
     case row_questionnaire:
       flip(s.questionnaire);

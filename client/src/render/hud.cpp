@@ -373,6 +373,7 @@ void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
     draw_for_reader(HudPen(ui, lower, !left, 1.35f * hud.text_scale), hud, screen);
     ui.turn(glm::vec2(0.0f));
   }
+  draw_phone_code(whole, hud, screen);
   ui.flush(screen);
 }
 

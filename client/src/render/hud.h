@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "client/menu_page.h"
+#include "client/qr_code.h"
 #include "client/settings.h"
 #include "client/survey.h"
 #include "core/match_story.h"
@@ -54,6 +55,7 @@ struct HudState {
   std::vector<wire::Fame> fame;          // who plays best; none: not known
   MenuPage menu;                         // no rows: closed
   std::vector<SurveyPanel> survey;       // the questionnaire, by person; none: not asked
+  const QrCode* phones = nullptr;        // where they join; null: not shown
   std::array<std::string, 8> rod_names;  // who plays each, to be shown at its handle
 };
 
@@ -65,6 +67,9 @@ void draw_menu(const HudPen& pen, const MenuPage& page);
 // Of this team's people, at the lower edge; -1: of both.
 void draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
 float survey_height(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
+// At the right edge, below the title and above the keys; left out where its modules would be
+// smaller than two pixels, or where there is no room beside the menu.
+void draw_phone_code(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& screen);
 

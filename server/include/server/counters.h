@@ -38,6 +38,22 @@ struct InputCounters {
   std::uint64_t stale = 0;    // no newer than one accepted: late, or sent twice, or replayed
 };
 
+// Connections and messages on the port for phones.
+struct PhoneCounters {
+  std::uint64_t accepted = 0;  // connections
+  std::uint64_t pages = 0;     // served
+  std::uint64_t joined = 0;    // phones that said hello, each connection anew
+  std::uint64_t refused = 0;   // without the token, or no room
+  std::uint64_t bad_messages = 0;
+  std::uint64_t timed_out = 0;     // no hello in time
+  std::uint64_t crowded_out = 0;   // had to leave the door for newer ones
+  std::uint64_t slow_dropped = 0;  // did not read what was sent to them
+  std::uint64_t inputs = 0;        // handed to the tick
+  std::uint64_t inputs_dropped = 0;
+  std::uint64_t pulses = 0;  // sent to phones
+  std::uint64_t pulses_dropped = 0;
+};
+
 struct Counters {
   std::uint64_t ticks = 0;
   std::uint64_t snapshots_sent = 0;  // datagrams, over all listeners
@@ -52,6 +68,8 @@ struct Counters {
   std::uint64_t answers_kept = 0;     // players' sheets of the questionnaire there
   InputCounters input;
   ControlCounters control;
+  PhoneCounters phones;
+  std::uint64_t haptic_pulses = 0;  // of hits, as far as bounded; to whoever has the rod
 };
 
 struct DeviceCounters {

@@ -31,6 +31,26 @@ struct AccessOptions {
   bool mixed_teams = false;                  // a client from afar may have rods of both teams
 };
 
+// The port for phones (docs/phones.md).
+struct PhoneLimits {
+  int phones = 16;    // that have said hello; a table has rods for four
+  int greeting = 64;  // who has not yet, in all; beyond, the oldest of the network that has most of
+                      // them must go
+  std::int64_t hello_us = 5'000'000;    // from the connection to the hello, or to the page's end,
+                                        // however either trickles
+  std::int64_t silent_us = 10'000'000;  // until a phone that answers no ping is lost
+  int messages_at_once = 200;           // of one phone; then one each 2 ms
+  std::int64_t message_every_us = 2'000;
+  std::size_t bytes_per_second = 32 * 1024;  // read from one connection, whatever they are
+  std::size_t unsent = 64;                   // messages to a phone that does not read
+};
+struct PhoneOptions {
+  bool open = false;
+  std::string listen;      // empty: where the control port does
+  std::uint16_t port = 0;  // TCP; 0: any free one
+  PhoneLimits limits;
+};
+
 // Limits against strangers on the control port; see docs/decisions/0010 and
 // control_server.h.
 struct ControlLimits {

@@ -15,7 +15,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "cabinet/device_source.h"
+#include "cabinet/device.h"
+#include "cabinet/haptics.h"
 #include "foosball/computer_player.h"
 #include "foosball/match.h"
 #include "server/counters.h"
@@ -36,6 +37,9 @@ struct ServerOptions {
   NetworkOptions network;
   AccessOptions access;
   ControlLimits limits;
+  PhoneOptions phones;
+  bool haptics =
+      true;  // hands of cabinets and phones feel hits; clients have a switch of their own
   std::uint64_t session = 0;              // random, other at every start
   std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
   std::string record;                     // a file, or empty
@@ -71,7 +75,11 @@ class Server {
   ~Server();  // as finish(), if that was not called
 
   // Precondition: before the first tick. It takes memory, and rods would change hands.
-  void add_device(std::unique_ptr<cabinet::DeviceSource> device);
+  void add_device(std::unique_ptr<cabinet::Device> device);
+
+  // The motors of the cabinet's rods: gets the pulses of those that a device has, from tick().
+  // Precondition: before the first tick.
+  void set_cabinet_haptics(std::unique_ptr<cabinet::HapticSink> sink);
 
   // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
   void tick(std::int64_t now_us);
@@ -101,6 +109,7 @@ class Server {
   void finish(const wire::Sentence& reason);
 
   std::uint16_t port() const;
+  std::string phones() const;  // where they join, http://HOST:PORT/TOKEN; empty: nowhere
   const foosball::Match& match() const;
   bool replay_over() const;             // nothing more to play
   const Playback* replay() const;       // or null

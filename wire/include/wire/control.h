@@ -19,11 +19,12 @@
 
 namespace wire {
 
-inline constexpr std::uint16_t kControlVersion = 6;
+inline constexpr std::uint16_t kControlVersion = 7;
 inline constexpr std::size_t kMaxControlMessage = 64 * 1024;  // bytes
 
 inline constexpr std::size_t kMaxName = 64;   // bytes: name, multicast
 inline constexpr std::size_t kMaxText = 200;  // bytes: reason, text
+inline constexpr std::size_t kMaxUrl = 128;   // bytes: url
 
 inline constexpr std::uint8_t kWatchOnly = 255;
 inline constexpr std::size_t kMaxSeats = 64;
@@ -212,9 +213,15 @@ struct Report {
   std::vector<Fame> fame;  // <= kMaxFame, best first
 };
 
-using ControlMessage =
-    std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game, Names>;
+// Server to client, to players and hosts, on joining: where phones join as pairs of rods
+// (wire/phone_message.h). Who knows it may play.
+struct Phones {
+  std::string url;
+};
+
+using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
+                                    Challenge, Claim, Roster, Tuning, Characters, Questionnaire,
+                                    Answers, Report, Kick, Game, Names, Phones>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

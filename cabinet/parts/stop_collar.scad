@@ -1,0 +1,23 @@
+// Stop at a rod's end: clamps the rod by one M3 screw and carries a rubber ring that meets the bearing.
+// It stops the rod, and is where the program's rod stops: set it by the table of travels.
+include <dimensions.scad>
+
+ring_thickness = 3;  // of the rubber ring, over its seat [mm]
+
+module stop_collar() {
+  difference() {
+    union() {
+      along_x(collar_diameter, collar_width - bumper_width);
+      along_x(collar_diameter - 2 * ring_thickness, collar_width);
+    }
+    along_x(rod_diameter + 0.15, collar_width + 2, -1);
+    translate([-1, -clamp_slit / 2, -collar_diameter]) cube([collar_width + 2, clamp_slit, collar_diameter]);
+    translate([(collar_width - bumper_width) / 2, 0, -rod_diameter / 2 - 4.5]) rotate([90, 0, 0]) {
+      cylinder(d = screw, h = 60, center = true);
+      translate([0, 0, 6]) cylinder(d = nut_width / cos(30), h = 20, $fn = 6);
+      translate([0, 0, -26]) cylinder(d = 6.2, h = 20);
+    }
+  }
+}
+
+rotate([0, -90, 0]) stop_collar();

@@ -1,0 +1,102 @@
+// "evdev:/dev/input/event5:4": from an address a person types to a mouse that is grabbed.
+#include <fcntl.h>
+#include <linux/input.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "cabinet/mouse_source.h"
+#include "exclusive_line.h"
+#include "line_keeper.h"
+#include "mouse_line.h"
+#include "os/file_descriptor.h"
+
+namespace cabinet {
+namespace {
+
+constexpr std::string_view kScheme = "evdev:";
+
+bool has_bit(const unsigned long* bits, unsigned bit) {
+  constexpr unsigned kBits = 8 * sizeof(unsigned long);
+  return (bits[bit / kBits] >> bit % kBits & 1) != 0;
+}
+
+int fail(int error) {
+  errno = error;
+  return -1;
+}
+
+}  // namespace
+
+bool is_mouse(int fd) {
+  unsigned long axes = 0;
+  const int got = ::ioctl(fd, EVIOCGBIT(EV_REL, sizeof axes), &axes);
+  return got > 0 && has_bit(&axes, REL_X) && has_bit(&axes, REL_Y);
+}
+
+int open_mouse_line(const char* path) {
+  os::FileDescriptor fd(open_exclusively(path));
+  if (!fd) return -1;
+  if (!is_mouse(fd.get())) return fail(ENOTTY);
+  int clock = CLOCK_MONOTONIC;
+  if (::ioctl(fd.get(), EVIOCSCLOCKID, &clock) != 0) return fail(errno);
+  if (::ioctl(fd.get(), EVIOCGRAB, 1) != 0) return fail(errno);
+  return fd.release();
+}
+
+bool is_mouse_address(const std::string& address) {
+  return address.compare(0, kScheme.size(), kScheme) == 0;
+}
+
+tl::expected<MouseAddress, std::string> parse_mouse_address(const std::string& address) {
+  MouseAddress parsed;
+  if (is_mouse_address(address)) parsed.path = address.substr(kScheme.size());
+  const std::size_t size = parsed.path.size();
+  if (size >= 2 && parsed.path[size - 2] == ':') {
+    const char rod = parsed.path[size - 1];
+    if (rod < '1' || rod > '8') {
+      return tl::unexpected(
+          "\"" + address + "\" names no rod: write one from 1 (at team 0's goal) " +
+          "to 8, such as " + std::string(kScheme) + parsed.path.substr(0, size - 2) + ":4.");
+    }
+    parsed.rod = rod - '1';
+    parsed.path.resize(size - 2);
+  }
+  if (!parsed.path.empty() && parsed.path[0] == '/') return parsed;
+  return tl::unexpected(
+      "\"" + address +
+      "\" names no mouse: write evdev:/dev/input/eventN, or with a rod from 1 to 8 "
+      "evdev:/dev/input/eventN:4; space-foosball-doctor lists the mice.");
+}
+
+tl::expected<std::unique_ptr<MouseSource>, std::string> open_mouse(const std::string& path,
+                                                                   MouseOptions options) {
+  struct stat about {};
+  if (::stat(path.c_str(), &about) == 0) {
+    if (!S_ISCHR(about.st_mode)) {
+      return tl::unexpected(options.name + ": not a device; space-foosball-doctor lists the mice.");
+    }
+    if (::access(path.c_str(), R_OK) != 0) {
+      return tl::unexpected(options.name + ": " + std::strerror(errno) +
+                            "; install cabinet/70-space-foosball.rules, or join group input and "
+                            "log in anew (docs/cabinet.md).");
+    }
+    const os::FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (fd && !is_mouse(fd.get())) {
+      return tl::unexpected(options.name + ": no mouse; space-foosball-doctor lists the mice.");
+    }
+  }
+  auto keeper = std::make_shared<LineKeeper>([path] { return open_mouse_line(path.c_str()); });
+  options.reopen_us = 100'000;  // an attempt costs the poller nothing
+  return std::make_unique<MouseSource>(
+      std::move(options), [keeper] { return keeper->take(); },
+      [keeper](int fd) { keeper->close(fd); });
+}
+
+}  // namespace cabinet

@@ -1,0 +1,212 @@
+#include "cabinet/mouse_source.h"
+
+#include <fcntl.h>
+#include <linux/input.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "rod_limits.h"
+#include "state_filter.h"
+
+namespace cabinet {
+namespace {
+
+constexpr int kMostReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest mouse
+// The kernel hands an event on within this.
+constexpr std::int64_t kHandOverUs = 500;
+constexpr std::int64_t kOldestUs = 1'000'000;
+
+RodMotion count_of(const RodCalibration& rod) {
+  return {std::hypot(rod.m[0][0], rod.m[0][1]), std::hypot(rod.m[1][0], rod.m[1][1])};
+}
+
+}  // namespace
+
+RodCalibration hand_mouse(double slide_sign, double angle_sign) {
+  constexpr double kMetresPerCount = 25.4e-6;
+  return {.m = {{slide_sign * 1.5 * kMetresPerCount, 0}, {0, angle_sign * 60 * kMetresPerCount}}};
+}
+
+struct MouseSource::Impl {
+  Impl(MouseOptions with, DeviceOpener opener, DeviceCloser closer)
+      : options(std::move(with)),
+        open(std::move(opener)),
+        close(std::move(closer)),
+        integrator(options.calibration),
+        filter(count_of(options.calibration), true) {}
+  ~Impl() { close_device(); }
+
+  void open_device(std::int64_t now_us);
+  void close_device();
+  void lose_device(std::int64_t now_us);
+  void take_in(std::int64_t now_us);
+  void take(const input_event& event, std::int64_t now_us);
+  void report(std::int64_t time_us, std::int64_t now_us);
+  void predict(std::int64_t now_us);
+  RodInput& rod() { return rods[static_cast<std::size_t>(options.rod)]; }
+
+  MouseOptions options;
+  DeviceOpener open;
+  DeviceCloser close;
+  RodIntegrator integrator;
+  StateFilter filter;
+  RodMotion measured{0, 0};
+  RodInputs rods{};
+  SourceCounters counters;
+  int fd = -1, open_error = ENOENT;
+  bool tried = false, ever_open = false;
+  std::int64_t try_open_us = 0;
+
+  std::array<char, 64 * sizeof(input_event)> bytes{};
+  std::size_t filled = 0;
+  std::int64_t right = 0, backward = 0;  // since the last report [counts]
+  bool dropped = false;                  // by the kernel, until the report that comes after
+  std::int64_t seen_us = 0;              // the last report, or poll
+  std::int64_t reported_us = 0;
+};
+
+void MouseSource::Impl::open_device(std::int64_t now_us) {
+  if (tried && now_us < try_open_us) return;
+  tried = true;
+  try_open_us = now_us + options.reopen_us;
+  errno = ENOENT;
+  fd = open();
+  if (fd < 0) {
+    open_error = errno;
+    fd = -1;
+    return;
+  }
+  const int flags = ::fcntl(fd, F_GETFL);
+  if (flags < 0 || ::fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
+    open_error = errno;
+    return close_device();
+  }
+  if (std::exchange(ever_open, true)) ++counters.reopened;
+  filled = 0;
+  right = backward = 0;
+  dropped = false;
+  seen_us = std::max(seen_us, now_us);
+  filter.rest();
+  rod().status = RodStatus::live;
+}
+
+void MouseSource::Impl::close_device() {
+  if (fd >= 0) close(fd);
+  fd = -1;
+}
+
+void MouseSource::Impl::lose_device(std::int64_t now_us) {
+  close_device();
+  open_error = 0;
+  try_open_us = now_us + options.reopen_us;
+  filter.rest();
+  predict(now_us);
+  rod().status = RodStatus::held;
+}
+
+void MouseSource::Impl::take_in(std::int64_t now_us) {
+  for (int reads = 0; reads < kMostReadsPerPoll; ++reads) {
+    const ssize_t got = ::read(fd, bytes.data() + filled, bytes.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (got <= 0) return lose_device(now_us);
+    filled += static_cast<std::size_t>(got);
+    std::size_t at = 0;
+    for (; filled - at >= sizeof(input_event); at += sizeof(input_event)) {
+      input_event event;
+      std::memcpy(&event, bytes.data() + at, sizeof event);
+      take(event, now_us);
+    }
+    std::memmove(bytes.data(), bytes.data() + at, filled - at);
+    filled -= at;
+  }
+}
+
+void MouseSource::Impl::take(const input_event& event, std::int64_t now_us) {
+  if (event.type == EV_REL && event.code == REL_X) right += event.value;
+  if (event.type == EV_REL && event.code == REL_Y) backward += event.value;
+  if (event.type != EV_SYN) return;
+  if (event.code == SYN_DROPPED) {
+    dropped = true;
+    ++counters.lost;
+  }
+  if (event.code != SYN_REPORT) return;
+  // Seconds of a stranger's: only those of the last second are reckoned with.
+  const std::int64_t seconds = event.input_event_sec, micros = event.input_event_usec;
+  const bool sane = seconds >= (now_us - kOldestUs) / 1'000'000 && seconds <= now_us / 1'000'000 &&
+                    micros >= 0 && micros < 1'000'000;
+  const std::int64_t stamp = sane ? seconds * 1'000'000 + micros : now_us;
+  const bool fresh = sane && stamp <= now_us;
+  if (!fresh) ++counters.stale;
+  report(fresh ? stamp : now_us, now_us);
+}
+
+// What a kernel's buffer did not hold is lost, and so is the report in which it says so.
+void MouseSource::Impl::report(std::int64_t time_us, std::int64_t now_us) {
+  const std::int64_t x = std::exchange(right, 0), y = -std::exchange(backward, 0);
+  if (std::exchange(dropped, false) || (x == 0 && y == 0)) return;
+  ++counters.frames;
+  counters.add_latency(now_us - time_us);
+  const std::int64_t time = std::max(time_us, seen_us);
+  const double seconds = 1e-6 * static_cast<double>(std::max(time - reported_us, std::int64_t{0}));
+  RodMotion moved = integrator.add(static_cast<double>(x), static_cast<double>(y),
+                                   std::min(seconds, 1.0), measured.angle);
+  if (!possible(moved, std::min(seconds, kLongestReport))) {
+    ++counters.impossible;
+    moved = {0, 0};
+  }
+  filter.update(moved.slide, moved.angle, time);
+  seen_us = reported_us = time;
+  measured.slide += moved.slide;
+  measured.angle += moved.angle;
+  if (options.slide_limit > 0) {
+    measured.slide = std::clamp(measured.slide, -options.slide_limit, options.slide_limit);
+  }
+  rod().time_us = now_us;
+}
+
+void MouseSource::Impl::predict(std::int64_t now_us) {
+  show_ahead(measured, filter.at(now_us), options.slide_limit, rod());
+}
+
+MouseSource::MouseSource(MouseOptions options, DeviceOpener open, DeviceCloser close)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(open),
+                                   close ? std::move(close) : DeviceCloser(::close))) {}
+
+MouseSource::~MouseSource() = default;
+
+void MouseSource::poll(std::int64_t now_us) {
+  Impl& in = *impl_;
+  if (in.fd < 0) in.open_device(now_us);
+  if (in.fd >= 0) in.take_in(now_us);
+  if (in.fd < 0) return;
+  if (now_us - kHandOverUs > in.seen_us) {  // nothing has come until then
+    in.seen_us = now_us - kHandOverUs;
+    in.filter.update(0, 0, in.seen_us);
+  }
+  in.predict(now_us);
+}
+
+const RodInputs& MouseSource::rods() const {
+  return impl_->rods;
+}
+const SourceCounters& MouseSource::counters() const {
+  return impl_->counters;
+}
+const std::string& MouseSource::name() const {
+  return impl_->options.name;
+}
+DeviceState MouseSource::state() const {
+  return impl_->fd >= 0 ? DeviceState::live : state_of_error(impl_->open_error);
+}
+int MouseSource::open_error() const {
+  return impl_->open_error;
+}
+
+}  // namespace cabinet

@@ -1,0 +1,228 @@
+// Raspberry Pi Pico: eight SPI motion sensors or PS/2 mice in, one 64-byte HID report a millisecond
+// out, sampled just before the host asks for it; commands in, for haptics and settings.
+#include "core/haptics.h"
+#include "core/mouse_host.h"
+#include "core/report_clock.h"
+#include "core/sensor_host.h"
+#include "core/settings.h"
+#include "rp2040/board.h"
+#include "rp2040/flash.h"
+#include "rp2040/i2c.h"
+#include "rp2040/ps2_pins.h"
+#include "rp2040/sensor_pins.h"
+#include "rp2040/system.h"
+#include "rp2040/usb_controller.h"
+#include "wire/device_command.h"
+#include "wire/device_frame.h"
+
+namespace {
+
+const uint16_t kButtonHoldMs = 1000;  // then the boot loader
+const uint16_t kBlinkMs = 100;        // a tick of the LED's patterns
+const uint32_t kQuietUs = 50;         // nothing else begins so short before a sample
+
+rp2040::UsbController g_usb;
+rp2040::SensorPins g_sensor_pins;
+rp2040::I2c g_i2c;
+firmware::SensorHost g_sensors(g_sensor_pins);
+firmware::MouseHost g_mice;
+firmware::Haptics g_haptics(g_i2c);
+firmware::ReportClock g_clock;
+firmware::Settings g_settings;
+alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
+uint8_t g_serial[2 + 4 * rp2040::kUniqueIdBytes];       // a string descriptor
+
+uint32_t g_ms = 0;
+uint32_t g_ms_began_us = 0;
+uint16_t g_sequence = 0;
+wire::DeviceFrame g_frame;  // the last that was made
+uint8_t g_errors = 0;       // counted in the next frame
+uint16_t g_button_ms = 0;
+volatile uint8_t g_events = 0;  // interrupts that leave work to the loop
+
+void make_serial() {
+  uint8_t id[rp2040::kUniqueIdBytes];
+  rp2040::hold_interrupts();
+  rp2040::read_unique_id(id);
+  rp2040::allow_interrupts();
+  g_serial[0] = sizeof g_serial;
+  g_serial[1] = 3;
+  for (uint8_t i = 0; i < 2 * rp2040::kUniqueIdBytes; ++i) {
+    const uint8_t digit = (i % 2 == 0 ? id[i / 2] >> 4 : id[i / 2]) & 0xF;
+    g_serial[2 + 2 * i] = static_cast<uint8_t>(digit < 10 ? '0' + digit : 'A' + digit - 10);
+    g_serial[3 + 2 * i] = 0;
+  }
+}
+
+void apply_settings() {
+  const uint8_t sensors = static_cast<uint8_t>(~g_settings.ps2);
+  rp2040::Ps2Pins::begin(g_settings.ps2);
+  g_sensor_pins.begin(sensors);
+  g_sensors.begin(sensors, g_settings.resolution);
+  g_haptics.allow((g_settings.switches & firmware::kPulsesOff) == 0);
+}
+
+void report() {
+  if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
+  if (g_settings.ps2 != 0) {
+    g_mice.make_frame(rp2040::micros(), g_frame);
+  } else {
+    g_frame.flags = 0;
+    g_frame.time_us = rp2040::micros();
+    g_frame.overflow = 0;
+    g_frame.quality = 0;
+  }
+  g_frame.sequence = g_sequence++;
+  g_frame.quality =
+      static_cast<uint8_t>(g_errors > 255 - g_frame.quality ? 255 : g_frame.quality + g_errors);
+  g_errors = 0;
+  g_sensors.add_to_frame(g_frame);
+  wire::encode_device_frame(g_frame, g_report);
+  g_usb.send_report(g_report);
+}
+
+// Of ten ticks those with light. Steady: all is well. Five short ones: no host; one: a host, but no
+// sensor; nine: some of the sensors; with the watchdog's work two gaps in any of them.
+uint16_t led_pattern() {
+  if (!g_usb.configured()) return 0x155;
+  if (g_frame.present == 0) return 0x001;
+  return g_frame.present == 0xFF ? 0x3FF : 0x1FF;
+}
+
+void show_state() {
+  const unsigned tick = g_ms / kBlinkMs % 10;
+  uint16_t pattern = led_pattern();
+  if (rp2040::watchdog_resets() != 0) pattern = static_cast<uint16_t>(pattern & ~0x088);
+  rp2040::set_led((pattern >> tick & 1) != 0 ? g_settings.brightness : 0);
+}
+
+void watch_button() {
+  if (!rp2040::button_pressed()) {
+    g_button_ms = 0;
+  } else if (++g_button_ms == kButtonHoldMs) {
+    g_haptics.all_off();
+    rp2040::reg(rp2040::kGpioOutClear) = rp2040::bit(rp2040::kMotorsEnable);
+    rp2040::feed_watchdog(8'000'000);
+    rp2040::enter_boot_loader();
+  }
+}
+
+void guard_motors() {
+  const uint32_t line = rp2040::bit(rp2040::kMotorsEnable);
+  const bool on = (g_settings.switches & firmware::kPulsesOff) == 0;
+  if (g_haptics.safe() && on) {
+    rp2040::reg(rp2040::kGpioOutSet) = line;
+    return;
+  }
+  rp2040::reg(rp2040::kGpioOutClear) = line;
+  if (!g_haptics.safe()) g_haptics.made_safe();
+}
+
+void each_ms() {
+  watch_button();
+  show_state();
+  guard_motors();
+}
+
+void pass_time(uint32_t now_us) {
+  while (now_us - g_ms_began_us >= 1000) {
+    g_ms_began_us += 1000;
+    ++g_ms;
+    each_ms();
+  }
+}
+
+void obey(const wire::DeviceCommand& command) {
+  switch (command.kind) {
+    case wire::kPulseCommand:
+      g_haptics.pulse(command.rod, command.amplitude, command.duration_ms, g_ms);
+      break;
+    case wire::kAllOffCommand:
+      g_haptics.all_off();
+      break;
+    case wire::kSettingsCommand:
+      g_settings = firmware::settings_of(command);
+      g_haptics.all_off();
+      rp2040::save_settings(g_settings);
+      pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
+      apply_settings();
+      break;
+  }
+}
+
+void take_commands() {
+  uint8_t bytes[wire::kDeviceReportBytes];
+  wire::DeviceCommand command;
+  while (g_usb.take_command(bytes) != 0) {
+    if (wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
+      obey(command);
+    } else if (g_errors < 255) {
+      ++g_errors;
+    }
+  }
+}
+
+void sample_and_report() {
+  static uint32_t last_us = 0;
+  const uint32_t began_us = rp2040::micros();
+  const uint32_t elapsed_ms = (began_us - last_us + 500) / 1000;
+  last_us = began_us;
+  g_sensors.sample(static_cast<uint8_t>(elapsed_ms < 1 ? 1 : elapsed_ms < 255 ? elapsed_ms : 255));
+  report();
+  g_clock.sampled(rp2040::micros());
+}
+
+}  // namespace
+
+extern "C" void usb_interrupt() {
+  g_usb.on_interrupt();
+  g_events = static_cast<uint8_t>(g_events + 1);
+}
+extern "C" void i2c0_interrupt() {
+  g_i2c.on_interrupt();
+  g_events = static_cast<uint8_t>(g_events + 1);
+}
+extern "C" void timer1_interrupt() {
+  rp2040::Ps2Pins::sample(g_mice.lines());
+}
+
+int main() {
+  rp2040::start_system();
+  rp2040::start_watchdog();
+  if (rp2040::watchdog_resets() != 0) g_errors = 1;
+  make_serial();
+  rp2040::load_settings(g_settings);
+  g_i2c.start();
+  apply_settings();
+  g_usb.start(g_serial);
+  g_ms_began_us = rp2040::micros();
+  g_clock.begin(g_ms_began_us);
+  bool served = false;
+  for (;;) {
+    rp2040::feed_watchdog();
+    const uint8_t seen = g_events;
+    uint32_t taken_us;
+    if (g_usb.take_report_time(taken_us)) g_clock.taken(taken_us);
+    if (g_clock.due(rp2040::micros() + kQuietUs)) {
+      rp2040::sleep_until(g_clock.next_us());
+      sample_and_report();
+      served = false;
+      continue;
+    }
+    const uint32_t now_us = rp2040::micros();
+    pass_time(now_us);
+    take_commands();
+    g_haptics.poll(g_ms);
+    if (g_settings.ps2 != 0 && g_mice.due()) {
+      g_mice.poll(now_us);
+      // Enumeration first: the mice would fill counters that nobody reads.
+      g_mice.allow_streaming(g_usb.configured());
+    }
+    if (!served) {
+      g_sensors.service(g_ms);
+      served = true;
+    } else {
+      rp2040::sleep_until_event(g_clock.next_us() - kQuietUs, g_events, seen);
+    }
+  }
+}

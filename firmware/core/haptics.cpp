@@ -1,0 +1,128 @@
+#include "core/haptics.h"
+
+namespace firmware {
+
+namespace {
+
+struct Write {
+  uint8_t address, value;
+};
+const uint8_t kPlaybackRegister = 0x02;
+// Awake; open loop, playback unsigned; silent; real-time playback.
+const Write kSetUp[] = {{0x01, 0x00}, {0x1D, 0xA8}, {kPlaybackRegister, 0}, {0x01, 0x05}};
+const uint8_t kSetUpWrites = sizeof kSetUp / sizeof kSetUp[0];
+
+}  // namespace
+
+void Haptics::pulse(uint8_t rod, uint8_t amplitude, uint16_t duration_ms, uint32_t now_ms) {
+  poll(now_ms);  // the time that has passed is not this pulse's
+  if (!allowed_ || !safe_ || rod >= kMotors || (present_ & 1u << rod) == 0) return;
+  Motor& motor = motors_[rod];
+  if (motor.credit < amplitude) return;
+  motor.wanted = amplitude;
+  motor.left_ms = duration_ms < wire::kMaxPulseMs ? duration_ms : wire::kMaxPulseMs;
+  poll(now_ms);
+}
+
+void Haptics::all_off() {
+  for (Motor& motor : motors_) motor.wanted = 0;
+}
+
+void Haptics::allow(bool allowed) {
+  allowed_ = allowed;
+  if (!allowed) all_off();
+}
+
+void Haptics::made_safe() {
+  for (Motor& motor : motors_) {
+    motor.wanted = 0;
+    motor.sent = 0;
+  }
+  present_ = 0;
+  safe_ = true;
+}
+
+void Haptics::pass_ms() {
+  for (Motor& motor : motors_) {
+    motor.credit += kCreditPerMs;
+    if (motor.credit > kMaxCredit) motor.credit = kMaxCredit;
+    if (motor.wanted == 0) continue;
+    motor.credit -= motor.wanted;
+    if (--motor.left_ms == 0 || motor.credit < motor.wanted) motor.wanted = 0;
+  }
+}
+
+void Haptics::poll(uint32_t now_ms) {
+  if (!begun_) now_ms_ = now_ms;
+  begun_ = true;
+  for (; now_ms_ != now_ms; ++now_ms_) pass_ms();
+  if (working_) {
+    const I2cBus::State state = bus_.state();
+    if (state == I2cBus::kBusy) return;
+    transfer_ended(state == I2cBus::kIdle);
+  }
+  if (!working_) begin_job(now_ms);
+}
+
+void Haptics::begin_job(uint32_t now_ms) {
+  for (uint8_t i = 0; i < kMotors; ++i) {
+    const uint8_t rod = static_cast<uint8_t>((first_ + i) % kMotors);
+    Motor& motor = motors_[rod];
+    if ((present_ & 1u << rod) == 0 || motor.wanted == motor.sent) continue;
+    first_ = static_cast<uint8_t>(rod + 1);
+    rod_ = rod;
+    value_ = motor.wanted;
+    setting_up_ = false;
+    step_ = 0;
+    working_ = true;
+    next_write();
+    return;
+  }
+  if (present_ == 0xFF || static_cast<int32_t>(now_ms - retry_ms_) < 0) return;
+  retry_ms_ = now_ms + (tried_ < kMotors ? kFirstMs : kRetryMs);
+  if (tried_ < kMotors) ++tried_;
+  do {
+    probe_ = static_cast<uint8_t>((probe_ + 1) % kMotors);
+  } while ((present_ & 1u << probe_) != 0);
+  rod_ = probe_;
+  setting_up_ = true;
+  step_ = 0;
+  working_ = true;
+  next_write();
+}
+
+void Haptics::next_write() {
+  if (step_ == 0) {
+    const uint8_t channel = static_cast<uint8_t>(1u << rod_);
+    bus_.write(kMultiplexer, &channel, 1);
+    return;
+  }
+  const Write write = setting_up_ ? kSetUp[step_ - 1] : Write{kPlaybackRegister, value_};
+  const uint8_t bytes[2] = {write.address, write.value};
+  bus_.write(kDriver, bytes, 2);
+}
+
+void Haptics::transfer_ended(bool good) {
+  const uint8_t mask = static_cast<uint8_t>(1u << rod_);
+  if (!good) {
+    working_ = false;
+    present_ = static_cast<uint8_t>(present_ & ~mask);
+    if (motors_[rod_].sent != 0) safe_ = false;
+    motors_[rod_].wanted = 0;
+    return;
+  }
+  ++step_;
+  if (step_ <= (setting_up_ ? kSetUpWrites : 1)) {
+    next_write();
+    return;
+  }
+  working_ = false;
+  if (setting_up_) {
+    present_ = static_cast<uint8_t>(present_ | mask);
+    motors_[rod_].sent = 0;
+  } else {
+    motors_[rod_].sent = value_;
+  }
+}
+
+}  // namespace firmware

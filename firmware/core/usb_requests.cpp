@@ -1,0 +1,145 @@
+#include "core/usb_requests.h"
+
+#include "wire/device_frame.h"
+
+namespace firmware {
+
+namespace {
+
+enum StandardRequest : uint8_t {
+  kGetStatus = 0,
+  kClearFeature = 1,
+  kSetFeature = 3,
+  kSetAddress = 5,
+  kGetDescriptor = 6,
+  kGetConfiguration = 8,
+  kSetConfiguration = 9,
+  kGetInterface = 10,
+  kSetInterface = 11,
+};
+enum HidRequest : uint8_t { kGetReport = 1, kGetIdle = 2, kSetReport = 9, kSetIdle = 10 };
+
+const uint8_t kClass = 0x20, kTypeMask = 0x60, kRecipientMask = 0x1F;
+const uint8_t kOfDevice = 0, kOfInterface = 1, kOfEndpoint = 2;
+const uint8_t kInputReport = 1, kOutputReport = 2;
+const uint8_t kStringKind = 3;
+
+UsbAnswer stall() {
+  return {UsbAnswer::kStall, nullptr, 0, false};
+}
+UsbAnswer done() {
+  return {UsbAnswer::kDone, nullptr, 0, false};
+}
+UsbAnswer send(const uint8_t* bytes, uint8_t size, const UsbSetup& setup) {
+  if (!setup.to_host() || setup.length == 0) return setup.to_host() ? done() : stall();
+  const uint8_t sent = setup.length < size ? static_cast<uint8_t>(setup.length) : size;
+  return {UsbAnswer::kSend, bytes, sent, setup.length > size && size % kControlBytes == 0};
+}
+
+}  // namespace
+
+UsbSetup read_setup(const uint8_t* bytes) {
+  return {bytes[0], bytes[1], wire::device_get16(bytes + 2), wire::device_get16(bytes + 4),
+          wire::device_get16(bytes + 6)};
+}
+
+void UsbRequests::on_bus_reset() {
+  new_address_ = 0;
+  configuration_ = 0;
+  report_halted_ = false;
+  command_halted_ = false;
+}
+
+UsbAnswer UsbRequests::answer(const UsbSetup& setup) {
+  new_address_ = 0;
+  const uint8_t kind = setup.type & kTypeMask;
+  if (kind == 0) return standard(setup);
+  if (kind == kClass && (setup.type & kRecipientMask) == kOfInterface && setup.index == 0) {
+    return hid(setup);
+  }
+  return stall();
+}
+
+UsbAnswer UsbRequests::standard(const UsbSetup& setup) {
+  const uint8_t recipient = setup.type & kRecipientMask;
+  switch (setup.request) {
+    case kGetStatus: {
+      if (recipient > kOfEndpoint) return stall();
+      if (recipient == kOfDevice) return send_byte(1, 2, setup);  // self-powered
+      const bool halted = recipient == kOfEndpoint &&
+                          ((setup.index == (0x80 | kReportEndpoint) && report_halted_) ||
+                           (setup.index == kCommandEndpoint && command_halted_));
+      return send_byte(halted ? 1 : 0, 2, setup);
+    }
+    case kClearFeature:
+      return feature(setup, false);
+    case kSetFeature:
+      return feature(setup, true);
+    case kSetAddress:
+      if (setup.value > 127) return stall();
+      new_address_ = static_cast<uint8_t>(setup.value);
+      return done();
+    case kGetDescriptor:
+      return descriptor(setup);
+    case kGetConfiguration:
+      return send_byte(configuration_, 1, setup);
+    case kSetConfiguration:
+      if (setup.value > 1) return stall();
+      configuration_ = static_cast<uint8_t>(setup.value);
+      report_halted_ = false;
+      command_halted_ = false;
+      return {UsbAnswer::kConfigure, nullptr, 0, false};
+    case kGetInterface:
+      return send_byte(0, 1, setup);
+    case kSetInterface:
+      return setup.value == 0 && setup.index == 0 ? done() : stall();
+  }
+  return stall();
+}
+
+UsbAnswer UsbRequests::feature(const UsbSetup& setup, bool set) {
+  const bool report = setup.index == (0x80 | kReportEndpoint);
+  const bool command = FIRMWARE_TAKES_COMMANDS && setup.index == kCommandEndpoint;
+  const bool endpoint = (setup.type & kRecipientMask) == kOfEndpoint;
+  if (!endpoint || (!report && !command) || setup.value != 0 || configuration_ == 0) return stall();
+  (report ? report_halted_ : command_halted_) = set;
+  return {UsbAnswer::kConfigure, nullptr, 0, false};
+}
+
+UsbAnswer UsbRequests::descriptor(const UsbSetup& setup) {
+  if (serial_ != nullptr && setup.value == (kStringKind << 8 | kSerialString)) {
+    return send(serial_, serial_[0], setup);
+  }
+  const Descriptor found = find_descriptor(setup.value, setup.index);
+  if (found.flash == nullptr) return stall();
+  return send(found.flash, found.size, setup);
+}
+
+UsbAnswer UsbRequests::hid(const UsbSetup& setup) {
+  const uint8_t kind = static_cast<uint8_t>(setup.value >> 8);
+  switch (setup.request) {
+    case kGetReport:
+      if (kind != kInputReport || report_ == nullptr) return stall();
+      return send(report_, wire::kDeviceReportBytes, setup);
+    case kSetReport:
+      if (!FIRMWARE_TAKES_COMMANDS || kind != kOutputReport || setup.to_host() ||
+          setup.length == 0 || setup.length > wire::kDeviceReportBytes) {
+        return stall();
+      }
+      return {UsbAnswer::kTake, nullptr, static_cast<uint8_t>(setup.length), false};
+    case kGetIdle:
+      return send_byte(idle_, 1, setup);
+    case kSetIdle:  // accepted; a report goes out every millisecond whatever is asked
+      idle_ = static_cast<uint8_t>(setup.value >> 8);
+      return done();
+  }
+  return stall();
+}
+
+UsbAnswer UsbRequests::send_byte(uint8_t value, uint8_t size, const UsbSetup& setup) {
+  small_[0] = value;
+  small_[1] = 0;
+  return send(small_, size, setup);
+}
+
+}  // namespace firmware

@@ -1,0 +1,64 @@
+// The RP2040's USB controller (datasheet 4.1) as a HID device. All but handing over a report
+// happens in its interrupt, which never waits for the bus.
+#ifndef FIRMWARE_RP2040_USB_CONTROLLER_H
+#define FIRMWARE_RP2040_USB_CONTROLLER_H
+
+#include <stdint.h>
+
+#include "core/usb_requests.h"
+#include "wire/device_frame.h"
+
+namespace rp2040 {
+
+class UsbController {
+ public:
+  // serial: a string descriptor, which stays where it is.
+  void start(const uint8_t* serial);
+  void on_interrupt();
+
+  bool configured() const { return configured_; }
+  // The host has taken the last report, or has not been given one.
+  bool wants_report() const { return configured_ && !halted_ && !report_pending_; }
+  // report: wire::kDeviceReportBytes, 4-aligned, which stay where they are: GET_REPORT reads them.
+  void send_report(const uint8_t* report);
+
+  // When the host took a report, once for each; false: not since the last call.
+  bool take_report_time(uint32_t& at_us);
+  // The oldest output report not yet taken. out: wire::kDeviceReportBytes. Returns its size; 0:
+  // none.
+  uint8_t take_command(uint8_t* out);
+
+ private:
+  void on_bus_reset();
+  void on_setup();
+  void on_control_sent();
+  void on_control_received();
+  void on_command();
+  void configure_endpoints();
+  void send_control_packet();
+  void keep_command(const volatile uint32_t* from, uint8_t size);
+
+  firmware::UsbRequests requests_;
+  const uint8_t* sending_ = nullptr;  // of a control transfer; null: none
+  uint8_t left_ = 0;
+  bool end_with_empty_ = false;
+  bool taking_ = false;
+  bool control_data1_ = false;  // of the next packet to the host
+  bool report_data1_ = false;
+  bool command_data1_ = false;
+
+  // Shared with the polling loop.
+  volatile bool configured_ = false;
+  volatile bool halted_ = false;
+  volatile bool report_pending_ = false;
+  volatile bool report_taken_ = false;
+  volatile uint32_t taken_us_ = 0;
+  static const uint8_t kCommands = 8;  // a pulse for each rod at once
+  uint32_t commands_[kCommands][wire::kDeviceReportBytes / 4] = {};
+  uint8_t command_bytes_[kCommands] = {};
+  volatile uint8_t command_head_ = 0, command_tail_ = 0;
+};
+
+}  // namespace rp2040
+
+#endif

@@ -1,0 +1,174 @@
+// What the PC sends: pulses for the motors, settings.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { encodeCommand } from './packets.mjs';
+import { Rig, kRods, say } from './rig.mjs';
+
+const kPulse = 1;
+const kAllOff = 2;
+const kSettings = 3;
+const kMotorsEnable = 17;
+
+function withMotors(options) {
+  const rig = new Rig(options).start();
+  rig.board.runMs(50);
+  rig.frames();
+  return rig;
+}
+const pulse = (rod, amplitude, durationMs) => ({ kind: kPulse, rod, amplitude, durationMs });
+const lastWrite = (rig, rod) => rig.motors.drivers[rod].writes.at(-1);
+
+test('all drivers are set up for real-time playback, silent', () => {
+  const rig = withMotors();
+  for (const driver of rig.motors.drivers) {
+    assert.equal(driver.registers[0x01], 5);
+    assert.equal(driver.registers[0x1d] & 0x28, 0x28, 'open loop, unsigned');
+    assert.equal(driver.registers[0x02], 0);
+  }
+  assert.ok(rig.board.pinIsHigh(kMotorsEnable));
+  rig.expectNoFault();
+});
+
+test('a pulse begins at most 2 ms after its command, on all rods at once too, and ends in time', () => {
+  const rig = withMotors();
+  let longest = 0;
+  for (let round = 0; round < 40; ++round) {
+    rig.board.run(5e6 + 137e3 * round);
+    const sent = rig.board.clock.nanos;
+    assert.ok(rig.command(pulse(round % 8, 40 + round, 20)));
+    assert.ok(rig.board.runUntil(() => lastWrite(rig, round % 8).value === 40 + round, 3));
+    longest = Math.max(longest, lastWrite(rig, round % 8).at - sent);
+    rig.board.runMs(24);
+    const end = lastWrite(rig, round % 8);
+    assert.equal(end.value, 0);
+    assert.ok(Math.abs(end.at - sent - 20e6) < 2e6, `${end.at - sent}`);
+  }
+  const sent = rig.board.clock.nanos;
+  for (const rod of kRods) {
+    assert.ok(rig.board.runUntil(() => rig.command(pulse(rod, 200, 50)), 1));
+  }
+  rig.board.runMs(4);
+  const all = Math.max(...kRods.map((rod) => lastWrite(rig, rod).at)) - sent;
+  kRods.forEach((rod) => assert.equal(lastWrite(rig, rod).value, 200));
+  say(`from a command to its write at most ${(longest / 1e3).toFixed(0)} us, ` +
+    `eight commands at once ${(all / 1e3).toFixed(0)} us`);
+  assert.ok(longest <= 2e6 && all <= 2e6);
+  rig.expectNoFault();
+});
+
+test('a command that comes just before the program sleeps does not wait for the next sample', () => {
+  const kDisableInterrupts = 0xb672; // CPSID i, ...
+  const kSleep = 0xbf30; // ... and WFI soon after it
+  const rig = withMotors();
+  const opcode = (i) => rig.board.rp2040.readUint16((rig.board.core.PC & ~1) + 2 * i);
+  const goesToSleep = () => opcode(0) === kDisableInterrupts &&
+    Array.from({ length: 24 }, (_, i) => opcode(i + 1)).includes(kSleep);
+  let longest = 0;
+  for (let round = 0; round < 60; ++round) {
+    rig.board.run(4e6 + 97e3 * round);
+    const { board } = rig;
+    do board.step(board.clock.nanos + 1e6);
+    while (board.core.waiting || !goesToSleep());
+    const sent = board.clock.nanos;
+    assert.ok(rig.command(pulse(round % 8, 100 + round, 1)));
+    assert.ok(board.runUntil(() => lastWrite(rig, round % 8).value === 100 + round, 3));
+    longest = Math.max(longest, lastWrite(rig, round % 8).at - sent);
+  }
+  assert.ok(longest <= 0.65e6, `${longest}`);
+});
+
+test('pulses without end get a quarter of a motor on average', () => {
+  const rig = withMotors();
+  const begun = rig.board.clock.nanos;
+  for (let i = 0; i < 25; ++i) {
+    rig.command(pulse(3, 255, 250));
+    rig.board.runMs(100);
+  }
+  const ms = rig.motors.energy(3, begun);
+  assert.ok(ms <= 0.26 * 2500 + 260, `${ms}`);
+  assert.ok(ms >= 0.2 * 2500, `${ms}`);
+});
+
+test('all off ends every pulse, and with the switch off none begins', () => {
+  const rig = withMotors();
+  for (const rod of [0, 5]) {
+    rig.command(pulse(rod, 90, 200));
+    rig.board.runMs(2);
+    assert.equal(lastWrite(rig, rod).value, 90);
+  }
+  rig.command({ kind: kAllOff });
+  rig.board.runMs(3);
+  for (const rod of [0, 5]) assert.equal(lastWrite(rig, rod).value, 0);
+  rig.command({ kind: kSettings, resolution: 20, brightness: 64, switches: 1 });
+  rig.board.runMs(300);
+  assert.ok(!rig.board.pinIsHigh(kMotorsEnable));
+  rig.command(pulse(0, 90, 200));
+  rig.board.runMs(5);
+  assert.equal(lastWrite(rig, 0).value, 0);
+});
+
+for (const [what, motors] of [['no multiplexer', { multiplexer: false }], ['no driver', { attached: 0 }],
+  ['a bus that is stuck', { stuck: true }]]) {
+  test(`with ${what} the reports go on and commands are swallowed`, () => {
+    const rig = withMotors({ motors });
+    for (const rod of kRods) {
+      assert.ok(rig.board.runUntil(() => rig.command(pulse(rod, 100, 50)), 2));
+    }
+    rig.host.naks = 0;
+    const frames = rig.framesOfMs(300);
+    assert.ok(frames.length >= 299 && rig.host.naks === 0);
+    assert.equal(rig.motors.drivers[0].writes.filter(({ value }) => value !== 0).length, 0);
+    assert.equal(rig.board.resets, 0);
+  });
+}
+
+test('a driver that vanishes while its motor runs has the supply of all switched off', () => {
+  const rig = withMotors();
+  rig.command(pulse(2, 120, 60));
+  rig.board.runMs(5);
+  assert.equal(lastWrite(rig, 2).value, 120);
+  rig.motors.attached = 0xfb;
+  let low = false;
+  const stop = rig.every(100, () => (low ||= !rig.board.pinIsHigh(kMotorsEnable)));
+  rig.board.runMs(70);
+  stop();
+  assert.ok(low);
+});
+
+test('a command comes by a control transfer too; a broken one is counted and does nothing', () => {
+  const rig = withMotors();
+  const report = new Uint8Array(64);
+  report.set(encodeCommand(pulse(6, 77, 30)));
+  assert.ok(rig.host.request(0x21, 9, 0x0200, 0, 64, report));
+  rig.board.runMs(2);
+  assert.equal(lastWrite(rig, 6).value, 77);
+  rig.board.runMs(40);
+  rig.frames();
+  const broken = encodeCommand(pulse(6, 77, 30));
+  broken[5] ^= 1;
+  rig.host.sendReport(broken);
+  const frames = rig.framesOfMs(10);
+  assert.equal(frames.reduce((total, frame) => total + frame.quality, 0), 1);
+  assert.equal(lastWrite(rig, 6).value, 0);
+  rig.expectNoFault();
+});
+
+test('settings are kept in flash; those with a wrong CRC are not taken', () => {
+  const rig = new Rig().start();
+  rig.command({ kind: kSettings, resolution: 60, brightness: 200 });
+  rig.board.runMs(400);
+  assert.ok(rig.waitForPresent(0xff, 400));
+  assert.equal(rig.board.erased, 1);
+  assert.equal(rig.sensors.sensors[7].registers[0x0f], 59);
+  rig.expectNoFault();
+
+  const again = new Rig({ flash: rig.board.flash }).start();
+  assert.equal(again.sensors.sensors[0].registers[0x0f], 59);
+  again.board.runMs(300);
+  assert.equal(again.board.ledBrightness, 200);
+
+  const flash = rig.board.flash.slice();
+  flash[flash.length - 4096 + 1] ^= 4;
+  const broken = new Rig({ flash }).start();
+  assert.equal(broken.sensors.sensors[0].registers[0x0f], 19);
+});

@@ -1,0 +1,10 @@
+// The page that phones are served: server/phone/page.html, embedded by server/phone/embed.py.
+#pragma once
+
+#include <string_view>
+
+namespace server {
+
+std::string_view phone_page();  // HTML in UTF-8
+
+}  // namespace server

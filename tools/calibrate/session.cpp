@@ -1,0 +1,118 @@
+#include "session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calibrate {
+namespace {
+
+constexpr double kFade = 0.5;         // [s] in which what a rod has moved fades to 1/e
+constexpr double kMovesClearly = 60;  // [counts] of another rod, while this one rests
+constexpr double kMovesBarely = 6;
+
+int increment(std::uint16_t from, std::uint16_t to) {
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
+}
+
+cabinet::GuideOptions guide_options(foosball::Layout layout, int rod) {
+  const foosball::TableSpec& table = foosball::table_spec(layout);
+  const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
+  cabinet::GuideOptions options;
+  options.reach = spec.slide_limit;
+  options.push_side = foosball::push_sign(spec.team);
+  options.forward_sign = -foosball::attack_sign(spec.team);
+  return options;
+}
+
+}  // namespace
+
+Session::Session(const SessionOptions& options)
+    : layout_(options.layout), rods_(options.rods), calibration_(options.start) {
+  begin_rod();
+}
+
+void Session::begin_rod() {
+  guide_ = cabinet::CalibrationGuide(guide_options(layout_, rod()));
+  states_[index(rod())] = RodState::guided;
+  problems_[index(rod())].clear();
+  trace_.clear();
+}
+
+void Session::hear(const wire::DeviceFrame& frame) {
+  ++frames_;
+  if (heard_) {
+    const double dt = static_cast<std::uint32_t>(frame.time_us - last_.time_us) * 1e-6;
+    seconds_ += dt;
+    for (int r = 0; r < cabinet::kRods; ++r) {
+      const double slide = increment(last_.slide[r], frame.slide[r]),
+                   spin = increment(last_.spin[r], frame.spin[r]);
+      double& moved = moved_[index(r)];
+      moved = moved * std::exp(-dt / kFade) + std::hypot(slide, spin);
+      if (r != rod()) continue;
+      const TracePoint before = trace_.empty() ? TracePoint{} : trace_.back();
+      trace_.push_back({seconds_, before.slide + slide, before.spin + spin});
+      if (states_[index(r)] == RodState::guided)
+        guide_.add({static_cast<std::int16_t>(slide), static_cast<std::int16_t>(spin),
+                    static_cast<float>(dt)});
+    }
+    while (trace_.front().seconds < seconds_ - kTraceSeconds) trace_.pop_front();
+  }
+  last_ = frame;
+  heard_ = true;
+  if (states_[index(rod())] == RodState::guided && guide_.finished()) fit_run();
+}
+
+void Session::fit_run() {
+  auto fitted = cabinet::fit_rod(guide_.run());
+  if (!fitted) {
+    states_[index(rod())] = RodState::refused;
+    problems_[index(rod())] = fitted.error();
+    return;
+  }
+  calibration_.rods[index(rod())] = fitted->calibration;
+  fits_[index(rod())] = std::move(*fitted);
+  states_[index(rod())] = RodState::fitted;
+  ++kept_;
+}
+
+void Session::confirm() {
+  switch (states_[index(rod())]) {
+    case RodState::guided:
+      if (!sensor_answers()) break;  // nothing would be counted
+      guide_.mark();
+      if (guide_.finished()) fit_run();
+      break;
+    case RodState::fitted:
+      if (!all_fitted()) next_rod(1);
+      break;
+    default:
+      begin_rod();
+  }
+}
+
+void Session::back() {
+  if (states_[index(rod())] == RodState::guided) return guide_.back();
+  begin_rod();
+}
+
+// To the next that is to be calibrated, or the next at all.
+void Session::next_rod(int by) {
+  if (states_[index(rod())] == RodState::guided)
+    states_[index(rod())] = fits_[index(rod())] ? RodState::fitted : RodState::open;
+  const auto n = static_cast<int>(rods_.size());
+  at_ = static_cast<std::size_t>(((static_cast<int>(at_) + by) % n + n) % n);
+  if (states_[index(rod())] != RodState::fitted) begin_rod();
+  trace_.clear();
+}
+
+bool Session::all_fitted() const {
+  return std::ranges::all_of(rods_, [&](int r) { return states_[index(r)] == RodState::fitted; });
+}
+
+int Session::other_rod_moves() const {
+  if (moved_[index(rod())] > kMovesBarely) return -1;
+  const auto most = std::ranges::max_element(moved_);
+  return *most > kMovesClearly ? static_cast<int>(most - moved_.begin()) : -1;
+}
+
+}  // namespace calibrate

@@ -1,0 +1,48 @@
+// space-foosball-doctor: what is connected that can move rods, and what to do about its troubles.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+
+#include "cabinet/controller.h"
+#include "cabinet/doctor.h"
+#include "server/exit_code.h"
+#include "server/option_checks.h"
+
+int main(int argc, char** argv) {
+  CLI::App cli{
+      "Says what is connected that can move rods: controllers, mice, gamepads; listens to each\n"
+      "controller while nobody touches the rods; and says what to do about every trouble.\n\n"
+      "Exit codes: 0 all is well; 1 there are troubles; 2 a bad option.",
+      "space-foosball-doctor"};
+  cabinet::DoctorOptions options;
+  bool json = false;
+  cli.add_flag("--json", json, "print one JSON object");
+  cli.add_option("--calibration", options.calibration,
+                 "of the cabinet's sensors; without it, the one that is kept for the controller");
+  cli.add_option("--seconds", options.seconds, "to listen to each controller")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->check(server::check_not_nan)
+      ->capture_default_str();
+  cli.add_option("--dev", options.dev, "where device nodes are")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  cli.add_option("--sys", options.sys, "where the kernel describes them")
+      ->check(CLI::ExistingDirectory)
+      ->capture_default_str();
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(cli.help().c_str(), stdout);
+    return server::kExitOk;
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "space-foosball-doctor: %s; --help explains the options\n", error.what());
+    return server::kExitUsage;
+  }
+  options.calibrations = cabinet::calibrations_folder();
+  options.now_s = std::time(nullptr);
+  const cabinet::Diagnosis diagnosis = cabinet::examine(options);
+  const std::string text =
+      json ? cabinet::diagnosis_json(diagnosis) : cabinet::diagnosis_text(diagnosis);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) return server::kExitFailed;
+  return diagnosis.troubles.empty() ? server::kExitOk : server::kExitFailed;
+}

@@ -1,0 +1,98 @@
+// The command from the PC to the cabinet's micro-controller, shared by both: freestanding C++14, as
+// wire/device_frame.h, whose CRC it has.
+//
+// Layout (little endian), kDeviceCommandBytes in all:
+//   0  u8   version            kDeviceCommandVersion
+//   1  u8   kind               1 pulse, 2 all off, 3 settings
+//   2  u16  sequence           of the sender, wraps; not checked
+//   4  u8   rod                pulse: 0..7
+//   5  u8   amplitude          pulse: 0..255, of what the motor can do
+//   6  u16  duration           pulse: 1..kMaxPulseMs [ms]
+//   8  u8   resolution         settings: of the sensors, 1..120 [100 counts/inch]
+//   9  u8   brightness         settings: of the LED, 0..255
+//  10  u8   ps2                settings: bit i: rod i has a PS/2 mouse
+//  11  u8   switches           settings: bit 0: no pulse is played
+//  12  u16  reserved           0
+//  14  u16  crc                CRC-16/CCITT-FALSE over bytes 0..13
+// What a kind does not use is 0. Over USB HID: the first bytes of one 64-byte output report, the
+// others 0. Over a serial line: COBS, then a 0.
+#ifndef WIRE_DEVICE_COMMAND_H
+#define WIRE_DEVICE_COMMAND_H
+
+#include "wire/device_frame.h"
+
+namespace wire {
+
+static const uint8_t kDeviceCommandVersion = 1;
+static const size_t kDeviceCommandBytes = 16;
+static const uint16_t kMaxPulseMs = 250;          // a motor that is not told anything stops by then
+static const uint8_t kMaxSensorResolution = 120;  // 12000 counts/inch, a PMW3360's most
+
+enum DeviceCommandKind : uint8_t {
+  kPulseCommand = 1,
+  kAllOffCommand = 2,
+  kSettingsCommand = 3,
+};
+
+struct DeviceCommand {
+  uint8_t kind;
+  uint16_t sequence;
+  uint8_t rod, amplitude;
+  uint16_t duration_ms;
+  uint8_t resolution, brightness, ps2, switches;
+};
+
+inline bool valid_device_command(const DeviceCommand& c) {
+  const bool no_pulse = c.rod == 0 && c.amplitude == 0 && c.duration_ms == 0;
+  const bool no_settings = c.resolution == 0 && c.brightness == 0 && c.ps2 == 0 && c.switches == 0;
+  switch (c.kind) {
+    case kPulseCommand:
+      return no_settings && c.rod < kDeviceRods && c.duration_ms >= 1 &&
+             c.duration_ms <= kMaxPulseMs;
+    case kAllOffCommand:
+      return no_pulse && no_settings;
+    case kSettingsCommand:
+      return no_pulse && c.resolution >= 1 && c.resolution <= kMaxSensorResolution &&
+             c.switches <= 1;
+  }
+  return false;
+}
+
+// out: kDeviceCommandBytes. Precondition: valid_device_command().
+inline void encode_device_command(const DeviceCommand& command, uint8_t* out) {
+  out[0] = kDeviceCommandVersion;
+  out[1] = command.kind;
+  device_put16(out + 2, command.sequence);
+  out[4] = command.rod;
+  out[5] = command.amplitude;
+  device_put16(out + 6, command.duration_ms);
+  out[8] = command.resolution;
+  out[9] = command.brightness;
+  out[10] = command.ps2;
+  out[11] = command.switches;
+  device_put16(out + 12, 0);
+  device_put16(out + 14, device_crc16(out, 14));
+}
+
+// False, and command untouched, unless size, version, CRC and all ranges hold.
+inline bool decode_device_command(const uint8_t* in, size_t size, DeviceCommand& command) {
+  if (size != kDeviceCommandBytes || in[0] != kDeviceCommandVersion) return false;
+  if (device_get16(in + 12) != 0 || device_get16(in + 14) != device_crc16(in, 14)) return false;
+  DeviceCommand read;
+  read.kind = in[1];
+  read.sequence = device_get16(in + 2);
+  read.rod = in[4];
+  read.amplitude = in[5];
+  read.duration_ms = device_get16(in + 6);
+  read.resolution = in[8];
+  read.brightness = in[9];
+  read.ps2 = in[10];
+  read.switches = in[11];
+  if (!valid_device_command(read)) return false;
+  command = read;
+  return true;
+}
+
+}  // namespace wire
+
+#endif
