@@ -236,6 +236,8 @@ class ControlServer {
   std::int64_t accept_after_us_ = 0;
   bool roster_changed_ = false;
   RateLimit roster_limit_;
+  // Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
+  static constexpr std::size_t kMostUntold = 256;
   static constexpr std::int64_t kLookAtTheDayUs = 1'000'000;
   std::int64_t look_at_the_day_us_ = 0;
   std::uint32_t followed_day_ = 0;

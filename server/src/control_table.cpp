@@ -19,8 +19,6 @@ using State = ControlConnection::State;
 using wire::Said;
 using wire::say;
 
-// Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
-constexpr std::size_t kMostUntold = 256;
 // Topics of notices: of a seat that is kept; of a vote, see wire/limits.h; of a claim.
 constexpr std::uint32_t kAwayTopic = 1'000'000;
 constexpr std::uint32_t kClaimTopic = 300;
@@ -31,13 +29,6 @@ constexpr std::uint32_t kEverybody = 0;
 
 std::uint32_t vote_topic(const foosball::Command& wish) {
   return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
-}
-
-bool is_default(const wire::Tuning& tuning) {
-  const foosball::Tuning usual;
-  for (std::size_t i = 0; i < tuning.values.size(); ++i)
-    if (tuning.values[i] != usual.*foosball::kTuningFields[i].value) return false;
-  return true;
 }
 
 wire::Sentence asks_for(const foosball::Command& wish, const std::string& name, int votes,
@@ -465,63 +456,6 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
       !keeps_tuning && ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
       (ruling == Ruling::yes ? hand_on(seat->client, command) : put_to_vote(*seat, command));
   count(taken ? Count::wishes : Count::wishes_dropped);
-}
-
-bool ControlServer::in_challenge() const {
-  return game_ && game_->mode == number(wire::Mode::challenge);
-}
-
-// What is played is the host's to choose, as the tuning is. A challenge is that of today.
-void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
-  const Seat* seat = seats_.find(connection.client);
-  const auto refuse_it = [&](const wire::Sentence& why_not) {
-    count(Count::wishes_dropped);
-    answer(connection, wire::kGameAnswerTopic, why_not);
-  };
-  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) {
-    count(Count::wishes_dropped);
-    return;
-  }
-  if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
-  if (seat->role != wire::Role::host) return refuse_it(say<Said::only_host_chooses>());
-  GameSite site = options_.site;
-  if (tuning_) site.default_tuning = is_default(*tuning_);
-  if (const wire::Sentence why = why_not(game, site); !why.empty()) return refuse_it(why);
-  if (game.mode == number(wire::Mode::challenge)) {
-    game.date = challenge_day();
-    if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
-  }
-  if (untold_.size() > kMostUntold) return refuse_it(say<Said::server_overloaded>());
-  count(Count::wishes);
-  send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
-  choose(game, seat->client);
-}
-
-void ControlServer::choose(const wire::Game& game, std::uint32_t client) {
-  ControlEvent event;
-  event.kind = ControlEvent::Kind::game;
-  event.client = client;
-  event.game = game;
-  untold_.push_back(std::move(event));
-  tell_tick();
-}
-
-std::uint32_t ControlServer::challenge_day() const {
-  if (options_.challenge_date != 0) return options_.challenge_date;
-  return options_.date ? day_of(options_.date()) : 0;
-}
-
-// At midnight the next day's challenge is chosen, for the matches that begin from then on.
-void ControlServer::follow_the_day() {
-  if (!in_challenge() || !options_.teams_open || os::monotonic_us() < look_at_the_day_us_) return;
-  look_at_the_day_us_ = os::monotonic_us() + kLookAtTheDayUs;
-  const std::uint32_t day = challenge_day();
-  if (day == 0 || day == game_->date || day == followed_day_) return;
-  followed_day_ = day;
-  wire::Game next;
-  next.mode = number(wire::Mode::challenge);
-  next.date = day;
-  choose(next, 0);
 }
 
 // --- the questionnaire
