@@ -1,0 +1,50 @@
+// The page for browsers (cabinet/page/controller.html) against the firmware: it reads its reports, and
+// what it sends is taken.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { decodeFrame, encodeCommand } from './packets.mjs';
+import { Rig, kRods } from './rig.mjs';
+
+const html = readFileSync(process.env.CONTROLLER_PAGE, 'utf8');
+const script = html.match(/<script id="packets">([^]*?)<\/script>/)[1];
+const page = new Function(`${script}; return { decodeFrame, increment, pulseReport, settingsReport, crc16 };`)();
+const view = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
+
+test('what the firmware reports is what the page shows', () => {
+  const rig = new Rig({ plugged: 0xf7 }).start(0xf7);
+  const before = rig.last.slide.map((slide, rod) => ({ slide, spin: rig.last.spin[rod] }));
+  for (const rod of kRods) if (rod !== 3) rig.move(rod, 100 * rod + 1, -30000 + rod);
+  rig.board.runMs(20);
+  const reports = rig.host.take();
+  const shown = page.decodeFrame(view(reports.at(-1).bytes));
+  const read = decodeFrame(reports.at(-1).bytes);
+  assert.equal(shown.sequence, read.sequence);
+  assert.equal(shown.timeUs, read.timeUs);
+  for (const rod of kRods) {
+    assert.equal(shown.rods[rod].present, rod !== 3);
+    if (rod === 3) continue;
+    assert.equal(page.increment(before[rod].slide, shown.rods[rod].slide), 100 * rod + 1);
+    assert.equal(page.increment(before[rod].spin, shown.rods[rod].spin), -30000 + rod);
+  }
+  const broken = reports.at(-1).bytes.slice();
+  broken[9] ^= 1;
+  assert.equal(page.decodeFrame(view(broken)), null);
+  assert.equal(page.decodeFrame(view(new Uint8Array(7))), null);
+});
+
+test('settings and pulses of the page are those that the firmware takes', () => {
+  const settings = page.settingsReport({ resolution: 60, brightness: 200, ps2: 0, silent: false });
+  const pulse = page.pulseReport(5, 128, 60);
+  assert.deepEqual([...settings.subarray(0, 16)],
+    [...encodeCommand({ kind: 3, resolution: 60, brightness: 200 })]);
+  assert.deepEqual([...pulse.subarray(0, 16)],
+    [...encodeCommand({ kind: 1, rod: 5, amplitude: 128, durationMs: 60 })]);
+  assert.equal(settings.length, 64);
+  const rig = new Rig().start();
+  assert.ok(rig.host.sendReport(pulse.subarray(0, 16)));
+  assert.ok(rig.board.runUntil(() => rig.motors.drivers[5].writes.at(-1)?.value === 128, 3));
+  assert.ok(rig.host.sendReport(settings.subarray(0, 16)));
+  rig.board.runMs(400);
+  assert.equal(rig.sensors.sensors[7].registers[0x0f], 59);
+});
