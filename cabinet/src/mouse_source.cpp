@@ -22,10 +22,6 @@ constexpr int kMostReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest m
 constexpr std::int64_t kHandOverUs = 500;
 constexpr std::int64_t kOldestUs = 1'000'000;
 
-RodMotion count_of(const RodCalibration& rod) {
-  return {std::hypot(rod.m[0][0], rod.m[0][1]), std::hypot(rod.m[1][0], rod.m[1][1])};
-}
-
 }  // namespace
 
 RodCalibration hand_mouse(double slide_sign, double angle_sign) {

@@ -53,10 +53,6 @@ int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
 }
 
-RodMotion count_of(const RodCalibration& rod) {
-  return {std::hypot(rod.m[0][0], rod.m[0][1]), std::hypot(rod.m[1][0], rod.m[1][1])};
-}
-
 template <std::size_t... I>
 std::array<StateFilter, kRods> make_filters(const Calibration& calibration,
                                             std::index_sequence<I...>) {

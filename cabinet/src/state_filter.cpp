@@ -31,6 +31,11 @@ double nominal_period(double us) {
 
 }  // namespace
 
+RodMotion count_of(const RodCalibration& calibration) {
+  const auto& m = calibration.m;
+  return {std::hypot(m[0][0], m[0][1]), std::hypot(m[1][0], m[1][1])};
+}
+
 void StateFilter::rest() {
   moving_ = false;
   known_ = 0;

@@ -29,6 +29,9 @@ struct RodAhead {
   double slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
 };
 
+// What a sensor of this calibration does not tell apart.
+RodMotion count_of(const RodCalibration& calibration);
+
 class StateFilter {
  public:
   // count: of the sensor [m], [rad], what is not told apart. stamped: frames with counts come at
