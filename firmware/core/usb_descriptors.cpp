@@ -21,7 +21,7 @@ constexpr uint8_t high(uint16_t value) {
 }
 
 // pid.codes' number for tests and prototypes: a cabinet that is sold needs its own.
-const uint16_t kVendor = 0x1209, kProduct = 0x0001, kRelease = 0x0100;
+const uint16_t kUsbVendor = 0x1209, kUsbProduct = 0x0001, kUsbRelease = 0x0100;
 
 const uint8_t kDevice[] FIRMWARE_FLASH = {18,
                                           1,
@@ -31,12 +31,12 @@ const uint8_t kDevice[] FIRMWARE_FLASH = {18,
                                           0,
                                           0,
                                           kControlBytes,
-                                          low(kVendor),
-                                          high(kVendor),
-                                          low(kProduct),
-                                          high(kProduct),
-                                          low(kRelease),
-                                          high(kRelease),
+                                          low(kUsbVendor),
+                                          high(kUsbVendor),
+                                          low(kUsbProduct),
+                                          high(kUsbProduct),
+                                          low(kUsbRelease),
+                                          high(kUsbRelease),
                                           1,
                                           2,
                                           kSerialString,
