@@ -20,6 +20,8 @@ constexpr double kAtStop = 0.12;
 // Strokes to and fro begin anew when one is longer by so much.
 constexpr double kLonger = 1.1;
 constexpr double kLeastTurn = 0.06;     // [turns] half of the eighth that is asked for
+constexpr double kNearlyDown = 0.08;    // [turns]
+constexpr double kReadSeconds = 2.0;    // to read what is asked
 constexpr double kMostOffDown = 0.3;    // [turns] from straight down, by scales not fitted yet
 constexpr double kRestCounts = 2;       // a sensor at rest may flicker
 constexpr double kRestStrokes = 0.002;  // 0.4 mm
@@ -143,7 +145,11 @@ GuideAdvice CalibrationGuide::missing() const {
       return turns < kLeastTurn ? GuideAdvice::turn_more : GuideAdvice::none;
     case Motion::turn_feet_down:
       if (turns < -kLeastTurn) return GuideAdvice::wrong_way;
-      if (turns < kLeastTurn) return GuideAdvice::turn_more;
+      // After eighths that were larger the feet may hang down already: whoever has read that, and
+      // has left them so, is through.
+      if (turns < kLeastTurn &&
+          (std::abs(all - 1) > kNearlyDown || time_ - began_s_ < kReadSeconds))
+        return GuideAdvice::turn_more;
       break;
     case Motion::turn_forward:
     case Motion::turn_back: {
@@ -226,6 +232,7 @@ void CalibrationGuide::put_marks() {
 void CalibrationGuide::begin(int step) {
   step_ = step;
   began_at_ = at_;
+  began_s_ = time_;
   recent_.clear();
   advice_ = GuideAdvice::none;
 }

@@ -42,7 +42,7 @@ TEST(CalibrationGuide, WhoDoesWhatItAsksIsThroughWithARunThatFits) {
 TEST(CalibrationGuide, ItsRunsFitAwayTheErrorsOfAMount) {
   std::mt19937 random(4321);
   double slide = 0, angle = 0;
-  constexpr int kMounts = 20;
+  constexpr int kMounts = 40;
   for (int i = 0; i < kMounts; ++i) {
     const Mount mount = drawn_mount(random, 8);
     Session s(mount, {}, static_cast<std::uint32_t>(100 + i));
@@ -129,6 +129,38 @@ TEST(CalibrationGuide, SaysThatTheRodWasNotTurnedOrTheWrongWay) {
   const auto fit = fit_rod(s.guide.run());
   ASSERT_TRUE(fit) << fit.error();
   EXPECT_NEAR(fit->calibration.m[1][1] * 8e3 * kRodRadius, 1, 0.005);
+}
+
+// Eighths that were all too large: before the feet are asked for they hang down already.
+TEST(CalibrationGuide, FeetThatHangDownAlreadyNeedNoTurn) {
+  Session s;
+  s.person.eighth_error = 0;
+  s.person.instead = [&](const CalibrationRequest& asked) {
+    if (asked.motion == Motion::turn_and_push) {
+      s.person.move(s.rod.slide, s.rod.angle + 2 * M_PI / 7, 0.5);
+      s.person.move(s.person.stop(true), s.rod.angle, 0.6);
+      s.person.rest();
+      return true;
+    }
+    if (asked.motion != Motion::turn_feet_down) return false;
+    s.person.move(s.rod.slide, s.rod.angle, 3);
+    return true;
+  };
+  s.person.follow();
+  EXPECT_TRUE(s.guide.finished()) << s.guide.step();
+}
+
+// People and mounts of many kinds.
+TEST(CalibrationGuide, NobodyGetsStuck) {
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    std::mt19937 random(i);
+    const GuideOptions options{.reach = i % 3 == 0 ? 0.06 : i % 3 == 1 ? 0.1 : 0.17};
+    Session s(drawn_mount(random, i % 2 == 0 ? 8 : 78.7), options, 1000 + i);
+    s.person.follow();
+    ASSERT_TRUE(s.guide.finished()) << i << ": " << s.guide.step();
+    const auto fit = fit_rod(s.guide.run());
+    EXPECT_TRUE(fit) << i << ": " << fit.error();
+  }
 }
 
 TEST(CalibrationGuide, WaitsForAPersonWhoReadsFirst) {

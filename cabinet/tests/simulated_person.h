@@ -63,40 +63,55 @@ class Person {
     const double eighth = options_.forward_sign * (M_PI / 4 + rod_.draw(eighth_error));
     switch (asked.motion) {
       case Motion::start:
-        move(stop(false), feet_down(), 1);
+        go(
+            stop(false), [&] { return feet_down(); }, 1);
         guide_.mark();
         on_start();
         return;
       case Motion::to_and_fro:
         for (int i = 0; i < asked.times; ++i) {
-          move(stop(true), rod_.draw(0.1), 0.5);
-          move(stop(false), rod_.draw(0.1), 0.5);
+          go(
+              stop(true), [&] { return rod_.draw(0.1); }, 0.5);
+          go(
+              stop(false), [&] { return rod_.draw(0.1); }, 0.5);
         }
         return;
       case Motion::push:
       case Motion::pull:
-        move(stop(asked.motion == Motion::push), feet_down(), pace);
+        go(
+            stop(asked.motion == Motion::push), [&] { return feet_down(); }, pace);
         return rest();
       case Motion::turn_and_push:
         move(rod_.slide, rod_.angle + eighth, 0.5);
-        move(stop(true), rod_.angle + rod_.draw(0.1), 0.6);
+        go(
+            stop(true), [&] { return rod_.angle + rod_.draw(0.1); }, 0.6);
         return rest();
       case Motion::pull_as_turned:
-        move(stop(false), rod_.angle + rod_.draw(0.1), 0.6);
+        go(
+            stop(false), [&] { return rod_.angle + rod_.draw(0.1); }, 0.6);
         return rest();
       case Motion::turn_feet_down:
-        move(stop(false), feet_down(0.5), 0.5);
+        go(
+            stop(false), [&] { return feet_down(0.5); }, 0.5);
         return rest();
       case Motion::turn_forward:
-        move(stop(false), feet_down(turns), 2.6);
+        go(
+            stop(false), [&] { return feet_down(turns); }, 2.6);
         return rest();
       case Motion::turn_back:
-        move(stop(false), feet_down(-turns), 2.6);
+        go(
+            stop(false), [&] { return feet_down(-turns); }, 2.6);
         return rest();
     }
   }
 
  private:
+  // What is drawn for the slide comes before what is drawn for the angle, with every compiler.
+  template <class Angle>
+  void go(double slide, const Angle& angle, double seconds) {
+    move(slide, angle(), seconds);
+  }
+
   cabinet::CalibrationGuide& guide_;
   SimulatedRod& rod_;
   cabinet::GuideOptions options_;

@@ -97,7 +97,7 @@ class CalibrationGuide {
   std::deque<Sample> recent_;              // of the time that the rod has to rest
   GuideAdvice advice_ = GuideAdvice::none;
   int step_ = 0;
-  double time_ = 0;                // [s]
+  double time_ = 0, began_s_ = 0;  // [s]
   Counts at_, began_at_, stroke_;  // stroke_: D; at_ is 0 at the start
   int halves_ = 0;                 // of the strokes to and fro
   bool away_ = false;              // beyond the middle, of these
