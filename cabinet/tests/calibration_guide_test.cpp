@@ -42,7 +42,7 @@ TEST(CalibrationGuide, WhoDoesWhatItAsksIsThroughWithARunThatFits) {
 TEST(CalibrationGuide, ItsRunsFitAwayTheErrorsOfAMount) {
   std::mt19937 random(4321);
   double slide = 0, angle = 0;
-  constexpr int kMounts = 40;
+  constexpr int kMounts = 60;
   for (int i = 0; i < kMounts; ++i) {
     const Mount mount = drawn_mount(random, 8);
     Session s(mount, {}, static_cast<std::uint32_t>(100 + i));

@@ -182,7 +182,9 @@ inline PlayErrors play(const Mount& mount, const cabinet::RodCalibration& calibr
   double slide = 0, angle = 0, squares[2] = {0, 0};
   std::size_t read = 0, samples = 0;
   while (static_cast<double>(rod.increments.size()) * 0.005 < seconds) {
-    rod.move(rod.between(-0.1, 0.1), rod.between(-1.5, 1.5), rod.between(0.08, 0.4));
+    // One after the other, so that every compiler draws the same.
+    const double to_slide = rod.between(-0.1, 0.1), to_angle = rod.between(-1.5, 1.5);
+    rod.move(to_slide, to_angle, rod.between(0.08, 0.4));
     for (; read < rod.increments.size(); ++read) {
       const cabinet::CountIncrement& c = rod.increments[read];
       const auto moved = integrator.add(c.slide, c.spin, static_cast<double>(c.seconds), angle);
