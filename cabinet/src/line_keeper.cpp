@@ -62,7 +62,7 @@ bool LineKeeper::send(int fd, std::span<const std::byte> packet) {
   return true;
 }
 
-// A device that takes none of them loses them: a pulse that comes late is none.
+// What a device does not take is lost.
 void LineKeeper::write_packets() {
   std::uint32_t taken = taken_.load(std::memory_order_relaxed);
   while (taken != put_.load(std::memory_order_acquire)) {
@@ -79,8 +79,11 @@ void LineKeeper::run() {
     // Asked first: who asks has said before what is to be closed. An ask after this look wakes
     // anew.
     const bool asked = handover_.load(std::memory_order_acquire) == kAsked;
+    // What is closed was given up after its last packet was put, so that none is left for a number
+    // that is another file's by then.
+    const int closing = to_close_.exchange(-1, std::memory_order_acq_rel);
     write_packets();
-    close_if_open(to_close_.exchange(-1, std::memory_order_acq_rel));
+    close_if_open(closing);
     if (ending_.load(std::memory_order_acquire)) return;
     if (!asked) continue;
     const int fd = open_();

@@ -57,16 +57,20 @@ bool is_mouse_address(const std::string& address) {
 tl::expected<MouseAddress, std::string> parse_mouse_address(const std::string& address) {
   MouseAddress parsed;
   if (is_mouse_address(address)) parsed.path = address.substr(kScheme.size());
-  const std::size_t size = parsed.path.size();
-  if (size >= 2 && parsed.path[size - 2] == ':') {
-    const char rod = parsed.path[size - 1];
-    if (rod < '1' || rod > '8') {
+  // Names in /dev/input/by-path have colons, and go on behind them.
+  const std::size_t colon = parsed.path.rfind(':');
+  const std::string rod = colon == std::string::npos ? "" : parsed.path.substr(colon + 1);
+  const bool names_rod =
+      colon != std::string::npos && rod.find_first_not_of("+-0123456789:") == std::string::npos;
+  const bool letter = rod.size() == 1;
+  if (names_rod || letter) {
+    if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {
       return tl::unexpected(
           "\"" + address + "\" names no rod: write one from 1 (at team 0's goal) " +
-          "to 8, such as " + std::string(kScheme) + parsed.path.substr(0, size - 2) + ":4.");
+          "to 8, such as " + std::string(kScheme) + parsed.path.substr(0, colon) + ":4.");
     }
-    parsed.rod = rod - '1';
-    parsed.path.resize(size - 2);
+    parsed.rod = rod[0] - '1';
+    parsed.path.resize(colon);
   }
   if (!parsed.path.empty() && parsed.path[0] == '/') return parsed;
   return tl::unexpected(

@@ -140,21 +140,28 @@ void obey(const wire::DeviceCommand& command) {
     case wire::kAllOffCommand:
       g_haptics.all_off();
       break;
-    case wire::kSettingsCommand:
-      g_settings = firmware::settings_of(command);
+    case wire::kSettingsCommand: {
+      const firmware::Settings wanted = firmware::settings_of(command);
+      if (firmware::same(wanted, g_settings)) break;  // flash wears
+      g_settings = wanted;
+      // Nothing stops a motor while flash is written: they have no power.
       g_haptics.all_off();
+      rp2040::reg(rp2040::kGpioOutClear) = rp2040::bit(rp2040::kMotorsEnable);
       rp2040::save_settings(g_settings);
+      g_haptics.made_safe();
       pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
       apply_settings();
       break;
+    }
   }
 }
 
 void take_commands() {
   uint8_t bytes[wire::kDeviceReportBytes];
   wire::DeviceCommand command;
-  while (g_usb.take_command(bytes) != 0) {
-    if (wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
+  while (const uint8_t size = g_usb.take_command(bytes)) {
+    if (size >= wire::kDeviceCommandBytes &&
+        wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
       obey(command);
     } else if (g_errors < 255) {
       ++g_errors;

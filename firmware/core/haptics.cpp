@@ -107,7 +107,8 @@ void Haptics::transfer_ended(bool good) {
   if (!good) {
     working_ = false;
     present_ = static_cast<uint8_t>(present_ & ~mask);
-    if (motors_[rod_].sent != 0) safe_ = false;
+    // A write that failed late may have started it.
+    if (motors_[rod_].sent != 0 || (!setting_up_ && value_ != 0 && step_ != 0)) safe_ = false;
     motors_[rod_].wanted = 0;
     return;
   }

@@ -19,6 +19,11 @@ struct Settings {
   uint8_t switches = 0;
 };
 
+inline bool same(const Settings& a, const Settings& b) {
+  return a.resolution == b.resolution && a.brightness == b.brightness && a.ps2 == b.ps2 &&
+         a.switches == b.switches;
+}
+
 inline Settings settings_of(const wire::DeviceCommand& command) {
   Settings settings;
   settings.resolution = command.resolution;

@@ -53,7 +53,7 @@ class UsbController {
   volatile bool report_pending_ = false;
   volatile bool report_taken_ = false;
   volatile uint32_t taken_us_ = 0;
-  static const uint8_t kCommands = 8;  // a pulse for each rod at once
+  static const uint8_t kCommands = 9;  // a pulse for each rod at once, and one place empty
   uint32_t commands_[kCommands][wire::kDeviceReportBytes / 4] = {};
   uint8_t command_bytes_[kCommands] = {};
   volatile uint8_t command_head_ = 0, command_tail_ = 0;

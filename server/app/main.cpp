@@ -137,7 +137,8 @@ tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string
   const std::string serial = cabinet::controller_serial(address);
   const std::string file = cabinet::calibration_file(folder, serial);
   const bool recording = address.rfind("file:", 0) == 0;
-  if (!recording && !folder.empty() && std::filesystem::exists(file)) {
+  std::error_code unknown;
+  if (!recording && !folder.empty() && std::filesystem::exists(file, unknown)) {
     log(server::LogLevel::info, address + " is calibrated by " + file);
     return cabinet::load_calibration(file);
   }

@@ -32,7 +32,7 @@ foosball::PlayerSpec player_in(foosball::Mode mode, int rung, std::uint64_t chal
 }
 
 GameSite site_of(const foosball::MatchDesc& match, bool computer, bool cabinet) {
-  const foosball::Characters built_in = foosball::built_in_characters();
+  const foosball::Characters& built_in = foosball::built_in_characters();
   GameSite site;
   site.computer = computer;
   site.cabinet = cabinet;

@@ -256,12 +256,19 @@ void PhoneCaller::take_message() {
 }
 
 void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
+  if (turned_away_) return;
   if (guest_.greeted() && !inside_) {
-    inside_ = true;
+    // Others may have come in since the upgrade. Who is refused takes nobody's place.
+    const bool room = house_.has_room();
+    inside_ = room;
+    turned_away_ = !room;
     deadline_.cancel();
-    if (!open_link()) {
-      tell(wire::PhoneNotice{number(wire::PhoneNotice::Level::end),
-                             wire::say<wire::Said::server_overloaded>().text()});
+    if (!room) house_.count(Count::refused);
+    if (!room || !open_link()) {
+      tell(wire::PhoneNotice{
+          number(wire::PhoneNotice::Level::end),
+          (room ? wire::say<wire::Said::server_overloaded>() : wire::say<wire::Said::server_full>())
+              .text()});
       outcome.end = true;
       outcome.to_control.clear();
     }

@@ -128,7 +128,7 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
   std::array<std::byte, 16 * 1024> link_in_;
   wire::ControlReader reader_;
   std::vector<std::byte> link_out_, link_writing_;
-  bool link_open_ = false, end_when_told_ = false, says_bye_ = false;
+  bool link_open_ = false, end_when_told_ = false, says_bye_ = false, turned_away_ = false;
 };
 
 }  // namespace server

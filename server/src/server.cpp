@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <utility>
@@ -74,7 +75,7 @@ Server::Impl::Impl(ServerOptions&& given, foosball::Match&& made, PortPair&& ope
   if (phones) {
     phones->start([this](VouchedConnection&& phone) { return control.adopt(std::move(phone)); });
     haptics.to_clients([this](std::uint32_t client, const cabinet::HapticPulse& pulse) {
-      const auto strength = static_cast<std::uint8_t>(255.0f * pulse.strength + 0.5f);
+      const auto strength = static_cast<std::uint8_t>(std::lround(255.0f * pulse.strength));
       phones->pulse({client, pulse.rod, strength, pulse.ms});
     });
   }

@@ -502,6 +502,29 @@ TEST_F(FewPhones, NoMorePhonesGetInThanThereMayBe) {
   EXPECT_TRUE(fourth.join());
 }
 
+// Room is asked for when a phone says hello, not only when its line is opened.
+TEST_F(FewPhones, OfManyThatAreOpenBeforeTheFirstHelloNoMoreGetIn) {
+  std::vector<std::unique_ptr<PhoneProbe>> crowd;
+  for (int i = 0; i < 6; ++i) {
+    crowd.push_back(std::make_unique<PhoneProbe>(url));
+    ASSERT_TRUE(crowd.back()->upgrade());
+  }
+  int inside = 0;
+  for (const auto& phone : crowd) {
+    ASSERT_TRUE(phone->say(wire::PhoneHello{{}, {}, "Ann"}));
+    if (inside < 2) {
+      ASSERT_TRUE(phone->hear_a<wire::PhoneState>());
+      ++inside;
+      continue;
+    }
+    const auto notice = phone->hear_a<wire::PhoneNotice>();
+    ASSERT_TRUE(notice);
+    EXPECT_EQ(notice->level, number(wire::PhoneNotice::Level::end));
+    EXPECT_EQ(notice->text, wire::say<wire::Said::server_full>().text());
+    EXPECT_TRUE(phone->sees_close());
+  }
+}
+
 class PacedPhones : public PhoneTest {
  protected:
   PacedPhones()

@@ -68,7 +68,8 @@ class Listener {
     thread_ = std::thread([this] {
       while (!stops_) {
         device_->poll(os::monotonic_us());
-        over_ = device_->state() == cabinet::DeviceState::over;
+        state_ = device_->state();
+        error_ = device_->open_error();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });
@@ -81,13 +82,16 @@ class Listener {
     const std::lock_guard lock(mutex_);
     return std::exchange(frames_, {});
   }
-  bool over() const { return over_; }  // a recording, played to its end
+  cabinet::DeviceState state() const { return state_; }
+  int error() const { return error_; }
 
  private:
   std::unique_ptr<cabinet::DeviceSource> device_;
   std::mutex mutex_;
   std::vector<wire::DeviceFrame> frames_;
-  std::atomic<bool> stops_ = false, over_ = false;
+  std::atomic<cabinet::DeviceState> state_ = cabinet::DeviceState::missing;
+  std::atomic<int> error_ = 0;
+  std::atomic<bool> stops_ = false;
   std::thread thread_;
 };
 
@@ -106,6 +110,7 @@ class Run {
     return options.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
   }
   void step() {
+    session_.line_is(listener_.state(), listener_.error());
     for (const wire::DeviceFrame& frame : listener_.take()) session_.hear(frame);
     keep();
   }
@@ -120,7 +125,6 @@ class Run {
   }
   Session& session() { return session_; }
   const ViewState& view() const { return view_; }
-  bool over() const { return listener_.over(); }
 
  private:
   Session session_;
@@ -143,7 +147,7 @@ class Terminal {
       tell();
       read_keys();
     }
-    return run_.session().all_fitted() ? kOk : kFailed;
+    return run_.session().all_fitted() && run_.view().problem.empty() ? kOk : kFailed;
   }
 
  private:
@@ -287,6 +291,9 @@ int main(int argc, char** argv) {
 
   const std::string serial = cabinet::controller_serial(options.device);
   std::string path = options.out;
+  if (path.empty() && options.device.rfind("file:", 0) == 0)
+    return fail(kUsage,
+                "A recording is no controller whose calibration is kept: name a file with --out.");
   if (path.empty()) {
     const std::string folder = cabinet::calibrations_folder();
     if (folder.empty())
@@ -296,7 +303,8 @@ int main(int argc, char** argv) {
     path = cabinet::calibration_file(folder, serial);
   }
   cabinet::Calibration start = cabinet::nominal_calibration();
-  if (std::filesystem::exists(path)) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown)) {
     auto loaded = cabinet::load_calibration(path);
     if (!loaded) return fail(kUsage, loaded.error());
     start = std::move(*loaded);

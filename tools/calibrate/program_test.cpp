@@ -159,6 +159,8 @@ TEST(CalibrateProgram, SaysWhatItCannotDoInOneSentence) {
            {"--device", "mouse"},
            {"--device", "file:/nowhere"},
            {"--device", "serial:/dev/null9", "--rods", "9"},
+           {"--device", "file:" + broken},
+           {"--device", "serial:/dev/null9", "--out", "/tmp/" + std::string(300, 'x')},
            {"--device", "serial:/dev/null9", "--out", "/nowhere/c.json"},
            {"--device", "serial:/dev/null9", "--out", broken}}) {
     Program program(words);

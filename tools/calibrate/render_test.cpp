@@ -30,6 +30,7 @@ class Moments {
     SimulatedRod rod({.counts_per_mm = 39.4, .tilt = 0.05, .eccentricity = 1e-4}, 5);
     Person person(guide, rod, options);
     SimulatedDevice device;
+    session_.line_is(cabinet::DeviceState::live, 0);
     session_.hear(device.frame(5'000));
     int step = -1;
     person.on_counts = [&](const cabinet::CountIncrement& c) {

@@ -9,6 +9,7 @@ namespace {
 constexpr double kFade = 0.5;         // [s] in which what a rod has moved fades to 1/e
 constexpr double kMovesClearly = 60;  // [counts] of another rod, while this one rests
 constexpr double kMovesBarely = 6;
+constexpr std::int32_t kLongestGapUs = 500'000;
 
 int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
@@ -38,28 +39,45 @@ void Session::begin_rod() {
   trace_.clear();
 }
 
+void Session::line_is(cabinet::DeviceState state, int error) {
+  line_ = state;
+  line_error_ = error;
+}
+
+// A controller that was restarted, or a sensor that was away, has lost what moved meanwhile.
 void Session::hear(const wire::DeviceFrame& frame) {
   ++frames_;
   if (heard_) {
-    const double dt = static_cast<std::uint32_t>(frame.time_us - last_.time_us) * 1e-6;
-    seconds_ += dt;
-    for (int r = 0; r < cabinet::kRods; ++r) {
-      const double slide = increment(last_.slide[r], frame.slide[r]),
-                   spin = increment(last_.spin[r], frame.spin[r]);
-      double& moved = moved_[index(r)];
-      moved = moved * std::exp(-dt / kFade) + std::hypot(slide, spin);
-      if (r != rod()) continue;
-      const TracePoint before = trace_.empty() ? TracePoint{} : trace_.back();
-      trace_.push_back({seconds_, before.slide + slide, before.spin + spin});
-      if (states_[index(r)] == RodState::guided)
-        guide_.add({static_cast<std::int16_t>(slide), static_cast<std::int16_t>(spin),
-                    static_cast<float>(dt)});
+    const auto elapsed = static_cast<std::int32_t>(frame.time_us - last_.time_us);
+    const bool answered = (last_.present & frame.present) >> rod() & 1;
+    const bool follows = elapsed > 0 && elapsed <= kLongestGapUs;
+    if (follows) hear_increments(frame, elapsed * 1e-6);
+    if ((!follows || !answered) && states_[index(rod())] == RodState::guided && guide_.step() > 0) {
+      begin_rod();
+      interrupted_ = true;
     }
-    while (trace_.front().seconds < seconds_ - kTraceSeconds) trace_.pop_front();
   }
   last_ = frame;
   heard_ = true;
   if (states_[index(rod())] == RodState::guided && guide_.finished()) fit_run();
+}
+
+void Session::hear_increments(const wire::DeviceFrame& frame, double seconds) {
+  seconds_ += seconds;
+  for (int r = 0; r < cabinet::kRods; ++r) {
+    if (((last_.present & frame.present) >> r & 1) == 0) continue;
+    const double slide = increment(last_.slide[r], frame.slide[r]),
+                 spin = increment(last_.spin[r], frame.spin[r]);
+    double& moved = moved_[index(r)];
+    moved = moved * std::exp(-seconds / kFade) + std::hypot(slide, spin);
+    if (r != rod()) continue;
+    const TracePoint before = trace_.empty() ? TracePoint{} : trace_.back();
+    trace_.push_back({seconds_, before.slide + slide, before.spin + spin});
+    if (states_[index(r)] == RodState::guided)
+      guide_.add({static_cast<std::int16_t>(slide), static_cast<std::int16_t>(spin),
+                  static_cast<float>(seconds)});
+  }
+  while (!trace_.empty() && trace_.front().seconds < seconds_ - kTraceSeconds) trace_.pop_front();
 }
 
 void Session::fit_run() {
@@ -79,6 +97,7 @@ void Session::confirm() {
   switch (states_[index(rod())]) {
     case RodState::guided:
       if (!sensor_answers()) break;  // nothing would be counted
+      interrupted_ = false;
       guide_.mark();
       if (guide_.finished()) fit_run();
       break;
@@ -95,7 +114,7 @@ void Session::back() {
   begin_rod();
 }
 
-// To the next that is to be calibrated, or the next at all.
+// What was begun of this rod is given up.
 void Session::next_rod(int by) {
   if (states_[index(rod())] == RodState::guided)
     states_[index(rod())] = fits_[index(rod())] ? RodState::fitted : RodState::open;

@@ -10,6 +10,7 @@
 
 #include "cabinet/calibration_fit.h"
 #include "cabinet/calibration_guide.h"
+#include "cabinet/device.h"
 #include "foosball/table.h"
 #include "wire/device_frame.h"
 
@@ -39,6 +40,12 @@ class Session {
   explicit Session(const SessionOptions& options);
 
   void hear(const wire::DeviceFrame& frame);
+  // What the controller's line is like now; error: errno of an attempt to open it.
+  void line_is(cabinet::DeviceState state, int error);
+  cabinet::DeviceState line() const { return line_; }
+  int line_error() const { return line_error_; }
+  // This rod was begun anew: frames were missing, and with them counts.
+  bool interrupted() const { return interrupted_; }
   // The one key that everything can be done with: what is next is done. At the start of a rod it
   // marks; where its guide waits it marks by force; after a fit it goes on to the next rod, after a
   // refusal it begins the rod anew.
@@ -70,6 +77,7 @@ class Session {
  private:
   static std::size_t index(int rod) { return static_cast<std::size_t>(rod); }
   void begin_rod();
+  void hear_increments(const wire::DeviceFrame& frame, double seconds);
   void fit_run();
 
   foosball::Layout layout_;
@@ -83,7 +91,9 @@ class Session {
   int kept_ = 0;
 
   wire::DeviceFrame last_{};
-  bool heard_ = false;
+  cabinet::DeviceState line_ = cabinet::DeviceState::missing;
+  int line_error_ = 0;
+  bool heard_ = false, interrupted_ = false;
   std::uint64_t frames_ = 0;
   double seconds_ = 0;
   std::deque<TracePoint> trace_;

@@ -112,7 +112,12 @@ TEST(CalibrationSession, ARunThatDoesNotFitIsRefusedAndBegunAnew) {
 
 TEST(CalibrationSession, SaysWhichRodMovesAndWhichSensorIsSilent) {
   Table table;
-  EXPECT_NE(advice_words(table.session).find("sends nothing"), std::string::npos);
+  EXPECT_NE(advice_words(table.session).find("is not there"), std::string::npos);
+  table.session.line_is(cabinet::DeviceState::refused, EBUSY);
+  EXPECT_NE(advice_words(table.session).find("Another program"), std::string::npos);
+  table.session.line_is(cabinet::DeviceState::garbled, 0);
+  EXPECT_NE(advice_words(table.session).find("no frame"), std::string::npos);
+  table.session.line_is(cabinet::DeviceState::live, 0);
   table.device.present = 0xFE;
   table.rest(0.1);
   EXPECT_NE(advice_words(table.session).find("does not answer"), std::string::npos);
@@ -123,6 +128,33 @@ TEST(CalibrationSession, SaysWhichRodMovesAndWhichSensorIsSilent) {
   EXPECT_NE(advice_words(table.session).find("Rod 7 moves"), std::string::npos);
   table.rest(5);
   EXPECT_EQ(advice_words(table.session), "");
+}
+
+// Restarted: its counts, clock and sequence begin anew, which is no motion.
+TEST(CalibrationSession, AControllerThatIsRestartedBeginsTheRodAnew) {
+  for (const bool only_the_sensor : {false, true}) {
+    Table table;
+    table.session.line_is(cabinet::DeviceState::live, 0);
+    table.rest(0.1);
+    table.session.confirm();
+    for (int i = 0; i < 300; ++i) table.send(0, {40, 0, 0.005f});
+    for (int i = 0; i < 300; ++i) table.send(0, {-40, 0, 0.005f});
+    EXPECT_EQ(table.session.guide().step(), 1);
+    EXPECT_FALSE(table.session.interrupted());
+    if (only_the_sensor) {
+      table.device.present = 0xFE;
+      table.rest(0.1);
+      table.device.present = 0xFF;
+    } else {
+      table.device = SimulatedDevice{};
+    }
+    table.rest(0.1);
+    EXPECT_TRUE(table.session.interrupted());
+    EXPECT_EQ(table.session.guide().step(), 0);
+    EXPECT_NE(advice_words(table.session).find("begins anew"), std::string::npos);
+    table.session.confirm();
+    EXPECT_FALSE(table.session.interrupted());
+  }
 }
 
 TEST(CalibrationSession, ItsTraceIsOfTheLastSecondsOfThisRod) {

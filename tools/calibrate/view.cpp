@@ -45,8 +45,7 @@ void draw_rods(const HudPen& pen, const Session& session, float top) {
                     : rod == session.rod()       ? kSlide
                                                  : kTrack;
     if (!wanted) colour.a = 0.3f;
-    pen.panel({left + 4.0f, top}, {left + step - 4.0f, top + 30.0f}, 6.0f, colour,
-              rod == session.rod() ? 0.0f : 0.0f);
+    pen.panel({left + 4.0f, top}, {left + step - 4.0f, top + 30.0f}, 6.0f, colour);
     const Colour letters = colour == kTrack || !wanted ? kDim : kPanel;
     pen.text(std::to_string(rod + 1), {Face::bold, 18.0f, 0.0f, Align::centre},
              {left + 0.5f * step, top + 21.0f}, letters, 0.0f);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 
@@ -71,6 +72,28 @@ const char* sentence(cabinet::GuideAdvice advice) {
   return "";
 }
 
+const char* line_sentence(const Session& session) {
+  switch (session.line()) {
+    case cabinet::DeviceState::missing:
+      return N_("The controller is not there: plug it in.");
+    case cabinet::DeviceState::refused:
+      return session.line_error() == EBUSY ? N_("Another program has the controller: end the "
+                                                "server, or the other calibration.")
+                                           : N_("The controller cannot be opened: install "
+                                                "cabinet/70-space-foosball.rules, or "
+                                                "join the device's group.");
+    case cabinet::DeviceState::garbled:
+      return N_("What comes is no frame: is it the right device, with our firmware?");
+    case cabinet::DeviceState::over:
+      return N_("The recording is over.");
+    case cabinet::DeviceState::silent:
+      return N_("The controller sends nothing: plug it in anew.");
+    case cabinet::DeviceState::live:
+      break;
+  }
+  return "";
+}
+
 std::string row(const char* name, double value, double deviation, const char* unit) {
   std::array<char, 128> text{};
   std::snprintf(text.data(), text.size(), "%-22s %10.4g +- %-8.2g %s", tr(name), value, deviation,
@@ -107,11 +130,12 @@ std::string request_words(const Session& session) {
 }
 
 std::string advice_words(const Session& session) {
-  if (session.frames() == 0)
-    return tr(N_("The controller sends nothing: is it plugged in, and not used by a server?"));
+  if (const char* line = line_sentence(session); *line != '\0') return tr(line);
   if (!session.sensor_answers())
     return tr(N_("The sensor of this rod does not answer: look at its cable."));
   if (session.state(session.rod()) != RodState::guided) return {};
+  if (session.interrupted())
+    return tr(N_("The controller or its sensor was away: this rod begins anew."));
   if (const int other = session.other_rod_moves(); other >= 0)
     return with(tr(N_("Rod %1 moves, and it is not asked for.")), std::to_string(other + 1));
   const char* text = sentence(session.guide().advice());
