@@ -266,6 +266,9 @@ DeviceFraming DeviceSource::framing() const {
 int DeviceSource::open_error() const {
   return impl_->open_error;
 }
+const RodCounts& DeviceSource::counts() const {
+  return impl_->tracker.counts();
+}
 std::uint32_t DeviceSource::last_frame_time_us() const {
   return impl_->tracker.last_frame_time_us();
 }

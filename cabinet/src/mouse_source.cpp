@@ -54,6 +54,7 @@ struct MouseSource::Impl {
   StateFilter filter;
   RodMotion measured{0, 0};
   RodInputs rods{};
+  RodCounts counts{};
   SourceCounters counters;
   int fd = -1, open_error = ENOENT;
   bool tried = false, ever_open = false;
@@ -153,7 +154,11 @@ void MouseSource::Impl::report(std::int64_t time_us, std::int64_t now_us) {
   const double seconds = 1e-6 * static_cast<double>(std::max(time - reported_us, std::int64_t{0}));
   RodMotion moved = integrator.add(static_cast<double>(x), static_cast<double>(y),
                                    std::min(seconds, 1.0), measured.angle);
-  if (!possible(moved, std::min(seconds, kLongestReport))) {
+  if (possible(moved, std::min(seconds, kLongestReport))) {
+    RodCount& count = counts[static_cast<std::size_t>(options.rod)];
+    count.slide += x;
+    count.spin += y;
+  } else {
     ++counters.impossible;
     moved = {0, 0};
   }
@@ -203,6 +208,9 @@ DeviceState MouseSource::state() const {
 }
 int MouseSource::open_error() const {
   return impl_->open_error;
+}
+const RodCounts& MouseSource::counts() const {
+  return impl_->counts;
 }
 
 }  // namespace cabinet

@@ -152,7 +152,11 @@ RodMotion RodTracker::motion(int rod, const wire::DeviceFrame& frame, SourceCoun
   const int spin = increment(last_.spin[rod], frame.spin[rod]);
   const double seconds = elapsed_us(last_, frame) * 1e-6;
   const RodMotion moved = integrators_[rod].add(slide, spin, seconds, measured_[rod].angle);
-  if (slide != kHalfRange && spin != kHalfRange && possible(moved, seconds)) return moved;
+  if (slide != kHalfRange && spin != kHalfRange && possible(moved, seconds)) {
+    counts_[rod].slide += slide;
+    counts_[rod].spin += spin;
+    return moved;
+  }
   ++counters.impossible;
   return {0, 0};
 }

@@ -33,6 +33,7 @@ class RodTracker {
   void forget_base() { have_last_ = false; }
 
   const RodInputs& rods() const { return rods_; }
+  const RodCounts& counts() const { return counts_; }
   const RodMotion& measured(int rod) const { return measured_[rod]; }  // as of the last report
   std::uint32_t last_frame_time_us() const { return last_.time_us; }
 
@@ -49,6 +50,7 @@ class RodTracker {
   std::array<RodIntegrator, kRods> integrators_;
   std::array<RodMotion, kRods> measured_{};  // as of the last report
   RodInputs rods_{};
+  RodCounts counts_{};
   std::array<StateFilter, kRods> filters_;
   ClockMap clock_;
   wire::DeviceFrame last_{};

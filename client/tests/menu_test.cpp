@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -264,6 +265,83 @@ TEST(SeatsMenu, TellsPeopleAtOneOtherWindowApart) {
   EXPECT_GE(row_of(page.menu.page(page.view, page.crew, 0), "Ann, Dora"), 0);
 }
 
+// --- controllers ---------------------------------------------------------------------------------
+
+class ControllersPage : public testing::Test {
+ protected:
+  // A controller of 1000 frames a second of which every 50th is lost, and 0.4 ms old when taken.
+  void hear(double seconds) {
+    wire::Devices told{std::llround(1e6 * seconds), {{}}};
+    wire::DeviceReport& device = told.devices[0];
+    device.name = "cabinet";
+    device.state = number(wire::DeviceState::live);
+    device.frames = device.stamped = static_cast<std::uint64_t>(980 * seconds);
+    device.lost = static_cast<std::uint64_t>(20 * seconds);
+    device.latency_sum_us = 400 * device.frames;
+    device.rods[2] = {number(wire::RodStatus::live), std::llround(100 * seconds), -7, 0.0f, 0.0f};
+    menu.hear(told);
+  }
+  DevicesMenu menu;
+};
+
+TEST_F(ControllersPage, AsksOnlyAsHostTwentyTimesASecondAndWaitsForAnswers) {
+  EXPECT_FALSE(menu.ask(kSecond));
+  menu.follow(1, true);
+  int asked = 0;
+  for (std::int64_t now = kSecond; now < 2 * kSecond; now += 16'000) asked += menu.ask(now) ? 1 : 0;
+  EXPECT_EQ(asked, 1) << "no answer has come";
+  asked = 0;
+  for (std::int64_t now = 2 * kSecond; now < 3 * kSecond; now += 10'000) {
+    if (!menu.ask(now)) continue;
+    ++asked;
+    hear(1e-6 * static_cast<double>(now));
+  }
+  EXPECT_EQ(asked, 20);
+  EXPECT_TRUE(menu.ask(4 * kSecond));
+  EXPECT_FALSE(menu.ask(4 * kSecond + 900'000));
+  EXPECT_TRUE(menu.ask(5 * kSecond + 1)) << "an answer that is lost is not waited for for ever";
+  menu.follow(2, false);
+  EXPECT_FALSE(menu.ask(9 * kSecond));
+}
+
+TEST_F(ControllersPage, RatesAndLatencyAreOfTheLastSecondAndTracesOfTen) {
+  menu.follow(1, true);
+  for (int i = 20; i <= 20 * 30; ++i) hear(0.05 * i);
+  const MenuPage page = menu.page(0);
+  ASSERT_EQ(page.rows.size(), 1u);
+  EXPECT_EQ(page.rows[0].label, "cabinet");
+  EXPECT_EQ(page.rows[0].value, "live");
+  ASSERT_TRUE(page.device);
+  EXPECT_NEAR(page.device->frames_per_second, 980, 5);
+  EXPECT_NEAR(page.device->latency_ms, 0.4, 0.01);
+  EXPECT_NEAR(static_cast<double>(page.device->lost), 20, 1);
+  const auto& trace = page.device->traces[2];
+  EXPECT_NEAR(trace.back().seconds - trace.front().seconds, 10, 0.06);
+  EXPECT_NEAR(trace.back().slide - trace.front().slide, 1000, 8);
+}
+
+TEST_F(ControllersPage, AServerThatCountsFromTheBeginningAgainIsNoBurst) {
+  menu.follow(1, true);
+  for (int i = 0; i <= 100; ++i) hear(100 + 0.05 * i);
+  for (int i = 0; i <= 10; ++i) hear(1 + 0.05 * i);
+  const MenuPage page = menu.page(0);
+  EXPECT_NEAR(page.device->frames_per_second, 980, 30);
+  EXPECT_EQ(page.device->traces[2].size(), 11u);
+}
+
+TEST_F(ControllersPage, SaysWhyNothingIsSeen) {
+  menu.follow(1, false);
+  EXPECT_NE(menu.page(0).note.find("Only the host"), std::string::npos);
+  menu.follow(1, true);
+  EXPECT_NE(menu.page(0).note.find("Waiting"), std::string::npos);
+  menu.hear({1, {}});
+  EXPECT_NE(menu.page(0).note.find("--device"), std::string::npos);
+  hear(1.0);
+  hear(2.0);
+  menu.hear({3'000'000, {}});  // all are gone
+  EXPECT_FALSE(menu.page(3).device);
+}
+
 // --- all pages -----------------------------------------------------------------------------------
 
 TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
@@ -278,7 +356,7 @@ TEST(Menu, TheFirstRowGoesFromPageToPageWithoutAnyKeyOfTheirOwn) {
     titles.insert(menu.page(context).title);
     menu.step({.right = 1}, 0, context);
   }
-  EXPECT_EQ(titles.size(), 5u);
+  EXPECT_EQ(titles.size(), static_cast<std::size_t>(Menu::kPages));
   menu.step({.back = true}, 0, context);
   EXPECT_TRUE(menu.page(context).rows.empty());
   menu.toggle(Menu::Page::tuning);
@@ -309,7 +387,7 @@ TEST(Menu, StandsWithoutAServer) {
   Menu menu("");
   const Menu::Context context{settings, nothing, nullptr};
   for (const auto page : {Menu::Page::settings, Menu::Page::seats, Menu::Page::tuning,
-                          Menu::Page::recordings, Menu::Page::game}) {
+                          Menu::Page::recordings, Menu::Page::game, Menu::Page::controllers}) {
     menu.toggle(page);
     for (int i = 0; i < 80; ++i) menu.step({.down = 1, .confirm = i % 3 == 0}, 0, context);
     EXPECT_FALSE(menu.page(context).rows.empty());

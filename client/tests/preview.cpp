@@ -72,6 +72,7 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"game-challenge", 0.4, 0, 0},
                            {"game-ladder", 0.4, 0, 0, View::above},
                            {"game-read-only", 4.6, 2, 0},
+                           {"controllers", 4.6, 2, 0},
                            {"two-a-side", 2.4, 2, 0},
                            {"goalie-in-hand", 0.9, 2, 0},
                            {"attack-in-hand", 1.62, 2, 0},
@@ -150,6 +151,17 @@ void decide(const std::string& shot, wire::Snapshot& state, HudState& hud) {
     state.mode = number(wire::Mode::training);
     state.last_shot = {0, 5, 1, 7.4f, 0.21f};
   }
+}
+
+// A controller whose rods move, one that is away, and a mouse.
+MenuPage controllers_page() {
+  Menu menu("/nowhere");
+  menu.toggle(Menu::Page::controllers);
+  menu.devices().follow(1, true);
+  for (int i = 0; i < 240; ++i) menu.devices().hear(scripted_devices(0.05 * i));
+  static Settings settings;
+  static const SeatsView nobody;
+  return menu.page({settings, nobody, nullptr});
 }
 
 // As a person sees it who shares the table with others.
@@ -334,6 +346,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
       hud.menu = menu_page(Menu::Page::game, 1, true, number(wire::Mode::challenge));
     if (name == "game-ladder")
       hud.menu = menu_page(Menu::Page::game, 1, true, number(wire::Mode::ladder));
+    if (name == "controllers") hud.menu = controllers_page();
     if (name == "game-read-only") hud.menu = menu_page(Menu::Page::game, 1, false);
     if (name == "two-a-side") {
       view.active_rods = hud.active_rods = 0b00011010;

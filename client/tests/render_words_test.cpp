@@ -95,6 +95,9 @@ MenuPage menu_page(Menu::Page page) {
   menu.tuning().hear(1, foosball::Tuning{}, true);
   wire::Game game;
   game.waits = true;
+  menu.devices().follow(1, true);
+  menu.devices().hear(scripted_devices(1.0));
+  menu.devices().hear(scripted_devices(1.5));
   menu.game().hear(1, game, true, wire::say<wire::Said::challenge_characters>().text());
   menu.toggle(page);
   const Menu::Context context{settings, seats, &crew};
@@ -131,7 +134,7 @@ TEST_P(RenderedWords, NothingWrittenIsCutInAnyWindow) {
     UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
     for (const glm::ivec2 size : {glm::ivec2(480, 640), glm::ivec2(640, 360), glm::ivec2(320, 240),
                                   glm::ivec2(3840, 600), glm::ivec2(1280, 720)}) {
-      for (int shown = 0; shown < 5 * 2 * 8; ++shown) {
+      for (int shown = 0; shown < 5 * 2 * (3 + Menu::kPages); ++shown) {
         wire::Snapshot state = scripted_play(0.35);
         state.screen = static_cast<std::uint8_t>(shown % 5);
         HudState hud;

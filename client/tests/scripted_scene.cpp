@@ -60,4 +60,34 @@ wire::Snapshot scripted_play(double seconds, foosball::Layout layout) {
   return state;
 }
 
+wire::Devices scripted_devices(double seconds) {
+  const auto frames = static_cast<std::uint64_t>(1000.0 * seconds);
+  const auto report = [&](const char* name, wire::DeviceState state) {
+    wire::DeviceReport device;
+    device.name = name;
+    device.state = number(state);
+    return device;
+  };
+  wire::DeviceReport cabinet =
+      report("cabinet at hid:/dev/space-foosball", wire::DeviceState::live);
+  cabinet.frames = cabinet.stamped = frames;
+  cabinet.latency_sum_us = 430 * frames;
+  cabinet.latency_max_us = 1870;
+  cabinet.lost = 3;
+  cabinet.line_errors = 12;
+  for (std::size_t i = 0; i < cabinet.rods.size(); ++i) {
+    const double phase = 0.8 * static_cast<double>(i), t = seconds;
+    wire::DeviceRod& rod = cabinet.rods[i];
+    rod.status = number(i == 6 ? wire::RodStatus::held : wire::RodStatus::live);
+    rod.slide = static_cast<float>(i == 6 ? 0.02 : 0.1 * std::sin(1.3 * t + phase));
+    rod.angle = static_cast<float>(i == 6 ? 1.0 : 4.0 * std::sin(2.1 * t + 2.0 * phase));
+    rod.slide_counts = std::llround(39.37e3 * static_cast<double>(rod.slide));
+    rod.spin_counts = std::llround(315.0 * static_cast<double>(rod.angle));
+  }
+  wire::DeviceReport mouse = report("mouse at evdev:/dev/input/event5", wire::DeviceState::live);
+  mouse.rods[3].status = number(wire::RodStatus::live);
+  return {std::llround(1e6 * seconds),
+          {cabinet, report("cabinet at serial:/dev/ttyACM0", wire::DeviceState::missing), mouse}};
+}
+
 }  // namespace client

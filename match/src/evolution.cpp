@@ -43,7 +43,7 @@ EvolutionStrategy::EvolutionStrategy(Point start, double step, std::size_t popul
       path_c_(size_, 0.0),
       samples_(population, Point(size_)) {
   const double n = static_cast<double>(size_), half = 0.5 * static_cast<double>(population);
-  for (double rank = 1.0; rank <= half; ++rank) {
+  for (int rank = 1; rank <= half; ++rank) {
     weights_.push_back(plain_log(half + 0.5) - plain_log(rank));
   }
   const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);

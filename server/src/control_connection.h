@@ -63,8 +63,10 @@ class ControlConnection {
   std::uint32_t client = 0;               // joined: whose seat it is
   wire::Role role = wire::Role::watcher;  // that the password gave, or this machine
   WishAllowance wishes;
-  bool try_charged = false;  // a password was tried, and is not known to be right
-  bool unread = false;       // more waits to be sent than may: the server drops it
+  RateLimit device_queries{4, 20'000};
+  bool awaits_devices = false;  // has asked
+  bool try_charged = false;     // a password was tried, and is not known to be right
+  bool unread = false;          // more waits to be sent than may: the server drops it
 
  private:
   void forget_sent();

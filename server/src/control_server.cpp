@@ -129,6 +129,7 @@ void ControlServer::run() {
     follow_the_day();
     publish_questionnaires();
     publish_report();
+    publish_devices();
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       if (polled_[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) serve(*connections_[i]);
     }
@@ -296,6 +297,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     take_answers(connection, *answers);
   } else if (const auto* kick = std::get_if<wire::Kick>(&message); kick && joined) {
     take_kick(connection, *kick);
+  } else if (joined && std::holds_alternative<wire::DeviceQuery>(message)) {
+    take_device_query(connection);
   } else if (std::holds_alternative<wire::Bye>(message)) {
     release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "control_connection.h"
+#include "device_table.h"
 #include "door.h"
 #include "foosball/match.h"
 #include "kick_votes.h"
@@ -110,6 +111,9 @@ class ControlServer {
   void ask(std::uint32_t match, RodSet cabinet_rods);
   // The same for a report; left out if 8 are waiting.
   void report(const wire::Report& report);
+  // A host has asked for them since the last tell_devices().
+  bool devices_asked() const { return devices_asked_.load(std::memory_order_acquire); }
+  void tell_devices(const DeviceTable& table);
   // A match that was played is over: who was put out may play again.
   void match_is_over();
   // A connection that another port has let in, as a player's: it says Hello as any other, needs no
@@ -200,6 +204,9 @@ class ControlServer {
   std::uint32_t challenge_day() const;  // that of a challenge chosen now; 0: unknown
   void follow_the_day();
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
+  // control_devices.cpp
+  void publish_devices();
+  void take_device_query(ControlConnection& connection);
   // control_kicks.cpp
   void take_kick(ControlConnection& connection, const wire::Kick& kick);
   wire::Sentence why_not_kick(const Seat& voter, const Seat* target) const;
@@ -250,6 +257,8 @@ class ControlServer {
   SpscQueue<wire::Tuning, 8> tunings_;
   SpscQueue<wire::Game, 8> games_;
   std::optional<wire::Game> game_;  // as it was last told
+  std::atomic<bool> devices_asked_{false};
+  SpscQueue<DeviceTable, 2> devices_;
   SpscQueue<wire::Report, 8> reports_;
   std::optional<wire::Report> report_;                // the last one
   SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's

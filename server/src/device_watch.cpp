@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace server {
 namespace {
@@ -66,6 +67,23 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devi
       tell(i, sentence(*devices[i], state, watched.ever_live), devices[i]->name() + " is back");
     watched.ever_live = watched.ever_live || live;
     watched.told = state;
+  }
+}
+
+void DeviceWatch::look_at_sensors(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
+                                  std::int64_t now_us, const Tell& tell) {
+  saturations_.resize(devices.size());
+  for (std::uint32_t i = 0; i < devices.size(); ++i) {
+    Saturation& known = saturations_[i];
+    const std::uint64_t overflows = devices[i]->counters().overflows;
+    const std::string& name = devices[i]->name();
+    if (overflows != std::exchange(known.overflows, overflows)) {
+      known.last_us = now_us;
+      if (!std::exchange(known.told, true)) tell(i, say<Said::device_too_fast>(name), {});
+    } else if (known.told && now_us - known.last_us > kSaturationShownUs) {
+      known.told = false;
+      tell(i, {}, name + ": its sensors follow again");
+    }
   }
 }
 

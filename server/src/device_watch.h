@@ -22,6 +22,9 @@ class DeviceWatch {
   // At once when a device that was live no longer is, or is again; else what has lasted a while.
   void look(const std::vector<std::unique_ptr<cabinet::Device>>& devices, std::int64_t now_us,
             const Tell& tell);
+  // A sensor that could not follow its rod: what it has lost is not known. Told for a while.
+  void look_at_sensors(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
+                       std::int64_t now_us, const Tell& tell);
 
  private:
   // To say its first word, and before one fault is told in place of another: a controller that was
@@ -33,9 +36,16 @@ class DeviceWatch {
     std::optional<cabinet::DeviceState> told;
     bool ever_live = false;
   };
+  struct Saturation {
+    std::uint64_t overflows = 0;  // that are known
+    std::int64_t last_us = 0;
+    bool told = false;
+  };
+  static constexpr std::int64_t kSaturationShownUs = 6'000'000;
   static bool due(const Watched& watched, std::int64_t now_us);
 
   std::vector<Watched> watched_;
+  std::vector<Saturation> saturations_;
 };
 
 }  // namespace server

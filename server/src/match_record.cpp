@@ -25,6 +25,7 @@ static_assert(wire::kSpinRuleCount == foosball::kSpinRules);
 static_assert(wire::kRungCount == foosball::kLadderRungs);
 static_assert(wire::kMenOnRod == foosball::kMaxMenOnRod);
 static_assert(wire::kRodStatusCount == static_cast<unsigned>(cabinet::RodStatus::held) + 1);
+static_assert(wire::kDeviceStateCount == static_cast<unsigned>(cabinet::DeviceState::over) + 1);
 
 namespace {
 
@@ -76,6 +77,12 @@ static_assert(same(wire::WishKind::set_up, foosball::Command::Kind::set_up));
 static_assert(same(wire::RodStatus::absent, cabinet::RodStatus::absent));
 static_assert(same(wire::RodStatus::live, cabinet::RodStatus::live));
 static_assert(same(wire::RodStatus::held, cabinet::RodStatus::held));
+static_assert(same(wire::DeviceState::missing, cabinet::DeviceState::missing));
+static_assert(same(wire::DeviceState::refused, cabinet::DeviceState::refused));
+static_assert(same(wire::DeviceState::silent, cabinet::DeviceState::silent));
+static_assert(same(wire::DeviceState::garbled, cabinet::DeviceState::garbled));
+static_assert(same(wire::DeviceState::live, cabinet::DeviceState::live));
+static_assert(same(wire::DeviceState::over, cabinet::DeviceState::over));
 static_assert(same(wire::RodSource::none, RodDriver::none));
 static_assert(same(wire::RodSource::cabinet, RodDriver::cabinet));
 static_assert(same(wire::RodSource::client, RodDriver::client));

@@ -245,6 +245,10 @@ void Server::Impl::gather_live(std::int64_t now_us) {
                     [this](auto index, const auto& fault, const auto& is_well) {
                       notify(Topic::devices, fault, is_well, index);
                     });
+  device_watch.look_at_sensors(desk.devices(), now_us,
+                               [this](auto index, const auto& fault, const auto& is_well) {
+                                 notify(Topic::saturation, fault, is_well, index);
+                               });
 }
 
 // --- what goes out
@@ -290,6 +294,12 @@ void Server::Impl::watch_game() {
   const wire::Game now = to_game(view.setup, opponent, view.setup_waits || desk.player_waits());
   if (game_told == now) return;
   if (control.tell_game(now)) game_told = now;
+}
+
+void Server::Impl::show_devices(std::int64_t now_us) {
+  if (!control.devices_asked()) return;
+  fill(device_table, desk.devices(), now_us);
+  control.tell_devices(device_table);
 }
 
 // Once a second: whether anything of it has reached the network.
@@ -406,6 +416,7 @@ void Server::tick(std::int64_t now_us) {
   s.watch_sending();
   s.watch_tuning();
   s.watch_game();
+  s.show_devices(now_us);
 }
 
 void Server::wait_sent() {

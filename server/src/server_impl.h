@@ -64,6 +64,7 @@ struct Server::Impl {
   void watch_tuning();
   void take_game(const wire::Game& asked);
   void watch_game();
+  void show_devices(std::int64_t now_us);
   // Empty: the notice is cleared, and the log has over.
   void notify(Topic topic, const wire::Sentence& text, const std::string& over = {},
               std::uint32_t index = 0);
@@ -92,6 +93,7 @@ struct Server::Impl {
   std::unique_ptr<cabinet::HapticSink> cabinet_haptics;  // or none
   HapticDesk haptics;
   DeviceWatch device_watch;
+  DeviceTable device_table;
   EventRepeater events;
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;

@@ -78,6 +78,23 @@ TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
   }
 }
 
+TEST_F(WarmTick, TakesNoMemoryWhileAHostLooksAtTheDevices) {
+  table.tick(100);
+  ProbeClient host(table.port());
+  ASSERT_TRUE(host.join());
+  long during = 0;
+  for (int asked = 0; asked < 3; ++asked) {
+    ASSERT_TRUE(host.say(wire::DeviceQuery{}));
+    bool told = false;
+    ASSERT_TRUE(table.tick_until([&] {
+      during += taken(1);
+      told = host.hear_a<wire::Devices>(1).has_value();
+      return told;
+    }));
+  }
+  EXPECT_EQ(during, 0);
+}
+
 // A phone that swings its rods, and feels three hits.
 TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
   Lockstep table([](ServerOptions& o) {

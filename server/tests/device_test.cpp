@@ -40,8 +40,9 @@ class Controller {
               static_cast<ssize_t>(bytes.size()));
   }
   // One report; rod 2 has moved on by so many counts.
-  void report(int slide_counts) {
+  void report(int slide_counts, std::uint8_t overflow = 0) {
     frame_.present = 0xFF;
+    frame_.overflow = overflow;
     ++frame_.sequence;
     frame_.time_us += 1000;
     frame_.slide[2] = static_cast<std::uint16_t>(frame_.slide[2] + slide_counts);
@@ -113,6 +114,61 @@ TEST_F(DeviceTest, TheRodArrivesWhereTheSensorSays) {
   EXPECT_NEAR(table->match().view().rods[3].slide, 0.0, 0.0005);
 }
 
+// The tick answers, when a host has asked.
+std::optional<wire::Devices> answer_to(ProbeClient& client, Lockstep& table) {
+  if (!client.say(wire::DeviceQuery{})) return {};
+  std::optional<wire::Devices> told;
+  table.tick_until([&] {
+    told = client.hear_a<wire::Devices>(5);
+    return told.has_value();
+  });
+  return told;
+}
+
+TEST_F(DeviceTest, AHostWhoAsksIsToldWhatItDoes) {
+  run(20);
+  run(40, 8);  // 40 mm
+  run(200);
+  const auto told = answer_to(watcher, table);
+  ASSERT_TRUE(told);
+  ASSERT_EQ(told->devices.size(), 1u);
+  const wire::DeviceReport& device = told->devices[0];
+  EXPECT_EQ(device.name, "cabinet test");
+  EXPECT_EQ(device.state, number(wire::DeviceState::live));
+  EXPECT_EQ(device.frames, 260u);
+  EXPECT_EQ(device.lost, 0u);
+  EXPECT_EQ(device.rods[2].slide_counts, 320);
+  EXPECT_EQ(device.rods[2].spin_counts, 0);
+  EXPECT_NEAR(device.rods[2].slide, 0.040f, 0.0005f);
+  EXPECT_EQ(device.rods[3].slide_counts, 0);
+  EXPECT_EQ(device.rods[2].status, number(wire::RodStatus::live));
+
+  controller.unplug();
+  table.tick(100);
+  const auto without = answer_to(watcher, table);
+  ASSERT_TRUE(without);
+  EXPECT_EQ(without->devices[0].state, number(wire::DeviceState::missing));
+  EXPECT_EQ(without->devices[0].rods[2].status, number(wire::RodStatus::held));
+  EXPECT_EQ(without->devices[0].rods[2].slide_counts, 320);
+}
+
+TEST_F(DeviceTest, AFloodOfQuestionsIsAnsweredAtItsPace) {
+  run(20);
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(watcher.say(wire::DeviceQuery{}));
+  int answers = 0;
+  watcher.say(wire::Ping{1});
+  while (const auto message = watcher.hear()) {
+    answers += std::holds_alternative<wire::Devices>(*message) ? 1 : 0;
+    if (std::holds_alternative<wire::Pong>(*message)) break;
+    table.tick();
+  }
+  table.tick(50);
+  while (watcher.hear_a<wire::Devices>(20)) ++answers;
+  EXPECT_GE(answers, 1);
+  EXPECT_LE(answers, 5);
+  EXPECT_TRUE(watcher.catch_up());
+}
+
 TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   run(20);
   run(40, 8);
@@ -166,6 +222,26 @@ TEST_F(DeviceTest, ADeviceThatSendsNoFrameIsToldToBeTheWrongOne) {
   EXPECT_EQ(table->devices().at(0).counters.frames, 0u);
   run(1);  // its first true frame
   EXPECT_EQ(notice_text(), "cabinet test is back");
+}
+
+// The frame says so, and the screen: once, for as long as it goes on and a while more.
+TEST_F(DeviceTest, ASensorThatCannotFollowItsRodIsTold) {
+  run(20);
+  controller.report(8, 1 << 2);
+  table.tick();
+  EXPECT_EQ(notice_text(),
+            "cabinet test: a rod moved faster than its sensor can follow; push it to both stops "
+            "once");
+  for (int i = 0; i < 3000; ++i) {
+    controller.report(8 - 16 * (i & 1), static_cast<std::uint8_t>(i % 500 == 0 ? 1 << 2 : 0));
+    table.tick();
+  }
+  run(5000);
+  EXPECT_FALSE(watcher.hear(0)) << "it stands, and is not told again";
+  run(3000);
+  const auto over = watcher.hear_a<wire::Notice>();
+  ASSERT_TRUE(over);
+  EXPECT_EQ(over->level, wire::Notice::Level::cleared);
 }
 
 // One notice each, in whatever order the faults follow each other: none while a new one has not
@@ -243,6 +319,30 @@ TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   const auto notice = notice_of(std::move(*device), 10);
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
+}
+
+// From another machine, with the players' password: what hangs at the server's is not theirs.
+TEST(DevicesAsked, APlayerIsToldNothing) {
+  Lockstep table([](ServerOptions& o) {
+    o.access.trust_this_machine = false;
+    o.access.password = "open sesame";
+  });
+  ProbeClient player(table.port());
+  ASSERT_TRUE(player.prove("open sesame"));
+  ASSERT_TRUE(player.join(0));
+  ASSERT_TRUE(player.say(wire::DeviceQuery{}));
+  player.say(wire::Ping{1});
+  bool told = false, ponged = false;
+  while (!ponged) {
+    const auto message = player.hear();
+    ASSERT_TRUE(message);
+    told = told || std::holds_alternative<wire::Devices>(*message);
+    ponged = std::holds_alternative<wire::Pong>(*message);
+  }
+  table.tick(20);
+  EXPECT_FALSE(player.hear_a<wire::Devices>(20));
+  EXPECT_FALSE(told);
+  EXPECT_EQ(table->counters().control.wishes_dropped, 1u);
 }
 
 // Two mice on the desk, each on a socket pair: each moves its rod, and one that is unplugged is

@@ -105,6 +105,26 @@ auto build(Builder& b, const Bye& m) {
 auto build(Builder& b, const Phones& m) {
   return fb::CreatePhones(b, text(b, m.url, kMaxUrl));
 }
+auto build(Builder& b, const DeviceQuery&) {
+  return fb::CreateDeviceQuery(b);
+}
+auto build(Builder& b, const DeviceReport& m) {
+  std::vector<flatbuffers::Offset<fb::DeviceRod>> rods;
+  for (const DeviceRod& rod : m.rods)
+    rods.push_back(fb::CreateDeviceRod(b, rod.status, rod.slide_counts, rod.spin_counts, rod.slide,
+                                       rod.angle));
+  const auto all = b.CreateVector(rods);
+  return fb::CreateDeviceReport(b, text(b, m.name, kMaxName), m.state, m.frames, m.lost, m.bad,
+                                m.stale, m.reopened, m.overflows, m.impossible, m.line_errors,
+                                m.stamped, m.latency_sum_us, m.latency_max_us, all);
+}
+auto build(Builder& b, const Devices& m) {
+  std::vector<flatbuffers::Offset<fb::DeviceReport>> devices;
+  for (const DeviceReport& device : m.devices) {
+    if (devices.size() < kMaxDevices) devices.push_back(build(b, device));
+  }
+  return fb::CreateDevices(b, m.time_us, b.CreateVector(devices));
+}
 auto build(Builder& b, const Questionnaire& m) {
   return fb::CreateQuestionnaire(b, m.match, m.rods);
 }
@@ -267,6 +287,42 @@ bool take(const fb::Bye& t, Bye& m) {
 bool take(const fb::Phones& t, Phones& m) {
   return take(t.url(), kMaxUrl, m.url);
 }
+bool take(const fb::DeviceQuery&, DeviceQuery&) {
+  return true;
+}
+bool take(const fb::DeviceRod& t, DeviceRod& m) {
+  m = {t.status(), t.slide_counts(), t.spin_counts(), t.slide(), t.angle()};
+  return m.status < kRodStatusCount && std::isfinite(m.slide) && std::isfinite(m.angle);
+}
+bool take(const fb::DeviceReport& t, DeviceReport& m) {
+  m.state = t.state();
+  m.frames = t.frames();
+  m.lost = t.lost();
+  m.bad = t.bad();
+  m.stale = t.stale();
+  m.reopened = t.reopened();
+  m.overflows = t.overflows();
+  m.impossible = t.impossible();
+  m.line_errors = t.line_errors();
+  m.stamped = t.stamped();
+  m.latency_sum_us = t.latency_sum_us();
+  m.latency_max_us = t.latency_max_us();
+  if (t.rods()->size() != m.rods.size()) return false;
+  for (std::size_t i = 0; i < m.rods.size(); ++i) {
+    if (!take(*t.rods()->Get(static_cast<flatbuffers::uoffset_t>(i)), m.rods[i])) return false;
+  }
+  return m.state < kDeviceStateCount && take(t.name(), kMaxName, m.name);
+}
+bool take(const fb::Devices& t, Devices& m) {
+  m.time_us = t.time_us();
+  if (t.devices()->size() > kMaxDevices) return false;
+  m.devices.resize(t.devices()->size());
+  for (std::size_t i = 0; i < m.devices.size(); ++i) {
+    if (!take(*t.devices()->Get(static_cast<flatbuffers::uoffset_t>(i)), m.devices[i]))
+      return false;
+  }
+  return true;
+}
 bool take(const fb::Questionnaire& t, Questionnaire& m) {
   m = {t.match(), t.rods()};
   return m.rods != 0;
@@ -360,6 +416,10 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Names>(control.message_as_Names(), message);
     case fb::Message::Phones:
       return take_as<Phones>(control.message_as_Phones(), message);
+    case fb::Message::DeviceQuery:
+      return take_as<DeviceQuery>(control.message_as_DeviceQuery(), message);
+    case fb::Message::Devices:
+      return take_as<Devices>(control.message_as_Devices(), message);
     case fb::Message::NONE:
       break;
   }
@@ -369,7 +429,9 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
 // bytes: aligned as operator new aligns, since FlatBuffers reads its numbers in place.
 bool parse(const std::vector<std::byte>& bytes, ControlMessage& message) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  constexpr std::uint32_t kMaxDepth = 4, kMaxTables = kMaxSeats + 2;
+  // A Roster's or a Devices' are most.
+  constexpr std::uint32_t kMaxDepth = 5,
+                          kMaxTables = std::max(kMaxSeats, kMaxDevices * (kRods + 1)) + 2;
   flatbuffers::Verifier verifier(data, bytes.size(), kMaxDepth, kMaxTables);
   return fb::VerifyControlBuffer(verifier) && take_any(*fb::GetControl(data), message);
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -208,6 +209,12 @@ std::string type_name(const reflection::Schema& schema, const reflection::Field&
       return "u32";
     case reflection::ULong:
       return "u64";
+    case reflection::Long:
+      return "i64";
+    case reflection::Float:
+      return "f32";
+    case reflection::Double:
+      return "f64";
     case reflection::String:
       return "string";
     default:
@@ -236,17 +243,22 @@ std::string control() {
                                  binary.size());
   if (!reflection::VerifySchemaBuffer(verifier)) return "(no schema)\n";
   const reflection::Schema& schema = *reflection::GetSchema(binary.data());
+  std::set<std::string> messages;
   for (const auto* value : *named(*schema.enums(), "Message").values()) {
     if (value->value() == 0) continue;  // NONE
     const std::string name = value->name()->str();
+    messages.insert(name);
     const auto& object = named(*schema.objects(), name);
     const std::string words = comment(object.documentation());
     text += "\n### " + std::to_string(value->value()) + " " + name + "\n";
     text += (words.empty() ? "" : "\n" + words + "\n") + control_table(schema, object);
   }
-  const auto& seat = named(*schema.objects(), "Seat");
-  text += "\n### Seat, in a Roster\n\n" + comment(seat.documentation()) + "\n" +
-          control_table(schema, seat);
+  for (const auto* object : *schema.objects()) {
+    const std::string full = object->name()->str(), name = full.substr(full.rfind('.') + 1);
+    if (messages.contains(name) || object == schema.root_table()) continue;
+    text += "\n### " + name + ", within a message\n\n" + comment(object->documentation()) + "\n" +
+            control_table(schema, *object);
+  }
   text += "\n### The list of Characters\n\n" + table(characters_layout());
   return text;
 }

@@ -61,6 +61,12 @@ auto tied(const Names& m) {
 auto tied(const Phones& m) {
   return std::tie(m.url);
 }
+auto tied(const DeviceQuery&) {
+  return std::tuple<>();
+}
+auto tied(const Devices& m) {
+  return std::tie(m.time_us, m.devices);
+}
 auto tied(const Tuning& m) {
   return std::tie(m.values);
 }

@@ -226,6 +226,29 @@ std::vector<CharacterRecord> characters() {
   return {tall, {"J\xC3\xBCrgen", "", {}, {}, {}, {}, 0, 0}};
 }
 
+Devices devices() {
+  DeviceReport cabinet{.name = "cabinet at serial:/dev/ttyACM0",
+                       .state = number(DeviceState::live),
+                       .frames = 60'000,
+                       .lost = 3,
+                       .bad = 2,
+                       .stale = 1,
+                       .reopened = 4,
+                       .overflows = 5,
+                       .impossible = 6,
+                       .line_errors = 7,
+                       .stamped = 59'000,
+                       .latency_sum_us = 29'500'000,
+                       .latency_max_us = 1'900,
+                       .rods = {}};
+  for (std::size_t i = 0; i < cabinet.rods.size(); ++i) {
+    const auto n = static_cast<std::int64_t>(i);
+    cabinet.rods[i] = {number(RodStatus::live), -5'000'000'000 + n, 7 * n,
+                       0.01f * static_cast<float>(i), -0.5f};
+  }
+  return {0x1122334455667788, {cabinet, DeviceReport{.name = "mouse", .rods = {}}}};
+}
+
 std::vector<std::pair<std::string, ControlMessage>> control() {
   return {{"hello", Hello{1, 0xDEADBEEF, "J\xC3\xBCrgen", 4243, 0, 0x81, 0x1122334455667788, 7}},
           {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
@@ -245,6 +268,8 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"roster", Roster{{{1, "Ann", 0, 0x0B, 2, false}, {2, "", 1, 0xF0, 1, true}},
                             {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
           {"phones", Phones{"http://192.168.1.5:7541/23456789abcdefghjkmnpqrstu"}},
+          {"device_query", DeviceQuery{}},
+          {"devices", devices()},
           {"names", Names{"Ann", {"", "Ben", "", "", "", "", "", "J\xC3\xBCrgen"}}},
           {"tuning", tuning()},
           {"game", Game{2, 0, 0, 0, 90'000, true, 4, 3, 20261122, true}},

@@ -25,6 +25,7 @@ class Device : public InputSource {
   // As of the last poll.
   virtual DeviceState state() const = 0;
   virtual int open_error() const = 0;  // errno of the last attempt to open it, if that failed
+  virtual const RodCounts& counts() const = 0;
   bool connected() const { return state() == DeviceState::live; }
 };
 

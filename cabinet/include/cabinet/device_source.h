@@ -62,6 +62,7 @@ class DeviceSource final : public Device {
   const std::string& name() const override;
   DeviceState state() const override;
   int open_error() const override;
+  const RodCounts& counts() const override;
   // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
   void observe(std::function<void(const wire::DeviceFrame&)> observer);
   // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on

@@ -44,6 +44,7 @@ class MouseSource final : public Device {
   const std::string& name() const override;
   DeviceState state() const override;
   int open_error() const override;
+  const RodCounts& counts() const override;
 
  private:
   struct Impl;

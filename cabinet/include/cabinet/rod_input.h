@@ -28,6 +28,13 @@ struct RodInput {
 };
 using RodInputs = std::array<RodInput, kRods>;
 
+// What a rod's sensor has counted since its device was first heard, before calibration. Of what
+// came while the device was away, and of what no rod can do, nothing.
+struct RodCount {
+  std::int64_t slide = 0, spin = 0;  // [counts]
+};
+using RodCounts = std::array<RodCount, kRods>;
+
 // Counted, never asserted: bytes from a device are a stranger's.
 struct SourceCounters {
   std::uint64_t frames = 0;       // accepted

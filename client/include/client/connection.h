@@ -83,6 +83,8 @@ class Connection {
   std::optional<wire::Report> report() const;
   // Where phones join, as the server that is joined said; empty: nowhere, or not for this client.
   std::string phones() const;
+  // What the devices of the server's machine did when it answered ask_devices(); each answer once.
+  std::optional<wire::Devices> take_devices();
   SnapshotCounters counters() const;
   std::int64_t delay_us() const;
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
@@ -102,6 +104,8 @@ class Connection {
   void name(std::uint64_t session, const wire::Names& names);
   // What a player answered, with the match of questionnaire().
   void answer(std::uint64_t session, const wire::Answers& answers);
+  // What the devices of the server's machine do: for a host, the server drops it from others.
+  void ask_devices(std::uint64_t session);
   // Where this person's rods shall be: sent when changed, at most every millisecond, and repeated
   // 20 times a second until nothing was heard from the caller for a second, or until the server is
   // joined anew.

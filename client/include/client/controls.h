@@ -30,9 +30,10 @@ enum class Action : std::uint8_t {
   time_out,
   recordings,
   game,
+  controllers,
   feed,  // training: the next man of the rod in hand has the ball
 };
-inline constexpr int kActions = 22;
+inline constexpr int kActions = 23;
 
 constexpr std::size_t index_of(Action action) {
   return static_cast<std::size_t>(action);

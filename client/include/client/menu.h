@@ -1,9 +1,10 @@
-// The menu: pages of settings, seats, tuning, recordings and the game, worked alike with keys,
-// mouse, gamepad or rods. Its first row chooses the page.
+// The menu: pages of settings, seats, tuning, recordings, the game and controllers, worked alike
+// with keys, mouse, gamepad or rods. Its first row chooses the page.
 #pragma once
 
 #include <optional>
 
+#include "client/devices_menu.h"
 #include "client/game_menu.h"
 #include "client/input_events.h"
 #include "client/menu_page.h"
@@ -15,8 +16,8 @@ namespace client {
 
 class Menu {
  public:
-  enum class Page : std::uint8_t { settings, seats, tuning, recordings, game };
-  static constexpr int kPages = 5;
+  enum class Page : std::uint8_t { settings, seats, tuning, recordings, game, controllers };
+  static constexpr int kPages = 6;
 
   explicit Menu(std::string profiles) : tuning_(std::move(profiles)) {}
 
@@ -29,6 +30,7 @@ class Menu {
   }
   TuningMenu& tuning() { return tuning_; }
   GameMenu& game() { return game_; }
+  DevicesMenu& devices() { return devices_; }
 
   struct Context {
     Settings& settings;
@@ -55,6 +57,7 @@ class Menu {
   SeatsMenu seats_;
   TuningMenu tuning_;
   GameMenu game_;
+  DevicesMenu devices_;
 };
 
 }  // namespace client

@@ -2,6 +2,7 @@
 // hand.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,13 +28,16 @@ struct MenuSteps {
   std::string text{};  // typed, as InputEvents::text
 };
 
+struct DeviceView;  // client/devices_menu.h
+
 struct MenuPage {
   std::string title;          // English
   std::vector<MenuRow> rows;  // empty: closed
   int chosen = 0;
-  std::string note;     // about the chosen row: English, translated
-  std::string detail;   // ... and after it, as it is
-  std::string problem;  // what went wrong, as it is
+  std::string note;                               // about the chosen row: English, translated
+  std::string detail;                             // ... and after it, as it is
+  std::string problem;                            // what went wrong, as it is
+  std::shared_ptr<const DeviceView> device = {};  // shown below the rows; null: none
 };
 
 }  // namespace client

@@ -16,8 +16,8 @@ constexpr std::int64_t kProblemsShownUs = 12'000'000;  // of the settings file
 
 bool asks_for_menu(const InputEvents& events) {
   bool asks = events.pad_menu;
-  for (const Action action :
-       {Action::settings, Action::seats, Action::tuning, Action::recordings, Action::game})
+  for (const Action action : {Action::settings, Action::seats, Action::tuning, Action::recordings,
+                              Action::game, Action::controllers})
     asks = asks || events.presses[index_of(action)] % 2 != 0;
   return asks;
 }
@@ -199,6 +199,7 @@ void App::take_input(std::int64_t now) {
   }
   tune(now);
   choose_game(now);
+  watch_devices(now);
   if (events.toggle_help) show_help_ = !show_help_;
   if (events.presses[index_of(Action::camera)] % 2 != 0) turn_view();
   if (replay_ && (events.push || events.pad_push)) reel_.skip();

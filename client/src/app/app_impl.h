@@ -74,6 +74,7 @@ class App {
   void drive_rods(bool menu, std::int64_t now);
   void tune(std::int64_t now);
   void choose_game(std::int64_t now);
+  void watch_devices(std::int64_t now);
   void hear_of_pads();
   void tell(std::vector<std::string> lines);
   void shake_pads();

@@ -95,6 +95,7 @@ void App::open_menu(const InputEvents& events) {
   if (asked(Action::seats)) menu_.toggle(Menu::Page::seats);
   if (asked(Action::tuning)) menu_.toggle(Menu::Page::tuning);
   if (asked(Action::game)) menu_.toggle(Menu::Page::game);
+  if (asked(Action::controllers)) menu_.toggle(Menu::Page::controllers);
   if (asked(Action::recordings)) return watch_recordings();
   menu_hand_.restart();
 }
@@ -108,6 +109,7 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   if (pressed(Action::seats)) return menu_.toggle(Menu::Page::seats);
   if (pressed(Action::tuning)) return menu_.toggle(Menu::Page::tuning);
   if (pressed(Action::game)) return menu_.toggle(Menu::Page::game);
+  if (pressed(Action::controllers)) return menu_.toggle(Menu::Page::controllers);
   if (pressed(Action::recordings)) return watch_recordings();
   const wire::Snapshot* scene = sample_.any ? &sample_.state : nullptr;
   const MenuSteps steps = menu_hand_.steps(events, scene, viewer_team(), now);
@@ -188,6 +190,15 @@ void App::choose_game(std::int64_t now) {
   menu_.game().hear(crew_->session(), connection_->game(),
                     status_.welcome.role == number(wire::Role::host), refused);
   if (const auto game = menu_.game().ask(now)) connection_->choose(crew_->session(), *game);
+}
+
+void App::watch_devices(std::int64_t now) {
+  if (!crew_ || status_.link != Link::joined) return;
+  DevicesMenu& devices = menu_.devices();
+  devices.follow(crew_->session(), status_.welcome.role == number(wire::Role::host));
+  if (const auto told = connection_->take_devices()) devices.hear(*told);
+  if (menu_.shows(Menu::Page::controllers) && devices.ask(now))
+    connection_->ask_devices(crew_->session());
 }
 
 void App::hear_of_pads() {

@@ -92,6 +92,12 @@ void Connection::name(std::uint64_t session, const wire::Names& names) {
 void Connection::answer(std::uint64_t session, const wire::Answers& answers) {
   impl_->link.answer(session, answers);
 }
+void Connection::ask_devices(std::uint64_t session) {
+  impl_->link.ask_devices(session);
+}
+std::optional<wire::Devices> Connection::take_devices() {
+  return impl_->link.take_devices();
+}
 void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
   impl_->link.wish(session, wish);
 }

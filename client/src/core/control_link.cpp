@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "characters/record.h"
 #include "os/clock.h"
@@ -90,6 +91,15 @@ void ControlLink::name(std::uint64_t session, const wire::Names& names) {
 
 void ControlLink::answer(std::uint64_t session, const wire::Answers& answers) {
   ask(answers, session);
+}
+
+void ControlLink::ask_devices(std::uint64_t session) {
+  ask(wire::DeviceQuery{}, session);
+}
+
+std::optional<wire::Devices> ControlLink::take_devices() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(devices_, std::nullopt);
 }
 
 std::optional<wire::Questionnaire> ControlLink::questionnaire() const {
@@ -312,6 +322,10 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     const std::lock_guard lock(mutex_);
     phones_ = phones->url;
   }
+  if (const auto* devices = std::get_if<wire::Devices>(&message)) {
+    const std::lock_guard lock(mutex_);
+    devices_ = *devices;
+  }
   if (const auto* record = std::get_if<wire::Characters>(&message)) {
     return on_characters(*record, now_us);
   }
@@ -379,6 +393,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   game_.reset();
   questionnaire_.reset();
   report_.reset();
+  devices_.reset();
   notices_.clear();  // of a server that may be another when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;

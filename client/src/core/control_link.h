@@ -32,6 +32,7 @@ class ControlLink {
   std::optional<wire::Questionnaire> questionnaire() const;
   std::optional<wire::Report> report() const;
   std::string phones() const;
+  std::optional<wire::Devices> take_devices();
   void wish(std::uint64_t session, const wire::Wish& wish);
   void claim(std::uint64_t session, const wire::Claim& claim);
   void kick(std::uint64_t session, const wire::Kick& kick);
@@ -39,6 +40,7 @@ class ControlLink {
   void join_as(const std::string& name);
   void name(std::uint64_t session, const wire::Names& names);
   void answer(std::uint64_t session, const wire::Answers& answers);
+  void ask_devices(std::uint64_t session);
 
  private:
   enum class Stage : std::uint8_t {
@@ -96,6 +98,7 @@ class ControlLink {
   std::optional<wire::Questionnaire> questionnaire_;
   std::optional<wire::Report> report_;
   std::string phones_;                       // of the server that is joined; empty: not told
+  std::optional<wire::Devices> devices_;     // answered, and not taken yet
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

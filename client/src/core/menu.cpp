@@ -48,6 +48,7 @@ int Menu::rows(const Context& context) const {
   if (page_ == Page::tuning) rows = tuning_.rows();
   if (page_ == Page::recordings) rows = recordings_rows;
   if (page_ == Page::game) rows = game_.rows();
+  if (page_ == Page::controllers) rows = devices_.rows();
   return rows + 1;
 }
 
@@ -91,8 +92,8 @@ Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context
 }
 
 MenuPage Menu::page(const Context& context) const {
-  constexpr std::array<const char*, kPages> kTitles{N_("Settings"), N_("Seats"), N_("Tuning"),
-                                                    N_("Recordings"), N_("Game")};
+  constexpr std::array<const char*, kPages> kTitles{
+      N_("Settings"), N_("Seats"), N_("Tuning"), N_("Recordings"), N_("Game"), N_("Controllers")};
   MenuPage page;
   if (!open_) return page;
   if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
@@ -105,6 +106,7 @@ MenuPage Menu::page(const Context& context) const {
   if (page_ == Page::tuning) page = tuning_.page(row_ - 1);
   if (page_ == Page::recordings) page = recordings_page(context.settings, row_ - 1);
   if (page_ == Page::game) page = game_.page(row_ - 1);
+  if (page_ == Page::controllers) page = devices_.page(row_ - 1);
   page.title = kTitles[static_cast<std::size_t>(page_)];
   page.rows.insert(page.rows.begin(), MenuRow{.label = N_("Page"), .value = page.title});
   page.chosen = row_;

@@ -16,7 +16,7 @@ constexpr std::array<const char*, kActions> kActionNames{
     "slide_away", "slide_near", "spin_right", "spin_left",    "rod_1", "rod_2",
     "rod_3",      "rod_4",      "next_rod",   "previous_rod", "push",  "pause",
     "automatic",  "camera",     "settings",   "help",         "seats", "tuning",
-    "time_out",   "recordings", "game",       "feed"};
+    "time_out",   "recordings", "game",       "controllers",  "feed"};
 
 struct NamedKey {
   const char* name;
@@ -180,6 +180,7 @@ KeyBindings default_keys() {
   set(Action::time_out, "T");
   set(Action::recordings, "F5");
   set(Action::game, "F6");
+  set(Action::controllers, "F7");
   set(Action::feed, "F");
   return keys;
 }

@@ -56,6 +56,7 @@ constexpr std::array<const char*, kActions> kActionLabels{N_("Slide away"),
                                                           N_("Time-out"),
                                                           N_("Recordings"),
                                                           N_("Game"),
+                                                          N_("Controllers"),
                                                           N_("Training: next man")};
 constexpr std::array<const char*, 3> kQualities{N_("automatic"), N_("low"), N_("high")};
 constexpr std::array<const char*, kLanguages> kLanguageNames{N_("as the system"), "English",

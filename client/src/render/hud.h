@@ -64,6 +64,9 @@ void tell_story(HudState& hud, const MatchStory& story);
 
 class HudPen;
 void draw_menu(const HudPen& pen, const MenuPage& page);
+// Below the rows of the menu's page.
+float device_height(const DeviceView& view);
+void draw_device(const HudPen& pen, const DeviceView& view, float top);
 // Of this team's people, at the lower edge; -1: of both.
 void draw_survey(const HudPen& pen, std::span<const SurveyPanel> panels, int team);
 float survey_height(const HudPen& pen, std::span<const SurveyPanel> panels, int team);

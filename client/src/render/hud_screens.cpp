@@ -35,7 +35,7 @@ constexpr std::array<KeyHelp, 15> kAllKeys{
      {N_("Space, click"), N_("push: begin, confirm")},
      {"P", N_("pause")},
      {"C", N_("camera: seat, above, follow, spectator")},
-     {"F2 ... F6", N_("settings, seats, tuning, recordings, game")},
+     {"F2 ... F7", N_("settings, seats, tuning, recordings, game, controllers")},
      {"T", N_("time-out")},
      {"F", N_("training: serve to the next man of the rod")},
      {"F1, H", N_("show or hide the keys")},

@@ -53,7 +53,9 @@ void draw_menu_row(const HudPen& pen, const MenuRow& row, float y, bool here) {
 }  // namespace
 
 void draw_menu(const HudPen& whole, const MenuPage& page) {
-  const HudPen pen = whole.fitting(kHalf + 10.0f, 420.0f).readable(0.62f, kHalf + 10.0f);
+  const float least = page.device != nullptr ? device_height(*page.device) + 220.0f : 420.0f;
+  const HudPen pen =
+      whole.fitting(kHalf + 10.0f, std::max(least, 420.0f)).readable(0.62f, kHalf + 10.0f);
   std::vector<std::string> notes;
   if (!page.note.empty())
     notes = pen.wrapped(tr(page.note.c_str()), kNoteStyle, 2.0f * kHalf - 50.0f);
@@ -73,7 +75,8 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
               std::ranges::none_of(page.rows, [](const MenuRow& row) { return row.share >= 0.0f; })
           ? 0
           : std::max<std::size_t>(3, notes.size());
-  const float below = 44.0f + 18.0f * static_cast<float>(kept);
+  const float device = page.device != nullptr ? device_height(*page.device) : 0.0f;
+  const float below = 44.0f + 18.0f * static_cast<float>(kept) + device;
   const auto count = static_cast<int>(page.rows.size());
   const float room = pen.bottom - 72.0f - below;
   const int shown = std::clamp(static_cast<int>(room / kLine), 3, std::max(count, 3));
@@ -99,6 +102,7 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
              {-kHalf + 22.0f, at + bar + 20.0f + 18.0f * static_cast<float>(i)},
              i >= problem_from ? kWarning : kInk, 0.55f, 2.0f * kHalf - 44.0f);
   }
+  if (page.device != nullptr) draw_device(pen, *page.device, top + height - device - 32.0f);
   pen.text(tr("up and down choose, left and right change; spin and slide a rod; Esc closes"),
            {Face::regular, 13.0f, 0.0f, Align::centre}, {0.0f, top + height - 16.0f}, kFaint, 0.55f,
            2.0f * kHalf - 30.0f);

@@ -99,7 +99,7 @@ void draw_panel(const HudPen& pen, const SurveyPanel& panel, float x, float y) {
 struct SurveyLayout {
   HudPen pen;
   std::vector<const SurveyPanel*> shown;
-  std::size_t columns = 0;
+  std::size_t columns = 1;
   float high = 0.0f;
   float taken() const { return high + 4.0f; }
 };

@@ -121,6 +121,7 @@ std::optional<PossessionClock> possession_clock(const wire::Snapshot& state) {
   for (const foosball::RodSpec& rod : table.rods) {
     if (rod.team == team && (nearest == nullptr || off(rod) < off(*nearest))) nearest = &rod;
   }
+  if (nearest == nullptr) return std::nullopt;
   const double between = table.rods[1].x - table.rods[0].x;
   // Behind the goalie there is no other rod.
   const bool behind = nearest->line == foosball::Line::goalie;

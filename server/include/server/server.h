@@ -99,7 +99,8 @@ class Server {
     not_counted = 8,
     waiting = 9,
     leavers = 10,
-    devices = 100
+    devices = 100,  // + the device's index, as the next
+    saturation = 150
   };
   void warn(Topic topic, const wire::Sentence& text);
   void clear(Topic topic, const std::string& text);

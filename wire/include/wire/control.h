@@ -29,6 +29,7 @@ inline constexpr std::size_t kMaxUrl = 128;   // bytes: url
 inline constexpr std::uint8_t kWatchOnly = 255;
 inline constexpr std::size_t kMaxSeats = 64;
 inline constexpr std::size_t kMaxFame = 8;
+inline constexpr std::size_t kMaxDevices = 16;
 
 // By rod: who plays it. Empty: the one whose name the seat has, or nobody.
 using RodPlayers = std::array<std::string, kRods>;
@@ -219,9 +220,39 @@ struct Phones {
   std::string url;
 };
 
-using ControlMessage = std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock,
-                                    Challenge, Claim, Roster, Tuning, Characters, Questionnaire,
-                                    Answers, Report, Kick, Game, Names, Phones>;
+// Client to server, of a host: what its controllers and mice do now. Answered by Devices, at most
+// every 20 ms.
+struct DeviceQuery {};
+
+// A rod as a device has it.
+struct DeviceRod {
+  std::uint8_t status = 0;                         // RodStatus (wire/enums.h)
+  std::int64_t slide_counts = 0, spin_counts = 0;  // of its sensor, since it was first heard
+  float slide = 0.0f, angle = 0.0f;                // calibrated [m], [rad]; finite
+  bool operator==(const DeviceRod&) const = default;
+};
+// A controller or a mouse at the server's machine. The counters are since the server's start.
+struct DeviceReport {
+  std::string name;        // at most 64 bytes
+  std::uint8_t state = 0;  // DeviceState (wire/enums.h)
+  std::uint64_t frames = 0, lost = 0, bad = 0, stale = 0, reopened = 0;
+  std::uint64_t overflows = 0, impossible = 0, line_errors = 0;  // told by or of its sensors
+  // From a frame's arrival at the machine to the tick that takes it in: of how many it is known,
+  // their sum, the longest [us].
+  std::uint64_t stamped = 0, latency_sum_us = 0, latency_max_us = 0;
+  std::array<DeviceRod, kRods> rods;
+  bool operator==(const DeviceReport&) const = default;
+};
+// Server to client: answers a DeviceQuery.
+struct Devices {
+  std::int64_t time_us = 0;           // the server's clock
+  std::vector<DeviceReport> devices;  // <= kMaxDevices
+};
+
+using ControlMessage =
+    std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
+                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game, Names,
+                 Phones, DeviceQuery, Devices>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

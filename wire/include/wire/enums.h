@@ -57,7 +57,18 @@ enum class WishKind : std::uint8_t {
 // what concerns its team, and vote; a watcher looks on.
 enum class Role : std::uint8_t { watcher = 0, player = 1, host = 2 };
 
-// RodSnapshot::status.
+// DeviceReport::state: missing: not there; refused: there, but it cannot be opened; silent: open,
+// and nothing comes; garbled: no frame among what comes; over: a recording, at its end.
+enum class DeviceState : std::uint8_t {
+  missing = 0,
+  refused = 1,
+  silent = 2,
+  garbled = 3,
+  live = 4,
+  over = 5,
+};
+
+// RodSnapshot::status, DeviceRod::status.
 enum class RodStatus : std::uint8_t { absent = 0, live = 1, held = 2 };
 
 // RodSnapshot::source.

@@ -44,6 +44,7 @@ inline constexpr unsigned kMenOnRod = 5;
 inline constexpr unsigned kQuestionCount = 6;  // results::kQuestions
 inline constexpr std::uint8_t kMaxScore = 5;   // results::kMaxScore
 inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
+inline constexpr unsigned kDeviceStateCount = number(DeviceState::over) + 1;
 inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 
 // Notice::topic of answers that are not kept.

@@ -112,6 +112,7 @@ namespace wire {
   X(device_missing, "%1 is not there: plug it in, or give its right address") \
   X(device_silent, "%1 is there but sends nothing: plug it in anew, and check its firmware") \
   X(device_garbled, "%1 sends what is no frame: is it the right device, with our firmware?") \
+  X(device_too_fast, "%1: a rod moved faster than its sensor can follow; push it to both stops once") \
   X(device_over, "%1 is over: its rods hold") \
   X(device_without_frames, "%1 holds no frame: give a recording of a controller") \
   /* its end */ \

@@ -1,0 +1,39 @@
+// What the controllers and mice of this machine do, for a host's screen. The tick is asked only
+// while somebody looks.
+#include <sys/eventfd.h>
+
+#include "control_server.h"
+#include "os/clock.h"
+
+namespace server {
+
+void ControlServer::tell_devices(const DeviceTable& table) {
+  devices_asked_.store(false, std::memory_order_relaxed);
+  if (devices_.push(DeviceTable(table))) ::eventfd_write(wake_.get(), 1);
+}
+
+// They are the host's: nobody else has to know what hangs at the machine.
+void ControlServer::take_device_query(ControlConnection& connection) {
+  const Seat* seat = seats_.find(connection.client);
+  const bool may = seat != nullptr && seat->role == wire::Role::host;
+  if (!may || !connection.device_queries.take(os::monotonic_us())) {
+    count(Count::wishes_dropped);
+    return;
+  }
+  connection.awaits_devices = true;
+  devices_asked_.store(true, std::memory_order_release);
+}
+
+void ControlServer::publish_devices() {
+  DeviceTable table;
+  while (devices_.pop(table)) {
+    const wire::Devices devices = to_wire(table);
+    for (auto& connection : connections_) {
+      if (connection->state == ControlConnection::State::joined &&
+          std::exchange(connection->awaits_devices, false))
+        send(*connection, devices);
+    }
+  }
+}
+
+}  // namespace server
