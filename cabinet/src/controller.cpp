@@ -1,8 +1,9 @@
 #include "cabinet/controller.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "os/user_folder.h"
 
 namespace cabinet {
 namespace {
@@ -52,13 +53,8 @@ std::string calibration_file(const std::string& folder, const std::string& seria
 }
 
 std::string calibrations_folder() {
-  const auto folder = [](const char* variable) -> std::string {
-    const char* value = std::getenv(variable);
-    return value != nullptr && value[0] == '/' ? value : "";
-  };
-  const std::string data = folder("XDG_DATA_HOME"), home = folder("HOME");
-  if (!data.empty()) return data + "/space-foosball/calibrations";
-  return home.empty() ? "" : home + "/.local/share/space-foosball/calibrations";
+  const std::string data = os::data_folder();
+  return data.empty() ? "" : data + "/space-foosball/calibrations";
 }
 
 }  // namespace cabinet

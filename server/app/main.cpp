@@ -21,11 +21,11 @@
 #include "cabinet/mouse_source.h"
 #include "options.h"
 #include "os/socket_address.h"
+#include "os/time_of_day.h"
 #include "server/exit_code.h"
 #include "server/log_writer.h"
 #include "server/report.h"
 #include "server/run.h"
-#include "utc.h"
 
 namespace {
 
@@ -221,7 +221,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
     wanted.record_by_default_bytes = options.recording_limits.bytes_of_one;
   }
   wanted.results = options.results;
-  wanted.date = app::utc_now;
+  wanted.date = os::utc_now;
   wanted.challenge_date = options.challenge_date;
   wanted.cabinet = !options.devices.empty();
   wanted.questionnaire = !options.no_questionnaire;

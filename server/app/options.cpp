@@ -3,18 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 
 #include "cabinet/mouse_source.h"
 #include "characters/character_file.h"
 #include "os/socket_address.h"
+#include "os/time_of_day.h"
+#include "os/user_folder.h"
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
 #include "server/game_choice.h"
 #include "server/option_checks.h"
-#include "utc.h"
 #include "wire/sentence.h"
 
 namespace app {
@@ -311,7 +311,7 @@ void translate(Options& o, const Raw& raw) {
   o.match.mode = setup.mode;
   o.challenge_date = raw.date;
   if (setup.mode == foosball::Mode::challenge)
-    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : server::day_of(utc_now()));
+    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : server::day_of(os::utc_now()));
   if (!raw.seed.empty()) o.match.seed = *server::parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   const std::string player = std::to_string(raw.level);
@@ -371,15 +371,10 @@ std::string take_mice(Options& o) {
   return {};
 }
 
-// $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
+// Empty: there is no home.
 std::string own_characters() {
-  const auto folder = [](const char* variable) -> std::string {
-    const char* value = std::getenv(variable);
-    return value != nullptr && value[0] == '/' ? value : "";
-  };
-  const std::string data = folder("XDG_DATA_HOME"), home = folder("HOME");
-  if (!data.empty()) return data + "/space-foosball/characters";
-  return home.empty() ? "" : home + "/.local/share/space-foosball/characters";
+  const std::string data = os::data_folder();
+  return data.empty() ? "" : data + "/space-foosball/characters";
 }
 
 tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {

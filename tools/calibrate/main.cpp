@@ -12,7 +12,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <mutex>
 #include <thread>
@@ -23,6 +22,7 @@
 #include "draw/image.h"
 #include "draw/window.h"
 #include "os/clock.h"
+#include "os/time_of_day.h"
 #include "render/translate.h"
 #include "session.h"
 #include "view.h"
@@ -47,14 +47,6 @@ volatile std::sig_atomic_t asked_to_leave = 0;
 int fail(int code, const std::string& sentence) {
   std::fprintf(stderr, "space-foosball-calibrate: %s\n", sentence.c_str());
   return code;
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
 // Reads the device each millisecond, however seldom a picture is drawn.
@@ -119,7 +111,7 @@ class Run {
     if (session_.kept() == kept_) return;
     kept_ = session_.kept();
     cabinet::Calibration calibration = session_.calibration();
-    calibration.made = utc_now();
+    calibration.made = os::utc_now();
     const auto saved = cabinet::save_calibration(calibration, view_.path);
     view_.problem = saved ? "" : saved.error();
   }
