@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cabinet/doctor.h"
+#include "printable.h"
 
 namespace cabinet {
 namespace {
@@ -64,13 +65,6 @@ double mean_latency_us(const SourceCounters& c) {
 
 bool is_controller(const FoundDevice& device) {
   return device.kind == DeviceKind::hid_controller || device.kind == DeviceKind::serial_controller;
-}
-
-// A device's own name is a stranger's: no control characters reach a terminal.
-std::string printable(const std::string& text) {
-  std::string clean;
-  for (const char c : text) clean += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-  return clean;
 }
 
 std::string address_of(const FoundDevice& device) {

@@ -282,7 +282,7 @@ int main(int argc, char** argv) {
   for (int& rod : options.rods) --rod;
 
   const std::string serial = cabinet::controller_serial(options.device);
-  std::string path = options.out;
+  std::string path = options.out, before = path;
   if (path.empty() && options.device.rfind("file:", 0) == 0)
     return fail(kUsage,
                 "A recording is no controller whose calibration is kept: name a file with --out.");
@@ -293,11 +293,12 @@ int main(int argc, char** argv) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     path = cabinet::calibration_file(folder, serial);
+    before = cabinet::kept_calibration(folder, serial);
   }
   cabinet::Calibration start = cabinet::nominal_calibration();
   std::error_code unknown;
-  if (std::filesystem::exists(path, unknown)) {
-    auto loaded = cabinet::load_calibration(path);
+  if (!before.empty() && std::filesystem::exists(before, unknown)) {
+    auto loaded = cabinet::load_calibration(before);
     if (!loaded) return fail(kUsage, loaded.error());
     start = std::move(*loaded);
   }
