@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 // lie between, with serial lines behind a bridge their port. Above it are hubs, which have serial
 // numbers of their own.
 constexpr int kMostLevels = 6;
-constexpr std::size_t kMostWord = 64;
+constexpr std::size_t kMostUsbWord = 64;
 const char* const kUnnumbered = "unnumbered";
 
 std::string first_line(const fs::path& path) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  if (line.size() > kMostWord) line.resize(kMostWord);
+  if (line.size() > kMostUsbWord) line.resize(kMostUsbWord);
   return line;
 }
 
@@ -46,16 +46,10 @@ bool exists(const std::string& path) {
 
 }  // namespace
 
-UsbIdentity usb_identity(const std::string& address, const std::string& sys) {
-  const auto colon = address.find(':');
-  if (colon == std::string::npos) return {};
-  const std::string scheme = address.substr(0, colon);
-  const char* kind = scheme == "serial" ? "tty" : scheme == "hid" ? "hidraw" : nullptr;
-  if (kind == nullptr) return {};
+UsbIdentity usb_identity(const std::string& device_class, const std::string& node,
+                         const std::string& sys) {
   std::error_code error;
-  // /dev/serial/by-id/... is a link to the device.
-  const fs::path real = fs::weakly_canonical(address.substr(colon + 1), error);
-  fs::path at = fs::canonical(fs::path(sys) / "class" / kind / real.filename() / "device", error);
+  fs::path at = fs::canonical(fs::path(sys) / "class" / device_class / node / "device", error);
   if (error) return {};
   for (int level = 0; level < kMostLevels && at.has_relative_path(); ++level) {
     if (fs::exists(at / "idVendor", error))
@@ -66,8 +60,20 @@ UsbIdentity usb_identity(const std::string& address, const std::string& sys) {
   return {};
 }
 
+UsbIdentity usb_identity_at(const std::string& address, const std::string& sys) {
+  const auto colon = address.find(':');
+  if (colon == std::string::npos) return {};
+  const std::string scheme = address.substr(0, colon);
+  const char* kind = scheme == "serial" ? "tty" : scheme == "hid" ? "hidraw" : nullptr;
+  if (kind == nullptr) return {};
+  std::error_code error;
+  // /dev/serial/by-id/... is a link to the device.
+  const fs::path real = fs::weakly_canonical(address.substr(colon + 1), error);
+  return usb_identity(kind, real.filename(), sys);
+}
+
 std::string controller_serial(const std::string& address, const std::string& sys) {
-  return usb_identity(address, sys).serial;
+  return usb_identity_at(address, sys).serial;
 }
 
 std::string calibration_file(const std::string& folder, const std::string& serial) {

@@ -13,9 +13,12 @@ struct UsbIdentity {
   std::string serial, product;
 };
 
-// Of "serial:/dev/ttyACM0" or "hid:/dev/hidraw0"; nothing of a recording. sys: where the kernel
-// tells of devices.
-UsbIdentity usb_identity(const std::string& address, const std::string& sys = "/sys");
+// Of a node by its name among those of a class: "tty" and "ttyACM0", "hidraw" and "hidraw0". sys:
+// where the kernel tells of devices.
+UsbIdentity usb_identity(const std::string& device_class, const std::string& node,
+                         const std::string& sys = "/sys");
+// Of "serial:/dev/ttyACM0" or "hid:/dev/hidraw0"; nothing of a recording.
+UsbIdentity usb_identity_at(const std::string& address, const std::string& sys = "/sys");
 std::string controller_serial(const std::string& address, const std::string& sys = "/sys");
 
 // The file of that controller's calibration: FOLDER/SERIAL.json, where any byte but letters, digits
