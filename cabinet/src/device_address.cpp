@@ -129,14 +129,16 @@ tl::expected<std::unique_ptr<DeviceSource>, std::string> recording_source(Device
 
 }  // namespace
 
+std::string why_no_device(const std::string& address) {
+  const auto parsed = parse_address(address);
+  return parsed ? objection(address, *parsed) : parsed.error();
+}
+
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
     const std::array<double, kRods>& slide_limit) {
+  if (std::string why = why_no_device(address); !why.empty()) return tl::unexpected(std::move(why));
   const auto parsed = parse_address(address);
-  if (!parsed) return tl::unexpected(parsed.error());
-  if (const std::string sentence = objection(address, *parsed); !sentence.empty()) {
-    return tl::unexpected(sentence);
-  }
   DeviceOptions options;
   options.name = address;
   options.framing = parsed->scheme == Scheme::hid ? DeviceFraming::report : DeviceFraming::cobs;

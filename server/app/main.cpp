@@ -179,6 +179,8 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options,
     devices.all.push_back(std::move(*device));
   }
   for (const std::string& address : options.devices) {
+    if (std::string why = cabinet::why_no_device(address); !why.empty())
+      return tl::unexpected(std::move(why));
     auto own = calibration_of(address, options.calibration, log);
     if (!own) return tl::unexpected(own.error());
     auto device = cabinet::open_device(address, *own, slide_limit);

@@ -281,6 +281,8 @@ int main(int argc, char** argv) {
   options.rods.erase(std::unique(options.rods.begin(), options.rods.end()), options.rods.end());
   for (int& rod : options.rods) --rod;
 
+  if (const std::string why = cabinet::why_no_device(options.device); !why.empty())
+    return fail(kUsage, why);
   const std::string serial = cabinet::controller_serial(options.device);
   std::string path = options.out, before = path;
   if (path.empty() && options.device.rfind("file:", 0) == 0)
