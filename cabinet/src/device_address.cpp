@@ -54,7 +54,9 @@ std::string objection(const std::string& text, const Address& address) {
     return text + ": not a regular file; give a recording of a device's bytes.";
   }
   if (address.scheme != Scheme::file && !S_ISCHR(about.st_mode)) {
-    return text + ": not a device; for a recording write file:" + address.path + ".";
+    return text + ": not a device; " +
+           (S_ISREG(about.st_mode) ? "for a recording write file:" + address.path + "."
+                                   : "give the path of one.");
   }
   if (access(address.path.c_str(), R_OK) != 0) {
     return text + ": " + std::strerror(errno) +

@@ -250,7 +250,12 @@ int main(int argc, char** argv) {
       ->required();
   cli.add_option("--rods", options.rods, "1 to 8, from team 0's goal, as in 2,3 (all)")
       ->delimiter(',')
-      ->check(CLI::Range(1, 8));
+      ->check([](const std::string& text) {
+        const bool rod = text.size() == 1 && text[0] >= '1' && text[0] <= '8';
+        return rod ? ""
+                   : "\"" + text +
+                         "\" is no rod: write rods from 1 to 8 with commas between, such as 2,3";
+      });
   cli.add_option("--layout", options.layout, "of the table: tournament (1-2-5-3) or paper")
       ->check(CLI::IsMember({"tournament", "paper"}))
       ->capture_default_str();
