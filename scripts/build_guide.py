@@ -97,10 +97,27 @@ def bill_faults():
             continue
         if bound and total >= bound:
             yield f'{name}.csv: {total} USD, not below {bound}'
+        yield from (f'{name}.csv: {fault}' for fault in spares_faults(bill(name)))
     total = sum(rod['length'] for rod in rods())
     metres = next(p['quantity'] for p in bill('cabinet') if 'by the metre' in p['part'] and 'steel' in p['part'])
     if metres * 1000 < total:
         yield f'cabinet.csv: {metres} m of steel bar are less than the {total} mm of the rods'
+
+
+def spares_faults(parts):
+    for part in parts:
+        if part['for'] == 'a tenth of the rest':
+            cost = part['quantity'] * part['unit_usd']
+            share = cost / (sum_of(parts) - cost)
+            if not Decimal('0.095') <= share <= Decimal('0.105'):
+                yield f'{part["part"]}: {100 * share:.1f} % of the rest, not a tenth'
+
+
+def size_faults(text):
+    """What a page says of its walls, in its bill and beside it, is one size."""
+    sizes = sorted(set(re.findall(r'[Tt]wo walls of (\d+ x \d+ mm)', text)))
+    if len(sizes) > 1:
+        yield f'two walls of {" and of ".join(sizes)}'
 
 
 # --- rods and screens, of the game's own table ---
@@ -148,7 +165,7 @@ def rods():
 def rods_table():
     lines = ['| rod | team | line | travel, 1-2-5-3 | travel, paper | length of bar | reach inside | bar |',
              '| ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |']
-    lines += [f'| {r["index"]} | {r["team"]} | {r["line"]} | {r["travel"]} mm | {r["paper"]} mm | {r["length"]} mm | '
+    lines += [f'| {r["index"] + 1} | {r["team"]} | {r["line"]} | {r["travel"]} mm | {r["paper"]} mm | {r["length"]} mm | '
               f'{r["inside"]} mm | {r["kg"]:.2f} kg |' for r in rods()]
     all_rods = list(rods())
     return [*lines, '', f'Together {sum(r["length"] for r in all_rods) / 1000:.2f} m and '
@@ -245,14 +262,14 @@ def pins_table():
     for rod in range(8):
         cells = [small['clock'][rod], small['data'][rod]]
         cells += [f'{pin}, pin {mega["printed"][pin]}' for pin in (mega['clock'][rod], mega['data'][rod])]
-        lines.append(f'| {rod} | ' + ' | '.join(cells) + ' |')
+        lines.append(f'| {rod + 1} | ' + ' | '.join(cells) + ' |')
     return lines
 
 
 def pico_table():
     board, pin = pins()['pico'], wiring_svg.pico_pin
     lines = ['| rod | data (MISO) | select (NCS) |', '| ---: | --- | --- |']
-    lines += [f'| {rod} | GP{data}, pin {pin(data)} | GP{select}, pin {pin(select)} |'
+    lines += [f'| {rod + 1} | GP{data}, pin {pin(data)} | GP{select}, pin {pin(select)} |'
               for rod, (data, select) in enumerate(zip(board['data'], board['select']))]
     rows = [('SCLK of all sensors', board['spi']['sck']), ('MOSI of all sensors', board['spi']['mosi']),
             (f'SDA of the multiplexer (I2C{board["i2c"]["unit"]})', board['i2c']['sda']),
@@ -299,6 +316,10 @@ def self_test():
             assert 'x:2' in str(error)
         else:
             raise AssertionError(bad)
+    spares = parts_of(','.join(COLUMNS) + '\nbar,1,100,,\nspares,1,7.6,a tenth of the rest,\n', 'x')
+    assert list(spares_faults(spares)) == ['spares: 7.6 % of the rest, not a tenth']
+    assert not list(spares_faults([spares[0], {**spares[1], 'unit_usd': Decimal(10)}]))
+    assert list(size_faults('| two walls of 300 x 110 mm |\n- Two walls of 350 x 110 mm')) and not list(size_faults('x'))
     head = '#if defined(M)\n'
     six = ''.join(f'#define BOARD_{role}_{k} {k}{port}\n' for role, port in [('CLOCK', 'B'), ('DATA', 'D')]
                   for k in ('PIN', 'PORT', 'DDR'))
@@ -328,6 +349,7 @@ def main():
         return self_test()
     faults = [*bill_faults(), *pin_faults()]
     wanted = [(page, filled(page.read_text())) for page in PAGES] + list(drawings())
+    faults += [f'{page.relative_to(ROOT)}: {fault}' for page, text in wanted if page in PAGES for fault in size_faults(text)]
     for path, text in wanted:
         if path.exists() and path.read_text() == text:
             continue

@@ -245,6 +245,7 @@ play_refusals() { # play_refusals FOLDER
 --minutes 1e1
 --sets 18
 --headless --change-sides --sets 3
+--headless --change-sides --sets 3 --device evdev:/dev/input/event5:4
 --mode ladder --level 3
 --mode challenge --minutes 1
 --headless --calibration $1/no.sfr

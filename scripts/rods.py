@@ -9,15 +9,22 @@
                                        rest without parts
   scripts/rods.py --self-test
 
+Rods are numbered from 1, at team 0's goal, to 8; frames and files list them in that order. Exit codes: 0 done;
+1 no frame came, or the device went away; 2 a bad option or file.
+
 The frame is described in wire/include/wire/device_frame.h, the calibration in docs/cabinet.md.
 """
 import argparse
+import contextlib
+import io
 import json
 import math
 import os
 import select
+import stat
 import struct
 import sys
+import tempfile
 import termios
 import time
 
@@ -111,19 +118,40 @@ class Frames:
             self.whole = True  # the first may be the end of a frame
 
 
+def refuse(sentence):
+    """Leaves with one sentence."""
+    print(f'rods.py: {sentence}', file=sys.stderr)
+    sys.exit(2)
+
+
+def open_path(scheme, path):
+    """Not a pipe, at which opening would wait."""
+    try:
+        mode = os.stat(path).st_mode
+        if scheme == 'file' and not stat.S_ISREG(mode):
+            refuse(f'{path} is no regular file: give a recording of a controller.')
+        if scheme != 'file' and not stat.S_ISCHR(mode):
+            refuse(f'{path} is no device; for a recording write file:{path}')
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+        os.set_blocking(descriptor, True)
+        return descriptor
+    except OSError as error:
+        refuse(f'{path} cannot be opened: {error.strerror}. Rights: docs/cabinet.md, "Connect".')
+
+
 def open_address(address):
     scheme, _, path = address.partition(':')
     if scheme not in ('serial', 'hid', 'file') or not path:
-        sys.exit(f'"{address}" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:FILE.')
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOCTTY)
-    except OSError as error:
-        sys.exit(f'{path} cannot be opened: {error.strerror}. Rights: docs/cabinet.md, "Connect".')
+        refuse(f'"{address}" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:FILE.')
+    descriptor = open_path(scheme, path)
     if scheme == 'serial':
         speed = termios.B1000000
         control = termios.CS8 | termios.CREAD | termios.CLOCAL
-        termios.tcsetattr(descriptor, termios.TCSANOW,
-                          [0, 0, control, 0, speed, speed, [b'\0'] * 6 + [b'\1'] + [b'\0'] * 25])
+        try:
+            termios.tcsetattr(descriptor, termios.TCSANOW,
+                              [0, 0, control, 0, speed, speed, [b'\0'] * 6 + [b'\1'] + [b'\0'] * 25])
+        except termios.error:
+            refuse(f'{path} is no serial line; a controller that speaks HID is hid:/dev/hidraw0.')
     reports = scheme == 'hid'
     if scheme == 'file':
         head = os.pread(descriptor, REPORT_BYTES, 0)
@@ -136,7 +164,7 @@ def table(counter, rate):
              'rod  answers     slide      spin']
     for rod in range(RODS):
         bit = 1 << rod
-        lines.append(f'{rod:3}  {"yes" if counter.present & bit else "-":7} {counter.sums[rod][0]:9} '
+        lines.append(f'{rod + 1:3}  {"yes" if counter.present & bit else "-":7} {counter.sums[rod][0]:9} '
                      f'{counter.sums[rod][1]:9}{"  overflow" if counter.overflow & bit else ""}')
     return lines
 
@@ -144,7 +172,7 @@ def table(counter, rate):
 def show_counts(options):
     descriptor, frames, finite = open_address(options.address)
     counter, begun, shown, drawn = Counter(), time.monotonic(), 0, False
-    before = (begun, 0)
+    before, gone = (begun, 0), False
     try:
         while not options.seconds or time.monotonic() - begun < options.seconds:
             ready, _, _ = select.select([descriptor], [], [], 0.1)
@@ -162,13 +190,13 @@ def show_counts(options):
     except KeyboardInterrupt:
         pass
     except OSError as error:
-        print(f'{options.address}: {error.strerror}', file=sys.stderr)
+        gone = True
+        print(f'{options.address} went away: {error.strerror}. Plug it in again.', file=sys.stderr)
     print('\n'.join(table(counter, 0 if finite else counter.frames / max(time.monotonic() - begun, 1e-3))))
     if counter.frames == 0:
         print('There was no frame: another device, other firmware, or no power? docs/build/troubleshooting.md',
               file=sys.stderr)
-        return 1
-    return 0
+    return 1 if gone or counter.frames == 0 else 0
 
 
 def square(diameter_mm, counts_per_mm):
@@ -181,34 +209,50 @@ def solved(stroke, travel_m, turn, turns):
     (n, m), (p, q) = stroke, turn
     determinant = n * q - p * m
     if abs(determinant) < 0.05 * math.hypot(n, m) * math.hypot(p, q) or determinant == 0:
-        sys.exit('Strokes and turns give nearly the same counts: was the rod turned in one and pushed in the other?')
+        refuse('strokes and turns give nearly the same counts: was the rod turned in one and pushed in the other?')
     angle = 2 * math.pi * turns
     return {'slide_m_per_count': [travel_m * q / determinant, -travel_m * p / determinant],
             'angle_rad_per_count': [-angle * m / determinant, angle * n / determinant]}
 
 
-def pair(text):
-    a, b = text.split(',')
-    return int(a), int(b)
+def read_calibration(path):
+    try:
+        with open(path, encoding='utf-8') as file:
+            calibration = json.load(file)
+        if len(calibration['rods']) == RODS and isinstance(calibration['rods'], list):
+            return calibration
+    except (OSError, ValueError, LookupError, TypeError):
+        pass
+    return refuse(f'{path} is no calibration yet: write one first, without --rod.')
+
+
+def write_file(path, data):
+    try:
+        with open(path, 'wb') as file:
+            file.write(data)
+    except OSError as error:
+        refuse(f'{path} cannot be written: {error.strerror}. Name a file in a folder that is there.')
+    print(f'written {path}')
 
 
 def make_calibration(options):
+    measured = {'--stroke': options.stroke, '--travel-mm': options.travel_mm, '--turn': options.turn,
+                '--turns': options.turns}
     if options.rod is None:
+        if any(value is not None for value in measured.values()):
+            refuse(f'{", ".join(measured)} are of one rod: say which by --rod 1 to {RODS}.')
+        head = {}
         rods = [square(options.diameter_mm, options.counts_per_mm) for _ in range(RODS)]
     else:
-        if None in (options.stroke, options.travel_mm, options.turn, options.turns):
-            sys.exit('--rod needs --stroke, --travel-mm, --turn and --turns: what was measured.')
-        try:
-            with open(options.file, encoding='utf-8') as file:
-                rods = json.load(file)['rods']
-            rods[options.rod]
-        except (OSError, ValueError, LookupError, TypeError):
-            sys.exit(f'{options.file} is no calibration yet: write one first, without --rod.')
-        rods[options.rod] = solved(options.stroke, 1e-3 * options.travel_mm, options.turn, options.turns)
+        if missing := [name for name, value in measured.items() if value is None]:
+            refuse(f'--rod needs {" and ".join(missing)} too: what was measured.')
+        head = read_calibration(options.file)
+        rods = head.pop('rods')
+        rods[options.rod - 1] = solved(options.stroke, 1e-3 * options.travel_mm, options.turn, options.turns)
+    head.update(version=3, made=time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()))
+    keys = ''.join(f'  {json.dumps(key)}: {json.dumps(value)},\n' for key, value in head.items())
     rows = ',\n'.join('    ' + json.dumps(rod) for rod in rods)
-    with open(options.file, 'w', encoding='utf-8') as file:
-        file.write(f'{{\n  "version": 2,\n  "rods": [\n{rows}\n  ]\n}}\n')
-    print(f'written {options.file}')
+    write_file(options.file, f'{{\n{keys}  "rods": [\n{rows}\n  ]\n}}\n'.encode())
     return 0
 
 
@@ -225,10 +269,92 @@ def simulated(seconds, diameter_mm=16, counts_per_mm=8, period_us=4000):
 
 
 def make_recording(options):
-    with open(options.file, 'wb') as file:
-        file.write(simulated(options.seconds))
-    print(f'written {options.file}')
+    write_file(options.file, simulated(options.seconds))
     return 0
+
+
+# --- the command line ---
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        refuse(f'{message}; --help explains the options.')
+
+
+def number_within(least, most, either_sign=False):
+    """A finite number of that size: of what is known of rods and sensors, so that the game takes the file."""
+    def parse(text):
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if least <= (abs(value) if either_sign else value) <= most:
+            return value
+        sign = ', of either sign' if either_sign else ''
+        raise argparse.ArgumentTypeError(f'"{text}" is no number from {least:g} to {most:g}{sign}')
+    return parse
+
+
+def rod_number(text):
+    if text in map(str, range(1, RODS + 1)):
+        return int(text)
+    raise argparse.ArgumentTypeError(f'"{text}" is no rod: they are 1, at team 0\'s goal, to {RODS}')
+
+
+def counts_pair(text):
+    a, comma, b = text.partition(',')
+    try:
+        return int(a), int(b)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'"{text}" is no pair of counts such as 2016,-12') from None
+
+
+def self_test_of_options():
+    def leaves_with(code, *arguments):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+            try:
+                got = run(list(map(str, arguments)))
+            except SystemExit as left:
+                got = left.code
+        text = said.getvalue()
+        assert (got, text.count('\n')) == (code, 1 if code else 0) and 'Traceback' not in text, (arguments, got, text)
+        return text
+
+    with tempfile.TemporaryDirectory() as folder:
+        table, lost = f'{folder}/table.json', f'{folder}/missing/file'
+        for option, values in {'--diameter-mm': (0, -16, 'nan', 'inf', 'a', 1e300), '--counts-per-mm': (0, 'nan'),
+                               '--rod': (0, 9, 1.5, 'a', -1), '--turns': (0, 'nan'),
+                               '--stroke': ('1', '1,a', '')}.items():
+            for value in values:
+                leaves_with(2, 'calibration', table, f'{option}={value}')
+        leaves_with(2, 'calibration', lost)
+        leaves_with(2, 'simulate', lost)
+        for seconds in ('nan', -1, 0, 1e9):
+            leaves_with(2, 'simulate', f'{folder}/x', f'--seconds={seconds}')
+        measured = ('--stroke=2016,12', '--travel-mm=252', '--turn=-10,2011', '--turns=-5')
+        leaves_with(2, 'calibration', table, '--rod=6', *measured)  # no file yet
+        leaves_with(2, 'calibration', table, *measured)
+        leaves_with(0, 'calibration', table)
+        leaves_with(2, 'calibration', table, '--rod=6')
+        leaves_with(2, 'calibration', table, '--rod=6', '--stroke=0,0', *measured[1:])
+        calibration = read_calibration(table) | {'serial': 'SF-1'}
+        with open(table, 'w', encoding='utf-8') as file:
+            json.dump(calibration, file)
+        leaves_with(0, 'calibration', table, '--rod=8', *measured)
+        changed = read_calibration(table)
+        assert changed['serial'] == 'SF-1' and changed['rods'][:7] == calibration['rods'][:7]
+        assert changed['rods'][7] != calibration['rods'][7]
+        os.mkfifo(f'{folder}/pipe')
+        for address in ('file:' + folder, f'file:{folder}/pipe', f'serial:{folder}/pipe', 'serial:/dev/null',
+                        f'hid:{table}', 'x', 'serial:', f'serial:{lost}'):
+            leaves_with(2, 'counts', address)
+        leaves_with(0, 'simulate', f'{folder}/bench.bin', '--seconds=0.1')
+        leaves_with(0, 'counts', f'file:{folder}/bench.bin')
+    assert table_of_rods() == [str(rod) for rod in range(1, 9)]
+
+
+def table_of_rods():
+    return [line.split()[0] for line in table(Counter(), 0)[2:]]
 
 
 def self_test():
@@ -258,35 +384,39 @@ def self_test():
         a, b = found['slide_m_per_count'], found['angle_rad_per_count']
         assert abs(a[0] * x[0] + a[1] * x[1] - y[0]) < 1e-9 and abs(b[0] * x[0] + b[1] * x[1] - y[1]) < 1e-9
     assert abs(known['angle_rad_per_count'][1] - 0.015625) < 1e-12
+    self_test_of_options()
     print('rods: self-test passed')
     return 0
 
 
-def main():
-    if sys.argv[1:] == ['--self-test']:
-        return self_test()
-    cli = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    verbs = cli.add_subparsers(required=True)
+def run(arguments):
+    cli = Parser(prog='rods.py', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    verbs = cli.add_subparsers(required=True, metavar='counts, calibration or simulate')
     counts = verbs.add_parser('counts', help='live counts of a controller')
     counts.add_argument('address')
-    counts.add_argument('--seconds', type=float, default=0, help='end after so many')
+    counts.add_argument('--seconds', type=number_within(0, 1e6), default=0, help='end after so many')
     counts.set_defaults(run=show_counts)
     calibration = verbs.add_parser('calibration', help='write a calibration file')
     calibration.add_argument('file')
-    calibration.add_argument('--diameter-mm', type=float, default=16, help='of the rods (16)')
-    calibration.add_argument('--counts-per-mm', type=float, default=8, help='of the sensors (8)')
-    calibration.add_argument('--rod', type=int, choices=range(RODS), help='only this one, in the file that is there')
-    calibration.add_argument('--stroke', type=pair, metavar='N,M', help='slide and spin counts of all strokes')
-    calibration.add_argument('--travel-mm', type=float, help='of all these strokes together')
-    calibration.add_argument('--turn', type=pair, metavar='P,Q', help='slide and spin counts of all turns')
-    calibration.add_argument('--turns', type=float, help='how many these were')
+    calibration.add_argument('--diameter-mm', type=number_within(5, 60), default=16, help='of the rods (16)')
+    calibration.add_argument('--counts-per-mm', type=number_within(1, 472), default=8, help='of the sensors (8)')
+    calibration.add_argument('--rod', type=rod_number, metavar='1..8',
+                             help="only this one, in the file that is there; 1 is at team 0's goal")
+    calibration.add_argument('--stroke', type=counts_pair, metavar='N,M', help='slide and spin counts of all strokes')
+    calibration.add_argument('--travel-mm', type=number_within(1, 1e5, True), help='of all these strokes together')
+    calibration.add_argument('--turn', type=counts_pair, metavar='P,Q', help='slide and spin counts of all turns')
+    calibration.add_argument('--turns', type=number_within(0.1, 1000, True), help='how many these were')
     calibration.set_defaults(run=make_calibration)
     simulate = verbs.add_parser('simulate', help='write a recording of rods that move')
     simulate.add_argument('file')
-    simulate.add_argument('--seconds', type=float, default=20)
+    simulate.add_argument('--seconds', type=number_within(0.1, 3600), default=20, help='of play (20)')
     simulate.set_defaults(run=make_recording)
-    options = cli.parse_args()
+    options = cli.parse_args(arguments)
     return options.run(options)
+
+
+def main():
+    return self_test() if sys.argv[1:] == ['--self-test'] else run(sys.argv[1:])
 
 
 if __name__ == '__main__':

@@ -64,7 +64,7 @@ def ps2_wiring(board):
     for rod in range(RODS):
         y = top + rod * pitch + 26
         svg.box(40, y - 18, plug_right - 40, 3 * gap + 30)
-        svg.words(52, y + 2, f'rod {rod}', 15, bold=True)
+        svg.words(52, y + 2, f'rod {rod + 1}', 15, bold=True)
         svg.words(52, y + 22, 'mouse', 13)
         nets = [('data', '1'), ('+5 V', '4'), ('clock', '5'), ('ground', '3')]
         for i, (net, pin) in enumerate(nets):
@@ -119,7 +119,7 @@ def spi_wiring(board):
     svg.words(20, 34, f'Eight SPI sensors and eight motors at a {board["name"]}', 20, bold=True)
     svg.words(20, 60, 'Sensor: PMW3360 class on a breakout board with a regulator of its own; VIN is 5 V or 3.3 V, as '
               'the board asks. A dot joins; lines that cross do not.', 14)
-    svg.words(20, 80, '33 Ohm in series in SCK and MOSI at the Pico. 10 kOhm from each select line to 3.3 V, and '
+    svg.words(20, 80, '100 Ohm in series in SCK and MOSI at the Pico. 10 kOhm from each select line to 3.3 V, and '
               'from the drivers\' EN to ground: nothing listens or shakes while the Pico starts.', 14)
     right, board_x, board_w = 190, 640, 210
     buses = {'SCK': 340, 'MOSI': 390, '+5 V': 240, 'ground': 290}
@@ -129,7 +129,7 @@ def spi_wiring(board):
     for rod in range(RODS):
         y = top + rod * pitch + 20
         svg.box(40, y - 16, right - 40, 5 * gap + 30)
-        svg.words(50, y + 4, f'rod {rod}', 15, bold=True)
+        svg.words(50, y + 4, f'rod {rod + 1}', 15, bold=True)
         svg.words(50, y + 24, 'sensor', 13)
         for i, (net, pin) in enumerate([('select', 'NCS'), ('MISO', 'MISO'), ('SCK', 'SCLK'), ('MOSI', 'MOSI'),
                                         ('+5 V', 'VIN'), ('ground', 'GND')]):
@@ -188,7 +188,7 @@ def spi_wiring(board):
         y = top + rod * pitch + 32
         svg.box(drive_x, y - 12, 130, 92)
         svg.words(drive_x + 65, y + 8, 'DRV2605L', 14, 'middle', bold=True)
-        svg.words(drive_x + 65, y + 26, f'rod {rod}, 0x5A', 12, 'middle')
+        svg.words(drive_x + 65, y + 26, f'rod {rod + 1}, 0x5A', 12, 'middle')
         svg.words(drive_x + 122, y + 70, 'VIN 5 V, GND', 11, 'end')
         for i, net in enumerate(['SDA', 'SCL']):
             at = y + 2 + 24 * i

@@ -1,4 +1,6 @@
 // space-foosball-doctor: what is connected that can move rods, and what to do about its troubles.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
@@ -8,18 +10,38 @@
 #include "server/exit_code.h"
 #include "server/option_checks.h"
 
+namespace {
+
+std::string without_stop(std::string sentence) {
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App cli{
-      "Says what is connected that can move rods: controllers, mice, gamepads; listens to each\n"
-      "controller while nobody touches the rods; and says what to do about every trouble.\n\n"
+      "Says what is connected that can move rods: controllers, mice, gamepads; listens to them\n"
+      "while nobody touches the rods; and says what to do about every trouble. It opens the "
+      "serial\n"
+      "lines of boards that our firmware is for, and no other unless --device names it.\n\n"
       "Exit codes: 0 all is well; 1 there are troubles; 2 a bad option.",
       "space-foosball-doctor"};
   cabinet::DoctorOptions options;
+  std::vector<std::string> devices;
   bool json = false;
   cli.add_flag("--json", json, "print one JSON object");
+  cli.add_option("--device", devices,
+                 "look at this one too: serial:/dev/ttyUSB0, hid:/dev/hidraw0 or "
+                 "evdev:/dev/input/event5; may be given more than once")
+      ->check([](const std::string& text) {
+        const auto address = cabinet::parse_doctor_address(text);
+        return address ? std::string() : without_stop(address.error());
+      });
   cli.add_option("--calibration", options.calibration,
-                 "of the cabinet's sensors; without it, the one that is kept for the controller");
-  cli.add_option("--seconds", options.seconds, "to listen to each controller")
+                 "of the cabinet's sensors; without it, the one that is kept for each controller");
+  cli.add_option("--seconds", options.seconds,
+                 "to listen to each controller, and then to all mice and gamepads together")
       ->check(CLI::Range(0.1, 3600.0))
       ->check(server::check_not_nan)
       ->capture_default_str();
@@ -38,6 +60,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "space-foosball-doctor: %s; --help explains the options\n", error.what());
     return server::kExitUsage;
   }
+  for (const std::string& device : devices)
+    options.devices.push_back(*cabinet::parse_doctor_address(device));
+  if (::isatty(STDERR_FILENO) != 0)
+    std::fputs("Listening: leave rods, mice and sticks alone.\n", stderr);
   options.calibrations = cabinet::calibrations_folder();
   options.now_s = std::time(nullptr);
   const cabinet::Diagnosis diagnosis = cabinet::examine(options);

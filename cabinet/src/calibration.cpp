@@ -91,7 +91,7 @@ namespace {
 Failure check(const Calibration& calibration) {
   for (int rod = 0; rod < kRods; ++rod) {
     if (const Failure wrong = check_rod(calibration.rods[rod])) {
-      return "(rod " + std::to_string(rod) + ") " + *wrong;
+      return "(rod " + std::to_string(rod + 1) + ") " + *wrong;
     }
   }
   return {};
@@ -163,7 +163,7 @@ Failure read_json(const json& file, Calibration& calibration) {
     if (!wrong) wrong = read_row(rod, kSlideKey, calibration.rods[i].m[0]);
     if (!wrong) wrong = read_row(rod, kAngleKey, calibration.rods[i].m[1]);
     if (!wrong && *version > 1) wrong = read_corrections(rod, calibration.rods[i]);
-    if (wrong) return "(rod " + std::to_string(i) + ") " + *wrong;
+    if (wrong) return "(rod " + std::to_string(i + 1) + ") " + *wrong;
   }
   return check(calibration);
 }

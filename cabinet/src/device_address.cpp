@@ -54,7 +54,9 @@ std::string objection(const std::string& text, const Address& address) {
     return text + ": not a regular file; give a recording of a device's bytes.";
   }
   if (address.scheme != Scheme::file && !S_ISCHR(about.st_mode)) {
-    return text + ": not a device; for a recording write file:" + address.path + ".";
+    return text + ": not a device; " +
+           (S_ISREG(about.st_mode) ? "for a recording write file:" + address.path + "."
+                                   : "give the path of one.");
   }
   if (access(address.path.c_str(), R_OK) != 0) {
     return text + ": " + std::strerror(errno) +
@@ -129,14 +131,16 @@ tl::expected<std::unique_ptr<DeviceSource>, std::string> recording_source(Device
 
 }  // namespace
 
+std::string why_no_device(const std::string& address) {
+  const auto parsed = parse_address(address);
+  return parsed ? objection(address, *parsed) : parsed.error();
+}
+
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
     const std::array<double, kRods>& slide_limit) {
+  if (std::string why = why_no_device(address); !why.empty()) return tl::unexpected(std::move(why));
   const auto parsed = parse_address(address);
-  if (!parsed) return tl::unexpected(parsed.error());
-  if (const std::string sentence = objection(address, *parsed); !sentence.empty()) {
-    return tl::unexpected(sentence);
-  }
   DeviceOptions options;
   options.name = address;
   options.framing = parsed->scheme == Scheme::hid ? DeviceFraming::report : DeviceFraming::cobs;

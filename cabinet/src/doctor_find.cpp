@@ -1,15 +1,20 @@
 #include "doctor_find.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "cabinet/controller.h"
+#include "cabinet/mouse_source.h"
+#include "mouse_line.h"
 #include "os/file_descriptor.h"
 
 namespace cabinet {
@@ -20,6 +25,10 @@ namespace fs = std::filesystem;
 // Bits of linux/input-event-codes.h.
 constexpr unsigned kRelX = 0, kRelY = 1, kButtonSouth = 0x130;
 constexpr const char* kControllerId = ":00001209:00000001";  // pid.codes' test id
+// The USB bridges of the boards that our serial firmware is for: Arduino Mega 2560 with an
+// ATmega8U2 and 16U2, and the CH340 of its copies. Any other line is another device's, which
+// opening might restart.
+constexpr std::array kBridges = {"2341:0010", "2341:0042", "2a03:0010", "2a03:0042", "1a86:7523"};
 constexpr std::size_t kMostEntries = 256, kMostText = 4096;
 
 std::string read_text(const fs::path& path) {
@@ -55,8 +64,12 @@ bool has_bit(const std::string& text, unsigned bit) {
   return error == std::errc{} && end == word.data() + word.size() && (value >> bit % 64 & 1) != 0;
 }
 
-// Opening it costs a board its state, if it is a serial line: its rights are looked at.
+// Opening it costs a board its state, if it is a serial line: its rights are looked at. ENOTTY: it
+// is no device at all.
 int error_of(const fs::path& node, bool open) {
+  struct stat about {};
+  if (::stat(node.c_str(), &about) != 0) return errno;
+  if (!S_ISCHR(about.st_mode)) return ENOTTY;
   if (::access(node.c_str(), R_OK) != 0) return errno;
   if (!open) return 0;
   const os::FileDescriptor fd(::open(node.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
@@ -71,31 +84,45 @@ std::string value_of(const std::string& uevent, const std::string& key) {
   return {};
 }
 
-FoundDevice found(DeviceKind kind, const fs::path& node, std::string name, bool open) {
+FoundDevice found(DeviceKind kind, const fs::path& node, std::string name) {
   FoundDevice device;
   device.kind = kind;
   device.path = node.string();
   device.name = std::move(name);
-  device.error = error_of(node, open);
+  device.error = error_of(node, !is_controller(device));
   return device;
 }
 
-}  // namespace
+bool is_known_bridge(const std::string& usb_id) {
+  return std::ranges::find(kBridges, usb_id) != kBridges.end();
+}
 
-std::vector<FoundDevice> find_devices(const std::string& dev, const std::string& sys) {
-  std::vector<FoundDevice> devices;
-  const fs::path nodes(dev), classes = fs::path(sys) / "class";
+void find_controllers(const DoctorOptions& options, std::vector<FoundDevice>& devices) {
+  const fs::path nodes(options.dev), classes = fs::path(options.sys) / "class";
+  const auto identify = [&](FoundDevice& device, const char* kind, const std::string& node) {
+    const UsbIdentity usb = usb_identity(kind, node, options.sys);
+    device.usb_id = usb.id;
+    device.serial = usb.serial;
+    if (device.name.empty()) device.name = usb.product.empty() ? "serial line" : usb.product;
+  };
   for (const std::string& name : entries(classes / "hidraw", "hidraw")) {
     const std::string uevent = read_text(classes / "hidraw" / name / "device" / "uevent");
     if (value_of(uevent, "HID_ID").find(kControllerId) == std::string::npos) continue;
     devices.push_back(
-        found(DeviceKind::hid_controller, nodes / name, value_of(uevent, "HID_NAME"), false));
+        found(DeviceKind::hid_controller, nodes / name, value_of(uevent, "HID_NAME")));
+    identify(devices.back(), "hidraw", name);
   }
   for (const char* prefix : {"ttyACM", "ttyUSB"}) {
     for (const std::string& name : entries(nodes, prefix)) {
-      devices.push_back(found(DeviceKind::serial_controller, nodes / name, "serial line", false));
+      devices.push_back(found(DeviceKind::serial_controller, nodes / name, ""));
+      identify(devices.back(), "tty", name);
+      devices.back().listens = is_known_bridge(devices.back().usb_id);
     }
   }
+}
+
+void find_inputs(const DoctorOptions& options, std::vector<FoundDevice>& devices) {
+  const fs::path nodes(options.dev), classes = fs::path(options.sys) / "class";
   for (const std::string& name : entries(classes / "input", "event")) {
     const fs::path device = classes / "input" / name / "device";
     const std::string axes = read_text(device / "capabilities" / "rel");
@@ -103,9 +130,85 @@ std::vector<FoundDevice> find_devices(const std::string& dev, const std::string&
     const bool gamepad = has_bit(read_text(device / "capabilities" / "key"), kButtonSouth);
     if (!mouse && !gamepad) continue;
     devices.push_back(found(mouse ? DeviceKind::mouse : DeviceKind::gamepad, nodes / "input" / name,
-                            read_text(device / "name"), true));
+                            read_text(device / "name")));
   }
+}
+
+// One that was found already is only marked.
+void add_named(const DoctorAddress& address, const std::string& sys,
+               std::vector<FoundDevice>& devices) {
+  std::error_code unknown;
+  const fs::path real = fs::weakly_canonical(address.path, unknown);
+  const auto same = std::ranges::find_if(devices, [&](const FoundDevice& device) {
+    return device.path == address.path || fs::weakly_canonical(device.path, unknown) == real;
+  });
+  if (same != devices.end()) {
+    same->named = same->listens = true;
+    return;
+  }
+  FoundDevice device = found(address.kind, address.path, "");
+  device.named = true;
+  if (device.kind == DeviceKind::mouse && device.error == 0) {
+    const os::FileDescriptor fd(
+        ::open(device.path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (fd && !is_mouse(fd.get())) device.error = ENOTTY;
+  }
+  if (is_controller(device)) {
+    const UsbIdentity usb = usb_identity_at(address_of(device), sys);
+    device.usb_id = usb.id;
+    device.serial = usb.serial;
+    device.name = usb.product;
+  }
+  devices.push_back(std::move(device));
+}
+
+}  // namespace
+
+tl::expected<DoctorAddress, std::string> parse_doctor_address(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string scheme = text.substr(0, colon);
+  if (scheme == "evdev") {
+    const auto mouse = parse_mouse_address(text);
+    if (!mouse) return tl::unexpected(mouse.error());
+    return DoctorAddress{DeviceKind::mouse, mouse->path};
+  }
+  const bool serial = scheme == "serial";
+  if (colon == std::string::npos || colon + 1 == text.size() || (!serial && scheme != "hid"))
+    return tl::unexpected("\"" + text +
+                          "\" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or "
+                          "evdev:/dev/input/event5.");
+  return DoctorAddress{serial ? DeviceKind::serial_controller : DeviceKind::hid_controller,
+                       text.substr(colon + 1)};
+}
+
+std::vector<FoundDevice> find_devices(const DoctorOptions& options) {
+  std::vector<FoundDevice> devices;
+  find_controllers(options, devices);
+  find_inputs(options, devices);
+  for (const DoctorAddress& address : options.devices) add_named(address, options.sys, devices);
   return devices;
+}
+
+std::string address_of(const FoundDevice& device) {
+  switch (device.kind) {
+    case DeviceKind::hid_controller:
+      return "hid:" + device.path;
+    case DeviceKind::serial_controller:
+      return "serial:" + device.path;
+    case DeviceKind::mouse:
+      return "evdev:" + device.path;
+    case DeviceKind::gamepad:
+      break;
+  }
+  return device.path;
+}
+
+double mean_latency_us(const SourceCounters& c) {
+  return c.stamped > 0 ? static_cast<double>(c.latency_sum_us) / static_cast<double>(c.stamped) : 0;
+}
+
+double frames_per_s(const FoundDevice& device) {
+  return device.seconds > 0 ? static_cast<double>(device.counters.frames) / device.seconds : 0;
 }
 
 }  // namespace cabinet

@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "cabinet/doctor.h"
+#include "doctor_find.h"
+#include "printable.h"
 
 namespace cabinet {
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 const char* name_of(DeviceKind kind) {
   switch (kind) {
@@ -54,40 +54,12 @@ const char* name_of(RodStatus status) {
   return "";
 }
 
-double rate(const FoundDevice& device) {
-  return device.seconds > 0 ? static_cast<double>(device.counters.frames) / device.seconds : 0;
-}
-
-double mean_latency_us(const SourceCounters& c) {
-  return c.stamped > 0 ? static_cast<double>(c.latency_sum_us) / static_cast<double>(c.stamped) : 0;
-}
-
-bool is_controller(const FoundDevice& device) {
-  return device.kind == DeviceKind::hid_controller || device.kind == DeviceKind::serial_controller;
-}
-
-// A device's own name is a stranger's: no control characters reach a terminal.
-std::string printable(const std::string& text) {
-  std::string clean;
-  for (const char c : text) clean += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-  return clean;
-}
-
-std::string address_of(const FoundDevice& device) {
-  if (device.kind == DeviceKind::gamepad) return device.path;
-  const char* scheme = device.kind == DeviceKind::mouse ? "evdev" : name_of(device.kind);
-  return fmt::format("{}:{}", scheme, device.path);
-}
-
-std::string line_of(const FoundDevice& device) {
-  std::string text = fmt::format("{:<8} {}  {}\n", name_of(device.kind), address_of(device),
-                                 printable(device.name));
-  if (!is_controller(device) || device.seconds == 0) return text;
+std::string lines_of_controller(const FoundDevice& device) {
   const SourceCounters& c = device.counters;
-  text += fmt::format(
+  std::string text = fmt::format(
       "         {:.0f} frames a second, {} lost, {} no frames, {} errors on the sensors' lines\n"
       "         from arrival to tick {:.0f} us, at most {}\n",
-      rate(device), c.lost, c.bad, c.line_errors, mean_latency_us(c), c.latency_max_us);
+      frames_per_s(device), c.lost, c.bad, c.line_errors, mean_latency_us(c), c.latency_max_us);
   for (std::size_t rod = 0; rod < device.rods.size(); ++rod) {
     const RodCheck& check = device.rods[rod];
     text +=
@@ -97,24 +69,63 @@ std::string line_of(const FoundDevice& device) {
   return text;
 }
 
+std::string lines_of_input(const FoundDevice& device) {
+  const SourceCounters& c = device.counters;
+  if (c.frames == 0)
+    return "         nothing moved; move it while this listens to see its rate and latency\n";
+  std::string text = fmt::format(
+      "         {} reports, {:.0f} a second, {} times lost\n"
+      "         from the kernel to here {:.0f} us, at most {}\n",
+      c.frames, device.reports_per_s, c.lost, mean_latency_us(c), c.latency_max_us);
+  if (device.kind == DeviceKind::mouse)
+    text += fmt::format("         a rod of it moved {:.2f} mm and {:.1f} degrees\n",
+                        1e3 * device.rods[0].slide_range, kDegrees * device.rods[0].angle_range);
+  if (device.kind == DeviceKind::gamepad)
+    text += fmt::format("         its sticks went to {:.0f} %, and rest within {:.0f} %\n",
+                        100 * device.stick_peak, 100 * device.stick_rest);
+  return text;
+}
+
+std::string lines_of(const FoundDevice& device) {
+  std::string text = fmt::format("{:<8} {}{}{}\n", name_of(device.kind), address_of(device),
+                                 device.name.empty() ? "" : "  ", printable(device.name));
+  if (!device.listens)
+    return text + "         not opened, as it may be any device; if it is a controller, add " +
+           "--device " + address_of(device) + "\n";
+  if (device.error != 0) return text;
+  if (is_controller(device)) return device.seconds > 0 ? text + lines_of_controller(device) : text;
+  return device.state == DeviceState::live ? text + lines_of_input(device) : text;
+}
+
 nlohmann::json json_of(const FoundDevice& device) {
-  nlohmann::json out = {{"kind", name_of(device.kind)},
-                        {"path", device.path},
-                        {"address", address_of(device)},
-                        {"name", device.name},
-                        {"readable", device.error == 0}};
-  if (!is_controller(device)) return out;
+  nlohmann::json out = {{"kind", name_of(device.kind)},  {"path", device.path},
+                        {"address", address_of(device)}, {"name", device.name},
+                        {"readable", device.error == 0}, {"opened", device.listens}};
+  if (is_controller(device)) {
+    out["usb_id"] = device.usb_id;
+    out["serial"] = device.serial;
+  }
+  if (!device.listens) return out;
   const SourceCounters& c = device.counters;
   out["state"] = name_of(device.state);
-  out["frames_per_s"] = rate(device);
+  out["frames_per_s"] = is_controller(device) ? frames_per_s(device) : device.reports_per_s;
   out["frames"] = c.frames;
   out["lost"] = c.lost;
+  out["latency_mean_us"] = mean_latency_us(c);
+  out["latency_max_us"] = c.latency_max_us;
+  if (device.kind == DeviceKind::gamepad) {
+    out["stick_peak"] = device.stick_peak;
+    out["stick_rest"] = device.stick_rest;
+  }
+  if (device.kind == DeviceKind::mouse) {
+    out["rest_slide_m"] = device.rods[0].slide_range;
+    out["rest_angle_rad"] = device.rods[0].angle_range;
+  }
+  if (!is_controller(device)) return out;
   out["bad"] = c.bad;
   out["line_errors"] = c.line_errors;
   out["overflows"] = c.overflows;
   out["impossible"] = c.impossible;
-  out["latency_mean_us"] = mean_latency_us(c);
-  out["latency_max_us"] = c.latency_max_us;
   out["rods"] = nlohmann::json::array();
   for (const RodCheck& rod : device.rods) {
     out["rods"].push_back({{"status", name_of(rod.status)},
@@ -128,10 +139,12 @@ nlohmann::json json_of(const FoundDevice& device) {
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   std::string text;
-  for (const FoundDevice& device : diagnosis.devices) text += line_of(device);
-  if (diagnosis.calibration && diagnosis.calibration->error.empty()) {
-    text += fmt::format("calibration {}, {:.0f} days old\n", diagnosis.calibration->path,
-                        diagnosis.calibration->days);
+  for (const FoundDevice& device : diagnosis.devices) text += lines_of(device);
+  for (const CalibrationCheck& check : diagnosis.calibrations) {
+    if (!check.error.empty()) continue;
+    text += fmt::format("calibration {}{}, {:.0f} days old\n",
+                        check.device.empty() ? "" : "of " + check.device + ": ", check.path,
+                        std::max(check.days, 0.0));
   }
   for (const Trouble& trouble : diagnosis.troubles) {
     text += fmt::format("\ntrouble: {}{}{}.\n  do: {}.\n", trouble.device,
@@ -144,12 +157,14 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   nlohmann::json out = {{"healthy", diagnosis.troubles.empty()},
                         {"devices", nlohmann::json::array()},
+                        {"calibrations", nlohmann::json::array()},
                         {"troubles", nlohmann::json::array()}};
   for (const FoundDevice& device : diagnosis.devices) out["devices"].push_back(json_of(device));
-  if (diagnosis.calibration) {
-    const CalibrationCheck& check = *diagnosis.calibration;
-    out["calibration"] = {
-        {"path", check.path}, {"valid", check.error.empty()}, {"days", check.days}};
+  for (const CalibrationCheck& check : diagnosis.calibrations) {
+    out["calibrations"].push_back({{"device", check.device},
+                                   {"path", check.path},
+                                   {"valid", check.error.empty()},
+                                   {"days", check.days}});
   }
   for (const Trouble& trouble : diagnosis.troubles) {
     out["troubles"].push_back(

@@ -10,7 +10,6 @@ namespace {
 constexpr double kKeyRate = 1.2;       // [m/s] slide at full ramp: the goal's width in 0.17 s
 constexpr double kKeyRamp = 12.0;      // [m/s^2]: a tap moves a few mm, 0.1 s to full rate
 constexpr double kPadRate = 1.5;       // [m/s] at full deflection
-constexpr float kDeadZone = 0.12f;     // of a worn stick
 constexpr double kKeySwingRate = 60;   // [rad/s]: a foot at 72 mm strikes with 4.3 m/s
 constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a rod
 constexpr double kStrikes = 6.0;       // [rad/s] slower, a rod is only set right
@@ -34,7 +33,7 @@ float axis(float value) {
 
 // 0 inside the dead zone, then from 0 to 1, so that nothing jumps at its rim.
 double outside_dead_zone(float value) {
-  const float beyond = std::max(std::abs(value) - kDeadZone, 0.0f) / (1 - kDeadZone);
+  const float beyond = std::max(std::abs(value) - kStickDeadZone, 0.0f) / (1 - kStickDeadZone);
   return std::copysign(beyond, value);
 }
 

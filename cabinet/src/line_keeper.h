@@ -11,6 +11,7 @@
 #include <span>
 #include <thread>
 
+#include "cabinet/device.h"
 #include "os/thread_signal.h"
 
 namespace cabinet {
@@ -31,7 +32,6 @@ class LineKeeper {
   // Writes a packet to a descriptor that was taken and not closed. False: as many wait already as
   // there is room for, or it is longer than kMostPacket.
   bool send(int fd, std::span<const std::byte> packet);
-  static constexpr std::size_t kMostPacket = 65;  // bytes; a HID report and its number
 
  private:
   void run();

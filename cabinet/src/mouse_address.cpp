@@ -61,7 +61,7 @@ tl::expected<MouseAddress, std::string> parse_mouse_address(const std::string& a
   const std::size_t colon = parsed.path.rfind(':');
   const std::string rod = colon == std::string::npos ? "" : parsed.path.substr(colon + 1);
   const bool names_rod =
-      colon != std::string::npos && rod.find_first_not_of("+-0123456789:") == std::string::npos;
+      colon != std::string::npos && rod.find_first_not_of("+-0123456789.,:") == std::string::npos;
   const bool letter = rod.size() == 1;
   if (names_rod || letter) {
     if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {

@@ -1,16 +1,14 @@
 #include "cabinet/mouse_source.h"
 
 #include <fcntl.h>
-#include <linux/input.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
+#include "input_events.h"
 #include "rod_limits.h"
 #include "state_filter.h"
 
@@ -20,7 +18,6 @@ namespace {
 constexpr int kMostReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest mouse
 // The kernel hands an event on within this.
 constexpr std::int64_t kHandOverUs = 500;
-constexpr std::int64_t kOldestUs = 1'000'000;
 
 }  // namespace
 
@@ -42,8 +39,7 @@ struct MouseSource::Impl {
   void close_device();
   void lose_device(std::int64_t now_us);
   void take_in(std::int64_t now_us);
-  void take(const input_event& event, std::int64_t now_us);
-  void report(std::int64_t time_us, std::int64_t now_us);
+  void report(const MouseReport& report, std::int64_t now_us);
   void predict(std::int64_t now_us);
   RodInput& rod() { return rods[static_cast<std::size_t>(options.rod)]; }
 
@@ -60,11 +56,9 @@ struct MouseSource::Impl {
   bool tried = false, ever_open = false;
   std::int64_t try_open_us = 0;
 
-  std::array<char, 64 * sizeof(input_event)> bytes{};
-  std::size_t filled = 0;
-  std::int64_t right = 0, backward = 0;  // since the last report [counts]
-  bool dropped = false;                  // by the kernel, until the report that comes after
-  std::int64_t seen_us = 0;              // the last report, or poll
+  EventReader reader;
+  MouseReports reports;
+  std::int64_t seen_us = 0;  // the last report, or poll
   std::int64_t reported_us = 0;
 };
 
@@ -85,9 +79,8 @@ void MouseSource::Impl::open_device(std::int64_t now_us) {
     return close_device();
   }
   if (std::exchange(ever_open, true)) ++counters.reopened;
-  filled = 0;
-  right = backward = 0;
-  dropped = false;
+  reader.reset();
+  reports.reset();
   seen_us = std::max(seen_us, now_us);
   filter.rest();
   rod().status = RodStatus::live;
@@ -109,55 +102,29 @@ void MouseSource::Impl::lose_device(std::int64_t now_us) {
 
 void MouseSource::Impl::take_in(std::int64_t now_us) {
   for (int reads = 0; reads < kMostReadsPerPoll; ++reads) {
-    const ssize_t got = ::read(fd, bytes.data() + filled, bytes.size() - filled);
+    const std::span<std::byte> room = reader.room();
+    const ssize_t got = ::read(fd, room.data(), room.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
     if (got <= 0) return lose_device(now_us);
-    filled += static_cast<std::size_t>(got);
-    std::size_t at = 0;
-    for (; filled - at >= sizeof(input_event); at += sizeof(input_event)) {
-      input_event event;
-      std::memcpy(&event, bytes.data() + at, sizeof event);
-      take(event, now_us);
+    reader.filled(static_cast<std::size_t>(got));
+    input_event event;
+    while (reader.next(event)) {
+      if (const auto made = reports.take(event, now_us, counters)) report(*made, now_us);
     }
-    std::memmove(bytes.data(), bytes.data() + at, filled - at);
-    filled -= at;
   }
 }
 
-void MouseSource::Impl::take(const input_event& event, std::int64_t now_us) {
-  if (event.type == EV_REL && event.code == REL_X) right += event.value;
-  if (event.type == EV_REL && event.code == REL_Y) backward += event.value;
-  if (event.type != EV_SYN) return;
-  if (event.code == SYN_DROPPED) {
-    dropped = true;
-    ++counters.lost;
-  }
-  if (event.code != SYN_REPORT) return;
-  // Seconds of a stranger's: only those of the last second are reckoned with.
-  const std::int64_t seconds = event.input_event_sec, micros = event.input_event_usec;
-  const bool sane = seconds >= (now_us - kOldestUs) / 1'000'000 && seconds <= now_us / 1'000'000 &&
-                    micros >= 0 && micros < 1'000'000;
-  const std::int64_t stamp = sane ? seconds * 1'000'000 + micros : now_us;
-  const bool fresh = sane && stamp <= now_us;
-  if (!fresh) ++counters.stale;
-  report(fresh ? stamp : now_us, now_us);
-}
-
-// What a kernel's buffer did not hold is lost, and so is the report in which it says so.
-void MouseSource::Impl::report(std::int64_t time_us, std::int64_t now_us) {
-  const std::int64_t x = std::exchange(right, 0), y = -std::exchange(backward, 0);
-  if (std::exchange(dropped, false) || (x == 0 && y == 0)) return;
-  ++counters.frames;
-  counters.add_latency(now_us - time_us);
-  const std::int64_t time = std::max(time_us, seen_us);
+void MouseSource::Impl::report(const MouseReport& report, std::int64_t now_us) {
+  const std::int64_t time = std::max(report.time_us, seen_us);
   const double seconds = 1e-6 * static_cast<double>(std::max(time - reported_us, std::int64_t{0}));
-  RodMotion moved = integrator.add(static_cast<double>(x), static_cast<double>(y),
-                                   std::min(seconds, 1.0), measured.angle);
+  RodMotion moved =
+      integrator.add(static_cast<double>(report.right), static_cast<double>(report.forward),
+                     std::min(seconds, 1.0), measured.angle);
   if (possible(moved, std::min(seconds, kLongestReport))) {
     RodCount& count = counts[static_cast<std::size_t>(options.rod)];
-    count.slide += x;
-    count.spin += y;
+    count.slide += report.right;
+    count.spin += report.forward;
   } else {
     ++counters.impossible;
     moved = {0, 0};

@@ -18,10 +18,10 @@ std::string rod_json(const std::string& slide, const std::string& angle) {
 
 const std::string kGoodRod = rod_json("[0.000125, 0]", "[0, 0.015625]");
 
-// Eight good rods but for rod 5.
-std::string file_json(const std::string& rod5 = kGoodRod, int rods = 8) {
+// Eight good rods but for the sixth.
+std::string file_json(const std::string& sixth_rod = kGoodRod, int rods = 8) {
   std::string text = R"({"version": 1, "rods": [)";
-  for (int i = 0; i < rods; ++i) text += (i > 0 ? "," : "") + (i == 5 ? rod5 : kGoodRod);
+  for (int i = 0; i < rods; ++i) text += (i > 0 ? "," : "") + (i == 5 ? sixth_rod : kGoodRod);
   return text + "]}";
 }
 
@@ -96,7 +96,7 @@ TEST(Calibration, TheCoarsestAndTheFinestSensorAreFine) {
   EXPECT_EQ(complaint(file_json(rod_json("[2.1e-6, 0]", "[0, 2.6e-4]"))), "");
 }
 
-// One of version 2 with more of rod 5.
+// One of version 2 with more of the sixth rod.
 std::string corrected(const std::string& more) {
   std::string text = file_json(kGoodRod.substr(0, kGoodRod.size() - 1) + ", " + more + "}");
   return text.replace(text.find("\"version\": 1"), 12, "\"version\": 2");
@@ -144,40 +144,40 @@ INSTANTIATE_TEST_SUITE_P(
                 R"({"version": 3, "made": ")" + std::string(65, '2') + R"(", "rods": []})",
                 "\"made\""},
         BadFile{"GainIsOneNumber", corrected(R"("slide_gain": [0.03])"),
-                "(rod 5) has no \"slide_gain\" of two numbers"},
+                "(rod 6) has no \"slide_gain\" of two numbers"},
         BadFile{"GainIsTooLarge", corrected(R"("spin_gain": [0.4, 0.4])"),
-                "(rod 5) has a gain above 0.5"},
+                "(rod 6) has a gain above 0.5"},
         BadFile{"DeadBandIsWord", corrected(R"("dead_band_counts_per_s": "no")"),
-                "(rod 5) has a \"dead_band_counts_per_s\" that is no number"},
+                "(rod 6) has a \"dead_band_counts_per_s\" that is no number"},
         BadFile{"DeadBandIsNegative", corrected(R"("dead_band_counts_per_s": -1)"),
-                "(rod 5) has a dead band out of 0 to 4000"},
+                "(rod 6) has a dead band out of 0 to 4000"},
         BadFile{"NoRods", R"({"version": 1})", "has 0 rods instead of 8"},
         BadFile{"SevenRods", file_json(kGoodRod, 7), "has 7 rods instead of 8"},
         BadFile{"NineRods", file_json(kGoodRod, 9), "has 9 rods instead of 8"},
-        BadFile{"RodIsNumber", file_json("3"), "(rod 5) is not an object"},
+        BadFile{"RodIsNumber", file_json("3"), "(rod 6) is not an object"},
         BadFile{"NoAngle", file_json(R"({"slide_m_per_count": [1, 2]})"),
-                "(rod 5) has no \"angle_rad_per_count\" of two numbers"},
+                "(rod 6) has no \"angle_rad_per_count\" of two numbers"},
         BadFile{"ThreeNumbers", file_json(rod_json("[1, 2, 3]", "[0, 1]")),
-                "(rod 5) has no \"slide_m_per_count\" of two numbers"},
+                "(rod 6) has no \"slide_m_per_count\" of two numbers"},
         BadFile{"Word", file_json(rod_json("[\"a\", 0]", "[0, 1]")),
-                "(rod 5) has no \"slide_m_per_count\" of two numbers"},
+                "(rod 6) has no \"slide_m_per_count\" of two numbers"},
         BadFile{"NotFinite", file_json(rod_json("[NaN, 0]", "[0, 0.015]")), "is not JSON"},
         BadFile{"Overflow", file_json(rod_json("[1e999, 0]", "[0, 0.015]")), "out of range"},
         BadFile{"Singular", file_json(rod_json("[0.000125, 0.000125]", "[0.0156, 0.0156]")),
-                "(rod 5) is singular"},
+                "(rod 6) is singular"},
         BadFile{"AlmostSingular", file_json(rod_json("[0.000125, 0]", "[0.0156, 0.0001]")),
-                "(rod 5) is singular"},
-        BadFile{"Zero", file_json(rod_json("[0, 0]", "[0, 0]")), "(rod 5) is singular"},
+                "(rod 6) is singular"},
+        BadFile{"Zero", file_json(rod_json("[0, 0]", "[0, 0]")), "(rod 6) is singular"},
         BadFile{"MetresForMillimetres", file_json(rod_json("[0.125, 0]", "[0, 0.0156]")),
-                "(rod 5) has a scale that no sensor has: 125 mm along the rod and 0.125 mm"},
+                "(rod 6) has a scale that no sensor has: 125 mm along the rod and 0.125 mm"},
         BadFile{"ThousandTimesTheExample", file_json(rod_json("[0.1, 0]", "[0, 12.5]")),
                 "where 0.00053 mm to 4 mm are possible; write metres"},
         BadFile{"TenTimesTheCoarsestSensor", file_json(rod_json("[0.01, 0]", "[0, 1.25]")),
-                "(rod 5) has a scale that no sensor has"},
+                "(rod 6) has a scale that no sensor has"},
         BadFile{"TenTimesTheFinestSensor", file_json(rod_json("[2.1e-7, 0]", "[0, 2.6e-5]")),
-                "(rod 5) has a scale that no sensor has"},
+                "(rod 6) has a scale that no sensor has"},
         BadFile{"Tiny", file_json(rod_json("[0.000125, 0]", "[0, 1e-9]")),
-                "(rod 5) has a scale that no sensor has"}),
+                "(rod 6) has a scale that no sensor has"}),
     [](const auto& test) { return test.param.what; });
 
 TEST(CalibrationFile, MissingFileAndFolderAreSentences) {
@@ -204,7 +204,7 @@ TEST(CalibrationFile, AFailedSaveSaysSoAndLeavesTheOldFile) {
     broken.rods[2].m[0][0] = wrong;
     const auto refused = save_calibration(broken, folder.file());
     ASSERT_FALSE(refused.has_value());
-    EXPECT_NE(refused.error().find("(rod 2)"), std::string::npos) << refused.error();
+    EXPECT_NE(refused.error().find("(rod 3)"), std::string::npos) << refused.error();
   }
   EXPECT_TRUE(load_calibration(folder.file()).has_value());
   EXPECT_NE(access((folder.file() + ".new").c_str(), F_OK), 0);

@@ -6,6 +6,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
+#include <vector>
 
 using namespace cabinet;
 namespace fs = std::filesystem;
@@ -23,7 +26,11 @@ struct Sys {
     fs::create_directories(usb / between / name);
     fs::create_directories(root / "class" / kind / name);
     fs::create_symlink(usb / between, root / "class" / kind / name / "device");
+    std::ofstream(usb / "idVendor") << "1209\n";
+    std::ofstream(usb / "idProduct") << "0001\n";
     if (!serial.empty()) std::ofstream(usb / "serial") << serial << "\n";
+    // A hub has one too.
+    std::ofstream(root / "devices/usb1/serial") << "0000:00:14.0\n";
   }
 };
 
@@ -45,8 +52,44 @@ TEST(Controller, ItsSerialNumberIsThatOfItsUsbDevice) {
 
 TEST(Controller, ANumberOfAnyBytesNamesAFileInTheFolder) {
   EXPECT_EQ(calibration_file("/c", "SF-0042"), "/c/SF-0042.json");
-  EXPECT_EQ(calibration_file("/c", "../../etc/x"), "/c/______etc_x.json");
+  EXPECT_EQ(calibration_file("/c", "../../etc/x"), "/c/_2E_2E_2F_2E_2E_2Fetc_2Fx.json");
   EXPECT_EQ(calibration_file("/c", ""), "/c/unnumbered.json");
+}
+
+TEST(Controller, NoTwoNumbersHaveOneFile) {
+  const std::vector<std::string> serials = {"A/1",        "A_1", "A.1", "A_2F1", "A_5F1", "a/1", "",
+                                            "unnumbered", "_",   "__",  "_5F",   "\xff",  "?"};
+  std::set<std::string> files;
+  for (const std::string& serial : serials) files.insert(calibration_file("/c", serial));
+  EXPECT_EQ(files.size(), serials.size());
+}
+
+TEST(Controller, AFileUnderItsNameOfBeforeIsFoundUnlessItIsAnothers) {
+  const Sys folder;
+  const auto write = [&](const std::string& name, const std::string& serial) {
+    Calibration calibration = nominal_calibration();
+    calibration.serial = serial;
+    ASSERT_TRUE(save_calibration(calibration, (folder.root / name).string()));
+    EXPECT_EQ(kept_calibration(folder.root, "A/1"), (folder.root / name).string()) << serial;
+  };
+  EXPECT_EQ(kept_calibration(folder.root, "A/1"), "");
+  write("A_1.json", "");
+  write("A_1.json", "A/1");
+  EXPECT_EQ(kept_calibration(folder.root, "A_1"), "") << "it is that of A/1";
+  write("A_2F1.json", "A/1");
+  EXPECT_EQ(kept_calibration(folder.root, ""), "");
+  EXPECT_EQ(kept_calibration("", "A/1"), "");
+}
+
+TEST(Controller, ACalibrationOfAnotherControllerIsTold) {
+  Calibration calibration = nominal_calibration();
+  EXPECT_EQ(serial_conflict(calibration, "SF-1"), "") << "it does not say whose it is";
+  calibration.serial = "SF-1";
+  EXPECT_EQ(serial_conflict(calibration, "SF-1"), "");
+  EXPECT_EQ(serial_conflict(calibration, ""), "") << "the controller does not say";
+  const std::string conflict = serial_conflict(calibration, "SF\x1b[2J");
+  EXPECT_NE(conflict.find("SF-1"), std::string::npos) << conflict;
+  EXPECT_NE(conflict.find("SF?[2J"), std::string::npos) << conflict;
 }
 
 }  // namespace

@@ -2,16 +2,21 @@
 #include "cabinet/doctor.h"
 
 #include <gtest/gtest.h>
+#include <linux/input.h>
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "cabinet/calibration.h"
 #include "os/file_descriptor.h"
 #include "simulated_device.h"
 
@@ -21,6 +26,8 @@ using namespace cabinet_test;
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int64_t kMade = 1'795'348'800;  // 2026-11-22T12:00:00Z
 
 // A machine with nothing connected, to which things are plugged.
 class Doctor : public testing::Test {
@@ -38,16 +45,17 @@ class Doctor : public testing::Test {
     options.seconds = 0.5;
     // A frame each millisecond, once the line is open.
     options.next_poll = [this] {
+      now_us_ += 1'000;
       if (++polls_ > 2 && line_.master.fd >= 0) frame();
-      return now_us_ += 1'000;
+      if (before_poll) before_poll();
+      return now_us_;
     };
     write("table.json", "");
     fs::copy_file(fs::path(CABINET_DIR) / "calibration.example.json", root_ / "table.json",
                   fs::copy_options::overwrite_existing);
     options.calibration = (root_ / "table.json").string();
-    struct stat about {};
-    ::stat(options.calibration.c_str(), &about);
-    options.now_s = about.st_mtime + 86'400;
+    options.now_s = kMade + 86'400;
+    date_calibration("table.json", "2026-11-22T12:00:00Z");
   }
   ~Doctor() override {
     std::error_code ignored;
@@ -58,9 +66,37 @@ class Doctor : public testing::Test {
     fs::create_directories((root_ / path).parent_path());
     std::ofstream(root_ / path) << text;
   }
-  void plug_serial() {
+  // The calibration of that name as made then by the controller with that serial number.
+  void date_calibration(const fs::path& path, const char* made, const char* serial = "") const {
+    Calibration calibration = nominal_calibration();
+    calibration.made = made;
+    calibration.serial = serial;
+    fs::create_directories((root_ / path).parent_path());
+    ASSERT_TRUE(save_calibration(calibration, (root_ / path).string()));
+  }
+  // As the kernel tells of the USB device that a node is a part of.
+  void describe_usb(const std::string& kind, const std::string& node, const std::string& vendor,
+                    const std::string& product, const std::string& serial = "") const {
+    const fs::path usb = fs::path("sys/devices/usb1") / ("1-" + node), part = usb / "1-1:1.0";
+    write(usb / "idVendor", vendor + "\n");
+    write(usb / "idProduct", product + "\n");
+    write(usb / "product", "A board\n");
+    if (!serial.empty()) write(usb / "serial", serial + "\n");
+    fs::create_directories(root_ / part);
+    fs::create_directories(root_ / "sys/class" / kind / node);
+    fs::create_symlink(root_ / part, root_ / "sys/class" / kind / node / "device");
+  }
+  void plug_serial(const std::string& serial = "") {
     line_.plug();
     fs::create_symlink(line_.path, root_ / "dev/ttyACM0");
+    describe_usb("tty", "ttyACM0", "2341", "0042", serial);
+  }
+  // Another line beside, which is silent until the test writes to it.
+  SerialLine& plug_line(const fs::path& node) {
+    SerialLine& line = *others_.emplace_back(std::make_unique<SerialLine>());
+    line.plug();
+    fs::create_symlink(line.path, root_ / node);
+    return line;
   }
   void describe_hid(const char* id = "0003:00001209:00000001") const {
     write("sys/class/hidraw/hidraw3/device/uevent",
@@ -72,15 +108,31 @@ class Doctor : public testing::Test {
     report = true;
     fs::create_symlink(line_.path, root_ / "dev/hidraw3");
   }
-  void plug_input(const std::string& event, const std::string& axes, const std::string& keys,
-                  const std::string& name) const {
+  SerialLine& plug_input(const std::string& event, const std::string& axes, const std::string& keys,
+                         const std::string& name) {
     const fs::path folder = fs::path("sys/class/input") / event / "device";
     write(folder / "capabilities/rel", axes + "\n");
     write(folder / "capabilities/key", keys + "\n");
     write(folder / "name", name + "\n");
-    write("dev/input/" + event, "");
+    return plug_line("dev/input/" + event);
   }
-  void plug_mouse() const { plug_input("event7", "1943", "1f0000 0 0 0 0", "A mouse"); }
+  SerialLine& plug_mouse() { return plug_input("event7", "1943", "1f0000 0 0 0 0", "A mouse"); }
+  SerialLine& plug_gamepad() {
+    return plug_input("event9", "0", "7fdb000000000000 0 0 0 0", "A pad");
+  }
+  // An event that happened before now by so much.
+  void happen(const SerialLine& line, std::uint16_t type, std::uint16_t code, int value,
+              std::int64_t ago_us = 300) const {
+    input_event made{};
+    made.input_event_sec = (now_us_ - ago_us) / 1'000'000;
+    made.input_event_usec = (now_us_ - ago_us) % 1'000'000;
+    made.type = type;
+    made.code = code;
+    made.value = value;
+    Bytes bytes(sizeof made);
+    std::memcpy(bytes.data(), &made, sizeof made);
+    (void)line.master.send_what_fits(bytes);
+  }
 
   void frame() {
     if (before_frame) before_frame();
@@ -104,12 +156,13 @@ class Doctor : public testing::Test {
   SimulatedDevice device;
   bool report = false;
   int every = 1;
-  std::function<void()> before_frame;
+  std::function<void()> before_frame, before_poll;
   std::function<void(wire::DeviceFrame&)> change;
   fs::path root_;
   SerialLine line_;
 
  private:
+  std::vector<std::unique_ptr<SerialLine>> others_;
   int polls_ = 0;
   std::int64_t now_us_ = 1'000'000;
 };
@@ -131,7 +184,7 @@ TEST_F(Doctor, AControllerThatDoesAllRightIsWell) {
   EXPECT_TRUE(json["healthy"]);
   EXPECT_EQ(json["devices"][0]["kind"], "serial");
   EXPECT_EQ(json["devices"][0]["rods"].size(), 8u);
-  EXPECT_EQ(json["calibration"]["days"], 1.0);
+  EXPECT_EQ(json["calibrations"][0]["days"], 1.0);
 }
 
 TEST_F(Doctor, AHidControllerIsFoundByItsId) {
@@ -149,7 +202,7 @@ TEST_F(Doctor, MiceAndGamepadsAreToldFromTheRest) {
   plug_mouse();
   plug_input("event2", "0", "402000007 ff803078f800d001 feffffdfffefffff fffffffffffffffe",
              "Keyboard");
-  plug_input("event9", "0", "7fdb000000000000 0 0 0 0", "A pad");
+  plug_gamepad();
   const Diagnosis diagnosis = examine(options);
   EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
   ASSERT_EQ(diagnosis.devices.size(), 2u);
@@ -163,7 +216,7 @@ TEST_F(Doctor, MiceAndGamepadsAreToldFromTheRest) {
 TEST_F(Doctor, WhatMayNotBeReadIsSaidWithItsCure) {
   if (::getuid() != 0) GTEST_SKIP() << "needs root, to be another user for a moment";
   plug_mouse();
-  fs::permissions(root_ / "dev/input/event7", fs::perms::none);
+  fs::permissions(fs::canonical(root_ / "dev/input/event7"), fs::perms::none);
   ASSERT_EQ(::setresuid(65'534, 65'534, 0), 0);
   const Diagnosis diagnosis = examine(options);
   ASSERT_EQ(::setresuid(0, 0, 0), 0);
@@ -269,27 +322,219 @@ TEST_F(Doctor, AControllerThatGoesAwayIsSaid) {
 
 TEST_F(Doctor, AnotherSerialDeviceIsNoTroubleBesideAController) {
   plug_serial();
-  SerialLine modem;
-  modem.plug();
-  fs::create_symlink(modem.path, root_ / "dev/ttyUSB0");
+  plug_line("dev/ttyUSB0");
+  describe_usb("tty", "ttyUSB0", "1a86", "7523");
   EXPECT_TRUE(examine(options).troubles.empty());
+}
+
+TEST_F(Doctor, ALineThatIsNotKnownAsOursIsNotOpenedUnlessItIsNamed) {
+  plug_serial();
+  const SerialLine& modem = plug_line("dev/ttyUSB0");
+  describe_usb("tty", "ttyUSB0", "0403", "6001");
+  // Whoever opens a line that is locked is told so.
+  const os::FileDescriptor owner(modem.open());
+  ASSERT_EQ(::flock(owner.get(), LOCK_EX), 0);
+  const Diagnosis diagnosis = examine(options);
+  EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
+  EXPECT_NE(diagnosis_text(diagnosis).find("add --device serial:" + options.dev + "/ttyUSB0"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(diagnosis_json(diagnosis))["devices"][1]["opened"], false);
+  options.devices = {*parse_doctor_address("serial:" + options.dev + "/ttyUSB0")};
+  expect_trouble("the controller is in use", "end the server");
+}
+
+TEST_F(Doctor, OnlyLinesThatAreNotOpenedIsATroubleThatSaysHowToNameThem) {
+  plug_line("dev/ttyUSB0");
+  describe_usb("tty", "ttyUSB0", "0403", "6001");
+  expect_trouble("no controller, mouse or gamepad is connected", "name it by --device");
+}
+
+TEST_F(Doctor, WhatIsNamedIsLookedAtWhereverItIs) {
+  line_.plug();
+  options.devices = {*parse_doctor_address("serial:" + line_.path)};
+  const Diagnosis diagnosis = examine(options);
+  EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
+  ASSERT_EQ(diagnosis.devices.size(), 1u);
+  EXPECT_EQ(diagnosis.devices[0].state, DeviceState::live);
+}
+
+TEST_F(Doctor, AnAddressOfNoDeviceIsRefusedWithASentence) {
+  for (const char* text :
+       {"", "ttyACM0", "serial:", "hid:", "file:x", "evdev:", "evdev:/dev/x:9"}) {
+    const auto address = parse_doctor_address(text);
+    ASSERT_FALSE(address) << text;
+    EXPECT_EQ(address.error().back(), '.') << address.error();
+  }
+}
+
+TEST_F(Doctor, WhatIsNamedAndNotThereOrNoDeviceIsSaid) {
+  options.devices = {*parse_doctor_address("serial:" + options.dev + "/ttyACM7")};
+  expect_trouble("the controller is not there", "plug it in");
+  ASSERT_EQ(::mkfifo((root_ / "pipe").c_str(), 0600), 0);
+  for (const char* path : {"pipe", "table.json", "dev"}) {
+    options.devices = {*parse_doctor_address("hid:" + (root_ / path).string())};
+    expect_trouble("this is no HID device", "name one that is");
+  }
+  options.devices = {*parse_doctor_address("evdev:/dev/null")};
+  expect_trouble("this is no mouse", "name one that is");
+}
+
+TEST_F(Doctor, ALineThatHangsUpAtOnceIsSaid) {
+  options.calibration.clear();  // of which a line that is no controller needs none
+  options.devices = {*parse_doctor_address("serial:/dev/null")};
+  expect_trouble("hung up before it sent a frame", "plug it in again");
+}
+
+TEST_F(Doctor, AFloodOfGarbageIsSaid) {
+  plug_serial();
+  every = 1'000'000;
+  before_frame = [this, x = std::uint32_t{1}]() mutable {
+    Bytes bytes(1'000);
+    for (std::uint8_t& byte : bytes)
+      byte = static_cast<std::uint8_t>((x = x * 1'664'525 + 1) >> 24);
+    (void)line_.master.send_what_fits(bytes);
+  };
+  expect_trouble("sends what is no frame", "flash our firmware");
 }
 
 TEST_F(Doctor, NoCalibrationABadOneAndAnOldOneAreSaid) {
   plug_serial();
-  options.now_s += std::int64_t{200} * 86'400;
-  expect_trouble("201 days old", "calibrate anew");
+  options.now_s = kMade + std::int64_t{201} * 86'400;
+  expect_trouble("201 days old", "calibrate again");
+  options.now_s = kMade - std::int64_t{2} * 86'400;
+  expect_trouble("of a day to come", "clock");
   write("table.json", "{}");
   expect_trouble("table.json", "name another file");
+  EXPECT_EQ(diagnosis_text(examine(options)).find(".."), std::string::npos);
   options.calibration.clear();
   expect_trouble("there is no calibration", "space-foosball calibrate --device ");
-  write("kept/unnumbered.json", "");
-  fs::copy_file(fs::path(CABINET_DIR) / "calibration.example.json", root_ / "kept/unnumbered.json",
+}
+
+TEST_F(Doctor, ACalibrationIsAsOldAsItSaysElseAsItsFile) {
+  plug_serial();
+  EXPECT_EQ(examine(options).calibrations.at(0).days, 1.0) << "its file is of now";
+  fs::copy_file(fs::path(CABINET_DIR) / "calibration.example.json", root_ / "table.json",
                 fs::copy_options::overwrite_existing);
+  struct stat about {};
+  ::stat(options.calibration.c_str(), &about);
+  options.now_s = about.st_mtime + std::int64_t{3} * 86'400;
+  EXPECT_EQ(examine(options).calibrations.at(0).days, 3.0);
+}
+
+TEST_F(Doctor, EachControllerHasItsOwnCalibration) {
+  options.calibration.clear();
   options.calibrations = (root_ / "kept").string();
-  const Diagnosis kept = examine(options);
-  ASSERT_TRUE(kept.calibration);
-  EXPECT_EQ(kept.calibration->path, options.calibrations + "/unnumbered.json");
+  plug_serial("SF-1");
+  plug_line("dev/ttyACM1");
+  describe_usb("tty", "ttyACM1", "2341", "0042", "SF-2");
+  options.devices = {*parse_doctor_address("serial:" + options.dev + "/ttyACM1")};
+  date_calibration("kept/SF-1.json", "2026-11-22T12:00:00Z", "SF-1");
+  date_calibration("kept/SF-2.json", "2026-11-21T12:00:00Z", "SF-2");
+  const Diagnosis diagnosis = examine(options);
+  ASSERT_EQ(diagnosis.calibrations.size(), 2u) << diagnosis_text(diagnosis);
+  EXPECT_EQ(diagnosis.calibrations[0].path, options.calibrations + "/SF-1.json");
+  EXPECT_EQ(diagnosis.calibrations[0].days, 1.0);
+  EXPECT_EQ(diagnosis.calibrations[1].path, options.calibrations + "/SF-2.json");
+  EXPECT_EQ(diagnosis.calibrations[1].device, "serial:" + options.dev + "/ttyACM1");
+  EXPECT_EQ(diagnosis.calibrations[1].days, 2.0);
+  ASSERT_EQ(diagnosis.troubles.size(), 1u) << "the second is silent, no more";
+  EXPECT_NE(diagnosis.troubles[0].what.find("sends nothing"), std::string::npos);
+}
+
+TEST_F(Doctor, ACalibrationOfAnotherControllerIsSaid) {
+  plug_serial("SF-2");
+  date_calibration("table.json", "2026-11-22T12:00:00Z", "SF-1");
+  expect_trouble("serial number SF-1, and this one has SF-2", "space-foosball calibrate --device");
+  date_calibration("table.json", "2026-11-22T12:00:00Z", "");
+  EXPECT_TRUE(examine(options).troubles.empty());
+}
+
+TEST_F(Doctor, AMouseInAHandHasARateAndALatency) {
+  const SerialLine& mouse = plug_mouse();
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms % 8 != 0) return;
+    happen(mouse, EV_REL, REL_X, 20);
+    happen(mouse, EV_SYN, SYN_REPORT, 0);
+  };
+  const Diagnosis diagnosis = examine(options);
+  EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
+  EXPECT_NEAR(diagnosis.devices.at(0).reports_per_s, 125, 2);
+  const auto json = nlohmann::json::parse(diagnosis_json(diagnosis))["devices"][0];
+  EXPECT_NEAR(json["frames_per_s"], 125, 2);
+  EXPECT_NEAR(json["latency_mean_us"], 300, 1);
+  EXPECT_EQ(json["lost"], 0);
+}
+
+TEST_F(Doctor, AMouseThatReportsSeldomLateOrWithGapsIsSaid) {
+  const SerialLine& mouse = plug_mouse();
+  std::int64_t late_us = 300;
+  int period_ms = 20, dropped_at = -1;
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms % period_ms != 0) return;
+    if (ms == dropped_at) happen(mouse, EV_SYN, SYN_DROPPED, 0, late_us);
+    happen(mouse, EV_REL, REL_X, 50, late_us);
+    happen(mouse, EV_SYN, SYN_REPORT, 0, late_us);
+  };
+  expect_trouble("50 reports a second come while it moves", "with a cable");
+  period_ms = 8;
+  late_us = 4'000;
+  expect_trouble("reports wait 4.0 ms", "busy");
+  late_us = 300;
+  dropped_at = 1'200;
+  expect_trouble("the kernel dropped its reports 1 times", "busy");
+}
+
+TEST_F(Doctor, AMouseThatMovesByItselfIsSaid) {
+  const SerialLine& mouse = plug_mouse();
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms % 10 != 0) return;
+    happen(mouse, EV_REL, REL_Y, 1);
+    happen(mouse, EV_SYN, SYN_REPORT, 0);
+  };
+  expect_trouble("a rod of this mouse moved", "leave it alone");
+}
+
+TEST_F(Doctor, AStickThatRestsOffItsMiddleIsSaid) {
+  const SerialLine& pad = plug_gamepad();
+  int value = 2'000;
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms % 10 != 0) return;
+    happen(pad, EV_ABS, ABS_RX, value + ms % 20);
+    happen(pad, EV_SYN, SYN_REPORT, 0);
+  };
+  EXPECT_TRUE(examine(options).troubles.empty()) << "a worn stick is allowed for";
+  value = 9'000;
+  expect_trouble("a stick was 27 % off its middle", "let go of it");
+}
+
+TEST_F(Doctor, AGamepadInAHandHasARateAndALatency) {
+  const SerialLine& pad = plug_gamepad();
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms > 300 || ms % 4 != 0) return;
+    happen(pad, EV_ABS, ABS_X, ms < 296 ? 100 * ms : 0);
+    happen(pad, EV_SYN, SYN_REPORT, 0);
+  };
+  const Diagnosis diagnosis = examine(options);
+  EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
+  const auto json = nlohmann::json::parse(diagnosis_json(diagnosis))["devices"][0];
+  EXPECT_NEAR(json["frames_per_s"], 250, 2);
+  EXPECT_NEAR(json["latency_mean_us"], 300, 1);
+  EXPECT_GT(json["stick_peak"], 0.8);
+  EXPECT_EQ(json["stick_rest"], 0);
+}
+
+TEST_F(Doctor, AMouseOrAGamepadThatGoesAwayOrIsInUseIsSaid) {
+  SerialLine& mouse = plug_mouse();
+  before_poll = [&, ms = 0]() mutable {
+    if (++ms == 100) mouse.master.close();
+  };
+  expect_trouble("the mouse went away", "change the cable");
+  before_poll = {};
+  SerialLine& pad = plug_gamepad();
+  fs::remove_all(root_ / "sys/class/input/event7");
+  const os::FileDescriptor game(pad.open());
+  ASSERT_EQ(::flock(game.get(), LOCK_EX), 0);
+  expect_trouble("the gamepad is in use", "the other program");
 }
 
 TEST_F(Doctor, ANameOfAStrangerHarmsNothing) {

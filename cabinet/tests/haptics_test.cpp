@@ -183,7 +183,7 @@ TEST(DeviceHaptics, WithoutAnEncoderOrWithARecordingNothingIsSent) {
 
 TEST(DeviceHaptics, AControllerIsToldAsItsCommandsAreDescribed) {
   for (const auto framing : {DeviceFraming::cobs, DeviceFraming::report}) {
-    std::array<std::byte, DeviceHaptics::kMaxPacket> out{};
+    std::array<std::byte, kMostPacket> out{};
     const std::size_t size = command_encoder(framing)({6, 0.5f, 40}, out);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(out.data());
     std::array<std::uint8_t, wire::kDeviceCommandBytes> plain{};
@@ -203,7 +203,7 @@ TEST(DeviceHaptics, AControllerIsToldAsItsCommandsAreDescribed) {
     EXPECT_EQ(command.amplitude, 128);
     EXPECT_EQ(command.duration_ms, 40);
   }
-  std::array<std::byte, DeviceHaptics::kMaxPacket> out{};
+  std::array<std::byte, kMostPacket> out{};
   EXPECT_EQ(command_encoder(DeviceFraming::report)({6, 0.5f, 0}, out), 0u) << "no length";
 }
 

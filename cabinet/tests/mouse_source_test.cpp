@@ -268,7 +268,9 @@ TEST(MouseAddress, NamesAMouseAndARod) {
     ASSERT_FALSE(address) << wrong;
     EXPECT_NE(address.error().find("write evdev:/dev/input/eventN"), std::string::npos);
   }
-  for (const char* wrong : {"evdev:/dev/input/event5:0", "evdev:/dev/input/event5:9"}) {
+  for (const char* wrong :
+       {"evdev:/dev/input/event5:0", "evdev:/dev/input/event5:9", "evdev:/dev/input/event5:1.5",
+        "evdev:/dev/input/event5:1,2", "evdev:/dev/input/event5:a", "evdev:/dev/input/event5:-1"}) {
     ASSERT_FALSE(parse_mouse_address(wrong)) << wrong;
     EXPECT_NE(parse_mouse_address(wrong).error().find("names no rod: write one from 1"),
               std::string::npos);

@@ -1,22 +1,15 @@
 #include "result_writer.h"
 
-#include <array>
 #include <ctime>
 #include <fstream>
 #include <utility>
 
+#include "os/time_of_day.h"
 #include "results/text.h"
 #include "server/match_statistics.h"
 
 namespace app {
 namespace {
-
-std::string date(std::time_t now) {
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::array<char, 32> text;
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
 
 // By the names that the server gives its computers, so that they share a rating.
 results::MatchResult result_of(const match::GameDesc& game, const match::GameResult& played) {
@@ -49,7 +42,7 @@ void ResultWriter::add(const match::GameDesc& game, const match::GameResult& res
                        std::string recording) {
   const std::time_t now = std::time(nullptr);
   results::MatchResult& next = waiting_.emplace_back(result_of(game, result));
-  next.finished_at = date(now);
+  next.finished_at = os::utc_text(now);
   next.recording = std::move(recording);
   if (waiting_.size() >= kBatch || now >= flushed_s_ + kEvery_s) flush();
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -12,6 +13,8 @@
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
 #include "os/thread_signal.h"
+#include "os/time_of_day.h"
+#include "os/user_folder.h"
 
 namespace os {
 namespace {
@@ -200,6 +203,49 @@ TEST(ThreadSignal, APostIsNotLostWhicheverComesFirst) {
     from.wait();
   }
   echo.join();
+}
+
+TEST(TimeOfDay, ATextOfItIsReadBackAndNoOtherIs) {
+  EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00Z");
+  EXPECT_EQ(utc_seconds("2000-02-29T12:00:00Z"), 951'825'600);
+  for (const std::time_t time : {std::time_t{1}, std::time_t{1'795'000'000}, std::time_t{-86'400}})
+    EXPECT_EQ(utc_seconds(utc_text(time)), time);
+  for (const char* text : {"", "2026-11-22", "2026-11-22T23:59:59", "2026-11-22T23:59:59+",
+                           "2026-02-30T00:00:00Z", "2026-13-01T00:00:00Z", "2026-11-22T24:00:00Z",
+                           "2026-11-22T23:59:60Z", "2026-11-22 23:59:59Z", "-026-11-22T23:59:59Z"})
+    EXPECT_EQ(utc_seconds(text), std::nullopt) << text;
+  EXPECT_TRUE(utc_seconds(utc_now()));
+}
+
+// A variable of the environment, as it was again at the end.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
+  }
+  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST(UserFolder, IsTheNamedOneElseThatOfTheHome) {
+  const Variable home("HOME", "/home/ann");
+  {
+    const Variable data("XDG_DATA_HOME", "/data"), config("XDG_CONFIG_HOME", "/config");
+    EXPECT_EQ(data_folder(), "/data");
+    EXPECT_EQ(config_folder(), "/config");
+  }
+  for (const char* ignored : {"", "relative", static_cast<const char*>(nullptr)}) {
+    const Variable data("XDG_DATA_HOME", ignored), config("XDG_CONFIG_HOME", ignored);
+    EXPECT_EQ(data_folder(), "/home/ann/.local/share");
+    EXPECT_EQ(config_folder(), "/home/ann/.config");
+    const Variable nowhere("HOME", nullptr);
+    EXPECT_EQ(data_folder(), "");
+    EXPECT_EQ(config_folder(), "");
+  }
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
-#include <filesystem>
 #include <new>
 #include <optional>
 
@@ -21,11 +20,11 @@
 #include "cabinet/mouse_source.h"
 #include "options.h"
 #include "os/socket_address.h"
+#include "os/time_of_day.h"
 #include "server/exit_code.h"
 #include "server/log_writer.h"
 #include "server/report.h"
 #include "server/run.h"
-#include "utc.h"
 
 namespace {
 
@@ -129,18 +128,25 @@ struct Devices {
   std::unique_ptr<cabinet::CabinetHaptics> haptics = std::make_unique<cabinet::CabinetHaptics>();
 };
 
-// That which space-foosball calibrate has kept for the controller, else that of a sensor as it
-// comes.
+// That which is named, else that which space-foosball calibrate has kept for the controller, else
+// that of a sensor as it comes.
 tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string& address,
+                                                               const std::string& named,
                                                                const server::Log& log) {
-  const std::string folder = cabinet::calibrations_folder();
-  const std::string serial = cabinet::controller_serial(address);
-  const std::string file = cabinet::calibration_file(folder, serial);
   const bool recording = address.rfind("file:", 0) == 0;
-  std::error_code unknown;
-  if (!recording && !folder.empty() && std::filesystem::exists(file, unknown)) {
+  const std::string serial = cabinet::controller_serial(address);
+  std::string file = named;
+  if (file.empty() && !recording)
+    file = cabinet::kept_calibration(cabinet::calibrations_folder(), serial);
+  if (!file.empty()) {
+    auto calibration = cabinet::load_calibration(file);
+    if (!calibration) return calibration;
     log(server::LogLevel::info, address + " is calibrated by " + file);
-    return cabinet::load_calibration(file);
+    if (const auto conflict = cabinet::serial_conflict(*calibration, serial); !conflict.empty())
+      log(server::LogLevel::warning, address + ": " + conflict + " (" + file +
+                                         "): run space-foosball calibrate --device " + address +
+                                         ", or name its own file with --calibration");
+    return calibration;
   }
   log(server::LogLevel::info,
       address + " is not calibrated: its rods drift; run space-foosball calibrate --device " +
@@ -173,7 +179,9 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options,
     devices.all.push_back(std::move(*device));
   }
   for (const std::string& address : options.devices) {
-    auto own = options.calibration.empty() ? calibration_of(address, log) : calibration;
+    if (std::string why = cabinet::why_no_device(address); !why.empty())
+      return tl::unexpected(std::move(why));
+    auto own = calibration_of(address, options.calibration, log);
     if (!own) return tl::unexpected(own.error());
     auto device = cabinet::open_device(address, *own, slide_limit);
     if (!device) return tl::unexpected(device.error());
@@ -221,7 +229,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
     wanted.record_by_default_bytes = options.recording_limits.bytes_of_one;
   }
   wanted.results = options.results;
-  wanted.date = app::utc_now;
+  wanted.date = os::utc_now;
   wanted.challenge_date = options.challenge_date;
   wanted.cabinet = !options.devices.empty();
   wanted.questionnaire = !options.no_questionnaire;

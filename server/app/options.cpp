@@ -3,18 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 
 #include "cabinet/mouse_source.h"
 #include "characters/character_file.h"
 #include "os/socket_address.h"
+#include "os/time_of_day.h"
+#include "os/user_folder.h"
 #include "profile/tuning_profile.h"
 #include "server/exit_code.h"
 #include "server/game_choice.h"
 #include "server/option_checks.h"
-#include "utc.h"
 #include "wire/sentence.h"
 
 namespace app {
@@ -235,7 +235,7 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
 
 // A bare path says by itself what it is.
 std::string with_scheme(const std::string& device) {
-  if (device[0] != '/' && device.find(':') != std::string::npos) return device;
+  if (device.empty() || (device[0] != '/' && device.find(':') != std::string::npos)) return device;
   if (device.rfind("/dev/hidraw", 0) == 0) return "hid:" + device;
   if (device.rfind("/dev/input/", 0) == 0) return "evdev:" + device;
   return (device.rfind("/dev/", 0) == 0 ? "serial:" : "file:") + device;
@@ -273,9 +273,21 @@ std::vector<const char*> options_of(const wire::Sentence& refusal) {
   return {"--change-sides"};
 }
 
+foosball::Layout layout_of(const Raw& raw) {
+  return raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
+}
+
+// Of what was given, whatever the mode makes of it.
+server::GameSite site_of(const Options& o, const Raw& raw) {
+  foosball::MatchDesc given = o.match;
+  given.layout = layout_of(raw);
+  return server::site_of(given, o.computer[0] || o.computer[1], !o.devices.empty());
+}
+
 // Empty, or why the options cannot be played together: what a client would be told that asked for
 // the same.
-std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw) {
+std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw,
+                          const server::GameSite& site) {
   const auto given = [&](const char* name) { return cli.get_option(name)->count() > 0; };
   const foosball::GameSetup setup = setup_of(raw);
   const bool challenge = setup.mode == foosball::Mode::challenge;
@@ -290,11 +302,7 @@ std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw)
     asked.level = static_cast<std::uint8_t>(wanted.level);
     asked.style = static_cast<std::uint8_t>(wanted.style);
   }
-  const wire::Sentence why = server::why_not(asked, {.computer = o.computer[0] || o.computer[1],
-                                                     .cabinet = !o.devices.empty(),
-                                                     .tournament_table = raw.layout == "tournament",
-                                                     .built_in_characters = !given("--characters"),
-                                                     .default_tuning = !given("--tuning")});
+  const wire::Sentence why = server::why_not(asked, site);
   if (why.empty()) return {};
   std::string said;
   for (const char* name : options_of(why))
@@ -303,15 +311,13 @@ std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw)
 }
 
 void translate(Options& o, const Raw& raw) {
-  const auto layout =
-      raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
-  o.match.layout = layout;
+  o.match.layout = layout_of(raw);
   const foosball::GameSetup setup = setup_of(raw);
   o.match.rules = foosball::rules_of(setup);
   o.match.mode = setup.mode;
   o.challenge_date = raw.date;
   if (setup.mode == foosball::Mode::challenge)
-    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : server::day_of(utc_now()));
+    o.match = foosball::challenge_of(raw.date > 0 ? raw.date : server::day_of(os::utc_now()));
   if (!raw.seed.empty()) o.match.seed = *server::parse_seed(raw.seed);
   o.computer = {raw.team0 == "computer", raw.team1 == "computer"};
   const std::string player = std::to_string(raw.level);
@@ -371,20 +377,17 @@ std::string take_mice(Options& o) {
   return {};
 }
 
-// $XDG_DATA_HOME or ~/.local/share, as the XDG base directories have it; empty: neither is known.
+// Empty: there is no home.
 std::string own_characters() {
-  const auto folder = [](const char* variable) -> std::string {
-    const char* value = std::getenv(variable);
-    return value != nullptr && value[0] == '/' ? value : "";
-  };
-  const std::string data = folder("XDG_DATA_HOME"), home = folder("HOME");
-  if (!data.empty()) return data + "/space-foosball/characters";
-  return home.empty() ? "" : home + "/.local/share/space-foosball/characters";
+  const std::string data = os::data_folder();
+  return data.empty() ? "" : data + "/space-foosball/characters";
 }
 
+// A challenge is played by the built-in ones; a folder that is named is read all the same, to be
+// compared with them.
 tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {
-  if (!foosball::chooses_rules(mode_of(raw.mode))) return foosball::built_in_characters();
   if (!raw.characters.empty()) return characters::load_characters(raw.characters);
+  if (!foosball::chooses_rules(mode_of(raw.mode))) return foosball::built_in_characters();
   const std::string own = own_characters();
   if (own.empty()) return foosball::built_in_characters();
   return characters::load_more_characters(foosball::built_in_characters(), own);
@@ -423,11 +426,9 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   translate(options, raw);
   if (const auto objection = take_mice(options); !objection.empty())
     return tl::unexpected(Leave{server::kExitUsage, "--device " + objection});
-  if (std::string why = contradiction(cli, options, raw); !why.empty())
-    return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   if (!raw.tuning.empty()) {
     auto tuning = profile::load_tuning(raw.tuning);
-    if (!tuning) return tl::unexpected(Leave{server::kExitUsage, tuning.error()});
+    if (!tuning) return tl::unexpected(Leave{server::kExitUsage, "--tuning: " + tuning.error()});
     options.match.tuning = *tuning;
   }
   if (raw.checks_character) {
@@ -435,14 +436,15 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
     if (!text) return tl::unexpected(Leave{server::kExitUsage, text.error()});
     return tl::unexpected(Leave{server::kExitOk, *text});
   }
-  if (options.replay.empty()) {
-    auto list = characters_of(raw);
-    if (!list) return tl::unexpected(Leave{server::kExitUsage, list.error()});
-    options.match.characters = std::move(*list);
-  }
   if (raw.list_tuning) {
     return tl::unexpected(Leave{server::kExitOk, profile::format_tuning(options.match.tuning)});
   }
+  if (!options.replay.empty()) return options;  // what is played is said by the recording
+  auto list = characters_of(raw);
+  if (!list) return tl::unexpected(Leave{server::kExitUsage, list.error()});
+  options.match.characters = std::move(*list);
+  if (std::string why = contradiction(cli, options, raw, site_of(options, raw)); !why.empty())
+    return tl::unexpected(Leave{server::kExitUsage, std::move(why)});
   return options;
 }
 

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <variant>
 
 #include "os/file_descriptor.h"
+#include "os/user_folder.h"
 
 namespace server {
 namespace {
@@ -245,13 +245,8 @@ tl::expected<void, std::string> keep_recording(const std::string& path, bool kee
 }
 
 std::string recordings_folder() {
-  const auto folder = [](const char* variable) -> std::string {
-    const char* value = std::getenv(variable);
-    return value != nullptr && value[0] == '/' ? value : "";
-  };
-  const std::string data = folder("XDG_DATA_HOME"), home = folder("HOME");
-  if (!data.empty()) return data + "/space-foosball/recordings";
-  return home.empty() ? "" : home + "/.local/share/space-foosball/recordings";
+  const std::string data = os::data_folder();
+  return data.empty() ? "" : data + "/space-foosball/recordings";
 }
 
 }  // namespace server

@@ -75,6 +75,7 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--mode", "challenge", "--seed", "1"},
       {"--mode", "challenge", "--layout", "paper"},
       {"--mode", "challenge", "--tuning", "/nowhere.toml"},
+      {"--tuning", "/nowhere.toml"},
       {"--mode", "challenge", "--characters", "/nowhere"},
       {"--mode", "ladder", "--level", "2"},
       {"--mode", "ladder", "--style", "wall"},
@@ -86,6 +87,7 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--fast"},
       {"--calibration", "/nowhere.json"},
       {"--device", "carrier-pigeon:1"},
+      {"--device", ""},
       {"--device", "file:/nowhere.bin"},
       {"--device", "serial:/dev/ttyNone", "--calibration", "/nowhere.json"},
       {"--replay", "/nowhere.sfr"},
@@ -134,6 +136,52 @@ TEST(ServerProgram, PlaysWhatTheModeLeavesToBeChosen) {
     all.insert(all.end(), options.begin(), options.end());
     Process process(serve(all));
     EXPECT_EQ(process.wait(), 0) << process.output();
+  }
+}
+
+TEST(ServerProgram, JudgesATuningByItsValuesAndCharactersByTheirs) {
+  Process listed(serve({"--list-tuning"}));
+  ASSERT_EQ(listed.wait(), 0) << listed.output();
+  const std::string profile = temp_path("tuning.toml");
+  const std::vector<std::string> challenge{"--port",   "0",      "--seconds", "0.01",     "--team1",
+                                           "computer", "--mode", "challenge", "--tuning", profile};
+  std::ofstream(profile) << listed.output();
+  Process same(serve(challenge));
+  EXPECT_EQ(same.wait(), 0) << "all its values are the default: " << same.output();
+  std::ofstream(profile) << "gravity = 20\n";
+  Process other(serve(challenge));
+  EXPECT_EQ(other.wait(), 2);
+  EXPECT_NE(other.output().find("--tuning and --mode challenge"), std::string::npos)
+      << other.output();
+}
+
+TEST(ServerProgram, JudgesNoGameWhereNoneIsPlayed) {
+  const std::string journal = temp_path("short.sfr");
+  Process recorded(serve({"--port", "0", "--seconds", "0.1", "--record", journal, "--overwrite"}));
+  ASSERT_EQ(recorded.wait(), 0) << recorded.output();
+  for (const char* mode : {"ladder", "challenge"}) {
+    Process list(serve({"--list-tuning", "--mode", mode}));
+    EXPECT_EQ(list.wait(), 0) << list.output();
+    Process replay(serve({"--port", "0", "--fast", "--replay", journal, "--mode", mode}));
+    EXPECT_EQ(replay.wait(), 0) << replay.output();
+  }
+}
+
+TEST(ServerProgram, AMouseIsNoCabinetToWalkRound) {
+  Process process(serve(
+      {"--port", "0", "--change-sides", "--sets", "3", "--device", "evdev:/dev/input/event99:4"}));
+  EXPECT_EQ(process.wait(), 2);
+  EXPECT_NE(process.output().find("a cabinet's --device (no mouse)"), std::string::npos)
+      << process.output();
+}
+
+TEST(ServerProgram, SaysOnlyWhatIsWrongWithAnAddressOfNoDevice) {
+  for (const char* address : {"", "file:", "serial:", "usb:1"}) {
+    Process process(serve({"--port", "0", "--device", address}));
+    EXPECT_EQ(process.wait(), 2);
+    const std::string& said = process.output();
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+    EXPECT_NE(said.find("names no device"), std::string::npos) << said;
   }
 }
 

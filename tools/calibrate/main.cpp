@@ -12,7 +12,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <mutex>
 #include <thread>
@@ -23,6 +22,7 @@
 #include "draw/image.h"
 #include "draw/window.h"
 #include "os/clock.h"
+#include "os/time_of_day.h"
 #include "render/translate.h"
 #include "session.h"
 #include "view.h"
@@ -47,14 +47,6 @@ volatile std::sig_atomic_t asked_to_leave = 0;
 int fail(int code, const std::string& sentence) {
   std::fprintf(stderr, "space-foosball-calibrate: %s\n", sentence.c_str());
   return code;
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
 // Reads the device each millisecond, however seldom a picture is drawn.
@@ -119,7 +111,7 @@ class Run {
     if (session_.kept() == kept_) return;
     kept_ = session_.kept();
     cabinet::Calibration calibration = session_.calibration();
-    calibration.made = utc_now();
+    calibration.made = os::utc_now();
     const auto saved = cabinet::save_calibration(calibration, view_.path);
     view_.problem = saved ? "" : saved.error();
   }
@@ -258,7 +250,12 @@ int main(int argc, char** argv) {
       ->required();
   cli.add_option("--rods", options.rods, "1 to 8, from team 0's goal, as in 2,3 (all)")
       ->delimiter(',')
-      ->check(CLI::Range(1, 8));
+      ->check([](const std::string& text) {
+        const bool rod = text.size() == 1 && text[0] >= '1' && text[0] <= '8';
+        return rod ? ""
+                   : "\"" + text +
+                         "\" is no rod: write rods from 1 to 8 with commas between, such as 2,3";
+      });
   cli.add_option("--layout", options.layout, "of the table: tournament (1-2-5-3) or paper")
       ->check(CLI::IsMember({"tournament", "paper"}))
       ->capture_default_str();
@@ -289,8 +286,10 @@ int main(int argc, char** argv) {
   options.rods.erase(std::unique(options.rods.begin(), options.rods.end()), options.rods.end());
   for (int& rod : options.rods) --rod;
 
+  if (const std::string why = cabinet::why_no_device(options.device); !why.empty())
+    return fail(kUsage, why);
   const std::string serial = cabinet::controller_serial(options.device);
-  std::string path = options.out;
+  std::string path = options.out, before = path;
   if (path.empty() && options.device.rfind("file:", 0) == 0)
     return fail(kUsage,
                 "A recording is no controller whose calibration is kept: name a file with --out.");
@@ -301,11 +300,12 @@ int main(int argc, char** argv) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     path = cabinet::calibration_file(folder, serial);
+    before = cabinet::kept_calibration(folder, serial);
   }
   cabinet::Calibration start = cabinet::nominal_calibration();
   std::error_code unknown;
-  if (std::filesystem::exists(path, unknown)) {
-    auto loaded = cabinet::load_calibration(path);
+  if (!before.empty() && std::filesystem::exists(before, unknown)) {
+    auto loaded = cabinet::load_calibration(before);
     if (!loaded) return fail(kUsage, loaded.error());
     start = std::move(*loaded);
   }

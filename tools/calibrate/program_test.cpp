@@ -159,6 +159,8 @@ TEST(CalibrateProgram, SaysWhatItCannotDoInOneSentence) {
            {"--device", "mouse"},
            {"--device", "file:/nowhere"},
            {"--device", "serial:/dev/null9", "--rods", "9"},
+           {"--device", "serial:/dev/null9", "--rods", "1.5"},
+           {"--device", ""},
            {"--device", "file:" + broken},
            {"--device", "serial:/dev/null9", "--out", "/tmp/" + std::string(300, 'x')},
            {"--device", "serial:/dev/null9", "--out", "/nowhere/c.json"},

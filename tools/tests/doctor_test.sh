@@ -8,6 +8,7 @@ mkdir -p "$work"/dev/input "$work"/sys/class/input/event4/device/capabilities
 expect() { # expect CODE OPTION...
   local code=$1 got=0
   shift
+  [[ " $* " == *" --seconds "* ]] || set -- --seconds 0.2 "$@"
   "$doctor" --dev "$work/dev" --sys "$work/sys" "$@" >"$work/out" 2>"$work/err" || got=$?
   [[ $got == "$code" ]] && return
   echo "space-foosball-doctor $*: exit code $got, not $code" >&2
@@ -19,9 +20,13 @@ grep -q 'do: plug one in' "$work/out"
 expect 2 --seconds never
 grep -q 'explains the options' "$work/err"
 expect 2 --dev "$work/nowhere"
+expect 2 --device ttyACM0
+grep -q '"ttyACM0" names no device: write .*event5; --help' "$work/err"
+expect 1 --device "serial:$work/dev/ttyACM0"
+grep -q 'the controller is not there' "$work/out"
 echo 3 >"$work/sys/class/input/event4/device/capabilities/rel"
 echo 'A mouse' >"$work/sys/class/input/event4/device/name"
-touch "$work/dev/input/event4"
+ln -s /dev/ptmx "$work/dev/input/event4" # a device that says nothing
 expect 0
 grep -q "evdev:$work/dev/input/event4  A mouse" "$work/out"
 expect 0 --json

@@ -150,7 +150,7 @@ std::optional<JournalEntry> JournalReader::read_tick() {
   tick.rods = previous_;
   for (std::size_t i = 0; i < tick.rods.size(); ++i) {
     if (!apply(change.rods[i], tick.rods[i])) {
-      return fail(where + "rod " + std::to_string(i) + " leaves its range or does not change");
+      return fail(where + "rod " + std::to_string(i + 1) + " leaves its range or does not change");
     }
   }
   tick.commands = std::move(change.commands);

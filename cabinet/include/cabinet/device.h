@@ -1,11 +1,14 @@
 // A source that may be plugged in, out and in again, and what a person is to be told of it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "cabinet/rod_input.h"
 
 namespace cabinet {
+
+constexpr std::size_t kMostPacket = 65;  // bytes of one to a device: a HID report and its number
 
 // What the descriptor shows of the device. A person is told something else for each.
 enum class DeviceState : std::uint8_t {

@@ -21,8 +21,6 @@ using HapticEncoder = std::function<std::size_t(const HapticPulse&, std::span<st
 // outlive it.
 class DeviceHaptics final : public HapticSink {
  public:
-  static constexpr std::size_t kMaxPacket = 65;  // bytes; a HID report and its number
-
   DeviceHaptics(DeviceSource& device, HapticEncoder encode)
       : device_(device), encode_(std::move(encode)) {}
   void pulse(const HapticPulse& pulse) override;

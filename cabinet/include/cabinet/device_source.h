@@ -83,8 +83,11 @@ class DeviceSource final : public Device {
 // sentence, and so are a recording that is missing, a path that is no device and one that may not
 // be read. A device that is not there yet is not an error.
 //
+// why_no_device() is the sentence alone, or empty, before there is a calibration.
+//
 // poll() of the source never waits: a device is opened, set up and closed on a thread of its own,
 // and found within two attempts, 200 ms; a recording (64 MiB at most, 6 hours) is read whole here.
+std::string why_no_device(const std::string& address);
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
     const std::array<double, kRods>& slide_limit = {});

@@ -19,6 +19,8 @@
 
 namespace cabinet {
 
+constexpr float kStickDeadZone = 0.12f;  // of a worn stick, of its full way
+
 // What a key does that is let go before the hand is polled: as if held for a person's shortest tap,
 // 30 ms, of the ramp that held keys have [m].
 inline constexpr double kTapSlide = 0.0054;

@@ -14,7 +14,7 @@ namespace {
 // Rods of the whole table, counted from 1 at -x: "1,2,4".
 tl::expected<std::uint8_t, std::string> parse_rods(const std::string& text) {
   unsigned rods = 0;
-  std::istringstream list(text);
+  std::istringstream list(text.empty() ? "," : text);
   for (std::string rod; std::getline(list, rod, ',');) {
     if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {
       return tl::unexpected(
@@ -99,9 +99,11 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   if (const auto good = parse_server(server, options.connection); !good)
     return tl::unexpected(draw::refuse(good.error()));
-  const auto wanted_rods = parse_rods(rods);
-  if (!wanted_rods) return tl::unexpected(draw::refuse(wanted_rods.error()));
-  options.connection.rods = *wanted_rods;
+  if (cli.get_option("--rods")->count() > 0) {
+    const auto wanted_rods = parse_rods(rods);
+    if (!wanted_rods) return tl::unexpected(draw::refuse(wanted_rods.error()));
+    options.connection.rods = *wanted_rods;
+  }
   if (!password_file.empty()) {
     std::ifstream file(password_file);
     std::getline(file, options.connection.password);

@@ -2,12 +2,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "client/settings.h"
+#include "os/user_folder.h"
 
 namespace client {
 namespace {
@@ -35,11 +35,8 @@ bool write_all(const std::string& path, const std::string& text) {
 }  // namespace
 
 std::string settings_path() {
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && config[0] == '/')
-    return std::string(config) + "/space-foosball/client.conf";
-  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
-    return std::string(home) + "/.config/space-foosball/client.conf";
-  return {};
+  const std::string config = os::config_folder();
+  return config.empty() ? "" : config + "/space-foosball/client.conf";
 }
 
 ReadSettings load_settings(const std::string& path) {

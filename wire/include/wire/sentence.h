@@ -60,7 +60,7 @@ namespace wire {
   X(challenge_characters, "the challenge of the day is played by the built-in characters: move yours of the same names away, or start the game without --characters") \
   X(challenge_tuning, "the challenge of the day is played with the default tuning: set all values to their defaults first") \
   X(challenge_keeps_tuning, "the challenge of the day keeps the default tuning: choose another game first") \
-  X(sides_at_a_cabinet, "sides are changed by walking round a cabinet, and seats at windows stay: start the server with --device, or change none") \
+  X(sides_at_a_cabinet, "sides are changed by walking round a cabinet, and seats at windows stay: start the server with a cabinet's --device (no mouse), or change none") \
   X(sides_between_sets, "sides are changed between sets, and here is one: choose 3 sets or more, or change none") \
   X(challenge_undated, "this server does not know the date, and so no challenge of the day") \
   /* votes */ \

@@ -1,0 +1,281 @@
+#include "doctor_judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <numbers>
+
+#include "cabinet/hand.h"
+#include "doctor_find.h"
+
+namespace cabinet {
+namespace {
+
+// A rod that nobody touches moves less: sensors' noise is a count or two, 0.9 degrees each.
+constexpr double kNoiseSlide = 0.5e-3, kNoiseAngle = 3 * std::numbers::pi / 180;
+// A mouse that moves its rod so far is in a hand: some 500 counts. Noise is less.
+constexpr double kHandSlide = 20e-3, kHandAngle = 45 * std::numbers::pi / 180;
+constexpr double kHandStick = 0.5;                       // likewise, of a stick's way
+constexpr double kHidFrames = 900, kSerialFrames = 225;  // a second; 1000 and 250 are sent
+constexpr double kMouseReports = 90;                     // the slowest mice send 125
+constexpr double kLatencyUs = 1'500;                     // a poll each 1 ms leaves 0.5
+constexpr double kOldDays = 180;  // sensors and rods are moved in half a year
+const char* const kBusyCure =
+    "end what keeps the machine busy; the server asks for real-time priority (CAP_SYS_NICE)";
+
+const char* called(const FoundDevice& device) {
+  switch (device.kind) {
+    case DeviceKind::mouse:
+      return "the mouse";
+    case DeviceKind::gamepad:
+      return "the gamepad";
+    case DeviceKind::hid_controller:
+    case DeviceKind::serial_controller:
+      break;
+  }
+  return "the controller";
+}
+
+const char* class_of(const FoundDevice& device) {
+  switch (device.kind) {
+    case DeviceKind::hid_controller:
+      return "HID device";
+    case DeviceKind::serial_controller:
+      return "serial line";
+    case DeviceKind::mouse:
+      return "mouse";
+    case DeviceKind::gamepad:
+      break;
+  }
+  return "gamepad";
+}
+
+Trouble not_readable(const FoundDevice& device) {
+  const std::string what = called(device);
+  const std::string sentence =
+      fmt::format("{} may not be read: {}", what, std::strerror(device.error));
+  switch (device.error) {
+    case EACCES:
+    case EPERM:
+      if (device.kind == DeviceKind::serial_controller)
+        return {device.path, sentence,
+                "join the group of the line (sudo usermod -aG dialout $USER) and log in again"};
+      return {device.path, sentence,
+              "install cabinet/70-space-foosball.rules and plug it in again, or join group input "
+              "and log in again"};
+    case EBUSY:
+      return {device.path, what + " is in use",
+              "end the server, or the other program, that has it"};
+    case ENOENT:
+    case ENOTDIR:
+      if (device.named)
+        return {device.path, what + " is not there",
+                "plug it in, or name it as \"ls /dev/ttyACM* /dev/ttyUSB* /dev/hidraw* "
+                "/dev/input/event*\" has it"};
+      return {device.path, what + " is known to the kernel but has no node",
+              "start udev; in a container pass the device in"};
+    case ENOTTY:
+      return {device.path, std::string("this is no ") + class_of(device),
+              "name one that is; without --device those are listed that are connected"};
+    default:
+      return {device.path, sentence, "plug it in again, into another socket or with another cable"};
+  }
+}
+
+void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  const auto add = [&](std::string what, std::string cure) {
+    troubles.push_back({device.path, std::move(what), std::move(cure)});
+  };
+  const SourceCounters& c = device.counters;
+  const double rate = frames_per_s(device);
+  const double least = device.kind == DeviceKind::hid_controller ? kHidFrames : kSerialFrames;
+  if (rate < least)
+    add(fmt::format("{:.0f} frames a second come, of {:.0f}", rate, least / 0.9),
+        "plug it into the machine itself, not into a hub, and flash the firmware of this version");
+  if (c.lost * 1000 > c.frames)
+    add(fmt::format("{} frames of {} were lost", c.lost, c.frames + c.lost),
+        "take another cable, and another socket than a disk's or a camera's");
+  if (c.bad > 0)
+    add(fmt::format("{} pieces of what came are no frames", c.bad),
+        "take a shorter cable, away from motors and mains; check that the firmware is ours");
+  if (c.line_errors > 0)
+    add(fmt::format("{} errors on the lines between sensors and controller", c.line_errors),
+        "shorten the sensors' wires, twist clock and data with ground, check the pull-ups");
+  if (c.overflows > 0)
+    add(fmt::format("{} reports of a sensor that overflowed", c.overflows),
+        "set the sensors to a coarser resolution (docs/cabinet.md, How fast a hand may be)");
+  if (c.impossible > 0)
+    add(fmt::format("{} motions came that no rod can make", c.impossible),
+        "check the distance of the sensor to its rod, and shade it");
+  if (mean_latency_us(c) > kLatencyUs)
+    add(fmt::format("frames wait {:.1f} ms until they are read", mean_latency_us(c) * 1e-3),
+        kBusyCure);
+}
+
+void judge_rods(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  std::string silent;
+  for (std::size_t rod = 0; rod < device.rods.size(); ++rod) {
+    const RodCheck& check = device.rods[rod];
+    if (check.status != RodStatus::live) {
+      silent += (silent.empty() ? "" : ", ") + std::to_string(rod + 1);
+      continue;
+    }
+    if (check.slide_range <= kNoiseSlide && check.angle_range <= kNoiseAngle) continue;
+    troubles.push_back({device.path,
+                        fmt::format("rod {} moved {:.1f} mm and {:.0f} degrees while it listened",
+                                    rod + 1, 1e3 * check.slide_range, kDegrees * check.angle_range),
+                        "leave the rods alone and try again; if nobody touched it, clean the "
+                        "sensor, check its distance to the rod, and shade it"});
+  }
+  if (!silent.empty())
+    troubles.push_back({device.path, "no sensor answers for rod " + silent,
+                        "check the plug, the supply and the clock and data wires of that sensor"});
+}
+
+void judge_mouse(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  const RodCheck& check = device.rods[0];
+  const bool moved = check.slide_range > kNoiseSlide || check.angle_range > kNoiseAngle;
+  const bool by_hand = check.slide_range > kHandSlide || check.angle_range > kHandAngle;
+  if (moved && !by_hand)
+    troubles.push_back({device.path,
+                        fmt::format("a rod of this mouse moved {:.1f} mm and {:.0f} degrees while "
+                                    "it listened",
+                                    1e3 * check.slide_range, kDegrees * check.angle_range),
+                        "leave it alone and try again; if nobody touched it, clean its sensor and "
+                        "lay it on a matt ground"});
+  if (by_hand && device.reports_per_s > 0 && device.reports_per_s < kMouseReports)
+    troubles.push_back({device.path,
+                        fmt::format("{:.0f} reports a second come while it moves, of 125 or more",
+                                    device.reports_per_s),
+                        "take a mouse with a cable, or bring its receiver nearer, plugged into the "
+                        "machine itself"});
+}
+
+void judge_gamepad(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  const bool by_hand = device.stick_peak > kHandStick;
+  const double off = by_hand ? device.stick_rest : device.stick_peak;
+  if (off > double{kStickDeadZone})
+    troubles.push_back(
+        {device.path,
+         fmt::format("a stick was {:.0f} % off its middle while it listened", 100 * off),
+         fmt::format("let go of it and try again; if nobody touched it, it is worn or "
+                     "wants to be calibrated: {:.0f} % are ignored",
+                     100 * double{kStickDeadZone})});
+}
+
+// Of a mouse and a gamepad.
+void judge_reports(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  const SourceCounters& c = device.counters;
+  if (c.lost > 0)
+    troubles.push_back(
+        {device.path, fmt::format("the kernel dropped its reports {} times", c.lost), kBusyCure});
+  if (mean_latency_us(c) > kLatencyUs)
+    troubles.push_back(
+        {device.path,
+         fmt::format("reports wait {:.1f} ms until they are read", mean_latency_us(c) * 1e-3),
+         kBusyCure});
+}
+
+void judge_input(const FoundDevice& device, std::vector<Trouble>& troubles) {
+  if (device.state != DeviceState::live) {
+    troubles.push_back({device.path, fmt::format("{} went away", called(device)),
+                        "plug it in again; if it happens by itself, change the cable"});
+    return;
+  }
+  judge_reports(device, troubles);
+  if (device.kind == DeviceKind::mouse) judge_mouse(device, troubles);
+  if (device.kind == DeviceKind::gamepad) judge_gamepad(device, troubles);
+}
+
+void judge_controller(const FoundDevice& device, bool another_is_live,
+                      std::vector<Trouble>& troubles) {
+  const bool serial = device.kind == DeviceKind::serial_controller;
+  const bool is_it = !serial || device.named;  // and not some other device behind such a bridge
+  switch (device.state) {
+    case DeviceState::live:
+      judge_frames(device, troubles);
+      judge_rods(device, troubles);
+      return;
+    case DeviceState::missing:
+    case DeviceState::refused:
+      if (!is_it && another_is_live && device.counters.frames == 0) return;
+      troubles.push_back({device.path,
+                          device.counters.frames > 0 ? "the controller went away"
+                                                     : "it hung up before it sent a frame",
+                          "plug it in again; if it happens by itself, change the cable"});
+      return;
+    default:
+      break;
+  }
+  if (!is_it && another_is_live) return;
+  const bool silent = device.state == DeviceState::silent;
+  troubles.push_back(
+      {device.path, silent ? "it is there but sends nothing" : "it sends what is no frame",
+       serial ? "flash our firmware, if it is the controller; any other device may stay as it is"
+              : "plug it in again, and flash the firmware of this version"});
+}
+
+void judge_calibration(const CalibrationCheck& check, std::vector<Trouble>& troubles) {
+  if (!check.error.empty()) {
+    troubles.push_back({check.path, check.error, "name another file, or calibrate again"});
+  } else if (check.days > kOldDays) {
+    troubles.push_back({check.path, fmt::format("the calibration is {:.0f} days old", check.days),
+                        "calibrate again: rods and sensors do not stay where they were"});
+  } else if (check.days < -1) {
+    troubles.push_back({check.path, "the calibration is of a day to come",
+                        "set this machine's clock, or calibrate again"});
+  }
+}
+
+// Each that surely is a controller has its own, or the one that was named.
+void judge_calibrations(const Diagnosis& diagnosis, std::vector<Trouble>& troubles) {
+  for (const CalibrationCheck& check : diagnosis.calibrations) judge_calibration(check, troubles);
+  for (const FoundDevice& device : diagnosis.devices) {
+    if (!is_controller(device) || !device.listens) continue;
+    if (!device.calibration_conflict.empty())
+      troubles.push_back({device.path, device.calibration_conflict,
+                          "run space-foosball calibrate --device " + address_of(device) +
+                              ", or name its own file by --calibration"});
+    if (device.state == DeviceState::live && !device.calibrated)
+      troubles.push_back(
+          {device.path,
+           "there is no calibration, so that every rod is off by its sensor's mounting",
+           "run space-foosball calibrate --device " + address_of(device) +
+               ", or name a file by --calibration"});
+  }
+}
+
+void judge_none(const Diagnosis& diagnosis, std::vector<Trouble>& troubles) {
+  if (std::ranges::any_of(diagnosis.devices, &FoundDevice::listens)) return;
+  const bool lines = !diagnosis.devices.empty();
+  troubles.push_back({"", "no controller, mouse or gamepad is connected",
+                      std::string("plug one in; in a container pass /dev/input, /dev/hidraw* and "
+                                  "/sys in") +
+                          (lines ? "; if a line above is a controller, name it by --device" : "")});
+}
+
+}  // namespace
+
+std::vector<Trouble> troubles_of(const Diagnosis& diagnosis) {
+  std::vector<Trouble> troubles;
+  const bool live = std::ranges::any_of(diagnosis.devices, [](const FoundDevice& device) {
+    return is_controller(device) && device.state == DeviceState::live;
+  });
+  for (const FoundDevice& device : diagnosis.devices) {
+    if (!device.listens) continue;
+    if (device.error != 0) {
+      troubles.push_back(not_readable(device));
+    } else if (is_controller(device)) {
+      judge_controller(device, live, troubles);
+    } else {
+      judge_input(device, troubles);
+    }
+  }
+  judge_none(diagnosis, troubles);
+  judge_calibrations(diagnosis, troubles);
+  return troubles;
+}
+
+}  // namespace cabinet

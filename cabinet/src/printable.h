@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace cabinet {
+
+// A device's own words are a stranger's: no control characters reach a terminal.
+inline std::string printable(const std::string& text) {
+  std::string clean;
+  for (const char c : text) clean += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  return clean;
+}
+
+}  // namespace cabinet
