@@ -323,8 +323,8 @@ tl::expected<RodFit, std::string> fit_rod(const CalibrationRun& run, const Mount
   fit.angle_rms = std::sqrt(squares[1] / std::max(counted[1], 1));
   if (const auto wrong = check_residuals(fit)) return refuse(*wrong);
   if (const auto wrong = check_deviations(fit, scale)) return refuse(*wrong);
-  fit_index(run, priors, fit);
   if (const auto wrong = check_rod(fit.calibration)) return refuse(*wrong);
+  fit_index(run, priors, fit);
   return fit;
 }
 

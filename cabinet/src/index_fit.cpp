@@ -14,6 +14,7 @@
 #include <cmath>
 #include <vector>
 
+#include "calibration_check.h"
 #include "index_pass.h"
 
 namespace cabinet {
@@ -22,7 +23,7 @@ namespace {
 using Kind = CalibrationMark::Kind;
 
 constexpr double kLag = 0.03, kDelay = 0.010;  // [rad], [s] deviations, known beforehand
-constexpr double kDrift = 0.002;               // [rad / rad], likewise
+constexpr double kScaleDrift = 0.002;          // [rad / rad], likewise
 constexpr double kNoise = 0.02;                // [rad] of a pass in a fast turn, at first
 constexpr double kLeastNoise = 0.002;          // [rad]
 constexpr double kFarOff = 2.5;                // of the deviations of all
@@ -64,9 +65,9 @@ Seen see(const CalibrationRun& run, const RodCalibration& calibration) {
 
 struct Fit {
   double mark, zero, drift, lag, delay;
-  double deviation;             // [rad] of mark - zero
-  double width;                 // [rad]
-  double spread, width_spread;  // [rad] rms
+  double deviation = 0;                 // [rad] of mark - zero
+  double width = 0;                     // [rad]
+  double spread = 0, width_spread = 0;  // [rad] rms
 };
 
 double wrong(const IndexPass& pass, const Fit& fit) {
@@ -75,55 +76,51 @@ double wrong(const IndexPass& pass, const Fit& fit) {
   return std::remainder(pass.middle - middle, 2 * M_PI);
 }
 
-Fit solve(const Seen& seen, double noise, double feet_error) {
+// Normal equations in mark, zero, drift, lag and delay.
+struct Equations {
   using Row = Eigen::Matrix<double, 1, 5>;
-  std::vector<Row> rows;
-  std::vector<double> right;
-  const auto add = [&](const Row& row, double value, double deviation) {
-    rows.push_back(row / deviation);
-    right.push_back(value / deviation);
-  };
-  const double about = seen.passes.front().middle;
-  Fit fit{};
-  for (const IndexPass& pass : seen.passes) {
-    Row row;
-    row << 1, 0, pass.middle, std::copysign(1.0, pass.turned), pass.turned / pass.seconds;
-    add(row, std::remainder(pass.middle - about, 2 * M_PI), noise);
-    fit.width += std::abs(pass.turned) / static_cast<double>(seen.passes.size());
-  }
-  for (const FeetDown& feet : seen.feet) {
-    Row row;
-    row << 0, 1, feet.angle, 0, 0;
-    add(row, feet.angle - feet.known, feet_error);
-  }
-  const double known[] = {kDrift, kLag, kDelay};
-  for (int i = 0; i < 3; ++i) {
-    Row row = Row::Zero();
-    row[2 + i] = 1;
-    add(row, 0, known[i]);
-  }
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
-  Eigen::Matrix<double, 5, 1> b = Eigen::Matrix<double, 5, 1>::Zero();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    normal += rows[i].transpose() * rows[i];
-    b += rows[i].transpose() * right[i];
+  Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
+
+  void add(const Row& row, double value, double deviation) {
+    normal += row.transpose() * row / (deviation * deviation);
+    right += row.transpose() * value / (deviation * deviation);
   }
-  const Eigen::Matrix<double, 5, 5> covariance = normal.inverse();
-  const Eigen::Matrix<double, 5, 1> x = covariance * b;
-  fit.mark = about + x[0];
-  fit.zero = x[1];
-  fit.drift = x[2];
-  fit.lag = x[3];
-  fit.delay = x[4];
-  fit.deviation = std::sqrt(covariance(0, 0) + covariance(1, 1) - 2 * covariance(0, 1));
+};
+
+void measure_spread(const std::vector<IndexPass>& passes, Fit& fit) {
+  const auto n = static_cast<double>(passes.size());
+  for (const IndexPass& pass : passes) fit.width += std::abs(pass.turned) / n;
   double squares = 0, width_squares = 0;
-  for (const IndexPass& pass : seen.passes) {
+  for (const IndexPass& pass : passes) {
     squares += std::pow(wrong(pass, fit), 2);
     width_squares += std::pow(std::abs(pass.turned) - fit.width, 2);
   }
-  const auto n = static_cast<double>(seen.passes.size());
   fit.spread = std::sqrt(squares / n);
   fit.width_spread = std::sqrt(width_squares / n);
+}
+
+Fit solve(const Seen& seen, double noise, double feet_error) {
+  Equations equations;
+  const double about = seen.passes.front().middle;
+  for (const IndexPass& pass : seen.passes) {
+    Equations::Row row;
+    row << 1, 0, pass.middle, std::copysign(1.0, pass.turned), pass.turned / pass.seconds;
+    equations.add(row, std::remainder(pass.middle - about, 2 * M_PI), noise);
+  }
+  for (const FeetDown& feet : seen.feet) {
+    Equations::Row row;
+    row << 0, 1, feet.angle, 0, 0;
+    equations.add(row, feet.angle - feet.known, feet_error);
+  }
+  const double known[] = {kScaleDrift, kLag, kDelay};
+  for (int i = 0; i < 3; ++i) equations.add(Equations::Row::Unit(2 + i), 0, known[i]);
+
+  const Eigen::Matrix<double, 5, 5> covariance = equations.normal.inverse();
+  const Eigen::Matrix<double, 5, 1> x = covariance * equations.right;
+  Fit fit{.mark = about + x[0], .zero = x[1], .drift = x[2], .lag = x[3], .delay = x[4]};
+  fit.deviation = std::sqrt(covariance(0, 0) + covariance(1, 1) - 2 * covariance(0, 1));
+  measure_spread(seen.passes, fit);
   return fit;
 }
 
@@ -155,9 +152,11 @@ void fit_index(const CalibrationRun& run, const MountPriors& priors, RodFit& fit
   std::erase_if(seen.passes, [&](const IndexPass& p) { return std::abs(wrong(p, first)) > most; });
   if (!both_ways(seen.passes)) return;
   const Fit mark = solve(seen, std::max(first.spread, kLeastNoise), priors.angle_error);
-  if (mark.spread > kMostSpread || mark.width_spread > kMostSpread) return;
-  fit.calibration.index =
-      IndexMark{std::remainder(mark.mark - mark.zero, 2 * M_PI), mark.width, mark.lag};
+  if (!(mark.spread <= kMostSpread && mark.width_spread <= kMostSpread)) return;
+  RodCalibration marked = fit.calibration;
+  marked.index = IndexMark{std::remainder(mark.mark - mark.zero, 2 * M_PI), mark.width, mark.lag};
+  if (check_rod(marked)) return;
+  fit.calibration = marked;
   // What the rod's eccentricity adds once a turn is known as well as its gain.
   fit.index_deviation = std::hypot(mark.deviation, fit.deviation[6], fit.deviation[7]);
 }

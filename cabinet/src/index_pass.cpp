@@ -10,14 +10,14 @@ namespace {
 
 // A magnet is round: further along the rod its mark is narrower. While the rod moves so far along
 // itself both edges move by less, on a mark of 6 mm.
-constexpr double kStands = 0.5e-3;  // [m]
-constexpr double kReports = 0.010;  // [s] in which the steps of reports are forgotten, to 1/e
+constexpr double kStands = 0.5e-3;      // [m]
+constexpr double kStepSeconds = 0.010;  // [s] in which the steps of reports are forgotten, to 1/e
 
 }  // namespace
 
 std::optional<IndexPass> IndexPasses::add(bool under, const RodMotion& at, double turned,
                                           double seconds) {
-  step_ = std::max(std::abs(turned), step_ * std::exp(-seconds / kReports));
+  step_ = std::max(std::abs(turned), step_ * std::exp(-seconds / kStepSeconds));
   since_entry_ += seconds;
   const bool before = std::exchange(under_, under);
   if (!std::exchange(known_, true) || before == under) return {};
