@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Drifting,
                          testing::Values(Sensor{78.7, 1, 0.5 * kDegree},
                                          Sensor{8, 5, 0.9 * kDegree}));  // a mouse: a count
 
-// Of 30 mounts at most 0.28 mm and 0.55 degrees at 78.7 counts/mm; without mark and stops 2.3 mm
+// Of 30 mounts at most 0.29 mm and 0.55 degrees at 78.7 counts/mm; without mark and stops 2.3 mm
 // and 2.5 degrees rms.
 TEST_P(Drifting, IndexMarkAndStopsLeaveNoneAfterTenMinutesOfPlay) {
   const Sensor sensor = GetParam();
