@@ -9,8 +9,8 @@ namespace cabinet {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-// Of one report at the edges: the angle of each is known to half of it, and the switch is read up to
-// a millisecond late. 9 rad/s at 1000 reports a second.
+// Of one report at the edges: the angle of each is known to half of it, and the switch is read up
+// to a millisecond late. 9 rad/s at 1000 reports a second.
 constexpr double kMostStep = 0.5 * kDegree;
 // A coarse sensor has steps of a count, however slow the rod.
 constexpr double kMostCounts = 1.5;
