@@ -28,7 +28,7 @@ import tempfile
 import termios
 import time
 
-RODS, FRAME_BYTES, REPORT_BYTES, VERSION = 8, 46, 64, 1
+RODS, FRAME_BYTES, REPORT_BYTES, VERSION = 8, 46, 64, 2
 
 
 def crc16(data):
@@ -40,20 +40,20 @@ def crc16(data):
     return crc
 
 
-def encode(sequence, time_us, counts, present=0xFF, overflow=0, quality=0):
-    body = struct.pack('<BBHI16H4B', VERSION, 0, sequence & 0xFFFF, time_us & 0xFFFFFFFF,
-                       *(c & 0xFFFF for pair in counts for c in pair), present, overflow, quality, 0)
+def encode(sequence, time_us, counts, present=0xFF, overflow=0, quality=0, index=0, version=VERSION):
+    body = struct.pack('<BBHI16H4B', version, 0, sequence & 0xFFFF, time_us & 0xFFFFFFFF,
+                       *(c & 0xFFFF for pair in counts for c in pair), present, overflow, quality, index)
     return body + struct.pack('<H', crc16(body))
 
 
 def decode(data):
-    """None unless it is a frame: sequence, counts, present, overflow, quality."""
-    if len(data) != FRAME_BYTES or data[0] != VERSION or data[43] != 0:
+    """None unless it is a frame: sequence, counts, present, overflow, quality, index. Version 1 has no index."""
+    if len(data) != FRAME_BYTES or data[0] not in (1, VERSION) or data[0] == 1 and data[43] != 0:
         return None
     if struct.unpack_from('<H', data, 44)[0] != crc16(data[:44]):
         return None
     words = struct.unpack_from('<16H', data, 8)
-    return struct.unpack_from('<H', data, 2)[0], list(zip(words[::2], words[1::2])), data[40], data[41], data[42]
+    return struct.unpack_from('<H', data, 2)[0], list(zip(words[::2], words[1::2])), *data[40:44]
 
 
 def cobs_encode(data):
@@ -79,7 +79,7 @@ class Counter:
     def __init__(self):
         self.sums = [[0, 0] for _ in range(RODS)]
         self.frames = self.lost = self.bad = self.errors = 0
-        self.present = self.overflow = 0
+        self.present = self.overflow = self.index = 0
         self.last = None
 
     def take(self, data):
@@ -87,7 +87,7 @@ class Counter:
         if frame is None:
             self.bad += 1
             return
-        sequence, counts, self.present, overflow, quality = frame
+        sequence, counts, self.present, overflow, quality, self.index = frame
         self.overflow |= overflow
         self.errors += quality
         self.frames += 1
@@ -165,7 +165,8 @@ def table(counter, rate):
     for rod in range(RODS):
         bit = 1 << rod
         lines.append(f'{rod + 1:3}  {"yes" if counter.present & bit else "-":7} {counter.sums[rod][0]:9} '
-                     f'{counter.sums[rod][1]:9}{"  overflow" if counter.overflow & bit else ""}')
+                     f'{counter.sums[rod][1]:9}{"  mark" if counter.index & bit else ""}'
+                     f'{"  overflow" if counter.overflow & bit else ""}')
     return lines
 
 
@@ -365,6 +366,9 @@ def self_test():
     report = frame + bytes(REPORT_BYTES - FRAME_BYTES)
     assert list(Frames(True).cut(report * 2)) == [frame, frame]
     assert decode(frame[:-1] + bytes([frame[-1] ^ 1])) is None
+    still = [(0, 0)] * RODS
+    assert decode(encode(0, 0, still, index=4))[5] == 4 and decode(encode(0, 0, still, version=1)) is not None
+    assert decode(encode(0, 0, still, index=4, version=1)) is None and decode(encode(0, 0, still, version=3)) is None
     counter, frames = Counter(), Frames(False)
     stream = b'xx\0' + simulated(1.5)
     for i in range(0, len(stream), 7):

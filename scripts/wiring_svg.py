@@ -110,12 +110,33 @@ def ps2_wiring(board):
     return svg.text()
 
 
+def marks_wiring(svg, lines, x, y):
+    """The index marks' expander, on the lines of the multiplexer: net -> where its line is and may be joined."""
+    for i, (net, (at_x, at_y)) in enumerate(lines.items()):
+        at = y + 66 + 22 * i
+        svg.dot(at_x, at_y, COLOURS[net])
+        svg.line([(at_x, at_y), (at_x, at), (x, at)], COLOURS[net])
+    svg.box(x, y, 230, 120)
+    svg.words(x + 115, y + 22, 'PCA8574, address 0x20', 14, 'middle', bold=True)
+    svg.words(x + 115, y + 42, 'VDD 3.3 V, GND; A0 to A2 to ground', 11, 'middle')
+    for i, (net, _) in enumerate(lines.items()):
+        svg.words(x + 8, y + 71 + 22 * i, net, 13, colour=COLOURS[net])
+    svg.words(x + 222, y + 71, 'P0 to P7', 13, 'end')
+    svg.line([(x + 230, y + 66), (x + 300, y + 66)], COLOURS['data'], 4)
+    svg.box(x + 300, y, 190, 120)
+    svg.words(x + 395, y + 22, 'eight Hall switches', 14, 'middle', bold=True)
+    svg.words(x + 395, y + 42, 'A3144: VCC 5 V, GND', 12, 'middle')
+    svg.words(x + 308, y + 71, 'OUT of rod i at Pi', 13)
+    svg.words(x, y + 142, 'Index marks, if wanted. OUT is an open collector: 10 kOhm', 13)
+    svg.words(x, y + 160, 'from each of the eight lines to 3.3 V, none to 5 V.', 13)
+
+
 def spi_wiring(board):
-    """Eight SPI sensors, and a motor a rod behind an I2C multiplexer, at one Pico."""
+    """Eight SPI sensors, a motor a rod behind an I2C multiplexer and index marks beside it, at one Pico."""
     top, pitch, gap = 130, 126, 17
     low = top + RODS * pitch
     spi, i2c = board['spi'], board['i2c']
-    svg = Svg(1500, low + 230, f'Eight SPI sensors and eight motors at a {board["name"]}')
+    svg = Svg(1500, low + 410, f'Eight SPI sensors and eight motors at a {board["name"]}')
     svg.words(20, 34, f'Eight SPI sensors and eight motors at a {board["name"]}', 20, bold=True)
     svg.words(20, 60, 'Sensor: PMW3360 class on a breakout board with a regulator of its own; VIN is 5 V or 3.3 V, as '
               'the board asks. A dot joins; lines that cross do not.', 14)
@@ -173,7 +194,7 @@ def spi_wiring(board):
         svg.line([(board_x + board_w, at), (mux_x, at)], COLOURS[net])
         svg.words(board_x + board_w - 8, at + 5, f'pin {pico_pin(number)}  GP{number}', 14, 'end', COLOURS[net])
         svg.words(mux_x + 8, at + 5, net, 13, colour=COLOURS[net])
-        x = 910 + 40 * i
+        x = 885 + 40 * i
         svg.resistor(x, at - 42, at)
         svg.dot(x, at, COLOURS[net])
         svg.words(x + 8, at - 30, '3.3 V', 11, colour=COLOURS['+5 V'])
@@ -204,12 +225,15 @@ def spi_wiring(board):
     number = board['motors_enable']
     svg.words(board_x + board_w - 8, en_y + 5, f'pin {pico_pin(number)}  GP{number}', 14, 'end', COLOURS['EN'])
     svg.line([(board_x + board_w, en_y), (en_x, en_y), (en_x, top + 80)], COLOURS['EN'])
-    svg.words(900, en_y - 6, 'EN of all drivers', 12, colour=COLOURS['EN'])
+    svg.words(1076, en_y - 6, 'EN of all drivers', 12, colour=COLOURS['EN'])
     for rod in range(RODS):
         y = top + rod * pitch + 80
         svg.line([(en_x, y), (drive_x, y)], COLOURS['EN'])
         svg.dot(en_x, y, COLOURS['EN'])
         svg.words(drive_x + 6, y + 5, 'EN', 12, colour=COLOURS['EN'])
+    # Index marks, on the multiplexer's lines, down between the resistors and the multiplexer.
+    marks_wiring(svg, {net: (x, top + 2 * pitch + 24 + 54 * i) for i, (net, x) in
+                       enumerate([('SDA', 976), ('SCL', 988)])}, 1000, low + 230)
     # Button and PC.
     at = top + 5 * pitch + 40
     svg.line([(board_x + board_w, at), (900, at)], COLOURS['button'])

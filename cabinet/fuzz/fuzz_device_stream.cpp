@@ -13,7 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FrameReader reader;
   reader.reset(static_cast<Packing>(data[0] % 3));
   const std::size_t piece = 1 + data[0] / 3;
-  RodTracker tracker(nominal_calibration(), {});
+  Calibration calibration = nominal_calibration();
+  for (RodCalibration& rod : calibration.rods) rod.index = IndexMark{0.5, 0.4, 0.01};
+  RodTracker tracker(calibration, {});
   SourceCounters counters;
   wire::DeviceFrame frame;
   std::int64_t now_us = 0;
@@ -24,7 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::memcpy(room.data(), data + at, bytes);
     at += bytes;
     reader.filled(bytes, counters);
-    while (reader.next(frame, counters)) tracker.accept(frame, now_us += 1'000, counters);
+    while (reader.next(frame, counters)) {
+      now_us += 1'000;
+      tracker.accept(frame, now_us, now_us, counters);
+    }
   }
   tracker.hold();
   for (const RodInput& rod : tracker.rods()) {

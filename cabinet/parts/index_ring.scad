@@ -1,5 +1,6 @@
-// Index mark of a rod: a narrow clamp ring with a pointer, for "feet straight down", and a pocket for
-// a disc magnet of 6 x 3 mm, for a Hall sensor on the bearing.
+// A narrow clamp ring with a pointer, for "feet straight down", and a pocket for a disc magnet of 6 x 3 mm.
+// It is outside the wall, where a switch would be in the hands' way: the index mark that the program reads
+// is the magnet of the inner stop collar.
 include <dimensions.scad>
 
 ring_width = 10;     // along the rod [mm]

@@ -1,5 +1,6 @@
 // Stop at a rod's end: clamps the rod by one M3 screw and carries a rubber ring that meets the bearing.
-// It stops the rod, and is where the program's rod stops: set it by the table of travels.
+// It stops the rod, and is where the program's rod stops: set it by the table of travels. The pocket takes
+// a disc magnet, the index mark of the inner collar: its switch stands on the rail.
 include <dimensions.scad>
 
 ring_thickness = 3;  // of the rubber ring, over its seat [mm]
@@ -11,6 +12,8 @@ module stop_collar() {
       along_x(collar_diameter - 2 * ring_thickness, collar_width);
     }
     along_x(rod_diameter + 0.15, collar_width + 2, -1);
+    translate([(collar_width - bumper_width) / 2, 0, collar_diameter / 2 - magnet_depth])
+      cylinder(d = magnet_diameter, h = magnet_depth + 1);
     translate([-1, -clamp_slit / 2, -collar_diameter]) cube([collar_width + 2, clamp_slit, collar_diameter]);
     translate([(collar_width - bumper_width) / 2, 0, -rod_diameter / 2 - 4.5]) rotate([90, 0, 0]) {
       cylinder(d = screw, h = 60, center = true);

@@ -34,7 +34,9 @@ constexpr double kLeastSine = 0.01;
 // Of an eccentric rod. Half is a rod that comes a third closer and goes as far away: it would
 // grind.
 constexpr double kMostGain = 0.5;
-constexpr double kMostDeadBand = 4000;  // [counts / s] 50 mm/s at 78.7 counts/mm
+// A magnet of 6 mm on a collar of 34 mm is on for a fifteenth of a turn.
+constexpr double kLeastMark = 0.01, kMostMark = 1.6;  // [rad] wide
+constexpr double kMostDeadBand = 4000;                // [counts / s] 50 mm/s at 78.7 counts/mm
 // Counts that are further apart belong to two motions, the second of which has just begun.
 constexpr double kLongestMotion = 0.05;  // [s] ten reports of a PS/2 mouse
 
@@ -47,6 +49,9 @@ const char* const kAngleKey = "angle_rad_per_count";
 const char* const kSlideGainKey = "slide_gain";
 const char* const kSpinGainKey = "spin_gain";
 const char* const kDeadBandKey = "dead_band_counts_per_s";
+const char* const kIndexAngleKey = "index_angle_rad";
+const char* const kIndexWidthKey = "index_width_rad";
+const char* const kIndexLagKey = "index_lag_rad";
 
 std::string millimetres(double metres) {
   std::array<char, 32> text{};
@@ -82,6 +87,13 @@ Failure check_rod(const RodCalibration& rod) {
   }
   if (!(rod.dead_band >= 0 && rod.dead_band <= kMostDeadBand)) {
     return "has a dead band out of 0 to 4000 counts a second; calibrate it again";
+  }
+  if (rod.index &&
+      !(std::abs(rod.index->angle) <= 2 * M_PI && rod.index->width >= kLeastMark &&
+        rod.index->width <= kMostMark && std::abs(rod.index->lag) <= rod.index->width)) {
+    return "has an index mark that no magnet has: its middle within a turn, 0.01 to 1.6 radians "
+           "wide "
+           "and lagging by no more than that; calibrate it again, or leave the mark out";
   }
   return {};
 }
@@ -125,6 +137,27 @@ Failure read_corrections(const json& rod, RodCalibration& calibration) {
   return {};
 }
 
+Failure read_number(const json& rod, const char* key, double& number) {
+  const auto found = rod.find(key);
+  if (found == rod.end() || !found->is_number()) {
+    return std::string("has no number \"") + key +
+           "\", which its index mark needs; calibrate it again, or leave the mark out";
+  }
+  number = found->get<double>();
+  return {};
+}
+
+// Left out, the rod has none.
+Failure read_index(const json& rod, RodCalibration& calibration) {
+  if (!rod.contains(kIndexAngleKey)) return {};
+  IndexMark mark{};
+  Failure wrong = read_number(rod, kIndexAngleKey, mark.angle);
+  if (!wrong) wrong = read_number(rod, kIndexWidthKey, mark.width);
+  if (!wrong && rod.contains(kIndexLagKey)) wrong = read_number(rod, kIndexLagKey, mark.lag);
+  calibration.index = mark;
+  return wrong;
+}
+
 // Left out, it stays empty.
 Failure read_word(const json& file, const char* key, std::string& word) {
   const auto found = file.find(key);
@@ -163,6 +196,7 @@ Failure read_json(const json& file, Calibration& calibration) {
     if (!wrong) wrong = read_row(rod, kSlideKey, calibration.rods[i].m[0]);
     if (!wrong) wrong = read_row(rod, kAngleKey, calibration.rods[i].m[1]);
     if (!wrong && *version > 1) wrong = read_corrections(rod, calibration.rods[i]);
+    if (!wrong) wrong = read_index(rod, calibration.rods[i]);
     if (wrong) return "(rod " + std::to_string(i + 1) + ") " + *wrong;
   }
   return check(calibration);
@@ -294,6 +328,11 @@ tl::expected<void, std::string> save_calibration(const Calibration& calibration,
                                 {kSlideGainKey, {rod.slide_gain[0], rod.slide_gain[1]}},
                                 {kSpinGainKey, {rod.spin_gain[0], rod.spin_gain[1]}},
                                 {kDeadBandKey, rod.dead_band}});
+    if (!rod.index) continue;
+    json& written = file["rods"].back();
+    written[kIndexAngleKey] = rod.index->angle;
+    written[kIndexWidthKey] = rod.index->width;
+    written[kIndexLagKey] = rod.index->lag;
   }
   const std::string beside = path + ".new";
   {

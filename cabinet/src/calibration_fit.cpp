@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "calibration_check.h"
+#include "index_fit.h"
 
 namespace cabinet {
 namespace {
@@ -323,6 +324,7 @@ tl::expected<RodFit, std::string> fit_rod(const CalibrationRun& run, const Mount
   if (const auto wrong = check_residuals(fit)) return refuse(*wrong);
   if (const auto wrong = check_deviations(fit, scale)) return refuse(*wrong);
   if (const auto wrong = check_rod(fit.calibration)) return refuse(*wrong);
+  fit_index(run, priors, fit);
   return fit;
 }
 

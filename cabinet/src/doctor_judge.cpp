@@ -109,6 +109,14 @@ void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
   if (c.impossible > 0)
     add(fmt::format("{} motions came that no rod can make", c.impossible),
         "check the distance of the sensor to its rod, and shade it");
+  for (std::size_t rod = 0; rod < c.index_disagreements.size(); ++rod) {
+    if (c.index_disagreements[rod] == 0) continue;
+    add(fmt::format(
+            "the index mark of rod {} disagrees: it passed {} times more than a quarter turn "
+            "from where the counts have it",
+            rod + 1, c.index_disagreements[rod]),
+        "see that its magnet, collar and switch sit firmly, and calibrate that rod again");
+  }
   if (mean_latency_us(c) > kLatencyUs)
     add(fmt::format("frames wait {:.1f} ms until they are read", mean_latency_us(c) * 1e-3),
         kBusyCure);

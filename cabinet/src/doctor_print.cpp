@@ -127,10 +127,12 @@ nlohmann::json json_of(const FoundDevice& device) {
   out["overflows"] = c.overflows;
   out["impossible"] = c.impossible;
   out["rods"] = nlohmann::json::array();
-  for (const RodCheck& rod : device.rods) {
+  for (std::size_t i = 0; i < device.rods.size(); ++i) {
+    const RodCheck& rod = device.rods[i];
     out["rods"].push_back({{"status", name_of(rod.status)},
                            {"rest_slide_m", rod.slide_range},
-                           {"rest_angle_rad", rod.angle_range}});
+                           {"rest_angle_rad", rod.angle_range},
+                           {"index_disagreements", c.index_disagreements[i]}});
   }
   return out;
 }

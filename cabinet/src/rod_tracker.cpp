@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -53,15 +54,14 @@ int increment(std::uint16_t from, std::uint16_t to) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
 }
 
-template <std::size_t... I>
-std::array<StateFilter, kRods> make_filters(const Calibration& calibration,
-                                            std::index_sequence<I...>) {
-  return {StateFilter(count_of(calibration.rods[I]))...};
+template <class Part, class Of, std::size_t... I>
+std::array<Part, kRods> of_each(const Calibration& calibration, const Of& of,
+                                std::index_sequence<I...>) {
+  return {Part(of(calibration.rods[I]))...};
 }
-template <std::size_t... I>
-std::array<RodIntegrator, kRods> make_integrators(const Calibration& calibration,
-                                                  std::index_sequence<I...>) {
-  return {RodIntegrator(calibration.rods[I])...};
+template <class Part, class Of>
+std::array<Part, kRods> of_each(const Calibration& calibration, const Of& of) {
+  return of_each<Part>(calibration, of, std::make_index_sequence<kRods>());
 }
 
 }  // namespace
@@ -69,8 +69,9 @@ std::array<RodIntegrator, kRods> make_integrators(const Calibration& calibration
 RodTracker::RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit)
     : slide_limit_(slide_limit),
       longest_gap_us_(longest_gap_us(calibration)),
-      integrators_(make_integrators(calibration, std::make_index_sequence<kRods>())),
-      filters_(make_filters(calibration, std::make_index_sequence<kRods>())) {}
+      integrators_(of_each<RodIntegrator>(calibration, std::identity())),
+      filters_(of_each<StateFilter>(calibration, count_of)),
+      index_(of_each<IndexReference>(calibration, std::identity())) {}
 
 bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const {
   const std::int32_t elapsed = elapsed_us(last, frame);
@@ -171,8 +172,10 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
     based_[rod] = false;
     return;
   }
-  const RodMotion moved = based_[rod] ? motion(rod, frame, counters) : RodMotion{0, 0};
-  based_[rod] = true;
+  const bool follows = std::exchange(based_[rod], true);
+  const RodMotion moved = follows ? motion(rod, frame, counters) : RodMotion{0, 0};
+  const double seconds = follows ? elapsed_us(last_, frame) * 1e-6 : 0;
+  if (!follows) index_[rod].lose();
 
   filters_[rod].update(moved.slide, moved.angle, clock_us_);
   RodMotion& measured = measured_[rod];
@@ -181,6 +184,10 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
     measured.slide = std::clamp(measured.slide, -slide_limit_[rod], slide_limit_[rod]);
   }
   measured.angle += moved.angle;
+  const bool under = (frame.index >> rod & 1) != 0;
+  measured.angle += index_[rod].frame(under, measured, moved.angle, seconds);
+  counters.index_disagreements[rod] = index_[rod].disagreements();
+  input.angle_known = index_[rod].known();
   input.time_us = now_us;
   input.status = RodStatus::live;
 }

@@ -10,6 +10,7 @@
 #include "cabinet/calibration.h"
 #include "cabinet/rod_input.h"
 #include "clock_map.h"
+#include "index_reference.h"
 #include "state_filter.h"
 #include "wire/device_frame.h"
 
@@ -18,7 +19,7 @@ namespace cabinet {
 class RodTracker {
  public:
   // slide_limit: |slide| never passes it [m]; 0 means no limit. A handle pushed to its end stop is
-  // thereby brought back to zero error.
+  // thereby brought back to zero error, as a rod turned past its index mark is in its angle.
   RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit);
 
   // False: stale, counted and dropped. arrived_us: when the frame came, as far as is known; at
@@ -52,6 +53,7 @@ class RodTracker {
   RodInputs rods_{};
   RodCounts counts_{};
   std::array<StateFilter, kRods> filters_;
+  std::array<IndexReference, kRods> index_;
   ClockMap clock_;
   wire::DeviceFrame last_{};
   bool have_last_ = false;

@@ -71,10 +71,11 @@ void SourceMux::follow(int rod, double seconds) {
   const Entry& entry = sources_[slot.driver];
   const RodInput& in = entry.source->rods()[rod];
   double slide_rate = in.slide_rate, angle_rate = in.angle_rate;
-  if (entry.origin == Origin::absolute && in.status == RodStatus::live) {
-    const double share = 1 - std::exp(-seconds / kFadeSeconds);
+  const bool live = in.status == RodStatus::live, absolute = entry.origin == Origin::absolute;
+  const double share = 1 - std::exp(-seconds / kFadeSeconds);
+  if (live && absolute) slide_rate += fade(slot.slide_offset, 0, share, seconds);
+  if (live && (absolute || in.angle_known)) {
     const double turns = kTurn * std::round(slot.angle_offset / kTurn);
-    slide_rate += fade(slot.slide_offset, 0, share, seconds);
     angle_rate += fade(slot.angle_offset, turns, share, seconds);
   }
 
@@ -94,7 +95,8 @@ void SourceMux::follow(int rod, double seconds) {
          .time_us = in.time_us,
          .status = in.status,
          .slide_ahead = in.slide_ahead,
-         .angle_ahead = in.angle_ahead};
+         .angle_ahead = in.angle_ahead,
+         .angle_known = in.angle_known};
 }
 
 void SourceMux::poll(std::int64_t now_us) {

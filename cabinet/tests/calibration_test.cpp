@@ -110,6 +110,22 @@ TEST(Calibration, AFileOfBeforeIsRead) {
   EXPECT_EQ(complaint(corrected(R"("slide_gain": [0.03, 0.01])")), "");  // the rest is zero
 }
 
+TEST(Calibration, AnIndexMarkIsKeptAndMayBeLeftOut) {
+  const auto marked = parse_calibration(
+      corrected(R"("index_angle_rad": -2.5, "index_width_rad": 0.4, "index_lag_rad": 0.01)"), "c");
+  ASSERT_TRUE(marked) << marked.error();
+  ASSERT_TRUE(marked->rods[5].index);
+  EXPECT_FALSE(marked->rods[4].index);
+  const Folder folder;
+  ASSERT_TRUE(save_calibration(*marked, folder.file()));
+  const auto read = load_calibration(folder.file());
+  ASSERT_TRUE(read && read->rods[5].index) << read.error();
+  EXPECT_EQ(read->rods[5].index->angle, -2.5);
+  EXPECT_EQ(read->rods[5].index->width, 0.4);
+  EXPECT_EQ(read->rods[5].index->lag, 0.01);
+  EXPECT_FALSE(read->rods[4].index);
+}
+
 struct BadFile {
   const char* what;
   std::string json;
@@ -151,6 +167,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "(rod 6) has a \"dead_band_counts_per_s\" that is no number"},
         BadFile{"DeadBandIsNegative", corrected(R"("dead_band_counts_per_s": -1)"),
                 "(rod 6) has a dead band out of 0 to 4000"},
+        BadFile{"MarkWithoutWidth", corrected(R"("index_angle_rad": 1)"),
+                "(rod 6) has no number \"index_width_rad\""},
+        BadFile{"MarkIsWord", corrected(R"("index_angle_rad": "1", "index_width_rad": 0.4)"),
+                "(rod 6) has no number \"index_angle_rad\""},
+        BadFile{"MarkIsTooWide", corrected(R"("index_angle_rad": 1, "index_width_rad": 3)"),
+                "(rod 6) has an index mark that no magnet has"},
+        BadFile{"MarkLagsTooFar",
+                corrected(R"("index_angle_rad": 1, "index_width_rad": 0.4, "index_lag_rad": -0.5)"),
+                "(rod 6) has an index mark that no magnet has"},
         BadFile{"NoRods", R"({"version": 1})", "has 0 rods instead of 8"},
         BadFile{"SevenRods", file_json(kGoodRod, 7), "has 7 rods instead of 8"},
         BadFile{"NineRods", file_json(kGoodRod, 9), "has 9 rods instead of 8"},

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -292,6 +294,35 @@ TEST_F(Doctor, MotionsThatNoRodCanMakeAreSaid) {
   plug_serial();
   before_frame = [this] { device.slide[2] += device.sequence == 60 ? 20'000 : 0; };
   expect_trouble("1 motions came that no rod can make", "distance of the sensor");
+}
+
+// Somebody turns the rod to and fro while it listens, past a mark that comes a third of a turn
+// later the second time: its collar has slipped.
+TEST_F(Doctor, AnIndexMarkThatDisagreesIsSaid) {
+  plug_serial();
+  Calibration calibration = nominal_calibration();
+  calibration.rods[2].index = IndexMark{0, 0.4, 0};
+  ASSERT_TRUE(save_calibration(calibration, options.calibration).has_value());
+  options.seconds = 1.5;
+  int ms = 0;
+  const auto counts = [](double angle) { return std::lround(angle / 0.015625); };
+  change = [&](wire::DeviceFrame& frame) {
+    const double angle = 0.005 * (ms < 600 ? ms - 300 : 900 - ms);
+    device.spin[2] = counts(angle);
+    const double mark = ms < 600 ? 0 : -2;
+    frame.spin[2] = static_cast<std::uint16_t>(device.spin[2]);
+    frame.index = std::abs(angle - mark) < 0.2 ? 4 : 0;
+    ms = std::min(ms + 1, 1400);
+  };
+  const Diagnosis diagnosis = examine(options);
+  const auto said = std::ranges::find_if(diagnosis.troubles, [](const Trouble& trouble) {
+    return trouble.what.find("the index mark of rod 3 disagrees") != std::string::npos;
+  });
+  ASSERT_NE(said, diagnosis.troubles.end()) << diagnosis_text(diagnosis);
+  EXPECT_NE(said->cure.find("calibrate that rod again"), std::string::npos);
+  const auto json = nlohmann::json::parse(diagnosis_json(diagnosis));
+  EXPECT_EQ(json["devices"][0]["rods"][2]["index_disagreements"], 1);
+  EXPECT_EQ(json["devices"][0]["rods"][1]["index_disagreements"], 0);
 }
 
 TEST_F(Doctor, ARodThatMovesByItselfIsSaid) {

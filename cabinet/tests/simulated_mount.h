@@ -24,19 +24,30 @@ struct Mount {
   double optical_distance = 0.005;  // [m] of the lens from the surface; magnification is inverse
   double dead_band = 0;             // [counts / s]
   double noise = 0;                 // relative, of each report
+  double loss = 0;                  // probability of a report to be lost
+  int report = 5;                   // [ms] between two of them
+
+  // The index mark: a magnet of the angle's width while the rod is at its place, narrower beside
+  // it, and none further away than the reach. Width 0: none.
+  struct Mark {
+    double angle = 0, width = 0;     // [rad]
+    double hysteresis = 0;           // [rad] by which its switch goes off later than it goes on
+    double slide = 0, reach = 4e-3;  // [m]
+  };
+  Mark mark{};
 };
 
 // The truth, and what the sensor says of it.
 class SimulatedRod {
  public:
   static constexpr double kStep = 1e-3;  // [s]
-  static constexpr int kReport = 5;      // steps: 200 reports a second
 
   SimulatedRod(const Mount& mount, std::uint32_t seed) : mount_(mount), random_(seed) {
     for (double& part : left_) part = between(0, 1);
   }
 
   double slide = 0, angle = 0;
+  bool under = false;  // its switch is on
   std::vector<cabinet::CountIncrement> increments;
 
   void step(double to_slide, double to_angle) {
@@ -55,7 +66,8 @@ class SimulatedRod {
     seen_[1] += counts * (c * y - s * x);
     slide = to_slide;
     angle = to_angle;
-    if (++steps_ % kReport == 0) report();
+    sense_mark();
+    if (++steps_ % mount_.report == 0) report();
   }
 
   // At the speed of a hand that starts and ends at rest; so many seconds.
@@ -75,17 +87,26 @@ class SimulatedRod {
   }
 
  private:
+  void sense_mark() {
+    const Mount::Mark& mark = mount_.mark;
+    const double beside = std::abs(slide - mark.slide) / mark.reach;
+    const double half = beside < 1 ? 0.5 * mark.width * std::sqrt(1 - beside * beside) : 0;
+    const double switches = half + (under ? 0.5 : -0.5) * mark.hysteresis;
+    under = half > 0 && std::abs(std::remainder(angle - mark.angle, 2 * M_PI)) < switches;
+  }
   void report() {
     std::int16_t told[2];
+    const bool lost = mount_.loss > 0 && between(0, 1) < mount_.loss;
     for (int axis = 0; axis < 2; ++axis) {
       double c = seen_[axis] * (mount_.noise > 0 ? 1 + draw(mount_.noise) : 1.0);
-      c = std::copysign(std::max(std::abs(c) - mount_.dead_band * kStep * kReport, 0.0), c);
+      c = std::copysign(std::max(std::abs(c) - mount_.dead_band * kStep * mount_.report, 0.0), c);
+      if (lost) c = 0;
       left_[axis] += c;
       told[axis] = static_cast<std::int16_t>(std::floor(left_[axis]));
       left_[axis] -= told[axis];
       seen_[axis] = 0;
     }
-    increments.push_back({told[0], told[1], static_cast<float>(kStep * kReport)});
+    increments.push_back({told[0], told[1], static_cast<float>(kStep * mount_.report), under});
   }
 
   Mount mount_;
@@ -181,7 +202,8 @@ inline PlayErrors play(const Mount& mount, const cabinet::RodCalibration& calibr
   cabinet::RodIntegrator integrator(calibration);
   double slide = 0, angle = 0, squares[2] = {0, 0};
   std::size_t read = 0, samples = 0;
-  while (static_cast<double>(rod.increments.size()) * 0.005 < seconds) {
+  while (static_cast<double>(rod.increments.size()) * SimulatedRod::kStep * mount.report <
+         seconds) {
     // One after the other, so that every compiler draws the same.
     const double to_slide = rod.between(-0.1, 0.1), to_angle = rod.between(-1.5, 1.5);
     rod.move(to_slide, to_angle, rod.between(0.08, 0.4));

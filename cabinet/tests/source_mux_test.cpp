@@ -193,6 +193,8 @@ TEST(SourceMux, PollsEachSourceOnceAndSumsTheirCounters) {
   Bench b;
   b.cabinet.counts = {1, 2, 3, 4, 5, 6, 7, 8};
   b.client.counts = {10, 20, 30, 40, 50, 60, 70, 80};
+  b.cabinet.counts.index_disagreements[7] = 9;
+  b.client.counts.index_disagreements[7] = 90;
   b.step(3);
   EXPECT_EQ(b.cabinet.polls, 3);
   EXPECT_EQ(b.computer.polls, 3);
@@ -201,6 +203,7 @@ TEST(SourceMux, PollsEachSourceOnceAndSumsTheirCounters) {
   EXPECT_EQ(sum.lost, 33u);
   EXPECT_EQ(sum.impossible, 77u);
   EXPECT_EQ(sum.line_errors, 88u);
+  EXPECT_EQ(sum.index_disagreements[7], 99u);
   EXPECT_EQ(b.mux.source(b.of_client).name(), "fake");
 }
 

@@ -1,6 +1,8 @@
 // Raspberry Pi Pico: eight SPI motion sensors or PS/2 mice in, one 64-byte HID report a millisecond
-// out, sampled just before the host asks for it; commands in, for haptics and settings.
+// out, sampled just before the host asks for it; commands in, for haptics and settings. Index marks
+// share the motors' bus.
 #include "core/haptics.h"
+#include "core/index_marks.h"
 #include "core/mouse_host.h"
 #include "core/report_clock.h"
 #include "core/sensor_host.h"
@@ -27,6 +29,7 @@ rp2040::I2c g_i2c;
 firmware::SensorHost g_sensors(g_sensor_pins);
 firmware::MouseHost g_mice;
 firmware::Haptics g_haptics(g_i2c);
+firmware::IndexMarks g_marks(g_i2c);
 firmware::ReportClock g_clock;
 firmware::Settings g_settings;
 alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
@@ -76,6 +79,7 @@ void report() {
   g_frame.quality =
       static_cast<uint8_t>(g_errors > 255 - g_frame.quality ? 255 : g_frame.quality + g_errors);
   g_errors = 0;
+  g_frame.index = g_marks.under();
   g_sensors.add_to_frame(g_frame);
   wire::encode_device_frame(g_frame, g_report);
   g_usb.send_report(g_report);
@@ -219,6 +223,7 @@ int main() {
     const uint32_t now_us = rp2040::micros();
     pass_time(now_us);
     take_commands();
+    g_marks.poll(g_ms);  // first: a pulse that waited for its reading begins at once
     g_haptics.poll(g_ms);
     if (g_settings.ps2 != 0 && g_mice.due()) {
       g_mice.poll(now_us);

@@ -61,7 +61,9 @@ void Haptics::poll(uint32_t now_ms) {
     if (state == I2cBus::kBusy) return;
     transfer_ended(state == I2cBus::kIdle);
   }
-  if (!working_) begin_job(now_ms);
+  if (working_ || !bus_.claim(this)) return;
+  begin_job(now_ms);
+  if (!working_) bus_.release();
 }
 
 void Haptics::begin_job(uint32_t now_ms) {

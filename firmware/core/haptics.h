@@ -24,8 +24,30 @@ class I2cBus {
   // Of the last write.
   virtual State state() = 0;
 
+  // Who uses the bus has it until the end of its last transfer is seen. False: another has it.
+  bool claim(const void* who) {
+    if (user_ != nullptr && user_ != who) return false;
+    user_ = who;
+    return true;
+  }
+  void release() { user_ = nullptr; }
+
  protected:
   ~I2cBus() = default;
+
+ private:
+  const void* user_ = nullptr;
+};
+
+class I2cReadBus : public I2cBus {
+ public:
+  // Begins a read of one byte; state() is of this too. Precondition: state() is not kBusy.
+  virtual void read(uint8_t address) = 0;
+  // That was read last. Precondition: state() is kIdle after it.
+  virtual uint8_t byte() = 0;
+
+ protected:
+  ~I2cReadBus() = default;
 };
 
 class Haptics {

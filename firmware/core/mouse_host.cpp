@@ -99,6 +99,7 @@ void MouseHost::make_frame(uint32_t now_us, wire::DeviceFrame& frame) {
   }
   frame.overflow = overflow_;
   frame.quality = quality_;
+  frame.index = 0;
   resynchronised_ = false;
   overflow_ = 0;
   quality_ = 0;

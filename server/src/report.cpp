@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <numeric>
 #include <system_error>
 #include <vector>
 
@@ -37,6 +38,11 @@ cabinet::SourceCounters all_devices(const Server& server) {
   cabinet::SourceCounters sum;
   for (const DeviceCounters& device : server.devices()) sum = sum + device.counters;
   return sum;
+}
+
+std::uint64_t index_disagreements(const cabinet::SourceCounters& counters) {
+  return std::accumulate(counters.index_disagreements.begin(), counters.index_disagreements.end(),
+                         std::uint64_t{0});
 }
 
 std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
@@ -107,6 +113,7 @@ std::vector<Figure> figures(const Server& server, const LoopStats& loop) {
       {"device_reopened", number(devices.reopened)},
       {"device_overflows", number(devices.overflows)},
       {"device_impossible", number(devices.impossible)},
+      {"device_index_disagreements", number(index_disagreements(devices))},
       {"device_line_errors", number(devices.line_errors)},
       {"device_latency_mean_us", number(mean_latency_us(devices))},
       {"device_latency_max_us", number(devices.latency_max_us)},
@@ -122,10 +129,11 @@ std::string line(const DeviceCounters& device) {
   const cabinet::SourceCounters& c = device.counters;
   return fmt::format(
       "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, "
-      "{} motions that no rod can make, {} errors on the sensors' lines, "
+      "{} motions that no rod can make, {} index marks that disagree, "
+      "{} errors on the sensors' lines, "
       "{} us mean and {} us most from arrival to tick",
       device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.impossible,
-      c.line_errors, mean_latency_us(c), c.latency_max_us);
+      index_disagreements(c), c.line_errors, mean_latency_us(c), c.latency_max_us);
 }
 
 bool ends_with_csv(const std::string& path) {

@@ -27,7 +27,9 @@ class Moments {
                                         .push_side = foosball::push_sign(spec.team),
                                         .forward_sign = -foosball::attack_sign(spec.team)};
     cabinet::CalibrationGuide guide(options);
-    SimulatedRod rod({.counts_per_mm = 39.4, .tilt = 0.05, .eccentricity = 1e-4}, 5);
+    Mount mount{.counts_per_mm = 39.4, .tilt = 0.05, .eccentricity = 1e-4};
+    mount.mark = {.angle = 0.6, .width = 0.4, .slide = -options.push_side * options.reach};
+    SimulatedRod rod(mount, 5);
     Person person(guide, rod, options);
     SimulatedDevice device;
     session_.line_is(cabinet::DeviceState::live, 0);
@@ -36,7 +38,9 @@ class Moments {
     person.on_counts = [&](const cabinet::CountIncrement& c) {
       device.slide[0] += c.slide;
       device.spin[0] += c.spin;
-      session_.hear(device.frame(5'000));
+      wire::DeviceFrame frame = device.frame(5'000);
+      frame.index = c.mark ? 1 : 0;
+      session_.hear(frame);
       const bool half_way = guide.step() != step && !guide.finished() && guide.progress() > 0.5;
       if (!half_way) return;
       step = guide.step();

@@ -75,7 +75,7 @@ void Session::hear_increments(const wire::DeviceFrame& frame, double seconds) {
     trace_.push_back({seconds_, before.slide + slide, before.spin + spin});
     if (states_[index(r)] == RodState::guided)
       guide_.add({static_cast<std::int16_t>(slide), static_cast<std::int16_t>(spin),
-                  static_cast<float>(seconds)});
+                  static_cast<float>(seconds), (frame.index >> r & 1) != 0});
   }
   while (!trace_.empty() && trace_.front().seconds < seconds_ - kTraceSeconds) trace_.pop_front();
 }

@@ -34,9 +34,17 @@ struct Table {
     person.follow();
   }
   void send(int rod, const cabinet::CountIncrement& c) {
+    // A magnet that slips on its rod: each second it comes another while later.
+    seen.push_front(c.mark);
+    if (seen.size() > 50) seen.pop_back();
+    if (loose > 0 && device.sequence % 200 == 0) late = random() % loose;
+    const bool mark = late < seen.size() && seen[late];
     device.slide[rod] += c.slide;
     device.spin[rod] += c.spin;
-    session.hear(device.frame(static_cast<std::uint32_t>(std::lround(c.seconds * 1e6f))));
+    wire::DeviceFrame frame =
+        device.frame(static_cast<std::uint32_t>(std::lround(c.seconds * 1e6f)));
+    if (mark) frame.index = static_cast<std::uint8_t>(1 << rod);
+    session.hear(frame);
   }
   void rest(double seconds) {
     for (int i = 0; i < seconds / 0.005; ++i) send(0, {0, 0, 0.005f});
@@ -44,6 +52,10 @@ struct Table {
 
   Session session;
   SimulatedDevice device;
+  unsigned loose = 0;
+  std::size_t late = 0;
+  std::mt19937 random{8};
+  std::deque<bool> seen;
 };
 
 TEST(CalibrationSession, LeadsThroughAllRodsAndKeepsWhatTheirSensorsCount) {
@@ -67,6 +79,29 @@ TEST(CalibrationSession, LeadsThroughAllRodsAndKeepsWhatTheirSensorsCount) {
                               static_cast<std::uint32_t>(rod));
     EXPECT_LT(e.slide, 1e-3) << rod;
     EXPECT_LT(e.angle, 2 * M_PI / 180) << rod;
+  }
+}
+
+TEST(CalibrationSession, FindsTheIndexMarkOfARodThatHasOne) {
+  for (const bool firm : {true, false}) {
+    SessionOptions options;
+    options.rods = {2};
+    Table table(options);
+    Mount mount{.counts_per_mm = 39.4};
+    mount.mark = {.angle = 0.6, .width = 0.4};
+    mount.mark.slide = -options_of(2).push_side * options_of(2).reach;
+    table.loose = firm ? 0 : 40;
+    table.calibrate(2, mount);
+    ASSERT_TRUE(table.session.all_fitted()) << table.session.problem();
+    const auto& index = table.session.calibration().rods[2].index;
+    ASSERT_EQ(index.has_value(), firm);
+    if (index) {
+      EXPECT_NEAR(index->angle, 0.6, 0.03);
+    }
+    EXPECT_FALSE(table.session.calibration().rods[3].index);
+    const std::vector<std::string> words = fit_words(*table.session.fit());
+    EXPECT_EQ(words.size(), 8u);
+    EXPECT_NE(words[6].find(firm ? "index mark" : "not twice alike"), std::string::npos);
   }
 }
 

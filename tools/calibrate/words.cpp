@@ -164,6 +164,11 @@ std::vector<std::string> fit_words(const cabinet::RodFit& fit) {
   lines.push_back(row(N_("eccentric, around"), std::hypot(c.spin_gain[0], c.spin_gain[1]) * 100,
                       spread(c.spin_gain[0], c.spin_gain[1], d[6], d[7]) * 100, "%"));
   lines.push_back(row(N_("dead band"), c.dead_band, d[8], "counts/s"));
+  if (c.index)
+    lines.push_back(
+        row(N_("index mark"), c.index->angle * kDegrees, fit.index_deviation * kDegrees, "deg"));
+  else if (fit.index_passes > 0)
+    lines.emplace_back(tr(N_("Index mark: not twice alike. Are its magnet and its switch firm?")));
   const auto outliers = std::ranges::count_if(fit.residuals, &cabinet::RodFit::Residual::outlier);
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(),

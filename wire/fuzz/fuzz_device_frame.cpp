@@ -1,5 +1,5 @@
 // Any bytes as a device frame, plain (as they are and under a right CRC) and in COBS. What is
-// accepted comes back to the bit.
+// accepted comes back to the bit; of version 1, as the same frame of the version that is sent.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -11,11 +11,19 @@ namespace {
 
 using Octets = std::vector<std::uint8_t>;
 
-void read_plain(const Octets& bytes) {
+void seal(Octets& bytes) {
+  wire::device_put16(bytes.data() + 44, wire::device_crc16(bytes.data(), 44));
+}
+
+void read_plain(Octets bytes) {
   wire::DeviceFrame frame{};
   if (!wire::decode_device_frame(bytes.data(), bytes.size(), frame)) return;
   Octets again(wire::kDeviceFrameBytes);
   wire::encode_device_frame(frame, again.data());
+  if (bytes[0] != wire::kDeviceFrameVersion) {
+    bytes[0] = wire::kDeviceFrameVersion;
+    seal(bytes);
+  }
   if (again != bytes) std::abort();
 }
 
@@ -45,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_cobs(bytes);
   there_and_back(bytes);
   if (size == wire::kDeviceFrameBytes) {
-    wire::device_put16(bytes.data() + 44, wire::device_crc16(bytes.data(), 44));
+    seal(bytes);
     read_plain(bytes);
   }
   return 0;

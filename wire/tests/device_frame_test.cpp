@@ -22,6 +22,7 @@ DeviceFrame random_frame(std::mt19937_64& random) {
   frame.present = static_cast<std::uint8_t>(random());
   frame.overflow = static_cast<std::uint8_t>(random());
   frame.quality = static_cast<std::uint8_t>(random());
+  frame.index = static_cast<std::uint8_t>(random());
   return frame;
 }
 
@@ -83,6 +84,28 @@ TEST(DeviceFrame, WrongSizesAndEverySingleBitFlipAreRefusedAndLeaveTheFrameAlone
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1 << bit % 8);
   }
   EXPECT_EQ(encoded(decoded), encoded(untouched));
+}
+
+Octets sealed(Octets bytes) {
+  device_put16(bytes.data() + 44, device_crc16(bytes.data(), 44));
+  return bytes;
+}
+
+TEST(DeviceFrame, ControllersAndRecordingsOfVersion1AreReadAndHaveNoIndexMarks) {
+  std::mt19937_64 random(47);
+  DeviceFrame sent = random_frame(random);
+  sent.index = 0;
+  Octets bytes = encoded(sent);
+  bytes[0] = 1;
+  DeviceFrame decoded = random_frame(random);
+  ASSERT_TRUE(decode_device_frame(sealed(bytes).data(), bytes.size(), decoded));
+  EXPECT_EQ(encoded(decoded), encoded(sent));
+  bytes[43] = 4;  // reserved in that version
+  EXPECT_FALSE(decode_device_frame(sealed(bytes).data(), bytes.size(), decoded));
+  for (const int version : {0, 3, 255}) {
+    bytes[0] = static_cast<std::uint8_t>(version);
+    EXPECT_FALSE(decode_device_frame(sealed(bytes).data(), bytes.size(), decoded));
+  }
 }
 
 TEST(Cobs, RoundTripsEveryLengthAndHoldsNoZeroBeforeItsEnd) {

@@ -41,13 +41,17 @@ inline const std::string kJournal =
     "03efbefecacefaedfe06000000846fbbd50403030102030b000000f4322365060305030201000402"
     "01000a0000005d29bd050503efbefecacefaedfe";
 
-inline const std::string kDeviceFrame =
+inline const std::string kDeviceFrameVersion1 =
     "01010201060504030000ffffe803d3fed007a7fdb80b7bfca00f4ffb881323fa7017f7f8581bcbf7"
     "ff080200db28";
 
+inline const std::string kDeviceFrame =
+    "02010201060504030000ffffe803d3fed007a7fdb80b7bfca00f4ffb881323fa7017f7f8581bcbf7"
+    "ff0802410ab8";
+
 inline const std::string kDeviceCobs =
-    "0901010201060504030122ffffe803d3fed007a7fdb80b7bfca00f4ffb881323fa7017f7f8581bcb"
-    "f7ff080203db2800";
+    "0902010201060504030125ffffe803d3fed007a7fdb80b7bfca00f4ffb881323fa7017f7f8581bcb"
+    "f7ff0802410ab800";
 
 inline const std::map<std::string, std::string> kControl{
     {"hello",

@@ -71,6 +71,7 @@ TEST(Golden, Phone) {
 
 TEST(Golden, DeviceFrame) {
   EXPECT_EQ(hex(encoded(samples::device_frame())), golden::kDeviceFrame);
+  EXPECT_EQ(hex(samples::encoded_version_1(samples::device_frame())), golden::kDeviceFrameVersion1);
   EXPECT_EQ(hex(samples::encoded_cobs(samples::device_frame())), golden::kDeviceCobs);
 }
 

@@ -325,7 +325,24 @@ DeviceFrame device_frame() {
   frame.present = 0xFF;
   frame.overflow = 0x08;
   frame.quality = 2;
+  frame.index = 0x41;
   return frame;
+}
+
+std::vector<std::pair<std::string, DeviceCommand>> device_commands() {
+  DeviceCommand pulse{}, off{}, settings{};
+  pulse.kind = kPulseCommand;
+  pulse.sequence = off.sequence = settings.sequence = 0x0102;
+  pulse.rod = 5;
+  pulse.amplitude = 200;
+  pulse.duration_ms = 20;
+  off.kind = kAllOffCommand;
+  settings.kind = kSettingsCommand;
+  settings.resolution = 20;
+  settings.brightness = 64;
+  settings.ps2 = 0x81;
+  settings.switches = 1;
+  return {{"pulse", pulse}, {"off", off}, {"settings", settings}};
 }
 
 Snapshot random_snapshot(std::mt19937_64& random, bool full) {
@@ -465,6 +482,21 @@ Bytes encoded(const std::vector<JournalEntry>& journal) {
 Bytes encoded(const DeviceFrame& frame) {
   Bytes bytes(kDeviceFrameBytes);
   encode_device_frame(frame, reinterpret_cast<std::uint8_t*>(bytes.data()));
+  return bytes;
+}
+
+Bytes encoded_version_1(DeviceFrame frame) {
+  frame.index = 0;
+  Bytes bytes = encoded(frame);
+  auto* const octets = reinterpret_cast<std::uint8_t*>(bytes.data());
+  octets[0] = 1;
+  device_put16(octets + 44, device_crc16(octets, 44));
+  return bytes;
+}
+
+Bytes encoded(const DeviceCommand& command) {
+  Bytes bytes(kDeviceCommandBytes);
+  encode_device_command(command, reinterpret_cast<std::uint8_t*>(bytes.data()));
   return bytes;
 }
 

@@ -28,7 +28,10 @@ std::vector<Seed> seeds() {
       {"fuzz_journal", "long", encoded(random_journal(random, 70))},
       {"fuzz_device_frame", "plain", encoded(device_frame())},
       {"fuzz_device_frame", "cobs", encoded_cobs(device_frame())},
+      {"fuzz_device_frame", "version_1", encoded_version_1(device_frame())},
   };
+  for (const auto& [name, command] : device_commands())
+    all.push_back({"fuzz_device_command", name, encoded(command)});
   for (const auto& [name, message] : phone_requests())
     all.push_back({"fuzz_phone", name, encoded(message)});
   for (const auto& [name, message] : phone_replies())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -11,6 +12,15 @@
 namespace cabinet {
 
 constexpr double kRodRadius = 0.008;  // [m] of the table's rods, on which the sensors look
+
+// A magnet on the rod that passes under a switch once a turn. Turning forward the switch is on from
+// angle - width / 2 + lag to angle + width / 2 + lag, turning back the same with - lag: a switch
+// goes on nearer to the magnet than it goes off.
+struct IndexMark {
+  double angle;    // [rad] of its middle, from feet straight down
+  double width;    // [rad]
+  double lag = 0;  // [rad]
+};
 
 // An increment of the counts c = (slide, spin) moves the rod by
 //   d_slide = (1 + slide_gain . (cos angle, sin angle)) m[0] . c
@@ -24,6 +34,7 @@ struct RodCalibration {
   double slide_gain[2] = {0, 0};  // of angle 0 (feet down) and of a quarter turn
   double spin_gain[2] = {0, 0};
   double dead_band = 0;  // [counts / s] seen of no motion, and lacking of any that is faster
+  std::optional<IndexMark> index{};  // none: the rod has none that is known
 };
 
 struct RodMotion {

@@ -26,6 +26,7 @@ namespace cabinet {
 struct CountIncrement {
   std::int16_t slide, spin;
   float seconds;
+  bool mark = false;  // the rod's index mark is under its switch at their end
 };
 
 struct CalibrationMark {
@@ -66,6 +67,9 @@ struct RodFit {
   };
   std::vector<Residual> residuals;
   double slide_rms, angle_rms;  // [m], [rad] of the residuals that are no outliers
+  // Of the index mark: calibration.index has it, if its passes agree.
+  int index_passes = 0;
+  double index_deviation = 0;  // [rad] standard, of its middle
 };
 
 // The error is a sentence that says what is wrong with the run and what to do: marks out of order

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -25,6 +26,7 @@ struct RodInput {
   // Of slide and angle, what no report has said yet: the motion since the last one, by its rate.
   double slide_ahead = 0.0;  // [m]
   double angle_ahead = 0.0;  // [rad]
+  bool angle_known = false;  // from feet straight down; else from wherever the rod was
 };
 using RodInputs = std::array<RodInput, kRods>;
 
@@ -47,6 +49,8 @@ struct SourceCounters {
   std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
   // From the arrival at this machine to the poll that takes it in, where that is known [us].
   std::uint64_t stamped = 0, latency_sum_us = 0, latency_max_us = 0;
+  // Passes of each rod's index mark more than a quarter turn from where the counts have it.
+  std::array<std::uint64_t, kRods> index_disagreements{};
 
   void add_latency(std::int64_t us) {
     const auto latency = static_cast<std::uint64_t>(us > 0 ? us : 0);
@@ -55,19 +59,23 @@ struct SourceCounters {
     if (latency > latency_max_us) latency_max_us = latency;
   }
 
-  friend SourceCounters operator+(const SourceCounters& a, const SourceCounters& b) {
-    return {a.frames + b.frames,
-            a.bad + b.bad,
-            a.lost + b.lost,
-            a.stale + b.stale,
-            a.reopened + b.reopened,
-            a.overflows + b.overflows,
-            a.impossible + b.impossible,
-            a.line_errors + b.line_errors,
-            a.stamped + b.stamped,
-            a.latency_sum_us + b.latency_sum_us,
-            a.latency_max_us > b.latency_max_us ? a.latency_max_us : b.latency_max_us};
+  SourceCounters& operator+=(const SourceCounters& b) {
+    frames += b.frames;
+    bad += b.bad;
+    lost += b.lost;
+    stale += b.stale;
+    reopened += b.reopened;
+    overflows += b.overflows;
+    impossible += b.impossible;
+    for (std::size_t rod = 0; rod < index_disagreements.size(); ++rod)
+      index_disagreements[rod] += b.index_disagreements[rod];
+    line_errors += b.line_errors;
+    stamped += b.stamped;
+    latency_sum_us += b.latency_sum_us;
+    latency_max_us = latency_max_us > b.latency_max_us ? latency_max_us : b.latency_max_us;
+    return *this;
   }
+  friend SourceCounters operator+(SourceCounters a, const SourceCounters& b) { return a += b; }
 };
 
 class InputSource {

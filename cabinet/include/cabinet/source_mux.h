@@ -21,7 +21,8 @@ namespace cabinet {
 
 // What a source's positions mean, and so what becomes of the offset.
 enum class Origin : std::uint8_t {
-  relative,  // a handle with sensors: only its motion means anything; the offset stays
+  relative,  // a handle with sensors: only its motion means anything; the offset stays, but that of
+             // an angle which an index mark has made known
   absolute,  // knows the table (computer player, client that sees snapshots): the offset fades
 };
 

@@ -1,6 +1,8 @@
-// Eight haptic drivers of the DRV2605 class behind a multiplexer of the TCA9548A class on I2C 0.
+// I2C 0: eight haptic drivers of the DRV2605 class behind a multiplexer of the TCA9548A class, and beside
+// it, if it is attached, an expander of the PCF8574 class at the switches of the index marks.
 const kMultiplexer = 0x70;
 const kDriver = 0x5a;
+const kExpander = 0x20;
 const kByteNanos = 9 * 2500; // 400 kHz
 
 export class Motors {
@@ -8,6 +10,9 @@ export class Motors {
     this.attached = 0xff;
     this.multiplexer = true;
     this.stuck = false; // somebody holds a line: nothing ends
+    this.expander = false;
+    this.under = 0; // bit i: the mark of rod i is under its switch, which pulls its pin low
+    this.reads = 0; // of the expander
     this.channels = 0;
     this.drivers = Array.from({ length: 8 }, () => ({ registers: new Uint8Array(64), writes: [] }));
   }
@@ -33,6 +38,10 @@ export class Motors {
       bytes.push(value);
       after(1, () => i2c.completeWrite(true));
     };
+    i2c.onReadByte = () => {
+      after(1, () => i2c.completeRead(~this.under & 0xff));
+      ++this.reads;
+    };
     i2c.onStop = () => after(0.1, () => {
       this.written(address, bytes);
       bytes = [];
@@ -44,6 +53,7 @@ export class Motors {
   }
   answers(address) {
     if (address === kMultiplexer) return this.multiplexer;
+    if (address === kExpander) return this.expander;
     return address === kDriver && this.multiplexer && this.selected.length > 0;
   }
   written(address, bytes) {

@@ -11,7 +11,7 @@ export function crc16(bytes) {
 // undefined: no frame.
 export function decodeFrame(report) {
   const view = new DataView(report.buffer, report.byteOffset, report.length);
-  if (report.length !== 64 || report[0] !== 1 || report[43] !== 0) return undefined;
+  if (report.length !== 64 || report[0] !== 2) return undefined;
   if (view.getUint16(44, true) !== crc16(report.subarray(0, 44))) return undefined;
   if (report.subarray(46).some((byte) => byte !== 0)) return undefined;
   const rods = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -24,6 +24,7 @@ export function decodeFrame(report) {
     present: report[40],
     overflow: report[41],
     quality: report[42],
+    index: report[43],
   };
 }
 

@@ -12,7 +12,7 @@ const page = new Function(`${script}; return { decodeFrame, increment, pulseRepo
 const view = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
 
 test('what the firmware reports is what the page shows', () => {
-  const rig = new Rig({ plugged: 0xf7 }).start(0xf7);
+  const rig = new Rig({ plugged: 0xf7, motors: { expander: true, under: 0x12 } }).start(0xf7);
   const before = rig.last.slide.map((slide, rod) => ({ slide, spin: rig.last.spin[rod] }));
   for (const rod of kRods) if (rod !== 3) rig.move(rod, 100 * rod + 1, -30000 + rod);
   rig.board.runMs(20);
@@ -23,6 +23,7 @@ test('what the firmware reports is what the page shows', () => {
   assert.equal(shown.timeUs, read.timeUs);
   for (const rod of kRods) {
     assert.equal(shown.rods[rod].present, rod !== 3);
+    assert.equal(shown.rods[rod].mark, rod === 1 || rod === 4);
     if (rod === 3) continue;
     assert.equal(page.increment(before[rod].slide, shown.rods[rod].slide), 100 * rod + 1);
     assert.equal(page.increment(before[rod].spin, shown.rods[rod].spin), -30000 + rod);
@@ -30,6 +31,15 @@ test('what the firmware reports is what the page shows', () => {
   const broken = reports.at(-1).bytes.slice();
   broken[9] ^= 1;
   assert.equal(page.decodeFrame(view(broken)), null);
+  const before2 = reports.at(-1).bytes.slice(); // of version 1, which has no marks
+  before2[0] = 1;
+  const sealed = (bytes) => {
+    view(bytes).setUint16(44, page.crc16(bytes.subarray(0, 44)), true);
+    return view(bytes);
+  };
+  assert.equal(page.decodeFrame(sealed(before2)), null);
+  before2[43] = 0;
+  assert.ok(page.decodeFrame(sealed(before2)).rods.every((rod) => !rod.mark));
   assert.equal(page.decodeFrame(view(new Uint8Array(7))), null);
 });
 

@@ -10,8 +10,9 @@
 //  40  u8   present            bit i: mouse i answers
 //  41  u8   overflow           bit i: mouse i reported overflow since the last frame
 //  42  u8   quality            parity and framing errors since the last frame, saturating
-//  43  u8   reserved           0
+//  43  u8   index              bit i: the index mark of rod i is under its switch
 //  44  u16  crc                CRC-16/CCITT-FALSE over bytes 0..43
+// Version 1 has no index marks: its byte 43 is 0. It is read too.
 // Over USB HID: one 64-byte vendor report, bytes 46..63 zero. Over a serial line: COBS, then a 0.
 #ifndef WIRE_DEVICE_FRAME_H
 #define WIRE_DEVICE_FRAME_H
@@ -21,7 +22,7 @@
 
 namespace wire {
 
-static const uint8_t kDeviceFrameVersion = 1;
+static const uint8_t kDeviceFrameVersion = 2;
 static const size_t kDeviceFrameBytes = 46;
 static const size_t kDeviceCobsBytes = 48;    // encoded, with the closing 0
 static const size_t kDeviceReportBytes = 64;  // HID report
@@ -36,6 +37,7 @@ struct DeviceFrame {
   uint8_t present;
   uint8_t overflow;
   uint8_t quality;
+  uint8_t index;
 };
 
 // Eight bits at once, in bytes only: 27 cycles a byte on an AVR, where a loop over the bits takes
@@ -74,13 +76,14 @@ inline void encode_device_frame(const DeviceFrame& frame, uint8_t* out) {
   out[40] = frame.present;
   out[41] = frame.overflow;
   out[42] = frame.quality;
-  out[43] = 0;
+  out[43] = frame.index;
   device_put16(out + 44, device_crc16(out, 44));
 }
 
-// False, and frame untouched, unless size, version, the reserved byte and CRC all hold.
+// False, and frame untouched, unless size, version, what the version has and CRC all hold.
 inline bool decode_device_frame(const uint8_t* in, size_t size, DeviceFrame& frame) {
-  if (size != kDeviceFrameBytes || in[0] != kDeviceFrameVersion || in[43] != 0) return false;
+  if (size != kDeviceFrameBytes || in[0] < 1 || in[0] > kDeviceFrameVersion) return false;
+  if (in[0] == 1 && in[43] != 0) return false;
   if (device_get16(in + 44) != device_crc16(in, 44)) return false;
   frame.flags = in[1];
   frame.sequence = device_get16(in + 2);
@@ -92,6 +95,7 @@ inline bool decode_device_frame(const uint8_t* in, size_t size, DeviceFrame& fra
   frame.present = in[40];
   frame.overflow = in[41];
   frame.quality = in[42];
+  frame.index = in[43];
   return true;
 }
 

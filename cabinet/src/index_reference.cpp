@@ -1,0 +1,69 @@
+#include "index_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "state_filter.h"
+
+namespace cabinet {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+// Of one report at the edges: the angle of each is known to half of it, and the switch is read up
+// to a millisecond late. 9 rad/s at 1000 reports a second.
+constexpr double kMostStep = 0.5 * kDegree;
+// A coarse sensor has steps of a count, however slow the rod.
+constexpr double kMostCounts = 1.5;
+// Of the width: a pass that is as wide is one of this mark, at its place along the rod.
+constexpr double kMostOff = 0.25, kMostOffAngle = 3 * kDegree;
+constexpr double kQuarterTurn = M_PI / 2;
+// A man's foot, 75 mm from the axis, creeps by 15 mm/s; a degree is gone in 0.1 s.
+constexpr double kRate = 0.2;
+// The first time it may be half a turn: in half a second, so that no foot strikes a ball.
+constexpr double kFirstRate = 6;  // [rad/s]
+// Of what a pass says: the rest is left to the next one, which evens out what the two get wrong.
+constexpr double kShare = 0.7;
+
+}  // namespace
+
+IndexReference::IndexReference(const RodCalibration& calibration)
+    : mark_(calibration.index),
+      most_step_(std::max(kMostStep, kMostCounts * std::abs(count_of(calibration).angle))) {}
+
+void IndexReference::lose() {
+  passes_.forget();
+  known_ = false;
+  left_ = 0;
+}
+
+double IndexReference::frame(bool under, const RodMotion& at, double turned, double seconds) {
+  if (!mark_) return 0;
+  if (const auto pass = passes_.add(under, at, turned, seconds)) take(*pass);
+  if (left_ == 0 || passes_.passing()) return 0;  // both edges are to be of one angle
+  const double step = std::clamp(left_, -rate_ * seconds, rate_ * seconds);
+  left_ -= step;
+  return step;
+}
+
+void IndexReference::take(const IndexPass& pass) {
+  const double off_width = std::abs(std::abs(pass.turned) - mark_->width);
+  if (pass.step > most_step_ || off_width > std::max(kMostOff * mark_->width, kMostOffAngle))
+    return;
+  const double middle = pass.middle - std::copysign(mark_->lag, pass.turned);
+  const double wrong = std::remainder(mark_->angle - middle, 2 * M_PI);
+  const bool turning = rate_ == kFirstRate && left_ != 0;  // the men are on their way there yet
+  if (!known_ || turning) {
+    known_ = true;
+    left_ = wrong;
+    rate_ = kFirstRate;
+    return;
+  }
+  if (std::abs(wrong) > kQuarterTurn) {
+    ++disagreements_;
+    return;
+  }
+  left_ = kShare * wrong;
+  rate_ = kRate;
+}
+
+}  // namespace cabinet

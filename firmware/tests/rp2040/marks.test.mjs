@@ -1,0 +1,84 @@
+// Index marks: Hall switches at an expander that shares the motors' bus.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Rig, kRods, randomNumbers, say } from './rig.mjs';
+
+const pulse = (rod, amplitude, durationMs) => ({ kind: 1, rod, amplitude, durationMs });
+const lastWrite = (rig, rod) => rig.motors.drivers[rod].writes.at(-1);
+
+function withMarks(options = {}) {
+  const rig = new Rig({ motors: { expander: true, ...options.motors } }).start();
+  rig.board.runMs(50);
+  rig.frames();
+  return rig;
+}
+
+test('a mark is in the frame at most 2 ms after it came under its switch, and gone as soon', () => {
+  const rig = withMarks();
+  const random = randomNumbers(5);
+  let longest = 0;
+  for (let i = 0; i < 60; ++i) {
+    rig.board.run(1e6 + 31e3 * random(40));
+    rig.frames();
+    rig.motors.under = random(256);
+    const changed = rig.board.clock.nanos;
+    assert.ok(rig.board.runUntil(() => rig.frames().some((frame) => frame.index === rig.motors.under), 4));
+    longest = Math.max(longest, rig.board.clock.nanos - changed);
+  }
+  say(`from a switch to the report at most ${(longest / 1e3).toFixed(0)} us`);
+  assert.ok(longest <= 2.1e6);
+  const before = rig.motors.reads;
+  rig.framesOfMs(100);
+  assert.ok(Math.abs(rig.motors.reads - before - 100) <= 2, `${rig.motors.reads - before} readings in 100 ms`);
+  rig.expectNoFault();
+});
+
+test('with marks read each millisecond a pulse still begins at most 2 ms after its command', () => {
+  const rig = withMarks();
+  rig.motors.under = 0x24;
+  let longest = 0;
+  for (let round = 0; round < 30; ++round) {
+    rig.board.run(5e6 + 137e3 * round);
+    const sent = rig.board.clock.nanos;
+    assert.ok(rig.command(pulse(round % 8, 40 + round, 20)));
+    assert.ok(rig.board.runUntil(() => lastWrite(rig, round % 8).value === 40 + round, 3));
+    longest = Math.max(longest, lastWrite(rig, round % 8).at - sent);
+    rig.board.runMs(24);
+    assert.equal(lastWrite(rig, round % 8).value, 0);
+  }
+  const sent = rig.board.clock.nanos;
+  for (const rod of kRods) assert.ok(rig.board.runUntil(() => rig.command(pulse(rod, 200, 50)), 1));
+  rig.board.runMs(4);
+  const all = Math.max(...kRods.map((rod) => lastWrite(rig, rod).at)) - sent;
+  kRods.forEach((rod) => assert.equal(lastWrite(rig, rod).value, 200));
+  say(`from a command to its write at most ${(longest / 1e3).toFixed(0)} us, eight at once ${(all / 1e3).toFixed(0)} us`);
+  assert.ok(longest <= 2e6 && all <= 2e6);
+  assert.ok(rig.framesOfMs(20).every((frame) => frame.index === 0x24));
+  rig.expectNoFault();
+});
+
+test('an expander that is plugged in later is found within a second, one that vanishes leaves no marks', () => {
+  const rig = withMarks({ motors: { expander: false } });
+  rig.motors.under = 0x81;
+  assert.ok(rig.framesOfMs(200).every((frame) => frame.index === 0));
+  rig.motors.expander = true;
+  assert.ok(rig.board.runUntil(() => rig.frames().some((frame) => frame.index === 0x81), 1100));
+  rig.motors.expander = false;
+  assert.ok(rig.board.runUntil(() => rig.frames().some((frame) => frame.index === 0), 3));
+  assert.ok(rig.framesOfMs(100).length >= 99);
+  rig.expectNoFault();
+});
+
+test('on a bus that is stuck there are no marks, and the reports go on', () => {
+  const rig = withMarks();
+  rig.motors.under = 0xff;
+  rig.framesOfMs(3);
+  assert.equal(rig.last.index, 0xff);
+  rig.motors.stuck = true;
+  rig.framesOfMs(5);
+  rig.host.naks = 0;
+  const frames = rig.framesOfMs(300);
+  assert.ok(frames.length >= 299 && rig.host.naks === 0);
+  assert.ok(frames.every((frame) => frame.index === 0));
+  assert.equal(rig.board.resets, 0);
+});
