@@ -9,6 +9,7 @@
 #include "calibration.h"
 #include "fault_run.h"
 #include "match_run.h"
+#include "motion.h"
 
 namespace {
 
@@ -27,6 +28,8 @@ struct Options {
   double minutes = 1;
   double troubles = 20;
   std::string csv;
+  std::vector<std::string> moves;
+  std::string recording;
 };
 
 class Rows {
@@ -171,7 +174,32 @@ bool suffer(Board board, const Options& options, Rows& rows) {
   return t.unexplained == 0;
 }
 
+bool write(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return false;
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  return std::fclose(file) == 0 && written;
+}
+
+int record(const Options& options) {
+  const Board board = *board_named(options.boards.front());
+  const double counts_per_mm =
+      options.counts_per_mm > 0 ? options.counts_per_mm : usual_counts_per_mm(board);
+  Table table(options.square ? Mounting::square : Mounting::drawn, counts_per_mm,
+              static_cast<std::uint32_t>(options.seed));
+  std::vector<Motion> motions;
+  for (const std::string& move : options.moves) motions.push_back(*motion_of(move));
+  if (!write(options.recording, record_motions(*power_on(board), table, motions))) {
+    fmt::print(stderr, "cabinet-bench: {} cannot be written; name another file.\n",
+               options.recording);
+    return 1;
+  }
+  fmt::print("written {}\n", options.recording);
+  return 0;
+}
+
 int run(const Options& options) {
+  if (!options.recording.empty()) return record(options);
   Rows rows;
   bool good = true;
   for (const std::string& name : options.boards) {
@@ -208,6 +236,15 @@ int main(int argc, char** argv) {
   app.add_option("--minutes", options.minutes, "of troubles")->check(CLI::Range(0.1, 600.0));
   app.add_option("--troubles-per-minute", options.troubles)->check(CLI::Range(0.1, 600.0));
   app.add_option("--csv", options.csv, "a file for the results");
+  auto* recording =
+      app.add_option("--record", options.recording,
+                     "no match: what the first board sends during --move, into a file");
+  app.add_option("--move", options.moves,
+                 "ROD:MM:TURNS: moves a rod (1 to 8) so far; one after the other")
+      ->needs(recording)
+      ->check([](const std::string& text) {
+        return motion_of(text) ? std::string() : text + " is no motion: write 6:252:-5";
+      });
   CLI11_PARSE(app, argc, argv);
   try {
     return run(options);
