@@ -126,6 +126,7 @@ bool play(Board board, const Options& options, Rows& rows) {
   fmt::print("  {:<24} {:>6} {:>6} {:>6}     {:>6} {:>6} {:>6}      within 1 mm, 2 deg\n", "",
              "rms", "p99", "max", "rms", "p99", "max");
   report(name, "input at the tick", match.input, rows);
+  report(name, "drifted, last minute", match.input.last(60'000), rows);
   report(name, "rod after the tick", match.rod, rows);
   report(name, "free of the ball", match.free, rows);
   report(name, "ideal: given the truth", match.ideal, rows);

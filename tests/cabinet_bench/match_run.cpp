@@ -246,6 +246,11 @@ void Errors::add(const Pose& is, const Pose& should) {
   angle.push_back(static_cast<float>(std::abs(is.angle - should.angle)));
 }
 
+Errors Errors::last(std::size_t ticks) const {
+  const auto n = static_cast<std::ptrdiff_t>(std::min(ticks * cabinet::kRods, slide.size()));
+  return {{slide.end() - n, slide.end()}, {angle.end() - n, angle.end()}};
+}
+
 Spread spread(std::vector<float> absolute) {
   Spread s;
   if (absolute.empty()) return s;

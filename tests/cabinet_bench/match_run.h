@@ -17,6 +17,8 @@ struct Errors {
   std::vector<float> slide, angle;  // absolute [m], [rad]
 
   void add(const Pose& is, const Pose& should);
+  // Of the last ticks alone: what has drifted by then.
+  Errors last(std::size_t ticks) const;
 };
 struct Spread {
   double rms = 0, p99 = 0, most = 0;
