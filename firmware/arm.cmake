@@ -36,5 +36,5 @@ function(firmware_uf2 board)
 endfunction()
 
 firmware_uf2(rp2040 rp2040/boot2.cpp rp2040/startup.cpp rp2040/system.cpp rp2040/flash.cpp rp2040/i2c.cpp
-             rp2040/ps2_pins.cpp rp2040/sensor_pins.cpp rp2040/usb_controller.cpp ${FIRMWARE_CORE} ${FIRMWARE_CORE_ARM}
+             rp2040/ps2_pins.cpp rp2040/sensor_pins.cpp rp2040/usb_controller.cpp ${FIRMWARE_CORE} ${FIRMWARE_CORE_USB} ${FIRMWARE_CORE_SENSORS}
              app/main_rp2040.cpp)

@@ -1,23 +1,46 @@
-// ATmega2560: eight PS/2 mice in, 250 COBS frames a second out at 1 Mbaud.
+// ATmega2560: eight PS/2 mice in, 250 COBS frames a second out at 1 Mbaud; commands in, for haptics
+// and settings.
 #include <avr/interrupt.h>
 
-#include "core/mouse_host.h"
+#include "app/avr_controller.h"
+#include "core/command_stream.h"
 #include "hal/timing.h"
 #include "hal/uart.h"
-#include "wire/device_frame.h"
 
 namespace {
 
 // A mouse reports every 5 ms; a frame every 4 ms delays none and leaves the line free.
 const uint16_t kFrameUs = 4000;
 
-firmware::MouseHost g_mice;
+firmware::AvrController g_controller;
 firmware::Uart g_uart;
+firmware::CommandStream g_commands;
+
+void take_commands() {
+  if (g_uart.take_lost()) {
+    g_commands.spoil();
+    g_controller.count_error();
+  }
+  uint8_t byte;
+  wire::DeviceCommand command;
+  while (g_uart.take(byte)) {
+    switch (g_commands.byte(byte, command)) {
+      case firmware::CommandStream::kNone:
+        break;
+      case firmware::CommandStream::kCommand:
+        g_controller.obey(command);
+        return;  // one a turn: the mice wait
+      case firmware::CommandStream::kError:
+        g_controller.count_error();
+        return;
+    }
+  }
+}
 
 void report(uint32_t now_us) {
   wire::DeviceFrame frame;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
-  g_mice.make_frame(now_us, frame);
+  g_controller.make_frame(now_us, frame);
   wire::encode_device_frame(frame, bytes);
   g_uart.send(coded, static_cast<uint8_t>(wire::cobs_encode(bytes, sizeof bytes, coded)));
 }
@@ -25,22 +48,21 @@ void report(uint32_t now_us) {
 }  // namespace
 
 ISR(TIMER1_COMPA_vect) {
-  firmware::sample_lines(g_mice.lines());
+  firmware::sample_lines(g_controller.lines());
+}
+ISR(USART0_RX_vect) {
+  g_uart.receive();
 }
 
 int main() {
-  firmware::start_sampling();
+  g_controller.start();
   g_uart.start();
-  g_mice.allow_streaming(true);
   uint32_t next_us = kFrameUs;
   for (;;) {
     g_uart.poll();  // a byte each time round: one takes 10 us, two rounds of a sleep 20
-    if (!g_mice.due()) {
-      firmware::sleep_until_sample();
-      continue;
-    }
-    const uint32_t now_us = firmware::micros();
-    g_mice.poll(now_us);
+    if (!g_controller.due()) continue;
+    const uint32_t now_us = g_controller.turn(true);
+    take_commands();
     if (static_cast<int32_t>(now_us - next_us) >= 0) {
       next_us += kFrameUs;
       report(now_us);

@@ -1,20 +1,42 @@
-// ATmega32U4: eight PS/2 mice in, one 64-byte HID report a millisecond out.
+// ATmega32U4: eight PS/2 mice in, one 64-byte HID report a millisecond out; commands in, for
+// haptics and settings.
 #include <avr/interrupt.h>
 
-#include "core/mouse_host.h"
+#include "app/avr_controller.h"
+#include "core/serial_string.h"
 #include "hal/timing.h"
+#include "hal/unique_id.h"
 #include "hal/usb_device.h"
-#include "wire/device_frame.h"
 
 namespace {
 
-firmware::MouseHost g_mice;
+firmware::AvrController g_controller;
 firmware::UsbDevice g_usb;
+firmware::SerialString<firmware::kUniqueIdBytes> g_serial;
 uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
+
+void make_serial() {
+  uint8_t id[firmware::kUniqueIdBytes];
+  firmware::read_unique_id(id);
+  g_serial.set(id);
+}
+
+void take_command() {
+  uint8_t bytes[wire::kDeviceCommandBytes];
+  wire::DeviceCommand command;
+  const uint8_t size = g_usb.take_command(bytes);
+  if (size == 0) return;
+  if (size >= wire::kDeviceCommandBytes &&
+      wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
+    g_controller.obey(command);
+  } else {
+    g_controller.count_error();
+  }
+}
 
 void report(uint32_t now_us) {
   wire::DeviceFrame frame;
-  g_mice.make_frame(now_us, frame);
+  g_controller.make_frame(now_us, frame);
   wire::encode_device_frame(frame, g_report);
   g_usb.send_report(g_report);
 }
@@ -22,22 +44,18 @@ void report(uint32_t now_us) {
 }  // namespace
 
 ISR(TIMER1_COMPA_vect) {
-  firmware::sample_lines(g_mice.lines());
+  firmware::sample_lines(g_controller.lines());
 }
 
 int main() {
-  firmware::start_sampling();
-  g_usb.start();
+  make_serial();
+  g_controller.start();
+  g_usb.start(g_serial.descriptor);
   for (;;) {
-    if (!g_mice.due()) {
-      firmware::sleep_until_sample();
-      continue;
-    }
-    const uint32_t now_us = firmware::micros();
-    g_mice.poll(now_us);
+    if (!g_controller.due()) continue;
+    const uint32_t now_us = g_controller.turn(g_usb.configured());
     g_usb.poll();
-    // Enumeration first: the mice would fill counters that nobody reads.
-    g_mice.allow_streaming(g_usb.configured());
+    take_command();
     if (g_usb.wants_report()) report(now_us);
   }
 }

@@ -3,8 +3,11 @@
 #include "core/haptics.h"
 #include "core/mouse_host.h"
 #include "core/report_clock.h"
+#include "core/saturating.h"
 #include "core/sensor_host.h"
+#include "core/serial_string.h"
 #include "core/settings.h"
+#include "core/state_light.h"
 #include "rp2040/board.h"
 #include "rp2040/flash.h"
 #include "rp2040/i2c.h"
@@ -18,7 +21,6 @@
 namespace {
 
 const uint16_t kButtonHoldMs = 1000;  // then the boot loader
-const uint16_t kBlinkMs = 100;        // a tick of the LED's patterns
 const uint32_t kQuietUs = 50;         // nothing else begins so short before a sample
 
 rp2040::UsbController g_usb;
@@ -30,7 +32,7 @@ firmware::Haptics g_haptics(g_i2c);
 firmware::ReportClock g_clock;
 firmware::Settings g_settings;
 alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
-uint8_t g_serial[2 + 4 * rp2040::kUniqueIdBytes];       // a string descriptor
+firmware::SerialString<rp2040::kUniqueIdBytes> g_serial;
 
 uint32_t g_ms = 0;
 uint32_t g_ms_began_us = 0;
@@ -45,13 +47,7 @@ void make_serial() {
   rp2040::hold_interrupts();
   rp2040::read_unique_id(id);
   rp2040::allow_interrupts();
-  g_serial[0] = sizeof g_serial;
-  g_serial[1] = 3;
-  for (uint8_t i = 0; i < 2 * rp2040::kUniqueIdBytes; ++i) {
-    const uint8_t digit = (i % 2 == 0 ? id[i / 2] >> 4 : id[i / 2]) & 0xF;
-    g_serial[2 + 2 * i] = static_cast<uint8_t>(digit < 10 ? '0' + digit : 'A' + digit - 10);
-    g_serial[3 + 2 * i] = 0;
-  }
+  g_serial.set(id);
 }
 
 void apply_settings() {
@@ -73,26 +69,17 @@ void report() {
     g_frame.quality = 0;
   }
   g_frame.sequence = g_sequence++;
-  g_frame.quality =
-      static_cast<uint8_t>(g_errors > 255 - g_frame.quality ? 255 : g_frame.quality + g_errors);
+  g_frame.quality = firmware::add_saturating(g_frame.quality, g_errors);
   g_errors = 0;
   g_sensors.add_to_frame(g_frame);
   wire::encode_device_frame(g_frame, g_report);
   g_usb.send_report(g_report);
 }
 
-// Of ten ticks those with light. Steady: all is well. Five short ones: no host; one: a host, but no
-// sensor; nine: some of the sensors; with the watchdog's work two gaps in any of them.
-uint16_t led_pattern() {
-  if (!g_usb.configured()) return 0x155;
-  if (g_frame.present == 0) return 0x001;
-  return g_frame.present == 0xFF ? 0x3FF : 0x1FF;
-}
-
 void show_state() {
-  const unsigned tick = g_ms / kBlinkMs % 10;
-  uint16_t pattern = led_pattern();
-  if (rp2040::watchdog_resets() != 0) pattern = static_cast<uint16_t>(pattern & ~0x088);
+  const unsigned tick = g_ms / firmware::kLightTickMs % firmware::kLightTicks;
+  const uint16_t pattern =
+      firmware::light_pattern(g_usb.configured(), g_frame.present, rp2040::watchdog_resets() != 0);
   rp2040::set_led((pattern >> tick & 1) != 0 ? g_settings.brightness : 0);
 }
 
@@ -157,14 +144,15 @@ void obey(const wire::DeviceCommand& command) {
 }
 
 void take_commands() {
+  g_errors = firmware::add_saturating(g_errors, g_usb.take_dropped());
   uint8_t bytes[wire::kDeviceReportBytes];
   wire::DeviceCommand command;
   while (const uint8_t size = g_usb.take_command(bytes)) {
     if (size >= wire::kDeviceCommandBytes &&
         wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
       obey(command);
-    } else if (g_errors < 255) {
-      ++g_errors;
+    } else {
+      g_errors = firmware::add_saturating(g_errors, 1);
     }
   }
 }
@@ -201,7 +189,7 @@ int main() {
   rp2040::load_settings(g_settings);
   g_i2c.start();
   apply_settings();
-  g_usb.start(g_serial);
+  g_usb.start(g_serial.descriptor);
   g_ms_began_us = rp2040::micros();
   g_clock.begin(g_ms_began_us);
   bool served = false;

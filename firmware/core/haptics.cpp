@@ -19,13 +19,25 @@ void Haptics::pulse(uint8_t rod, uint8_t amplitude, uint16_t duration_ms, uint32
   if (!allowed_ || !safe_ || rod >= kMotors || (present_ & 1u << rod) == 0) return;
   Motor& motor = motors_[rod];
   if (motor.credit < amplitude) return;
-  motor.wanted = amplitude;
+  want(rod, amplitude);
   motor.left_ms = duration_ms < wire::kMaxPulseMs ? duration_ms : wire::kMaxPulseMs;
+  stirred_ = static_cast<uint8_t>(stirred_ | 1u << rod);
   poll(now_ms);
 }
 
 void Haptics::all_off() {
-  for (Motor& motor : motors_) motor.wanted = 0;
+  for (uint8_t rod = 0; rod < kMotors; ++rod) want(rod, 0);
+}
+
+void Haptics::want(uint8_t rod, uint8_t amplitude) {
+  motors_[rod].wanted = amplitude;
+  sent(rod, motors_[rod].sent);
+}
+
+void Haptics::sent(uint8_t rod, uint8_t amplitude) {
+  motors_[rod].sent = amplitude;
+  const uint8_t bit = static_cast<uint8_t>(1u << rod);
+  due_ = static_cast<uint8_t>(motors_[rod].wanted == amplitude ? due_ & ~bit : due_ | bit);
 }
 
 void Haptics::allow(bool allowed) {
@@ -38,17 +50,27 @@ void Haptics::made_safe() {
     motor.wanted = 0;
     motor.sent = 0;
   }
+  due_ = 0;
   present_ = 0;
   safe_ = true;
 }
 
 void Haptics::pass_ms() {
-  for (Motor& motor : motors_) {
-    motor.credit += kCreditPerMs;
+  uint8_t bit = 1;
+  for (uint8_t rod = 0; (stirred_ & ~(bit - 1u)) != 0;
+       ++rod, bit = static_cast<uint8_t>(bit << 1)) {
+    if ((stirred_ & bit) == 0) continue;
+    Motor& motor = motors_[rod];
+    motor.credit = static_cast<uint16_t>(motor.credit + kCreditPerMs);
+    if (motor.wanted == 0) {
+      if (motor.credit < kMaxCredit) continue;
+      motor.credit = kMaxCredit;
+      stirred_ = static_cast<uint8_t>(stirred_ & ~bit);
+      continue;
+    }
     if (motor.credit > kMaxCredit) motor.credit = kMaxCredit;
-    if (motor.wanted == 0) continue;
-    motor.credit -= motor.wanted;
-    if (--motor.left_ms == 0 || motor.credit < motor.wanted) motor.wanted = 0;
+    motor.credit = static_cast<uint16_t>(motor.credit - motor.wanted);
+    if (--motor.left_ms == 0 || motor.credit < motor.wanted) want(rod, 0);
   }
 }
 
@@ -65,13 +87,13 @@ void Haptics::poll(uint32_t now_ms) {
 }
 
 void Haptics::begin_job(uint32_t now_ms) {
-  for (uint8_t i = 0; i < kMotors; ++i) {
-    const uint8_t rod = static_cast<uint8_t>((first_ + i) % kMotors);
-    Motor& motor = motors_[rod];
-    if ((present_ & 1u << rod) == 0 || motor.wanted == motor.sent) continue;
+  const uint8_t due = due_ & present_;
+  for (uint8_t i = 0; due != 0 && i < kMotors; ++i) {
+    const uint8_t rod = (first_ + i) & (kMotors - 1u);
+    if ((due & 1u << rod) == 0) continue;
     first_ = static_cast<uint8_t>(rod + 1);
     rod_ = rod;
-    value_ = motor.wanted;
+    value_ = motors_[rod].wanted;
     setting_up_ = false;
     step_ = 0;
     working_ = true;
@@ -82,7 +104,7 @@ void Haptics::begin_job(uint32_t now_ms) {
   retry_ms_ = now_ms + (tried_ < kMotors ? kFirstMs : kRetryMs);
   if (tried_ < kMotors) ++tried_;
   do {
-    probe_ = static_cast<uint8_t>((probe_ + 1) % kMotors);
+    probe_ = (probe_ + 1u) & (kMotors - 1u);
   } while ((present_ & 1u << probe_) != 0);
   rod_ = probe_;
   setting_up_ = true;
@@ -109,7 +131,7 @@ void Haptics::transfer_ended(bool good) {
     present_ = static_cast<uint8_t>(present_ & ~mask);
     // A write that failed late may have started it.
     if (motors_[rod_].sent != 0 || (!setting_up_ && value_ != 0 && step_ != 0)) safe_ = false;
-    motors_[rod_].wanted = 0;
+    want(rod_, 0);
     return;
   }
   ++step_;
@@ -120,9 +142,9 @@ void Haptics::transfer_ended(bool good) {
   working_ = false;
   if (setting_up_) {
     present_ = static_cast<uint8_t>(present_ | mask);
-    motors_[rod_].sent = 0;
+    sent(rod_, 0);
   } else {
-    motors_[rod_].sent = value_;
+    sent(rod_, value_);
   }
 }
 

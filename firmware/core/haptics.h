@@ -50,24 +50,29 @@ class Haptics {
       125;                                 // between attempts, of one absent driver after the other
   static constexpr uint16_t kFirstMs = 2;  // the same in the first round
   // A motor at full amplitude for a pulse of the longest kind, then a quarter of that on average.
-  static constexpr int32_t kMaxCredit = 255L * wire::kMaxPulseMs;
-  static constexpr int32_t kCreditPerMs = 64;
+  static constexpr uint16_t kMaxCredit = 255u * wire::kMaxPulseMs;
+  static constexpr uint16_t kCreditPerMs = 64;
+  static_assert(255u * wire::kMaxPulseMs <= 0xFFFF - kCreditPerMs, "16 bits hold it");
 
  private:
   struct Motor {
     uint8_t wanted = 0;
     uint8_t sent = 0;
     uint16_t left_ms = 0;
-    int32_t credit = kMaxCredit;
+    uint16_t credit = kMaxCredit;
   };
 
   void pass_ms();
+  void want(uint8_t rod, uint8_t amplitude);
+  void sent(uint8_t rod, uint8_t amplitude);
   void transfer_ended(bool good);
   void begin_job(uint32_t now_ms);
   void next_write();
 
   I2cBus& bus_;
   Motor motors_[kMotors];
+  uint8_t stirred_ = 0;  // motors that run or have less than all of their credit, a bit each
+  uint8_t due_ = 0;      // motors whose register has not what is wanted
   uint8_t present_ = 0;
   bool allowed_ = true;
   bool safe_ = true;

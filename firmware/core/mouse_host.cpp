@@ -1,5 +1,7 @@
 #include "core/mouse_host.h"
 
+#include "core/saturating.h"
+
 namespace firmware {
 
 MouseHost::MouseHost()
@@ -70,7 +72,7 @@ void MouseHost::note(uint8_t mouse, MouseLink::Event event) {
 }
 
 void MouseHost::count_errors(uint8_t errors) {
-  quality_ = static_cast<uint8_t>(errors > 255 - quality_ ? 255 : quality_ + errors);
+  quality_ = add_saturating(quality_, errors);
 }
 
 void MouseHost::open_gate() {

@@ -53,17 +53,15 @@ const uint8_t kReport[] FIRMWARE_FLASH = {0x06, 0x00,
                                           0x95, wire::kDeviceReportBytes,  //   64 of them
                                           0x09, 0x01,
                                           0x81, 0x02,  //   input: data, variable, absolute
-#if FIRMWARE_TAKES_COMMANDS
                                           0x09, 0x02,  //   usage: command; as many bytes
                                           0x91, 0x02,  //   output: data, variable, absolute
-#endif
                                           0xC0};
 
 const uint8_t kHidVersionLow = 0x11, kHidVersionHigh = 0x01;
 const uint8_t kSelfPowered = 0xC0;  // eight sensors need more than a port gives: see docs/wiring.md
 const uint8_t kMilliampsHalved = 50;
 const uint8_t kInterrupt = 3, kEveryFrame = 1;
-const uint8_t kEndpoints = FIRMWARE_TAKES_COMMANDS ? 2 : 1;
+const uint8_t kEndpoints = 2;
 const uint8_t kConfigurationBytes = 9 + 9 + 9 + 7 * kEndpoints;
 const uint8_t kHidAt = 9 + 9;
 
@@ -102,7 +100,6 @@ const uint8_t kConfiguration[] FIRMWARE_FLASH = {
     wire::kDeviceReportBytes,
     0,
     kEveryFrame,
-#if FIRMWARE_TAKES_COMMANDS
     7,
     5,
     kCommandEndpoint,
@@ -110,7 +107,6 @@ const uint8_t kConfiguration[] FIRMWARE_FLASH = {
     wire::kDeviceReportBytes,
     0,
     kEveryFrame,
-#endif
 };
 static_assert(sizeof kConfiguration == kConfigurationBytes, "wTotalLength");
 

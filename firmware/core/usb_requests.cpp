@@ -24,16 +24,19 @@ const uint8_t kOfDevice = 0, kOfInterface = 1, kOfEndpoint = 2;
 const uint8_t kInputReport = 1, kOutputReport = 2;
 const uint8_t kStringKind = 3;
 
+UsbAnswer without_bytes(UsbAnswer::Kind kind) {
+  return {kind, nullptr, 0, false, false};
+}
 UsbAnswer stall() {
-  return {UsbAnswer::kStall, nullptr, 0, false};
+  return without_bytes(UsbAnswer::kStall);
 }
 UsbAnswer done() {
-  return {UsbAnswer::kDone, nullptr, 0, false};
+  return without_bytes(UsbAnswer::kDone);
 }
 UsbAnswer send(const uint8_t* bytes, uint8_t size, const UsbSetup& setup) {
   if (!setup.to_host() || setup.length == 0) return setup.to_host() ? done() : stall();
   const uint8_t sent = setup.length < size ? static_cast<uint8_t>(setup.length) : size;
-  return {UsbAnswer::kSend, bytes, sent, setup.length > size && size % kControlBytes == 0};
+  return {UsbAnswer::kSend, bytes, sent, setup.length > size && size % kControlBytes == 0, false};
 }
 
 }  // namespace
@@ -88,7 +91,7 @@ UsbAnswer UsbRequests::standard(const UsbSetup& setup) {
       configuration_ = static_cast<uint8_t>(setup.value);
       report_halted_ = false;
       command_halted_ = false;
-      return {UsbAnswer::kConfigure, nullptr, 0, false};
+      return without_bytes(UsbAnswer::kConfigure);
     case kGetInterface:
       return send_byte(0, 1, setup);
     case kSetInterface:
@@ -99,11 +102,11 @@ UsbAnswer UsbRequests::standard(const UsbSetup& setup) {
 
 UsbAnswer UsbRequests::feature(const UsbSetup& setup, bool set) {
   const bool report = setup.index == (0x80 | kReportEndpoint);
-  const bool command = FIRMWARE_TAKES_COMMANDS && setup.index == kCommandEndpoint;
+  const bool command = setup.index == kCommandEndpoint;
   const bool endpoint = (setup.type & kRecipientMask) == kOfEndpoint;
   if (!endpoint || (!report && !command) || setup.value != 0 || configuration_ == 0) return stall();
   (report ? report_halted_ : command_halted_) = set;
-  return {UsbAnswer::kConfigure, nullptr, 0, false};
+  return without_bytes(report ? UsbAnswer::kReportHalt : UsbAnswer::kCommandHalt);
 }
 
 UsbAnswer UsbRequests::descriptor(const UsbSetup& setup) {
@@ -112,7 +115,9 @@ UsbAnswer UsbRequests::descriptor(const UsbSetup& setup) {
   }
   const Descriptor found = find_descriptor(setup.value, setup.index);
   if (found.flash == nullptr) return stall();
-  return send(found.flash, found.size, setup);
+  UsbAnswer answer = send(found.flash, found.size, setup);
+  answer.in_flash = true;
+  return answer;
 }
 
 UsbAnswer UsbRequests::hid(const UsbSetup& setup) {
@@ -122,11 +127,11 @@ UsbAnswer UsbRequests::hid(const UsbSetup& setup) {
       if (kind != kInputReport || report_ == nullptr) return stall();
       return send(report_, wire::kDeviceReportBytes, setup);
     case kSetReport:
-      if (!FIRMWARE_TAKES_COMMANDS || kind != kOutputReport || setup.to_host() ||
-          setup.length == 0 || setup.length > wire::kDeviceReportBytes) {
+      if (kind != kOutputReport || setup.to_host() || setup.length == 0 ||
+          setup.length > wire::kDeviceReportBytes) {
         return stall();
       }
-      return {UsbAnswer::kTake, nullptr, static_cast<uint8_t>(setup.length), false};
+      return {UsbAnswer::kTake, nullptr, static_cast<uint8_t>(setup.length), false, false};
     case kGetIdle:
       return send_byte(idle_, 1, setup);
     case kSetIdle:  // accepted; a report goes out every millisecond whatever is asked

@@ -22,15 +22,18 @@ UsbSetup read_setup(const uint8_t* bytes);
 struct UsbAnswer {
   enum Kind : uint8_t {
     kStall,
-    kDone,      // an empty status packet
-    kSend,      // bytes, size of them, in packets; then the host's empty packet
-    kTake,      // the host sends an output report of setup.length bytes
-    kConfigure  // kDone, and the endpoints begin anew: configured() has changed or was set again
+    kDone,       // an empty status packet
+    kSend,       // bytes, size of them, in packets; then the host's empty packet
+    kTake,       // the host sends an output report of size bytes, in one packet
+    kConfigure,  // kDone, and both endpoints start again: configured() has changed or was set again
+    kReportHalt,   // kDone, and the report endpoint starts again, or stalls: report_halted()
+    kCommandHalt,  // the same of the command endpoint
   };
   Kind kind;
   const uint8_t* bytes;
   uint8_t size;
   bool end_with_empty;  // the host asked for more than the last full packet says
+  bool in_flash;        // bytes are those of a Descriptor
 };
 
 class UsbRequests {

@@ -1,6 +1,7 @@
 // Which pins and peripherals each board gives. docs/wiring.md has the same table for the person
-// with the soldering iron. All 16 lines are open drain with external pull-ups: PORT stays 0, DDR
-// pulls low.
+// with the soldering iron. The 16 lines of the mice are open drain with external pull-ups: PORT
+// stays 0, DDR pulls low. The motors' bus is open drain too, with the weak pull-ups of the
+// micro-controller besides, so that it rests where nothing is attached.
 #ifndef FIRMWARE_HAL_BOARD_H
 #define FIRMWARE_HAL_BOARD_H
 
@@ -14,6 +15,16 @@
 #define BOARD_DATA_PIN PIND
 #define BOARD_DATA_PORT PORTD
 #define BOARD_DATA_DDR DDRD
+#define BOARD_I2C_PIN PINF
+#define BOARD_I2C_PORT PORTF
+#define BOARD_I2C_DDR DDRF
+#define BOARD_I2C_DATA_BIT 0
+#define BOARD_I2C_CLOCK_BIT 1
+#define BOARD_MOTORS_PORT PORTC
+#define BOARD_MOTORS_DDR DDRC
+#define BOARD_MOTORS_BIT 6
+#define BOARD_LED_DDR DDRC  // output A of timer 4
+#define BOARD_LED_BIT 7
 #elif defined(__AVR_ATmega2560__)
 // Arduino Mega: pins 22..29 and 37..30, side by side on the double header.
 #define BOARD_CLOCK_PIN PINA
@@ -22,6 +33,17 @@
 #define BOARD_DATA_PIN PINC
 #define BOARD_DATA_PORT PORTC
 #define BOARD_DATA_DDR DDRC
+// Pins 20 and 21, where the board says SDA and SCL, and 19 beside them; 13 with the board's LED.
+#define BOARD_I2C_PIN PIND
+#define BOARD_I2C_PORT PORTD
+#define BOARD_I2C_DDR DDRD
+#define BOARD_I2C_DATA_BIT 1
+#define BOARD_I2C_CLOCK_BIT 0
+#define BOARD_MOTORS_PORT PORTD
+#define BOARD_MOTORS_DDR DDRD
+#define BOARD_MOTORS_BIT 2
+#define BOARD_LED_DDR DDRB  // output A of timer 0
+#define BOARD_LED_BIT 7
 #else
 #error "no pin table for this micro-controller"
 #endif

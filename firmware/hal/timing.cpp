@@ -3,7 +3,6 @@
 #include <avr/interrupt.h>
 #include <avr/power.h>
 #include <avr/sleep.h>
-#include <avr/wdt.h>
 
 namespace firmware {
 
@@ -28,10 +27,7 @@ void drive_lines(uint8_t clock_low, uint8_t data_low) {
 }
 
 void start_sampling() {
-  // Boards differ in what their fuses and boot loaders leave behind: a Teensy 2.0 starts at 2 MHz,
-  // and a boot loader that ends by a watchdog reset leaves the watchdog running.
-  MCUSR = 0;
-  wdt_disable();
+  // Boards differ in what their fuses and boot loaders leave behind: a Teensy 2.0 starts at 2 MHz.
   clock_prescale_set(clock_div_1);
 
   BOARD_CLOCK_PORT = 0;

@@ -1,10 +1,16 @@
-// UART0 at 1 Mbaud, sending only. A frame is copied and goes out byte by byte from poll(): at 250
-// frames of 48 bytes the line is busy an eighth of the time, so no interrupt is needed that could
-// delay the sampling one.
+// UART0 at 1 Mbaud. A frame is copied and goes out byte by byte from poll(): at 250 frames of 48
+// bytes the line is busy an eighth of the time, so no interrupt is needed that could delay the
+// sampling one. Commands are rare and come ten times as fast as the loop goes round: their bytes
+// are taken by an interrupt, which the application defines, for the same reason as that of
+// sampling:
+//   ISR(USART0_RX_vect) { g_uart.receive(); }
 #ifndef FIRMWARE_HAL_UART_H
 #define FIRMWARE_HAL_UART_H
 
 #include <stdint.h>
+
+#include "core/ps2_lines.h"
+#include "hal/board.h"
 
 namespace firmware {
 
@@ -15,13 +21,47 @@ class Uart {
   // Takes all of it or, when it does not fit, nothing.
   bool send(const uint8_t* bytes, uint8_t size);
 
+  // The interrupt's.
+  FIRMWARE_INLINE void receive() {
+    const uint8_t faults = UCSR0A & (_BV(FE0) | _BV(DOR0));
+    const uint8_t value = UDR0;
+    const uint8_t head = received_head_;
+    const uint8_t next = static_cast<uint8_t>((head + 1) & kRingMask);
+    if (faults != 0 || next == received_tail_) {
+      lost_ = 1;
+      return;
+    }
+    received_[head] = value;
+    received_head_ = next;
+  }
+  // The oldest byte not yet taken; false: none.
+  bool take(uint8_t& out) {
+    const uint8_t tail = received_tail_;
+    if (tail == received_head_) return false;
+    out = received_[tail];
+    received_tail_ = static_cast<uint8_t>((tail + 1) & kRingMask);
+    return true;
+  }
+  // Bytes were lost or damaged since the last call.
+  bool take_lost() {
+    if (lost_ == 0) return false;
+    lost_ = 0;
+    return true;
+  }
+
  private:
-  static const uint8_t kRing = 128;  // two frames
+  static const uint8_t kRing = 128;  // two frames to send; seven commands to take
   static const uint8_t kRingMask = kRing - 1;
 
   uint8_t ring_[kRing] = {};
   uint8_t head_ = 0;
   uint8_t tail_ = 0;
+
+  // One writer each: head the interrupt, tail the polling side.
+  volatile uint8_t received_[kRing] = {};
+  volatile uint8_t received_head_ = 0;
+  volatile uint8_t received_tail_ = 0;
+  volatile uint8_t lost_ = 0;
 };
 
 }  // namespace firmware

@@ -2,38 +2,45 @@
 
 #include <avr/pgmspace.h>
 
-#include "core/usb_descriptors.h"
 #include "hal/board.h"
 
 namespace firmware {
 
 namespace {
 
-enum StandardRequest : uint8_t {
-  kGetStatus = 0,
-  kClearFeature = 1,
-  kSetFeature = 3,
-  kSetAddress = 5,
-  kGetDescriptor = 6,
-  kGetConfiguration = 8,
-  kSetConfiguration = 9,
-  kGetInterface = 10,
-  kSetInterface = 11,
-};
-enum HidRequest : uint8_t { kGetReport = 1, kGetIdle = 2, kSetIdle = 10 };
+const uint8_t kEndpointSize = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank
+const uint8_t kInterruptEndpoint = _BV(EPTYPE1) | _BV(EPTYPE0);
 
-const uint8_t kToHost = 0x80, kClass = 0x20, kTypeMask = 0x60, kRecipientMask = 0x1F;
-const uint8_t kOfDevice = 0, kOfInterface = 1, kOfEndpoint = 2;
-const uint8_t kInputReport = 1;
-
-// Flags of UEINTX are cleared by writing 0; writing 1 leaves them.
+// Flags of UEINTX are cleared by writing 0; writing 1 leaves them. Not so at an endpoint towards the
+// host: there a 1 in the place of RXOUTI throws away what was written (KILLBK).
 void clear_endpoint_flags(uint8_t flags) {
   UEINTX = static_cast<uint8_t>(~flags);
+}
+void hand_over_report() {
+  clear_endpoint_flags(_BV(TXINI) | _BV(FIFOCON) | _BV(RXOUTI));
+}
+
+// Of endpoint 0: what the host reads is an empty packet.
+void send_empty_packet() {
+  clear_endpoint_flags(_BV(TXINI));
+}
+
+// Of the endpoint chosen by UENUM, which is on. Its data toggle starts again, unless it stalls.
+void stall_endpoint(bool stalled) {
+  UECONX = stalled ? _BV(STALLRQ) | _BV(EPEN) : _BV(STALLRQC) | _BV(RSTDT) | _BV(EPEN);
+}
+
+uint8_t read_packet(uint8_t* out) {
+  const uint8_t size = UEBCLX;
+  const uint8_t kept = size < wire::kDeviceCommandBytes ? size : wire::kDeviceCommandBytes;
+  for (uint8_t i = 0; i < kept; ++i) out[i] = UEDATX;
+  return size;
 }
 
 }  // namespace
 
-void UsbDevice::start() {
+void UsbDevice::start(const uint8_t* serial) {
+  requests_.set_serial(serial);
   UDCON = _BV(DETACH);  // a boot loader may have been on the bus
   USBCON = 0;
   UHWCON = _BV(UVREGE);
@@ -50,15 +57,14 @@ void UsbDevice::attach() {
 
 void UsbDevice::on_bus_reset() {
   UDINT = static_cast<uint8_t>(UDINT & ~_BV(EORSTI));
-  configuration_ = 0;
-  new_address_ = 0;
-  replying_ = false;
-  halted_ = false;
+  requests_.on_bus_reset();
+  sending_ = nullptr;
+  taking_ = false;
   report_pending_ = false;
   UENUM = 0;
   UECONX = _BV(EPEN);
-  UECFG0X = 0;                                         // control
-  UECFG1X = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank
+  UECFG0X = 0;  // control
+  UECFG1X = kEndpointSize;
 }
 
 void UsbDevice::poll() {
@@ -68,7 +74,7 @@ void UsbDevice::poll() {
   }
   if ((UDINT & _BV(EORSTI)) != 0) on_bus_reset();
   serve_control();
-  if (configuration_ == 0) return;
+  if (!configured()) return;
   UENUM = kReportEndpoint;
   if ((UEINTX & _BV(TXINI)) != 0) report_pending_ = false;
 }
@@ -80,161 +86,134 @@ void UsbDevice::serve_control() {
     on_setup();
     return;
   }
-  if ((flags & _BV(RXOUTI)) != 0) {  // the host's empty packet: it has what it wanted
-    clear_endpoint_flags(_BV(RXOUTI));
-    replying_ = false;
+  if ((flags & _BV(RXOUTI)) != 0) {
+    if (taking_) {
+      take_control_packet();
+    } else {  // the host's empty packet: it has what it wanted
+      clear_endpoint_flags(_BV(RXOUTI));
+      sending_ = nullptr;
+    }
     return;
   }
   if ((flags & _BV(TXINI)) == 0) return;
-  if (replying_) {
+  if (sending_ != nullptr) {
     send_control_packet();
-  } else if (new_address_ != 0) {  // the status packet went out under the old address
-    UDADDR = new_address_ | _BV(ADDEN);
-    new_address_ = 0;
+  } else if (requests_.new_address() != 0) {  // the status packet went out under the old address
+    UDADDR = requests_.new_address() | _BV(ADDEN);
+    requests_.address_taken();
   }
 }
 
 void UsbDevice::on_setup() {
-  Setup setup;
-  setup.type = UEDATX;
-  setup.request = UEDATX;
-  setup.value = UEDATX;
-  setup.value |= static_cast<uint16_t>(UEDATX) << 8;
-  setup.index = UEDATX;
-  setup.index |= static_cast<uint16_t>(UEDATX) << 8;
-  setup.length = UEDATX;
-  setup.length |= static_cast<uint16_t>(UEDATX) << 8;
+  uint8_t bytes[8];
+  for (uint8_t& byte : bytes) byte = UEDATX;
   clear_endpoint_flags(_BV(RXSTPI) | _BV(RXOUTI));
-  replying_ = false;
-  new_address_ = 0;
-  if (!answer(setup)) {
-    UENUM = 0;
-    UECONX = _BV(STALLRQ) | _BV(EPEN);
-    return;
+  sending_ = nullptr;
+  taking_ = false;
+  const UsbAnswer answer = requests_.answer(read_setup(bytes));
+  switch (answer.kind) {
+    case UsbAnswer::kStall:
+      stall_endpoint(true);
+      return;
+    case UsbAnswer::kSend:
+      sending_ = answer.bytes;
+      left_ = answer.size;
+      in_flash_ = answer.in_flash;
+      end_with_empty_ = answer.end_with_empty;
+      return;
+    case UsbAnswer::kTake:
+      taking_ = true;
+      return;
+    case UsbAnswer::kConfigure:
+      configure_report_endpoint();
+      configure_command_endpoint();
+      break;
+    case UsbAnswer::kReportHalt:
+      UENUM = kReportEndpoint;
+      stall_endpoint(requests_.report_halted());
+      break;
+    case UsbAnswer::kCommandHalt:
+      UENUM = kCommandEndpoint;
+      stall_endpoint(requests_.command_halted());
+      break;
+    case UsbAnswer::kDone:
+      break;
   }
   UENUM = 0;
-  if (!replying_) clear_endpoint_flags(_BV(TXINI));  // status: an empty packet
-}
-
-bool UsbDevice::answer(const Setup& setup) {
-  const uint8_t kind = setup.type & kTypeMask;
-  if (kind == 0) return answer_standard(setup);
-  if (kind == kClass && (setup.type & kRecipientMask) == kOfInterface && setup.index == 0) {
-    return answer_hid(setup);
-  }
-  return false;
-}
-
-bool UsbDevice::answer_standard(const Setup& setup) {
-  const uint8_t recipient = setup.type & kRecipientMask;
-  const bool to_host = (setup.type & kToHost) != 0;
-  const bool report_endpoint = recipient == kOfEndpoint && setup.index == (0x80 | kReportEndpoint);
-  switch (setup.request) {
-    case kGetStatus:
-      if (!to_host || recipient > kOfEndpoint) return false;
-      reply_byte(recipient == kOfDevice ? 1 : (report_endpoint && halted_ ? 1 : 0), 0, 2,
-                 setup.length);
-      return true;
-    case kClearFeature:
-    case kSetFeature: {
-      if (!report_endpoint || setup.value != 0 || configuration_ == 0) return false;
-      halted_ = setup.request == kSetFeature;
-      UENUM = kReportEndpoint;
-      UECONX = halted_ ? _BV(STALLRQ) | _BV(EPEN) : _BV(STALLRQC) | _BV(RSTDT) | _BV(EPEN);
-      return true;
-    }
-    case kSetAddress:
-      if (setup.value > 127) return false;
-      new_address_ = static_cast<uint8_t>(setup.value);
-      if (new_address_ == 0) UDADDR = 0;
-      return true;
-    case kGetDescriptor: {
-      const Descriptor found = find_descriptor(setup.value, setup.index);
-      if (!to_host || found.flash == nullptr) return false;
-      reply(found.flash, found.size, true, setup.length);
-      return true;
-    }
-    case kGetConfiguration:
-      reply_byte(configuration_, 0, 1, setup.length);
-      return true;
-    case kSetConfiguration:
-      if (setup.value > 1) return false;
-      configure(static_cast<uint8_t>(setup.value));
-      return true;
-    case kGetInterface:
-      reply_byte(0, 0, 1, setup.length);
-      return true;
-    case kSetInterface:
-      return setup.value == 0 && setup.index == 0;
-  }
-  return false;
-}
-
-bool UsbDevice::answer_hid(const Setup& setup) {
-  switch (setup.request) {
-    case kGetReport:
-      if ((setup.value >> 8) != kInputReport || last_report_ == nullptr) return false;
-      reply(last_report_, wire::kDeviceReportBytes, false, setup.length);
-      return true;
-    case kGetIdle:
-      reply_byte(idle_, 0, 1, setup.length);
-      return true;
-    case kSetIdle:  // accepted; a report goes out every millisecond whatever is asked
-      idle_ = static_cast<uint8_t>(setup.value >> 8);
-      return true;
-  }
-  return false;
-}
-
-void UsbDevice::reply_byte(uint8_t value, uint8_t second, uint8_t size, uint16_t asked) {
-  small_[0] = value;
-  small_[1] = second;
-  reply(small_, size, false, asked);
-}
-
-void UsbDevice::reply(const uint8_t* bytes, uint8_t size, bool in_flash, uint16_t asked) {
-  reply_ = bytes;
-  reply_left_ = asked < size ? static_cast<uint8_t>(asked) : size;
-  reply_in_flash_ = in_flash;
-  end_with_empty_ = asked > size && size % kControlBytes == 0;
-  replying_ = asked != 0;
+  send_empty_packet();
 }
 
 void UsbDevice::send_control_packet() {
-  if (reply_left_ == 0 && !end_with_empty_) return;  // all sent: the host's empty packet ends it
-  if (reply_left_ == 0) end_with_empty_ = false;
-  const uint8_t size = reply_left_ < kControlBytes ? reply_left_ : kControlBytes;
-  for (uint8_t i = 0; i < size; ++i, ++reply_) {
-    UEDATX = reply_in_flash_ ? pgm_read_byte(reply_) : *reply_;
+  if (left_ == 0 && !end_with_empty_) return;  // all sent: the host's empty packet ends it
+  if (left_ == 0) end_with_empty_ = false;
+  const uint8_t size = left_ < kControlBytes ? left_ : kControlBytes;
+  for (uint8_t i = 0; i < size; ++i, ++sending_) {
+    UEDATX = in_flash_ ? pgm_read_byte(sending_) : *sending_;
   }
-  reply_left_ = static_cast<uint8_t>(reply_left_ - size);
+  left_ = static_cast<uint8_t>(left_ - size);
   clear_endpoint_flags(_BV(TXINI));
 }
 
-void UsbDevice::configure(uint8_t configuration) {
-  configuration_ = configuration;
-  halted_ = false;
+void UsbDevice::take_control_packet() {
+  if (command_size_ != 0) return;  // the host waits until the one before is taken
+  command_size_ = read_packet(command_);
+  taking_ = false;
+  clear_endpoint_flags(_BV(RXOUTI));
+  send_empty_packet();
+}
+
+// Endpoints get their memory in the order of their numbers: this one is the first.
+void UsbDevice::configure_report_endpoint() {
   report_pending_ = false;
   UENUM = kReportEndpoint;
-  if (configuration == 0) {
+  if (!configured()) {
     UECONX = 0;
     UECFG1X = 0;
     return;
   }
   UECONX = _BV(EPEN);
-  UECFG0X = _BV(EPTYPE1) | _BV(EPTYPE0) | _BV(EPDIR);  // interrupt, to the host
-  UECFG1X = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank: two would age a report
+  UECFG0X = kInterruptEndpoint | _BV(EPDIR);  // to the host
+  UECFG1X = kEndpointSize;                    // two banks would age a report
   UERST = _BV(kReportEndpoint);
   UERST = 0;
 }
 
+void UsbDevice::configure_command_endpoint() {
+  UENUM = kCommandEndpoint;
+  if (!configured()) {
+    UECONX = 0;
+    UECFG1X = 0;
+    return;
+  }
+  UECONX = _BV(EPEN);
+  UECFG0X = kInterruptEndpoint;
+  UECFG1X = kEndpointSize;
+  UERST = _BV(kCommandEndpoint);
+  UERST = 0;
+}
+
 void UsbDevice::send_report(const uint8_t* report) {
+  requests_.set_report(report);
   UENUM = kReportEndpoint;
-  last_report_ = report;
   for (uint8_t i = 0; i < wire::kDeviceReportBytes; ++i) UEDATX = report[i];
-  clear_endpoint_flags(_BV(TXINI));
-  clear_endpoint_flags(_BV(FIFOCON));
+  hand_over_report();
   report_pending_ = true;
+}
+
+uint8_t UsbDevice::take_command(uint8_t* out) {
+  if (command_size_ != 0) {
+    for (uint8_t i = 0; i < wire::kDeviceCommandBytes; ++i) out[i] = command_[i];
+    const uint8_t size = command_size_;
+    command_size_ = 0;
+    return size;
+  }
+  if (!configured()) return 0;
+  UENUM = kCommandEndpoint;
+  if ((UEINTX & _BV(RXOUTI)) == 0) return 0;
+  const uint8_t size = read_packet(out);
+  clear_endpoint_flags(_BV(RXOUTI));
+  clear_endpoint_flags(_BV(FIFOCON));
+  return size;
 }
 
 }  // namespace firmware

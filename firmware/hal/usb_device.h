@@ -5,54 +5,51 @@
 
 #include <stdint.h>
 
-#include "wire/device_frame.h"
+#include "core/usb_requests.h"
+#include "wire/device_command.h"
 
 namespace firmware {
 
 class UsbDevice {
  public:
-  void start();
+  // serial: a string descriptor, which stays where it is.
+  void start(const uint8_t* serial);
   void poll();
 
   // The host has chosen the configuration and reads reports.
-  bool configured() const { return configuration_ != 0; }
+  bool configured() const { return requests_.configured(); }
   // The host has taken the last report. The next is made at once, not just before it is asked for:
   // with all mice talking, making one may take most of the millisecond.
-  bool wants_report() const { return configuration_ != 0 && !halted_ && !report_pending_; }
+  bool wants_report() const {
+    return configured() && !requests_.report_halted() && !report_pending_;
+  }
   // report: wire::kDeviceReportBytes, which stay where they are: GET_REPORT reads them again.
   void send_report(const uint8_t* report);
 
- private:
-  struct Setup {
-    uint8_t type, request;
-    uint16_t value, index, length;
-  };
+  // The oldest output report not yet taken; while it waits the host has to. out: as much of it as a
+  // command has, wire::kDeviceCommandBytes. Returns the report's size; 0: none.
+  uint8_t take_command(uint8_t* out);
 
+ private:
   void attach();
   void on_bus_reset();
   void serve_control();
   void on_setup();
-  bool answer(const Setup& setup);
-  bool answer_standard(const Setup& setup);
-  bool answer_hid(const Setup& setup);
-  void reply(const uint8_t* bytes, uint8_t size, bool in_flash, uint16_t asked);
-  void reply_byte(uint8_t value, uint8_t second, uint8_t size, uint16_t asked);
   void send_control_packet();
-  void configure(uint8_t configuration);
+  void take_control_packet();
+  void configure_report_endpoint();
+  void configure_command_endpoint();
 
-  const uint8_t* last_report_ = nullptr;
-  const uint8_t* reply_ = nullptr;
-  uint8_t small_[2] = {};
-  uint8_t reply_left_ = 0;
-  bool reply_in_flash_ = false;
-  bool replying_ = false;
-  bool end_with_empty_ = false;  // the host asked for more than a full packet says
+  UsbRequests requests_;
+  const uint8_t* sending_ = nullptr;  // of a control transfer; null: none
+  uint8_t left_ = 0;
+  bool in_flash_ = false;
+  bool end_with_empty_ = false;
+  bool taking_ = false;  // the host sends an output report by a control transfer
   bool attached_ = false;
-  bool halted_ = false;  // endpoint 1, by SET_FEATURE
-  uint8_t new_address_ = 0;
-  uint8_t configuration_ = 0;
-  uint8_t idle_ = 0;
-  bool report_pending_ = false;  // in the endpoint, not yet taken
+  bool report_pending_ = false;                      // in the endpoint, not yet taken
+  uint8_t command_[wire::kDeviceCommandBytes] = {};  // that came by a control transfer
+  uint8_t command_size_ = 0;                         // of the report; 0: none waits
 };
 
 }  // namespace firmware

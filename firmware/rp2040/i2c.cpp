@@ -10,57 +10,135 @@ namespace {
 constexpr uint32_t kCon = kI2c0, kTarget = kI2c0 + 0x04, kData = kI2c0 + 0x10,
                    kHighCount = kI2c0 + 0x1C, kLowCount = kI2c0 + 0x20, kMask = kI2c0 + 0x30,
                    kRaw = kI2c0 + 0x34, kClearAbort = kI2c0 + 0x54, kClearStop = kI2c0 + 0x60,
-                   kEnable = kI2c0 + 0x6C, kSpike = kI2c0 + 0xA0;
+                   kEnable = kI2c0 + 0x6C, kDataHold = kI2c0 + 0x7C, kEnableStatus = kI2c0 + 0x9C,
+                   kSpike = kI2c0 + 0xA0;
 constexpr uint32_t kAborted = bit(6), kStopped = bit(9);  // of kRaw
 constexpr uint32_t kStopAfter = bit(9);                   // of kData
 constexpr uint32_t kBitCycles = kSystemHz / 400'000;
-constexpr uint32_t kTimeoutUs = 1000;  // a write takes 75 us
+constexpr uint32_t kHoldCycles =
+    kSystemHz / 10'000 * 3 / 1000 + 1;  // 300 ns behind the clock's fall
+constexpr uint32_t kTimeoutUs = 1000;   // a write takes 75 us
+// The controller ends what it is at first (datasheet 4.3.10.3): 25 us at 400 kHz.
+constexpr uint32_t kDisableUs = 30;
+constexpr uint8_t kFreeingClocks = 9;
+
+bool is_high(unsigned pin) {
+  return (reg(kGpioIn) & bit(pin)) != 0;
+}
+// By hand, open drain: the output is 0, and enabled or not.
+void pull_low(unsigned pin) {
+  reg(kGpioOeSet) = bit(pin);
+  wait_cycles(kBitCycles / 2);
+}
+void let_go(unsigned pin) {
+  reg(kGpioOeClear) = bit(pin);
+  wait_cycles(kBitCycles / 2);
+}
+void give_pins_to(uint32_t function) {
+  constexpr unsigned kPins[] = {kI2cData, kI2cClock};
+  for (const unsigned pin : kPins) {
+    reg(kGpioOeClear) = bit(pin);
+    reg(kGpioOutClear) = bit(pin);
+    reg(pin_ctrl(pin)) = function;
+  }
+}
 
 }  // namespace
 
 void I2c::start() {
-  reg(kEnable) = 0;
+  set_up();
+  reg(kNvicEnable) = bit(kIrqI2c0);
+}
+
+void I2c::set_up() {
+  reset_peripherals(kResetI2c0);
   reg(kCon) = 1 | 2 << 1 | bit(5) | bit(6);  // controller, fast mode, restart, no target
   reg(kHighCount) = kBitCycles * 2 / 5;
   reg(kLowCount) = kBitCycles * 3 / 5;
   reg(kSpike) = 6;  // 48 ns
+  reg(kDataHold) = kHoldCycles;
   reg(kMask) = 0;
-  reg(kNvicEnable) = bit(kIrqI2c0);
-  busy_ = false;
-  failed_ = false;
+}
+
+// What is written to its registers while it is still enabled is lost.
+void I2c::disable() {
+  reg(kEnable) = 0;
+  const uint32_t began_us = micros();
+  while ((reg(kEnableStatus) & 1) != 0) {
+    if (micros() - began_us <= kDisableUs) continue;
+    set_up();
+    return;
+  }
 }
 
 void I2c::write(uint8_t address, const uint8_t* bytes, uint8_t size) {
-  reg(kEnable) = 0;
-  reg(kTarget) = address;
+  address_ = address;
+  size_ = size;
+  for (uint8_t i = 0; i < size; ++i) bytes_[i] = bytes[i];
+  failed_ = false;
+  if (is_high(kI2cData)) {
+    begin_write();
+    return;
+  }
+  disable();
+  give_pins_to(kFunctionSio);
+  clocks_ = kFreeingClocks;
+  work_ = kFreeing;
+}
+
+void I2c::begin_write() {
+  disable();
+  reg(kTarget) = address_;
   reg(kEnable) = 1;
   uint32_t cleared = reg(kClearAbort);  // by reading
   cleared = reg(kClearStop);
   (void)cleared;
-  for (uint8_t i = 0; i < size; ++i) {
-    reg(kData) = bytes[i] | (i + 1 == size ? kStopAfter : 0);
+  for (uint8_t i = 0; i < size_; ++i) {
+    reg(kData) = bytes_[i] | (i + 1 == size_ ? kStopAfter : 0);
   }
   reg(kMask) = kAborted | kStopped;
   began_us_ = micros();
-  busy_ = true;
-  failed_ = false;
+  work_ = kWriting;
+}
+
+void I2c::end(bool good) {
+  work_ = kNone;
+  failed_ = !good;
+}
+
+void I2c::watch_write() {
+  const uint32_t raw = reg(kRaw);
+  if ((raw & kAborted) != 0) {
+    end(false);
+  } else if ((raw & kStopped) != 0) {
+    end(true);
+  } else if (micros() - began_us_ > kTimeoutUs) {
+    set_up();
+    end(false);
+  }
+}
+
+void I2c::give_clock() {
+  pull_low(kI2cClock);
+  let_go(kI2cClock);
+  if (!is_high(kI2cData) && is_high(kI2cClock) && --clocks_ != 0) return;
+  pull_low(kI2cClock);  // STOP
+  pull_low(kI2cData);
+  let_go(kI2cClock);
+  let_go(kI2cData);
+  const bool free = is_high(kI2cData) && is_high(kI2cClock);
+  give_pins_to(kFunctionI2c);
+  if (free) {
+    begin_write();
+  } else {
+    end(false);
+  }
 }
 
 firmware::I2cBus::State I2c::state() {
-  if (busy_) {
-    const uint32_t raw = reg(kRaw);
-    if ((raw & kAborted) != 0) {
-      busy_ = false;
-      failed_ = true;
-    } else if ((raw & kStopped) != 0) {
-      busy_ = false;
-    } else if (micros() - began_us_ > kTimeoutUs) {
-      reg(kEnable) = 0;  // somebody holds a line: let go of both
-      busy_ = false;
-      failed_ = true;
-    }
-  }
-  return busy_ ? kBusy : failed_ ? kFailed : kIdle;
+  if (work_ == kWriting) watch_write();
+  if (work_ == kFreeing) give_clock();
+  return work_ != kNone ? kBusy : failed_ ? kFailed : kIdle;
 }
 
 void I2c::on_interrupt() {

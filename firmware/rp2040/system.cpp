@@ -30,12 +30,6 @@ void start_pll(uint32_t base, uint32_t feedback, uint32_t divide1, uint32_t divi
   clear_bits(base + kPower, bit(3));
 }
 
-void leave_reset(uint32_t peripherals) {
-  clear_bits(kResets, peripherals);
-  while ((reg(kResetDone) & peripherals) != peripherals) {
-  }
-}
-
 void start_clocks() {
   reg(kClkRefCtrl) = 2;  // the crystal
   while ((reg(kClkRefSelected) & bit(2)) == 0) {
@@ -84,11 +78,16 @@ void start_pins() {
 
 }  // namespace
 
+void reset_peripherals(uint32_t peripherals) {
+  set_bits(kResets, peripherals);
+  clear_bits(kResets, peripherals);
+  while ((reg(kResetDone) & peripherals) != peripherals) {
+  }
+}
+
 void start_system() {
   start_crystal();
-  // What a boot loader may have left running goes back to reset first.
-  set_bits(kResets, kUsedPeripherals);
-  leave_reset(kUsedPeripherals);
+  reset_peripherals(kUsedPeripherals);  // a boot loader may have left them running
   start_clocks();
   start_pins();
   reg(kTimerInterruptEnable) = bit(0);

@@ -30,6 +30,15 @@ inline void allow_interrupts() {
   asm volatile("cpsie i" ::: "memory");
 }
 
+// What an interrupt and the polling loop hand each other in memory is there before the index that
+// says so: one core does all in its order, only the compiler must not change it.
+inline void keep_order() {
+  asm volatile("" ::: "memory");
+}
+
+// Back to the state after power-on.
+void reset_peripherals(uint32_t peripherals);
+
 // At least so many: 3 cycles a round.
 inline __attribute__((always_inline)) void wait_cycles(uint32_t cycles) {
   uint32_t rounds = cycles / 3;

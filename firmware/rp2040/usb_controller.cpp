@@ -1,5 +1,6 @@
 #include "rp2040/usb_controller.h"
 
+#include "core/saturating.h"
 #include "rp2040/system.h"
 
 namespace rp2040 {
@@ -92,7 +93,8 @@ void UsbController::on_bus_reset() {
   requests_.on_bus_reset();
   sending_ = nullptr;
   taking_ = false;
-  configure_endpoints();
+  restart_reports();
+  restart_commands();
   reg(kUsbSieStatus) = kBusReset;
 }
 
@@ -113,7 +115,16 @@ void UsbController::on_setup() {
       reg(kControlOut) = kStall;
       break;
     case UsbAnswer::kConfigure:
-      configure_endpoints();
+      restart_reports();
+      restart_commands();
+      give_buffer(kControlIn, kFull | kData1);
+      break;
+    case UsbAnswer::kReportHalt:
+      restart_reports();
+      give_buffer(kControlIn, kFull | kData1);
+      break;
+    case UsbAnswer::kCommandHalt:
+      restart_commands();
       give_buffer(kControlIn, kFull | kData1);
       break;
     case UsbAnswer::kDone:
@@ -171,42 +182,63 @@ void UsbController::on_command() {
 
 void UsbController::keep_command(const volatile uint32_t* from, uint8_t size) {
   const uint8_t next = static_cast<uint8_t>((command_head_ + 1) % kCommands);
-  if (next == command_tail_ || size == 0 || size > wire::kDeviceReportBytes) return;
+  if (size == 0 || size > wire::kDeviceReportBytes) return;
+  if (next == command_tail_) {
+    dropped_ = firmware::add_saturating(dropped_, 1);
+    return;
+  }
   for (uint8_t i = 0; 4 * i < size; ++i) commands_[command_head_][i] = from[i];
   command_bytes_[command_head_] = size;
+  keep_order();
   command_head_ = next;
 }
 
 uint8_t UsbController::take_command(uint8_t* out) {
   const uint8_t tail = command_tail_;
   if (tail == command_head_) return 0;
+  keep_order();
   const uint8_t size = command_bytes_[tail];
   for (uint8_t i = 0; i < size; ++i) {
     out[i] = static_cast<uint8_t>(commands_[tail][i / 4] >> (8 * (i % 4)));
   }
+  keep_order();
   command_tail_ = static_cast<uint8_t>((tail + 1) % kCommands);
   return size;
 }
 
-// Both begin with DATA0, empty; what was waiting to be sent is thrown away.
-void UsbController::configure_endpoints() {
+uint8_t UsbController::take_dropped() {
+  hold_interrupts();
+  const uint8_t dropped = dropped_;
+  dropped_ = 0;
+  allow_interrupts();
+  return dropped;
+}
+
+// Begins with DATA0, empty; what was waiting to be sent is thrown away.
+void UsbController::restart_reports() {
   if ((reg(kReportIn) & kAvailable) != 0) {
     set_bits(kUsbAbort, kReportDone);
     for (uint32_t tries = 0; tries < 1000 && (reg(kUsbAbortDone) & kReportDone) == 0; ++tries) {
     }
   }
   report_data1_ = false;
-  command_data1_ = false;
   report_pending_ = false;
   configured_ = requests_.configured();
   halted_ = requests_.report_halted();
-  const uint32_t on = configured_ ? kEndpointOn | kInterruptEachBuffer | kInterruptType : 0;
-  reg(kReportControl) = on | kReportBuffer;
-  reg(kCommandControl) = on | kCommandBuffer;
+  reg(kReportControl) =
+      (configured_ ? kEndpointOn | kInterruptEachBuffer | kInterruptType : 0) | kReportBuffer;
   reg(kReportIn) = halted_ ? kStall : 0;
   reg(kUsbAbortDone) = kReportDone;
   clear_bits(kUsbAbort, kReportDone);
-  if (!configured_ || requests_.command_halted()) {
+}
+
+// Begins with DATA0.
+void UsbController::restart_commands() {
+  command_data1_ = false;
+  reg(kCommandControl) =
+      (requests_.configured() ? kEndpointOn | kInterruptEachBuffer | kInterruptType : 0) |
+      kCommandBuffer;
+  if (!requests_.configured() || requests_.command_halted()) {
     reg(kCommandOut) = requests_.command_halted() ? kStall : 0;
   } else {
     give_buffer(kCommandOut, wire::kDeviceReportBytes);

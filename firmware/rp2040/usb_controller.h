@@ -27,6 +27,8 @@ class UsbController {
   // The oldest output report not yet taken. out: wire::kDeviceReportBytes. Returns its size; 0:
   // none.
   uint8_t take_command(uint8_t* out);
+  // Output reports that found no room since the last call.
+  uint8_t take_dropped();
 
  private:
   void on_bus_reset();
@@ -34,7 +36,8 @@ class UsbController {
   void on_control_sent();
   void on_control_received();
   void on_command();
-  void configure_endpoints();
+  void restart_reports();
+  void restart_commands();
   void send_control_packet();
   void keep_command(const volatile uint32_t* from, uint8_t size);
 
@@ -57,6 +60,7 @@ class UsbController {
   uint32_t commands_[kCommands][wire::kDeviceReportBytes / 4] = {};
   uint8_t command_bytes_[kCommands] = {};
   volatile uint8_t command_head_ = 0, command_tail_ = 0;
+  volatile uint8_t dropped_ = 0;
 };
 
 }  // namespace rp2040

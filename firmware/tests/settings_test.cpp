@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "core/settings_store.h"
+
 namespace firmware {
 namespace {
 
@@ -32,6 +36,97 @@ TEST(Settings, AnErasedSectorHasNone) {
   Settings settings;
   EXPECT_FALSE(decode_settings(bytes, settings));
   EXPECT_EQ(settings.resolution, 20);
+}
+
+// A memory that takes some polls for each byte, and loses its supply after so many.
+struct Memory {
+  static inline std::array<std::uint8_t, kSettingsBytes> bytes;
+  static inline int busy, writes, supplied_writes;
+
+  static void erase() {
+    bytes.fill(0xFF);
+    busy = writes = 0;
+    supplied_writes = 1000;
+  }
+  static bool ready() { return busy == 0 || --busy == 0; }
+  static std::uint8_t read(std::uint8_t at) {
+    EXPECT_EQ(busy, 0);
+    return bytes[at];
+  }
+  static void write(std::uint8_t at, std::uint8_t value) {
+    EXPECT_EQ(busy, 0);
+    busy = 3;
+    if (writes == supplied_writes) return;
+    ++writes;
+    bytes[at] = value;
+  }
+};
+using Store = SettingsStore<Memory>;
+
+Settings settings_with(std::uint8_t resolution, std::uint8_t brightness, std::uint8_t ps2,
+                       std::uint8_t switches) {
+  Settings settings;
+  settings.resolution = resolution;
+  settings.brightness = brightness;
+  settings.ps2 = ps2;
+  settings.switches = switches;
+  return settings;
+}
+
+void save(const Settings& settings) {
+  Store store;
+  store.save(settings);
+  for (int step = 0; store.saving() && step < 1000; ++step) store.step();
+  EXPECT_FALSE(store.saving());
+  Memory::busy = 0;
+}
+
+TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
+  Memory::erase();
+  Settings settings;
+  EXPECT_FALSE(Store::load(settings));
+  const Settings wanted = settings_with(60, 200, 0x0F, kPulsesOff);
+  save(wanted);
+  ASSERT_TRUE(Store::load(settings));
+  EXPECT_TRUE(same(settings, wanted));
+}
+
+// All pairs out of a few settings, power lost after each number of bytes: never a mixture.
+TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
+  const Settings some[] = {settings_with(20, 64, 0, 0), settings_with(20, 65, 0, 0),
+                           settings_with(60, 200, 0xFF, kPulsesOff), settings_with(1, 0, 1, 0)};
+  for (const Settings& before : some) {
+    for (const Settings& after : some) {
+      for (int bytes = 0; bytes <= kSettingsBytes + 1; ++bytes) {
+        Memory::erase();
+        save(before);
+        Memory::supplied_writes = Memory::writes + bytes;
+        save(after);
+        Settings read;
+        if (!Store::load(read)) continue;
+        EXPECT_TRUE(same(read, before) || same(read, after)) << bytes;
+      }
+      Settings read;
+      ASSERT_TRUE(Store::load(read));
+      EXPECT_TRUE(same(read, after));
+    }
+  }
+}
+
+TEST(SettingsStore, ASaveThatOvertakesAnotherWins) {
+  const Settings first = settings_with(20, 10, 0, 0), second = settings_with(30, 20, 3, 1);
+  for (int steps = 0; steps < 40; ++steps) {
+    Memory::erase();
+    Store store;
+    store.save(first);
+    for (int i = 0; i < steps; ++i) store.step();
+    store.save(second);
+    for (int i = 0; i < 100; ++i) store.step();
+    Memory::busy = 0;
+    Settings read;
+    ASSERT_TRUE(Store::load(read)) << steps;
+    EXPECT_TRUE(same(read, second)) << steps;
+  }
 }
 
 }  // namespace

@@ -51,13 +51,34 @@ TEST(UsbRequests, AReplyOfWholePacketsEndsWithAnEmptyOneIfMoreWasAskedFor) {
 TEST(UsbRequests, ABusResetForgetsAddressConfigurationAndHalts) {
   UsbRequests requests;
   EXPECT_EQ(ask(requests, 0x00, 9, 1, 0, 0).kind, UsbAnswer::kConfigure);
-  EXPECT_EQ(ask(requests, 0x02, 3, 0, 0x81, 0).kind, UsbAnswer::kConfigure);
+  EXPECT_EQ(ask(requests, 0x02, 3, 0, 0x81, 0).kind, UsbAnswer::kReportHalt);
   EXPECT_TRUE(requests.configured() && requests.report_halted());
   ask(requests, 0x00, 5, 9, 0, 0);
   EXPECT_EQ(requests.new_address(), 9);
   requests.on_bus_reset();
   EXPECT_FALSE(requests.configured() || requests.report_halted());
   EXPECT_EQ(requests.new_address(), 0);
+}
+
+TEST(UsbRequests, AHaltConcernsItsOwnEndpointOnly) {
+  UsbRequests requests;
+  ask(requests, 0x00, 9, 1, 0, 0);
+  EXPECT_EQ(ask(requests, 0x02, 3, 0, kCommandEndpoint, 0).kind, UsbAnswer::kCommandHalt);
+  EXPECT_TRUE(requests.command_halted());
+  EXPECT_FALSE(requests.report_halted());
+  EXPECT_EQ(ask(requests, 0x02, 1, 0, 0x81, 0).kind, UsbAnswer::kReportHalt);
+  EXPECT_TRUE(requests.command_halted());
+  EXPECT_EQ(ask(requests, 0x02, 1, 0, kCommandEndpoint, 0).kind, UsbAnswer::kCommandHalt);
+  EXPECT_FALSE(requests.command_halted());
+}
+
+TEST(UsbRequests, WhatLiesInFlashIsMarked) {
+  UsbRequests requests;
+  const std::uint8_t serial[] = {4, 3, '1', 0};
+  requests.set_serial(serial);
+  EXPECT_TRUE(ask(requests, 0x80, 6, 0x0100, 0, 18).in_flash);
+  EXPECT_FALSE(ask(requests, 0x80, 6, 0x0300 | kSerialString, 0x0409, 255).in_flash);
+  EXPECT_FALSE(ask(requests, 0x80, 8, 0, 0, 1).in_flash);
 }
 
 }  // namespace

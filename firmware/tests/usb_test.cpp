@@ -22,11 +22,32 @@ TEST_F(Usb, SaysThatItIsTheCabinet) {
   EXPECT_EQ(device[10] | device[11] << 8, 0x0001);
 }
 
+// Its number is what the calibration of a cabinet is kept by.
+TEST_F(Usb, EachChipHasASerialNumberOfItsOwn) {
+  EXPECT_EQ(cabinet.sim.device_descriptor()[16], 3);
+  const auto text = [](const std::vector<std::uint8_t>& descriptor) {
+    std::string digits;
+    for (std::size_t i = 2; i < descriptor.size(); i += 2) {
+      digits += static_cast<char>(descriptor[i]);
+      EXPECT_EQ(descriptor[i + 1], 0);
+    }
+    EXPECT_EQ(descriptor[0], descriptor.size());
+    EXPECT_EQ(descriptor[1], 3);
+    return digits;
+  };
+  EXPECT_EQ(text(cabinet.sim.serial_descriptor()), "5936343231390B1CA0FE");
+  CabinetOptions options;
+  options.unique_id[9] = 0xFF;
+  Cabinet other(Board::mega32u4, options);
+  ASSERT_TRUE(other.advance_until([&] { return other.sim.usb_configured(); }, 500));
+  EXPECT_EQ(text(other.sim.serial_descriptor()), "5936343231390B1CA0FF");
+}
+
 TEST_F(Usb, TheConfigurationIsOneHidInterfacePolledEveryMillisecond) {
   const auto& bytes = cabinet.sim.configuration_descriptor();
   ASSERT_GE(bytes.size(), 9u);
   EXPECT_EQ(static_cast<std::size_t>(bytes[2] | bytes[3] << 8), bytes.size());
-  std::vector<int> kinds;
+  std::vector<int> kinds, endpoints;
   for (std::size_t at = 0; at < bytes.size(); at += bytes[at]) {
     ASSERT_GE(bytes[at], 2);
     ASSERT_LE(at + bytes[at], bytes.size());
@@ -39,12 +60,13 @@ TEST_F(Usb, TheConfigurationIsOneHidInterfacePolledEveryMillisecond) {
                 cabinet.sim.report_descriptor().size());
     }
     if (bytes[at + 1] == 5) {
-      EXPECT_EQ(bytes[at + 2], 0x81);
+      endpoints.push_back(bytes[at + 2]);
       EXPECT_EQ(bytes[at + 4] | bytes[at + 5] << 8, 64);
       EXPECT_EQ(bytes[at + 6], 1);
     }
   }
-  EXPECT_EQ(kinds, (std::vector<int>{2, 4, 0x21, 5}));
+  EXPECT_EQ(kinds, (std::vector<int>{2, 4, 0x21, 5, 5}));
+  EXPECT_EQ(endpoints, (std::vector<int>{0x81, 0x02}));
 }
 
 TEST_F(Usb, TheReportIs64BytesOnAVendorPage) {

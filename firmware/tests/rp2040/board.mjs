@@ -1,6 +1,6 @@
 // A Raspberry Pi Pico in rp2040js: the .uf2 is put into its flash and started as the boot ROM does it.
-// The simulator has no boot ROM, no flash chip behind its SSI, no mask of I2C's interrupts and no reset
-// by its watchdog: here they are. Time is simulated; nothing here looks at a clock.
+// The simulator has no boot ROM, no flash chip behind its SSI, no mask of I2C's interrupts, no reset
+// of I2C and none by its watchdog: here they are. Time is simulated; nothing here looks at a clock.
 import { readFileSync } from 'node:fs';
 import { GPIOPinState, RP2040 } from 'rp2040js';
 
@@ -62,6 +62,7 @@ export class Board {
     this.faults = []; // of the program: what it may not do
     this.resets = 0;
     this.erased = 0;
+    this.i2cResets = 0;
     this.inBootLoader = false;
     this.attached = []; // models that are wired to each new chip
     this.sleptNanos = 0;
@@ -82,7 +83,7 @@ export class Board {
     chip.flash.set(this.flash);
     this.addRom();
     this.addFlashCommands();
-    this.addI2cInterrupts();
+    this.addI2c();
     this.addWatchdog(watchdog);
     this.boot();
     for (const attach of this.attached) attach(this);
@@ -199,16 +200,38 @@ export class Board {
     };
   }
 
-  // IC_INTR_MASK, which the simulator knows and does not let a program write.
-  addI2cInterrupts() {
+  // IC_INTR_MASK, which the simulator knows and does not let a program write; IC_ENABLE_STATUS and
+  // IC_SDA_HOLD, which it lacks; and the reset of the controller.
+  addI2c() {
     for (const i2c of this.rp2040.i2c) {
       const write = i2c.writeUint32.bind(i2c);
+      const read = i2c.readUint32.bind(i2c);
+      i2c.dataHold = 1;
       i2c.writeUint32 = (offset, value) => {
+        if (offset === 0x7c) {
+          if (i2c.enable & 1) this.faults.push('IC_SDA_HOLD is written to while the controller is enabled');
+          i2c.dataHold = value;
+          return undefined;
+        }
         if (offset !== 0x30) return write(offset, value);
         i2c.intEnable = value;
         return i2c.checkInterrupts();
       };
+      // One that is at a transfer is not disabled before that ends.
+      i2c.readUint32 = (offset) => (offset === 0x9c ? (i2c.busy || i2c.enable & 1 ? 1 : 0) : read(offset));
     }
+    const resets = this.rp2040.peripherals[0x4000c];
+    const write = resets.writeUint32.bind(resets);
+    resets.writeUint32 = (offset, value) => {
+      if (offset === 0 && value & (1 << 3)) {
+        const [i2c] = this.rp2040.i2c;
+        Object.assign(i2c, { state: 0, busy: false, stop: false, pendingRestart: false, enable: 0, intRaw: 0, intEnable: 0, dataHold: 1 });
+        i2c.txFIFO.reset();
+        i2c.checkInterrupts();
+        ++this.i2cResets;
+      }
+      return write(offset, value);
+    };
   }
 
   addWatchdog(before) {

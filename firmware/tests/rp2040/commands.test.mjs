@@ -172,3 +172,80 @@ test('settings are kept in flash; those with a wrong CRC are not taken', () => {
   const broken = new Rig({ flash }).start();
   assert.equal(broken.sensors.sensors[0].registers[0x0f], 19);
 });
+
+test('a bus that a part holds is freed by clocks, and the pulse is played', () => {
+  for (const clocks of [1, 5, 9]) {
+    const rig = withMotors();
+    rig.motors.holdData(clocks);
+    rig.command(pulse(3, 111, 100));
+    rig.board.runMs(25);
+    assert.equal(lastWrite(rig, 3).value, 111);
+    assert.ok(rig.motors.clocksByHand <= clocks + 1, `${rig.motors.clocksByHand}`);
+    assert.equal(rig.motors.stopsByHand, 1);
+    rig.expectNoFault();
+  }
+});
+
+test('a data line that is held for ever costs ten clocks an attempt, and no report', () => {
+  const rig = withMotors();
+  rig.motors.holdData(1e9);
+  rig.host.naks = 0;
+  rig.command(pulse(3, 111, 100));
+  rig.board.runMs(30);
+  // The pulse's own attempt, and the search for the driver that seems to be gone.
+  assert.ok(rig.motors.clocksByHand >= 9 && rig.motors.clocksByHand <= 20, `${rig.motors.clocksByHand}`);
+  const frames = rig.framesOfMs(400);
+  assert.ok(frames.length >= 399 && rig.host.naks === 0);
+  rig.motors.holdData(0);
+  rig.board.runMs(300);
+  rig.command(pulse(3, 112, 100));
+  rig.board.runMs(5);
+  assert.equal(lastWrite(rig, 3).value, 112);
+  rig.expectNoFault();
+});
+
+test('a write that does not end is given up, and the controller is reset', () => {
+  const rig = withMotors();
+  assert.ok(rig.board.rp2040.i2c[0].dataHold >= 37.5, '300 ns at 125 MHz');
+  const before = rig.board.i2cResets;
+  rig.motors.stuck = true;
+  rig.command(pulse(1, 50, 100));
+  rig.board.runMs(5);
+  assert.ok(rig.board.i2cResets > before);
+  rig.motors.stuck = false;
+  rig.board.runMs(300);
+  rig.command(pulse(1, 51, 100));
+  rig.board.runMs(5);
+  assert.equal(lastWrite(rig, 1).value, 51);
+  rig.expectNoFault();
+});
+
+test('commands that find no room are counted', () => {
+  const rig = withMotors();
+  const { board } = rig;
+  rig.frames();
+  // The program goes round in a loop of its own, its interrupts are served.
+  do board.step(board.clock.nanos + 1e6);
+  while (board.core.waiting || board.core.IPSR !== 0 || board.core.PM);
+  const at = board.core.PC & ~1;
+  const opcode = board.rp2040.readUint16(at);
+  board.rp2040.writeUint16(at, 0xe7fe);
+  for (let i = 0; i < 20; ++i) assert.ok(board.runUntil(() => rig.command(pulse(i % 8, 1, 1)), 1));
+  board.runMs(0.1);
+  board.rp2040.writeUint16(at, opcode);
+  const frames = rig.framesOfMs(20);
+  assert.equal(frames.reduce((total, frame) => total + frame.quality, 0), 20 - 8);
+});
+
+test('a halt of the report endpoint leaves the commands where they are', () => {
+  const rig = withMotors();
+  assert.ok(rig.command(pulse(0, 40, 100)));
+  rig.board.runMs(5);
+  for (const feature of [3, 1]) assert.ok(rig.host.request(0x02, feature, 0, 0x81, 0));
+  rig.host.reportPid = false;
+  assert.ok(rig.command(pulse(1, 41, 100)));
+  rig.board.runMs(5);
+  assert.equal(lastWrite(rig, 0).value, 40);
+  assert.equal(lastWrite(rig, 1).value, 41);
+  rig.expectNoFault();
+});

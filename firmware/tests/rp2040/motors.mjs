@@ -1,13 +1,20 @@
 // Eight haptic drivers of the DRV2605 class behind a multiplexer of the TCA9548A class on I2C 0.
+import { GPIOPinState } from 'rp2040js';
+
 const kMultiplexer = 0x70;
 const kDriver = 0x5a;
 const kByteNanos = 9 * 2500; // 400 kHz
+const kDataPin = 20;
+const kClockPin = 21;
 
 export class Motors {
   constructor() {
     this.attached = 0xff;
     this.multiplexer = true;
     this.stuck = false; // somebody holds a line: nothing ends
+    this.heldClocks = 0; // for so many more the data line is held
+    this.clocksByHand = 0;
+    this.stopsByHand = 0;
     this.channels = 0;
     this.drivers = Array.from({ length: 8 }, () => ({ registers: new Uint8Array(64), writes: [] }));
   }
@@ -15,6 +22,7 @@ export class Motors {
     this.board = board;
     const { clock } = board;
     const i2c = board.rp2040.i2c[0];
+    this.watchPins(board.rp2040.gpio);
     let then = () => {};
     const alarm = clock.createAlarm(() => then());
     const after = (bytes, what) => {
@@ -37,6 +45,26 @@ export class Motors {
       this.written(address, bytes);
       bytes = [];
       i2c.completeStop();
+    });
+  }
+  // As a part that was cut off while it sent does it.
+  holdData(clocks) {
+    this.heldClocks = clocks;
+    this.board.rp2040.gpio[kDataPin].setInputValue(clocks === 0);
+  }
+  watchPins(gpio) {
+    const [data, clock] = [gpio[kDataPin], gpio[kClockPin]];
+    data.setInputValue(this.heldClocks === 0);
+    clock.setInputValue(true);
+    clock.addListener((value) => {
+      if (value === GPIOPinState.High) this.board.faults.push('SCL is driven high');
+      if (value !== GPIOPinState.Low) return;
+      ++this.clocksByHand;
+      if (this.heldClocks > 0) this.holdData(this.heldClocks - 1);
+    });
+    data.addListener((value, before) => {
+      if (value === GPIOPinState.High) this.board.faults.push('SDA is driven high');
+      if (before === GPIOPinState.Low && clock.value !== GPIOPinState.Low) ++this.stopsByHand;
     });
   }
   get selected() {

@@ -1,11 +1,16 @@
-// simavr behind a C++ face: one micro-controller with its firmware, two ports as open-drain buses.
+// simavr behind a C++ face: one micro-controller with its firmware, two ports as open-drain buses,
+// and what simavr lacks: an EEPROM that takes its time, the signature row, pins that stay as they
+// are through a reset.
 #pragma once
 
 #include <simavr/sim_avr.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 extern "C" {
 struct avr_ioport_t;
@@ -34,17 +39,47 @@ class AvrBoard {
   std::uint8_t clock_pulled() const { return pulled(clock_); }
   std::uint8_t data_pulled() const { return pulled(data_); }
 
+  // Any port, and lines of it that are pulled up outside.
+  avr_ioport_t* find_port(char name);
+  void pull_up(avr_ioport_t* port, std::uint8_t mask);
+  void set_line(avr_ioport_t* port, int bit, bool high);
+  std::uint8_t pulled(const avr_ioport_t* port) const;
+  std::uint8_t driven_high(const avr_ioport_t* port) const;
+
   avr_uart_t* uart(char name);
+  std::uint8_t memory(std::uint16_t address) const { return avr_->data[address]; }
+
+  // ---- EEPROM
+  void set_eeprom(const std::vector<std::uint8_t>& bytes);
+  std::vector<std::uint8_t> eeprom() const;
+  std::uint64_t eeprom_writes() const { return eeprom_writes_; }
+  bool eeprom_misused() const { return eeprom_misused_; }  // spoken to while it was writing
+
+  std::array<std::uint8_t, 32> signature_row{};
+
+  // ---- resets by the watchdog
+  // A jump to itself where the program is; the reset mends it.
+  void stick(bool interrupts_off);
+  int resets() const { return resets_; }
+  // simavr forgets all that was to be done at a time: called after each reset.
+  std::function<void()> on_reset;
 
   std::uint64_t slept_cycles() const { return slept_; }
   std::size_t static_ram_bytes() const { return static_ram_; }
   std::size_t unused_ram_bytes() const;
 
  private:
-  avr_ioport_t* find_port(char name);
-  void set_line(avr_ioport_t* port, int bit, bool high);
-  std::uint8_t pulled(const avr_ioport_t* port) const;
+  void after_reset();
   static void sleep(avr_t* avr, avr_cycle_count_t cycles);
+  static void reset(avr_t* avr);
+  static void on_eeprom(avr_t* avr, avr_io_addr_t address, std::uint8_t value, void* parameter);
+  static avr_cycle_count_t on_eeprom_written(avr_t* avr, avr_cycle_count_t when, void* parameter);
+  static void on_flash_control(avr_t* avr, avr_io_addr_t address, std::uint8_t value,
+                               void* parameter);
+  static void on_watchdog_interrupt(avr_irq_t* irq, std::uint32_t value, void* parameter);
+  static avr_cycle_count_t on_watchdog_not_served(avr_t* avr, avr_cycle_count_t when,
+                                                  void* parameter);
+  static avr_cycle_count_t on_signature_read(avr_t* avr, avr_cycle_count_t when, void* parameter);
 
   avr_t* avr_ = nullptr;
   avr_ioport_t* clock_ = nullptr;
@@ -52,6 +87,15 @@ class AvrBoard {
   std::uint64_t slept_ = 0;
   std::size_t static_ram_ = 0;
   std::size_t ram_end_of_static_ = 0;
+
+  bool eeprom_busy_ = false, eeprom_misused_ = false;
+  std::uint64_t eeprom_writes_ = 0;
+  std::optional<std::array<std::uint8_t, 32>> flash_behind_signature_;
+  void (*chip_reset_)(avr_t*) = nullptr;
+  bool was_reset_ = false;
+  int resets_ = 0;
+  std::optional<std::uint32_t> stuck_at_;
+  std::array<std::uint8_t, 2> flash_where_stuck_{};
 };
 
 }  // namespace firmware_sim

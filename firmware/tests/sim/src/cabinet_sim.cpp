@@ -1,9 +1,12 @@
 #include "firmware_sim/cabinet_sim.h"
 
+#include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/avr_usb.h>
 #include <simavr/sim_io.h>
 
+#include <algorithm>
+#include <deque>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +20,25 @@ std::string firmware_elf(Board board) {
 }
 
 namespace {
+
+// Of firmware/hal/board.h, and where the timer of the LED has its registers.
+struct BoardPins {
+  const char* mcu;
+  char clock_port, data_port;
+  char i2c_port;
+  int i2c_clock, i2c_data;
+  char motors_port;
+  int motors_bit;
+  std::uint16_t led_control, led_width;
+};
+constexpr BoardPins kMega32u4{"atmega32u4", 'B', 'D', 'F', 1, 0, 'C', 6, 0xC0, 0xCF};
+constexpr BoardPins kMega2560{"atmega2560", 'A', 'C', 'D', 0, 1, 'D', 2, 0x44, 0x47};
+constexpr std::uint8_t kLedConnected = 0x80;  // of led_control
+constexpr std::uint64_t kSerialByteUs = 11;   // simavr's byte has 11 bits
+
+const BoardPins& pins_of(Board board) {
+  return board == Board::mega32u4 ? kMega32u4 : kMega2560;
+}
 
 constexpr std::uint64_t ns_of(std::uint64_t cycle) {
   return cycle * 125 / 2;
@@ -45,9 +67,11 @@ UsbBus bus_of(avr_t* avr) {
     out.resize(answer == UsbBus::Answer::ok ? packet.sz : 0);
     return answer;
   };
-  bus.write_empty = [avr](int endpoint) {
-    std::uint8_t nothing = 0;
-    avr_io_usb packet{static_cast<std::uint8_t>(endpoint), 0, &nothing};
+  bus.write = [avr](int endpoint, std::span<const std::uint8_t> bytes) {
+    std::array<std::uint8_t, 64> copy{};
+    std::copy(bytes.begin(), bytes.end(), copy.begin());
+    avr_io_usb packet{static_cast<std::uint8_t>(endpoint), static_cast<std::uint32_t>(bytes.size()),
+                      copy.data()};
     return answer_of(avr_ioctl(avr, AVR_IOCTL_USB_WRITE, &packet));
   };
   return bus;
@@ -63,34 +87,60 @@ struct CabinetSim::Impl {
     bool clock_high = true, data_high = true;
   };
 
+  const BoardPins& pins;
   AvrBoard board;
   std::array<Socket, kMice> sockets;
+  avr_ioport_t* i2c;
+  avr_ioport_t* motors_port;
+  MotorBus motors;
+  bool drove_high = false;
   std::unique_ptr<UsbHost> host;
   std::vector<std::uint8_t> serial;
+  std::deque<std::uint8_t> to_serial;
+  std::uint64_t last_serial_us = 0;
+  int overruns = 0;
   std::uint64_t idle_from_cycle = 0, idle_from_slept = 0;
 
   Impl(const std::string& elf, Board kind, const CabinetOptions& options)
-      : board(elf, kind == Board::mega32u4 ? "atmega32u4" : "atmega2560",
-              kind == Board::mega32u4 ? 'B' : 'A', kind == Board::mega32u4 ? 'D' : 'C') {
+      : pins(pins_of(kind)),
+        board(elf, pins.mcu, pins.clock_port, pins.data_port),
+        i2c(board.find_port(pins.i2c_port)),
+        motors_port(board.find_port(pins.motors_port)) {
     avr_t* avr = board.avr();
     for (int rod = 0; rod < kMice; ++rod) {
       Socket& socket = sockets[static_cast<std::size_t>(rod)];
       socket.cabinet = this;
       socket.bit = rod;
       socket.mouse = SimMouse(options.mice[static_cast<std::size_t>(rod)]);
-      avr_cycle_timer_register(avr, 1, on_mouse, &socket);
     }
+    board.pull_up(i2c, static_cast<std::uint8_t>(1u << pins.i2c_clock | 1u << pins.i2c_data));
+    avr_irq_register_notify(i2c->io.irq + IOPORT_IRQ_DIRECTION_ALL, on_i2c_direction, this);
+    avr_irq_register_notify(i2c->io.irq + IOPORT_IRQ_REG_PORT, on_i2c_port, this);
+    if (!options.eeprom.empty()) board.set_eeprom(options.eeprom);
+    std::copy(options.unique_id.begin(), options.unique_id.end(),
+              board.signature_row.begin() + 0x0E);
+    board.on_reset = [this] {
+      if (host) host->detached();
+      begin_timers();
+    };
     if (kind == Board::mega32u4) {
       host = std::make_unique<UsbHost>(bus_of(avr), options.host_poll_us);
       avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_USB_GETIRQ(), USB_IRQ_ATTACH), on_attach,
                               this);
-      avr_cycle_timer_register(avr, 1, on_host, this);
     } else {
       std::uint32_t flags = 0;
       avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
       avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT),
                               on_serial, this);
     }
+    begin_timers();
+  }
+
+  void begin_timers() {
+    avr_t* avr = board.avr();
+    for (Socket& socket : sockets) avr_cycle_timer_register(avr, 1, on_mouse, &socket);
+    if (host) avr_cycle_timer_register(avr, 1, on_host, this);
+    if (!to_serial.empty()) avr_cycle_timer_register(avr, 1, on_send_serial, this);
   }
 
   std::uint64_t now_us() const { return board.cycle() / AvrBoard::kCyclesPerUs; }
@@ -130,6 +180,49 @@ struct CabinetSim::Impl {
     static_cast<Impl*>(parameter)->serial.push_back(static_cast<std::uint8_t>(value));
   }
 
+  static avr_cycle_count_t on_send_serial(avr_t* avr, avr_cycle_count_t, void* parameter) {
+    auto& cabinet = *static_cast<Impl*>(parameter);
+    // The chip holds two bytes besides the one that is coming in.
+    const auto& waiting = cabinet.board.uart('0')->input;
+    if ((waiting.write + uart_fifo_fifo_size - waiting.read) % uart_fifo_fifo_size > 2) {
+      ++cabinet.overruns;
+    } else {
+      avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT),
+                    cabinet.to_serial.front());
+    }
+    cabinet.to_serial.pop_front();
+    cabinet.last_serial_us = cabinet.now_us() + kSerialByteUs;
+    return cabinet.to_serial.empty() ? 0 : avr->cycle + kSerialByteUs * AvrBoard::kCyclesPerUs;
+  }
+
+  // ---- the motors' bus
+  static void on_i2c_direction(avr_irq_t*, std::uint32_t value, void* parameter) {
+    auto& cabinet = *static_cast<Impl*>(parameter);
+    cabinet.drive_motors(value, cabinet.board.memory(cabinet.i2c->r_port));
+  }
+  static void on_i2c_port(avr_irq_t*, std::uint32_t value, void* parameter) {
+    auto& cabinet = *static_cast<Impl*>(parameter);
+    cabinet.drive_motors(cabinet.board.memory(cabinet.i2c->r_ddr), value);
+  }
+  static avr_cycle_count_t on_motors(avr_t*, avr_cycle_count_t, void* parameter) {
+    auto& cabinet = *static_cast<Impl*>(parameter);
+    cabinet.drive_motors(cabinet.board.memory(cabinet.i2c->r_ddr),
+                         cabinet.board.memory(cabinet.i2c->r_port));
+    return 0;
+  }
+  void drive_motors(unsigned direction, unsigned port) {
+    const unsigned lines = 1u << pins.i2c_clock | 1u << pins.i2c_data;
+    if ((direction & port & lines) != 0) drove_high = true;
+    const unsigned low = direction & ~port;
+    motors.drive(ns_of(board.cycle()), (low >> pins.i2c_clock & 1) != 0,
+                 (low >> pins.i2c_data & 1) != 0);
+    board.set_line(i2c, pins.i2c_clock, !motors.pulls_clock());
+    board.set_line(i2c, pins.i2c_data, !motors.pulls_data());
+    if (const auto event = motors.next_event_ns()) {
+      avr_cycle_timer_register(board.avr(), cycle_after(*event) - board.cycle(), on_motors, this);
+    }
+  }
+
   UsbHost& usb() const {
     if (!host) throw std::runtime_error("this board has no USB device");
     return *host;
@@ -144,6 +237,7 @@ CabinetSim::~CabinetSim() = default;
 
 void CabinetSim::advance_us(std::uint64_t us) {
   for (Impl::Socket& socket : impl_->sockets) impl_->show(socket);  // plugged or unplugged since
+  Impl::on_motors(nullptr, 0, impl_.get());                         // held or let go since
   impl_->board.run_until((now_us() + us) * AvrBoard::kCyclesPerUs);
 }
 
@@ -169,11 +263,65 @@ std::vector<std::uint8_t> CabinetSim::take_serial() {
   return std::exchange(impl_->serial, {});
 }
 
+void CabinetSim::send(std::span<const std::uint8_t> bytes) {
+  if (impl_->host) {
+    impl_->host->send({bytes.begin(), bytes.end()});
+    return;
+  }
+  const bool idle = impl_->to_serial.empty();
+  impl_->to_serial.insert(impl_->to_serial.end(), bytes.begin(), bytes.end());
+  if (idle) avr_cycle_timer_register(impl_->board.avr(), 1, Impl::on_send_serial, impl_.get());
+}
+bool CabinetSim::all_sent() const {
+  return impl_->host ? impl_->host->unsent() == 0
+                     : impl_->to_serial.empty() && now_us() >= impl_->last_serial_us;
+}
+std::uint64_t CabinetSim::last_sent_us() const {
+  return impl_->host ? impl_->host->last_sent_us() : impl_->last_serial_us;
+}
+int CabinetSim::serial_overruns() const {
+  return impl_->overruns;
+}
+
+MotorBus& CabinetSim::motors() {
+  return impl_->motors;
+}
+bool CabinetSim::motors_enabled() const {
+  return (impl_->board.driven_high(impl_->motors_port) >> impl_->pins.motors_bit & 1) != 0;
+}
+bool CabinetSim::drove_high() const {
+  return impl_->drove_high;
+}
+std::uint8_t CabinetSim::led() const {
+  const AvrBoard& board = impl_->board;
+  const bool connected = (board.memory(impl_->pins.led_control) & kLedConnected) != 0;
+  return connected ? board.memory(impl_->pins.led_width) : 0;
+}
+
+std::vector<std::uint8_t> CabinetSim::eeprom() const {
+  return impl_->board.eeprom();
+}
+std::uint64_t CabinetSim::eeprom_writes() const {
+  return impl_->board.eeprom_writes();
+}
+bool CabinetSim::eeprom_misused() const {
+  return impl_->board.eeprom_misused();
+}
+void CabinetSim::stick_program(bool interrupts_off) {
+  impl_->board.stick(interrupts_off);
+}
+int CabinetSim::resets() const {
+  return impl_->board.resets();
+}
+
 bool CabinetSim::usb_configured() const {
   return impl_->usb().configured();
 }
 void CabinetSim::usb_reset() {
   impl_->usb().reset_port();
+}
+void CabinetSim::usb_unplug() {
+  impl_->usb().unplug();
 }
 const std::vector<std::uint8_t>& CabinetSim::device_descriptor() const {
   return impl_->usb().device;
@@ -185,9 +333,14 @@ const std::vector<std::uint8_t>& CabinetSim::report_descriptor() const {
   return impl_->usb().report;
 }
 
-CabinetSim::ControlResult CabinetSim::control(const std::array<std::uint8_t, 8>& setup) {
+const std::vector<std::uint8_t>& CabinetSim::serial_descriptor() const {
+  return impl_->usb().serial;
+}
+
+CabinetSim::ControlResult CabinetSim::control(const std::array<std::uint8_t, 8>& setup,
+                                              std::vector<std::uint8_t> data) {
   UsbHost& host = impl_->usb();
-  host.request(setup);
+  host.request(setup, std::move(data));
   for (int ms = 0; ms < 50; ++ms) {
     advance_us(1000);
     if (auto result = host.take_result()) return *std::move(result);

@@ -7,13 +7,17 @@ namespace firmware_sim {
 
 namespace {
 constexpr std::uint32_t kStageUs = 60;  // between the stages of a control transfer
+// simavr, unlike the chip, takes data over a setup packet that the firmware has not read yet.
+constexpr std::uint32_t kSetupReadUs = 1000;
 constexpr std::uint32_t kResetUs = 10'000;
 constexpr std::size_t kControlBytes = 64;
+constexpr int kCommandEndpoint = 2;
 constexpr std::array<std::uint8_t, 8> kGetDevice64{0x80, 6, 0, 1, 0, 0, 64, 0};
 constexpr std::array<std::uint8_t, 8> kGetDevice{0x80, 6, 0, 1, 0, 0, 18, 0};
 constexpr std::array<std::uint8_t, 8> kGetConfigurationHead{0x80, 6, 0, 2, 0, 0, 9, 0};
 constexpr std::array<std::uint8_t, 8> kGetConfiguration{0x80, 6, 0, 2, 0, 0, 255, 0};
 constexpr std::array<std::uint8_t, 8> kGetName{0x80, 6, 2, 3, 9, 4, 255, 0};
+constexpr std::array<std::uint8_t, 8> kGetSerial{0x80, 6, 3, 3, 9, 4, 255, 0};
 constexpr std::array<std::uint8_t, 8> kSetAddress{0, 5, 5, 0, 0, 0, 0, 0};
 constexpr std::array<std::uint8_t, 8> kSetConfiguration{0, 9, 1, 0, 0, 0, 0, 0};
 constexpr std::array<std::uint8_t, 8> kSetIdle{0x21, 10, 0, 0, 0, 0, 0, 0};
@@ -21,9 +25,21 @@ constexpr std::array<std::uint8_t, 8> kGetReportDescriptor{0x81, 6, 0, 0x22, 0, 
 }  // namespace
 
 void UsbHost::attached(std::uint64_t now_us) {
+  if (unplugged_) return;
   attached_ = true;
   next_poll_us_ = now_us;
   reset_port();
+}
+
+void UsbHost::detached() {
+  attached_ = false;
+  configured_ = false;
+  transfers_.clear();
+}
+
+void UsbHost::unplug() {
+  unplugged_ = true;
+  detached();
 }
 
 void UsbHost::reset_port() {
@@ -40,6 +56,7 @@ void UsbHost::enumerate() {
   add(kGetConfigurationHead);
   add(kGetConfiguration, [this](Result result) { configuration = std::move(result.data); });
   add(kGetName);
+  add(kGetSerial, [this](Result result) { serial = std::move(result.data); });
   add(kSetConfiguration);
   add(kSetIdle);
   add(kGetReportDescriptor, [this](Result result) {
@@ -48,13 +65,15 @@ void UsbHost::enumerate() {
   });
 }
 
-void UsbHost::request(const Setup& setup) {
-  add(setup, [this](CabinetSim::ControlResult result) { result_ = std::move(result); });
+void UsbHost::request(const Setup& setup, std::vector<std::uint8_t> data) {
+  const auto keep = [this](CabinetSim::ControlResult result) { result_ = std::move(result); };
+  add(setup, keep, std::move(data));
 }
 
-void UsbHost::add(const Setup& setup, Done done) {
+void UsbHost::add(const Setup& setup, Done done, std::vector<std::uint8_t> data) {
   Transfer transfer;
   transfer.setup = setup;
+  transfer.data = std::move(data);
   transfer.done = std::move(done);
   transfers_.push_back(std::move(transfer));
 }
@@ -70,10 +89,13 @@ std::uint32_t UsbHost::run(std::uint64_t now_us) {
   if (configured_ && now_us >= next_poll_us_) {
     next_poll_us_ = std::max(next_poll_us_ + poll_us_, now_us);
     poll_report(now_us);
+    send_report(now_us);
   }
   if (!transfers_.empty()) {
+    const bool data_follows =
+        transfers_.front().stage == Stage::setup && !transfers_.front().data.empty();
     step_transfer();
-    return kStageUs;
+    return data_follows ? kSetupReadUs : kStageUs;
   }
   return static_cast<std::uint32_t>(std::max<std::uint64_t>(next_poll_us_, now_us + 1) - now_us);
 }
@@ -87,6 +109,13 @@ void UsbHost::poll_report(std::uint64_t now_us) {
   reports_.push_back(taken);
 }
 
+void UsbHost::send_report(std::uint64_t now_us) {
+  if (outgoing_.empty()) return;
+  if (bus_.write(kCommandEndpoint, outgoing_.front()) != UsbBus::Answer::ok) return;
+  outgoing_.pop_front();
+  last_sent_us_ = now_us;
+}
+
 void UsbHost::step_transfer() {
   using Answer = UsbBus::Answer;
   Transfer& transfer = transfers_.front();
@@ -97,7 +126,9 @@ void UsbHost::step_transfer() {
   switch (transfer.stage) {
     case Stage::setup:
       if (bus_.setup(transfer.setup) == Answer::ok) {
-        transfer.stage = to_host ? Stage::data_in : Stage::status_in;
+        transfer.stage = to_host                 ? Stage::data_in
+                         : transfer.data.empty() ? Stage::status_in
+                                                 : Stage::data_out;
       }
       return;
     case Stage::data_in: {
@@ -108,12 +139,17 @@ void UsbHost::step_transfer() {
       if (bytes.size() < kControlBytes || data.size() >= asked) transfer.stage = Stage::status_out;
       return;
     }
+    case Stage::data_out:
+      answer = bus_.write(0, transfer.data);
+      if (answer != Answer::ok) break;
+      transfer.stage = Stage::status_in;
+      return;
     case Stage::status_in:
       answer = bus_.read(0, bytes);
       if (answer == Answer::ok) return end_transfer(false);
       break;
     case Stage::status_out:
-      answer = bus_.write_empty(0);
+      answer = bus_.write(0, {});
       if (answer == Answer::ok) return end_transfer(false);
       break;
   }

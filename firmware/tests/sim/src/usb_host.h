@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct UsbBus {
   std::function<void()> reset;
   std::function<Answer(std::array<std::uint8_t, 8> setup)> setup;
   std::function<Answer(int endpoint, std::vector<std::uint8_t>& out)> read;
-  std::function<Answer(int endpoint)> write_empty;
+  std::function<Answer(int endpoint, std::span<const std::uint8_t> bytes)> write;
 };
 
 class UsbHost {
@@ -28,6 +29,8 @@ class UsbHost {
   UsbHost(UsbBus bus, std::uint32_t poll_us) : bus_(std::move(bus)), poll_us_(poll_us) {}
 
   void attached(std::uint64_t now_us);
+  void detached();
+  void unplug();  // for good
   void reset_port();
   // Does what is due; returns how long until it has to be called again [us].
   std::uint32_t run(std::uint64_t now_us);
@@ -35,37 +38,47 @@ class UsbHost {
   bool configured() const { return configured_; }
   std::vector<Report> take_reports() { return std::exchange(reports_, {}); }
 
-  // A transfer of the test's own, begun between two reports.
-  void request(const std::array<std::uint8_t, 8>& setup);
+  // A transfer of the test's own, begun between two reports. data: what the host sends, at most a
+  // packet.
+  void request(const std::array<std::uint8_t, 8>& setup, std::vector<std::uint8_t> data);
   std::optional<CabinetSim::ControlResult> take_result() { return std::exchange(result_, {}); }
 
-  std::vector<std::uint8_t> device, configuration, report;
+  // An output report for the command endpoint: one a millisecond, after the input report.
+  void send(std::vector<std::uint8_t> bytes) { outgoing_.push_back(std::move(bytes)); }
+  std::size_t unsent() const { return outgoing_.size(); }
+  std::uint64_t last_sent_us() const { return last_sent_us_; }  // when the device took it
+
+  std::vector<std::uint8_t> device, configuration, report, serial;
 
  private:
   using Setup = std::array<std::uint8_t, 8>;
   using Done = std::function<void(CabinetSim::ControlResult)>;
-  enum class Stage { setup, data_in, status_in, status_out };
+  enum class Stage { setup, data_in, data_out, status_in, status_out };
   struct Transfer {
     Setup setup;
+    std::vector<std::uint8_t> data;  // that the host sends
     Done done;
     Stage stage = Stage::setup;
     CabinetSim::ControlResult result;
   };
 
   void enumerate();
-  void add(const Setup& setup, Done done = {});
+  void add(const Setup& setup, Done done = {}, std::vector<std::uint8_t> data = {});
   void step_transfer();
   void end_transfer(bool stalled);
   void poll_report(std::uint64_t now_us);
+  void send_report(std::uint64_t now_us);
 
   UsbBus bus_;
   std::uint32_t poll_us_;
-  bool attached_ = false;
+  bool attached_ = false, unplugged_ = false;
   bool configured_ = false;
   bool reset_due_ = false;
   std::uint64_t next_poll_us_ = 0;
   std::deque<Transfer> transfers_;
   std::vector<Report> reports_;
+  std::deque<std::vector<std::uint8_t>> outgoing_;
+  std::uint64_t last_sent_us_ = 0;
   std::optional<CabinetSim::ControlResult> result_;
 };
 

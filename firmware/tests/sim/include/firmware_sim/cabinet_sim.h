@@ -1,6 +1,6 @@
-// A cabinet without the wood: the firmware's own .elf runs in simavr, eight simulated mice are on
-// its pins, and a simulated PC takes what it sends. Time is virtual: nothing happens but in
-// advance_us().
+// A cabinet without the wood: the firmware's own .elf runs in simavr, eight simulated mice and
+// eight haptic drivers are on its pins, and a simulated PC takes what it sends, and sends commands.
+// Time is virtual: nothing happens but in advance_us().
 //
 // simavr is GPL-3: this library is for tests only and is linked into nothing that is shipped.
 #pragma once
@@ -8,9 +8,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "firmware_sim/motor_bus.h"
 #include "firmware_sim/sim_mouse.h"
 
 namespace firmware_sim {
@@ -33,6 +35,10 @@ struct Report {
 struct CabinetOptions {
   std::array<MouseOptions, kMice> mice{};
   std::uint32_t host_poll_us = 1000;  // how often the USB host asks for a report
+  std::vector<std::uint8_t> eeprom;   // what it holds at power-on; empty: erased
+  // mega32u4: ten bytes of the signature row.
+  std::array<std::uint8_t, 10> unique_id{0x59, 0x36, 0x34, 0x32, 0x31,
+                                         0x39, 0x0B, 0x1C, 0xA0, 0xFE};
 };
 
 class CabinetSim {
@@ -57,20 +63,44 @@ class CabinetSim {
   // mega2560: the bytes that left UART0 since the last call.
   std::vector<std::uint8_t> take_serial();
 
+  // Towards the board. mega32u4: an output report for the command endpoint; mega2560: bytes for
+  // UART0, one in 11 us.
+  void send(std::span<const std::uint8_t> bytes);
+  bool all_sent() const;
+  std::uint64_t last_sent_us() const;  // when the board had the last of it
+  // mega2560: bytes that found two before them not taken.
+  int serial_overruns() const;
+
+  MotorBus& motors();
+  bool motors_enabled() const;  // the line that enables the drivers
+  // A line that must be open drain was driven high.
+  bool drove_high() const;
+  std::uint8_t led() const;  // width of its pulses
+
+  // ---- EEPROM and resets
+  std::vector<std::uint8_t> eeprom() const;
+  std::uint64_t eeprom_writes() const;
+  bool eeprom_misused() const;  // spoken to while it was writing
+  void stick_program(bool interrupts_off);
+  int resets() const;
+
   // ---- the simulated USB host (mega32u4)
   bool usb_configured() const;
   void usb_reset();  // and enumerates again
+  void usb_unplug();
   // As read during enumeration; empty before.
   const std::vector<std::uint8_t>& device_descriptor() const;
   const std::vector<std::uint8_t>& configuration_descriptor() const;
   const std::vector<std::uint8_t>& report_descriptor() const;
+  const std::vector<std::uint8_t>& serial_descriptor() const;
   struct ControlResult {
     bool stalled = false;
     std::vector<std::uint8_t> data;
   };
-  // One control transfer without data from the host, after enumeration; advances the time. Throws
-  // std::runtime_error when the device has not answered within 50 ms.
-  ControlResult control(const std::array<std::uint8_t, 8>& setup);
+  // One control transfer after enumeration, with at most a packet from the host; advances the time.
+  // Throws std::runtime_error when the device has not answered within 50 ms.
+  ControlResult control(const std::array<std::uint8_t, 8>& setup,
+                        std::vector<std::uint8_t> data = {});
 
   // ---- measured
   std::uint32_t serial_baud() const;  // as UART0 is set up

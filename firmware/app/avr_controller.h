@@ -1,0 +1,62 @@
+// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog. Frames
+// come out, commands go in.
+#ifndef FIRMWARE_APP_AVR_CONTROLLER_H
+#define FIRMWARE_APP_AVR_CONTROLLER_H
+
+#include "core/haptics.h"
+#include "core/mouse_host.h"
+#include "core/settings_store.h"
+#include "core/soft_i2c.h"
+#include "hal/eeprom.h"
+#include "hal/i2c_wires.h"
+
+namespace firmware {
+
+class AvrController {
+ public:
+  // From here on lines are sampled, and the watchdog wants turns.
+  void start();
+
+  // A round of the loop: false until it is time for a turn, of which each step is short. Meanwhile
+  // the motors' bus moves on, or the processor sleeps.
+  bool due();
+  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that nobody
+  // does. Returns the time [us].
+  uint32_t turn(bool host);
+
+  void obey(const wire::DeviceCommand& command);
+  // An error of the line of commands, told in the next frame.
+  void count_error();
+  void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
+
+  Ps2Lines& lines() { return mice_.lines(); }
+
+ private:
+  // Of the motors' bus, 40 us at most; a pulse takes nine. While all mice send, a turn takes half a
+  // millisecond, and there is no time between two.
+  static const uint8_t kStepsATurn = 9;
+
+  void step_bus();
+  void pass_ms();
+  void guard_motors();
+  void show_state();
+  bool pulses_allowed() const { return (settings_.switches & kPulsesOff) == 0; }
+
+  MouseHost mice_;
+  SoftI2c<I2cWires> bus_;
+  Haptics haptics_{bus_};
+  Settings settings_;
+  SettingsStore<Eeprom> store_;
+  uint32_t ms_ = 0;
+  uint32_t ms_began_us_ = 0;
+  uint8_t errors_ = 0;  // counted in the next frame
+  uint8_t present_ = 0;
+  bool host_ = false;
+  bool watchdog_has_reset_ = false;
+  uint8_t light_ms_ = 0;
+  uint8_t light_tick_ = 0;
+};
+
+}  // namespace firmware
+
+#endif
