@@ -125,7 +125,7 @@ MAY_USE = {
     'calibrate': {ENGINE_FACE, 'os', 'draw', 'table', 'device-frame', 'hand', 'cabinet', 'client'},
     'tools': {ENGINE_FACE, 'os', 'results', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand', 'server'},
     'benchmarks': {ENGINE_FACE, 'table', 'scenes'},
-    'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'hand',
+    'tests': {ENGINE_FACE, 'os', 'table', 'scenes', 'foosball', 'wire', 'device-frame', 'cabinet', 'calibrate', 'hand',
               'firmware', 'server', 'draw', 'client'},
 }
 

@@ -37,6 +37,28 @@ struct Mount {
   Mark mark{};
 };
 
+struct SurfaceCounts {
+  double slide, spin;
+};
+
+// What passes under the sensor while the rod moves a little: taken through the lens, exact in the
+// middle of the motion.
+inline SurfaceCounts surface_counts(const Mount& mount, double slide, double angle, double to_slide,
+                                    double to_angle) {
+  const double middle = 0.5 * (angle + to_angle) - mount.towards;
+  const double closer = mount.eccentricity * std::cos(middle);
+  double x = to_slide - slide;
+  double y = (mount.rod_radius + closer) * (to_angle - angle);
+  const double lx = std::cos(mount.lean_towards), ly = std::sin(mount.lean_towards);
+  const double foreshortened = (1 - std::cos(mount.lean)) * (x * lx + y * ly);
+  x -= foreshortened * lx;
+  y -= foreshortened * ly;
+  const double counts = mount.counts_per_mm * 1e3 * mount.scale * mount.optical_distance /
+                        (mount.optical_distance - closer);
+  const double c = std::cos(mount.tilt), s = std::sin(mount.tilt);
+  return {counts * (c * x + s * y), counts * (c * y - s * x)};
+}
+
 // The truth, and what the sensor says of it.
 class SimulatedRod {
  public:
@@ -45,25 +67,18 @@ class SimulatedRod {
   SimulatedRod(const Mount& mount, std::uint32_t seed) : mount_(mount), random_(seed) {
     for (double& part : left_) part = between(0, 1);
   }
+  virtual ~SimulatedRod() = default;
+  SimulatedRod(const SimulatedRod&) = delete;
+  SimulatedRod& operator=(const SimulatedRod&) = delete;
 
   double slide = 0, angle = 0;
   bool under = false;  // its switch is on
   std::vector<cabinet::CountIncrement> increments;
 
-  void step(double to_slide, double to_angle) {
-    const double middle = 0.5 * (angle + to_angle) - mount_.towards;
-    const double closer = mount_.eccentricity * std::cos(middle);
-    double x = to_slide - slide;
-    double y = (mount_.rod_radius + closer) * (to_angle - angle);
-    const double lx = std::cos(mount_.lean_towards), ly = std::sin(mount_.lean_towards);
-    const double foreshortened = (1 - std::cos(mount_.lean)) * (x * lx + y * ly);
-    x -= foreshortened * lx;
-    y -= foreshortened * ly;
-    const double counts = mount_.counts_per_mm * 1e3 * mount_.scale * mount_.optical_distance /
-                          (mount_.optical_distance - closer);
-    const double c = std::cos(mount_.tilt), s = std::sin(mount_.tilt);
-    seen_[0] += counts * (c * x + s * y);
-    seen_[1] += counts * (c * y - s * x);
+  virtual void step(double to_slide, double to_angle) {
+    const SurfaceCounts passed = surface_counts(mount_, slide, angle, to_slide, to_angle);
+    seen_[0] += passed.slide;
+    seen_[1] += passed.spin;
     slide = to_slide;
     angle = to_angle;
     sense_mark();

@@ -243,6 +243,36 @@ TEST(Streaming, AnyLostBitCostsAtMostThePacketItWasIn) {
   }
 }
 
+TEST(Streaming, AClockThatIsStretchedByLessThanAGapLosesNothing) {
+  for (int bit = 0; bit <= 10; ++bit) {
+    HostRig rig;
+    ASSERT_TRUE(all_present(rig));
+    rig.mice[4].stretch_clock(bit, 180);
+    rig.mice[4].move(90, -91);
+    settle(rig);
+    const wire::DeviceFrame frame = rig.frame();
+    EXPECT_EQ(frame.quality, 0) << "bit " << bit;
+    EXPECT_EQ(frame.slide[4], 90) << "bit " << bit;
+    EXPECT_EQ(frame.spin[4], static_cast<std::uint16_t>(-91)) << "bit " << bit;
+  }
+}
+
+TEST(Streaming, AClockThatFallsOnceMoreWithinAByteIsCountedAndCostsThatPacketAtMost) {
+  for (int bit = 0; bit <= 10; ++bit) {
+    HostRig rig;
+    ASSERT_TRUE(all_present(rig));
+    rig.mice[4].glitch_clock(bit, 25'000);
+    rig.mice[4].move(90, 90);
+    settle(rig);
+    EXPECT_GE(rig.frame().quality, 1) << "bit " << bit;
+    rig.mice[4].move(7, 8);
+    settle(rig);
+    const wire::DeviceFrame frame = rig.frame();
+    EXPECT_EQ(frame.slide[4], 7) << "bit " << bit;
+    EXPECT_EQ(frame.spin[4], 8) << "bit " << bit;
+  }
+}
+
 TEST(Streaming, ALostByteCostsThatPacketOnlyEvenInAStreamOfThem) {
   HostRig rig;
   ASSERT_TRUE(all_present(rig));

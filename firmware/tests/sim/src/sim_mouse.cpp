@@ -66,6 +66,16 @@ void SimMouse::drop_stop() {
 void SimMouse::lose_byte() {
   fault_ = Fault::lose_byte;
 }
+void SimMouse::stretch_clock(int bit, std::uint32_t longer_us) {
+  fault_ = Fault::stretch;
+  fault_bit_ = bit;
+  fault_ns_ = longer_us * 1000;
+}
+void SimMouse::glitch_clock(int bit, std::uint32_t width_ns) {
+  fault_ = Fault::glitch;
+  fault_bit_ = bit;
+  fault_ns_ = width_ns;
+}
 void SimMouse::misread_command() {
   misreads_ = true;
 }
@@ -78,6 +88,22 @@ void SimMouse::spike(std::uint64_t width_ns) {
 
 bool SimMouse::settled() const {
   return pending_slide_ == 0 && pending_spin_ == 0 && outgoing_.empty() && phase_ == Phase::idle;
+}
+
+SimMouse::Counts SimMouse::unsent() const {
+  auto slide = static_cast<int>(pending_slide_), spin = static_cast<int>(pending_spin_);
+  for (const Chunk& chunk : outgoing_) {
+    if (!chunk.movement) continue;
+    slide += chunk.slide;
+    spin += chunk.spin;
+  }
+  return {slide, spin};
+}
+
+void SimMouse::feel(std::uint64_t now_ns) {
+  if (!hand_) return;
+  const Counts moved = hand_(now_ns);
+  move(moved.slide, moved.spin);
 }
 
 void SimMouse::set_defaults() {
@@ -135,13 +161,24 @@ void SimMouse::step(std::uint64_t now_ns, bool host_clock_low, bool host_data_lo
       break;
     case Phase::send_fall:
       if (host_clock_low) return abort(now_ns);
-      clock_low_ = !(byte_fault_ == Fault::skip_clock && bit_at_ == fault_bit_);
-      after(now_ns, period_fraction(2), Phase::send_rise);
+      clock_low_ = !faulty_bit(Fault::skip_clock);
+      after(now_ns, period_fraction(2) + (faulty_bit(Fault::stretch) ? fault_ns_ : 0),
+            Phase::send_rise);
       break;
     case Phase::send_rise:
       clock_low_ = false;
+      if (faulty_bit(Fault::glitch)) {
+        byte_fault_ = Fault::none;
+        after(now_ns, period_fraction(1), Phase::send_glitch);
+        break;
+      }
       if (++bit_at_ > kStopBit) return end_byte(now_ns);
       after(now_ns, period_fraction(1), Phase::send_data);
+      break;
+
+    case Phase::send_glitch:  // data stays as it is: the bit is seen once more
+      clock_low_ = true;
+      after(now_ns, fault_ns_, Phase::send_rise);
       break;
 
     case Phase::take_fall:
@@ -190,6 +227,7 @@ void SimMouse::at_idle(std::uint64_t now_ns, bool host_clock_low, bool host_data
     return;
   }
   if (outgoing_.empty() && enabled_ && !remote_ && now_ns >= next_report_ns_) {
+    feel(now_ns);
     const std::uint64_t period = 1'000'000'000ull / static_cast<std::uint64_t>(rate_);
     next_report_ns_ = std::max(next_report_ns_ + period, now_ns - std::min(now_ns, kLook) + period);
     if (pending_slide_ != 0 || pending_spin_ != 0) outgoing_.push_back(take_movement());
@@ -266,6 +304,7 @@ void SimMouse::answer(std::vector<std::uint8_t> bytes, std::uint64_t now_ns) {
 }
 
 void SimMouse::obey(std::uint8_t value, std::uint64_t now_ns) {
+  feel(now_ns);
   const std::uint8_t argument_of = std::exchange(argument_of_, std::uint8_t{0});
   if (argument_of == 0xF3) {
     rate_ = std::clamp<int>(value, 10, 200);

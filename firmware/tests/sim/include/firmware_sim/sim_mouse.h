@@ -7,8 +7,10 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace firmware_sim {
@@ -33,16 +35,26 @@ class SimMouse {
   // ---- the hand
   // Moves by whole counts; reported from the next report on. Lost while the mouse is not enabled.
   void move(int slide_counts, int spin_counts);
+  struct Counts {
+    int slide = 0, spin = 0;
+  };
+  // A hand that moves all the time: asked, when a report is due, how far it has come since it was
+  // asked last. Kept over unplugging; what it moves while the mouse is not enabled is lost.
+  void follow(std::function<Counts(std::uint64_t now_ns)> hand) { hand_ = std::move(hand); }
   // Before power-on or while unplugged.
   void set_options(const MouseOptions& options);
   void unplug();
   void replug();  // power-on, self-test, then waits to be set up
 
   // ---- faults, each once
-  void skip_clock(int bit);            // a packet byte lacks its clock pulse number bit (0..10)
-  void flip_parity();                  // a packet byte has wrong parity
-  void drop_stop();                    // a packet byte has stop bit 0
-  void lose_byte();                    // the second byte of a packet is not sent
+  void skip_clock(int bit);  // a packet byte lacks its clock pulse number bit (0..10)
+  void flip_parity();        // a packet byte has wrong parity
+  void drop_stop();          // a packet byte has stop bit 0
+  void lose_byte();          // the second byte of a packet is not sent
+  // The clock stays low for so much longer in bit (0..10) of a packet byte; or is pulled low once
+  // more while it is high.
+  void stretch_clock(int bit, std::uint32_t longer_us);
+  void glitch_clock(int bit, std::uint32_t width_ns);
   void misread_command();              // the next command gets FE for an answer
   void lose_announcement();            // the next AA 00 is not sent
   void spike(std::uint64_t width_ns);  // the clock is pulled low as soon as the mouse is idle
@@ -62,6 +74,8 @@ class SimMouse {
   // Counts handed to the wire, saturated ones as they were sent.
   std::int64_t slide_sent() const { return slide_sent_; }
   std::int64_t spin_sent() const { return spin_sent_; }
+  // Counts that wait, and those of a packet that is not out whole.
+  Counts unsent() const;
   std::uint64_t overflows_sent() const { return overflows_sent_; }
 
   // ---- the wires
@@ -79,13 +93,14 @@ class SimMouse {
     send_data,  // data changes while the clock is high
     send_fall,
     send_rise,
-    take_fall,  // the host sends: data is read as the clock rises
+    send_glitch,  // the clock falls once more
+    take_fall,    // the host sends: data is read as the clock rises
     take_rise,
     ack_fall,
     ack_rise,
     ack_end,
   };
-  enum class Fault { none, skip_clock, flip_parity, drop_stop, lose_byte };
+  enum class Fault { none, skip_clock, flip_parity, drop_stop, lose_byte, stretch, glitch };
   struct Chunk {  // sent as a whole, again from its start when the host interrupts it
     std::vector<std::uint8_t> bytes;
     bool movement = false;
@@ -93,6 +108,8 @@ class SimMouse {
     bool overflow = false;
   };
 
+  bool faulty_bit(Fault fault) const { return byte_fault_ == fault && bit_at_ == fault_bit_; }
+  void feel(std::uint64_t now_ns);
   void at_idle(std::uint64_t now_ns, bool host_clock_low, bool host_data_low);
   void start_byte(std::uint64_t now_ns);
   void end_byte(std::uint64_t now_ns);
@@ -121,6 +138,7 @@ class SimMouse {
   Chunk last_sent_;
   Fault fault_ = Fault::none, byte_fault_ = Fault::none;
   int fault_bit_ = 0;
+  std::uint32_t fault_ns_ = 0;
   std::optional<std::uint64_t> spike_width_ns_;
   std::uint64_t spike_end_ns_ = 0;
   bool spiking_ = false;
@@ -140,6 +158,7 @@ class SimMouse {
   std::uint64_t next_report_ns_ = 0;
   std::uint64_t packets_sent_ = 0, overflows_sent_ = 0, last_packet_ns_ = 0;
   std::int64_t slide_sent_ = 0, spin_sent_ = 0;
+  std::function<Counts(std::uint64_t now_ns)> hand_;
 };
 
 }  // namespace firmware_sim

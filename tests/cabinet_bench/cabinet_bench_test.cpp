@@ -1,0 +1,206 @@
+// Short runs of what cabinet-bench does for long, and that it would see what it looks for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "calibration.h"
+#include "fault_run.h"
+#include "match_run.h"
+#include "pulse_watch.h"
+#include "wire/device_command.h"
+
+namespace cabinet_bench {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+class OnEachController : public testing::TestWithParam<Board> {};
+INSTANTIATE_TEST_SUITE_P(Boards, OnEachController, testing::ValuesIn(kBoards),
+                         [](const auto& chosen) { return "Board" + name_of(chosen.param); });
+
+struct Expected {
+  double slide_rms, angle_rms;  // [mm], [degrees]
+  double within;                // 1 mm and 2 degrees, of the ticks and rods
+};
+// Measured: 1.0 mm, 0.9 degrees, 0.93; 1.0, 1.0, 0.93; 0.06, 0.05, 1. A mouse's reports are 5 ms
+// apart.
+Expected expected(Board board) {
+  return board == Board::rp2040 ? Expected{0.15, 0.15, 0.999} : Expected{2, 2, 0.85};
+}
+
+void expect_played(Board board, const MatchResult& match, bool motors) {
+  const Spread slide = spread(match.input.slide), angle = spread(match.input.angle);
+  const double within = share_within(match.input, 1e-3, 2 * kDegree);
+  std::printf("%s: %.2f mm, %.2f degrees rms, %.1f %% within 1 mm and 2 degrees; %llu pulses\n",
+              name_of(board).c_str(), 1e3 * slide.rms, angle.rms / kDegree, 100 * within,
+              static_cast<unsigned long long>(match.pulses.pulses));
+  EXPECT_GT(match.fastest_slide, 0.5);
+  EXPECT_GT(match.fastest_angle, 5);
+  EXPECT_LT(1e3 * slide.rms, expected(board).slide_rms);
+  EXPECT_LT(angle.rms / kDegree, expected(board).angle_rms);
+  EXPECT_GT(within, expected(board).within);
+  EXPECT_EQ(match.bad, 0u);
+  EXPECT_EQ(match.lost, 0u);
+  EXPECT_EQ(match.impossible, 0u);
+  EXPECT_EQ(match.line_errors, 0u);
+  EXPECT_GT(match.pulses.pulses, 0u);
+  if (!motors) return;
+  const PulseCounts& pulses = match.pulses;
+  EXPECT_EQ(pulses.missing, 0u);
+  EXPECT_EQ(pulses.stray, 0u);
+  EXPECT_EQ(pulses.not_ended, 0u);
+  EXPECT_LE(pulses.pulses - pulses.begun - pulses.merged, 1u) << "one may be on its way";
+  EXPECT_LE(spread(pulses.latency_us).most, 2000);
+}
+
+TEST_P(OnEachController, AMatchIsPlayedByHandsOnACabinetAndItsHitsAreFeltAtTheirRods) {
+  const Board board = GetParam();
+  const auto controller = power_on(board);
+  Table table(Mounting::square, usual_counts_per_mm(board), 1);
+  for (int ms = 0; ms < 3000; ++ms) controller->advance(table.surfaces());
+  const MatchResult match =
+      play_match(*controller, table, cabinet::nominal_calibration(usual_counts_per_mm(board)),
+                 {.most_seconds = 6});
+  expect_played(board, match, controller->has_motors());
+}
+
+TEST(CabinetEndToEnd, PersonsCalibrateAskewSensorsThroughTheFirmwareAndThenPlay) {
+  const auto controller = power_on(Board::mega32u4);
+  Table table(Mounting::drawn, usual_counts_per_mm(Board::mega32u4), 1);
+  const CalibrationResult made = calibrate(*controller, table);
+  ASSERT_EQ(made.problem, "");
+  EXPECT_LT(made.seconds, 150);
+  const MatchResult match = play_match(*controller, table, made.calibration, {.most_seconds = 6});
+  expect_played(Board::mega32u4, match, controller->has_motors());
+}
+
+TEST_P(OnEachController, NothingIsLostInTroublesWithoutBeingCounted) {
+  const auto controller = power_on(GetParam());
+  const double seconds = GetParam() == Board::rp2040 ? 10 : 40;
+  const FaultResult result =
+      run_faults(*controller, {.seconds = seconds, .troubles_per_minute = 80, .seed = 3});
+  EXPECT_GT(result.troubles.size(), 2u);
+  EXPECT_GT(result.totals.losses + result.totals.absences, 0u);
+  EXPECT_GT(result.totals.exact, result.totals.frames * cabinet::kRods * 3 / 4);
+  EXPECT_EQ(result.violations, std::vector<std::string>{});
+}
+
+// ---- what the runs are judged by
+
+struct Books {
+  // A report each 5 ms and a frame each millisecond, in which some counts never arrive.
+  void run(int ms, int per_report, std::uint8_t quality_at_loss = 0, bool loses = false,
+           std::uint8_t present = 0xFF) {
+    for (int i = 0; i < ms; ++i) {
+      now_us += 1000;
+      if (now_us % 5000 == 0) {
+        told += per_report;
+        ledger.told(3, {{now_us, told, 0}});
+        if (loses && i < 5) {
+          frame.quality = quality_at_loss;
+        } else {
+          counted = static_cast<std::uint16_t>(counted + per_report);
+        }
+      }
+      frame.slide[3] = counted;
+      frame.present = present;
+      frame.time_us = static_cast<std::uint32_t>(now_us);
+      ++frame.sequence;
+      ledger.heard(frame, now_us);
+      frame.quality = 0;
+    }
+  }
+  Books() {
+    for (int rod = 0; rod < cabinet::kRods; ++rod) ledger.told(rod, {{0, 0, 0}});
+  }
+  Ledger ledger;
+  wire::DeviceFrame frame{};
+  std::int64_t now_us = 0, told = 0;
+  std::uint16_t counted = 0;
+};
+
+TEST(Ledger, AgreesWithFramesThatHoldWhatWasToldAlsoOverAWrap) {
+  Books books;
+  books.run(3000, 250);
+  EXPECT_EQ(books.ledger.totals().exact, 3000u * cabinet::kRods);
+}
+
+TEST(Ledger, SeesALossThatNoFrameCounts) {
+  Books books;
+  books.run(1000, 7);
+  books.run(3000, 7, 0, true);
+  EXPECT_EQ(books.ledger.totals().unexplained, 1u);
+  ASSERT_EQ(books.ledger.violations().size(), 1u);
+  EXPECT_NE(books.ledger.violations()[0].find("rod 4"), std::string::npos);
+}
+
+TEST(Ledger, SeesAnErrorThatIsCountedLongAfterTheLoss) {
+  Books books;
+  books.run(1000, 7);
+  books.run(200, 7, 0, true);
+  books.frame.quality = 1;
+  books.run(3000, 7);
+  EXPECT_EQ(books.ledger.totals().unexplained, 1u);
+}
+
+TEST(Ledger, TakesALossThatAFrameCounts) {
+  Books books;
+  books.run(1000, 7);
+  books.run(3000, 7, 1, true);
+  EXPECT_EQ(books.ledger.totals().unexplained, 0u);
+  EXPECT_EQ(books.ledger.totals().losses, 1u);
+}
+
+TEST(Ledger, TakesALossOfASensorThatIsThenSaidToBeAbsent) {
+  Books books;
+  books.run(1000, 7);
+  books.run(300, 7, 0, true);
+  books.run(100, 0, 0, false, 0xF7);
+  books.run(3000, 7);
+  EXPECT_EQ(books.ledger.totals().unexplained, 0u);
+  EXPECT_EQ(books.ledger.totals().absences, 1u);
+}
+
+std::vector<std::uint8_t> pulse_report(int rod, int amplitude, int ms) {
+  wire::DeviceCommand command{};
+  command.kind = wire::kPulseCommand;
+  command.rod = static_cast<std::uint8_t>(rod);
+  command.amplitude = static_cast<std::uint8_t>(amplitude);
+  command.duration_ms = static_cast<std::uint16_t>(ms);
+  std::vector<std::uint8_t> packet(1 + wire::kDeviceReportBytes);
+  wire::encode_device_command(command, packet.data() + 1);
+  return packet;
+}
+
+struct Motors {
+  void command(std::int64_t us, int rod, int amplitude, int ms) {
+    watch.commanded(pulse_report(rod, amplitude, ms), cabinet::DeviceFraming::report, us);
+  }
+  PulseWatch watch;
+};
+
+TEST(PulseWatch, FollowsAPulseToItsMotor) {
+  Motors motors;
+  motors.command(1000, 5, 90, 20);
+  motors.watch.written({1400, 5, 90});
+  motors.watch.written({21'400, 5, 0});
+  motors.watch.passed(100'000);
+  EXPECT_EQ(motors.watch.counts().begun, 1u);
+  EXPECT_EQ(motors.watch.counts().latency_us, std::vector<float>{400});
+  EXPECT_EQ(motors.watch.counts().missing + motors.watch.counts().stray, 0u);
+  EXPECT_EQ(motors.watch.counts().not_ended, 0u);
+}
+
+TEST(PulseWatch, SeesAPulseAtAnotherMotorOneThatNeverBeginsAndOneWithoutEnd) {
+  Motors motors;
+  motors.command(1000, 5, 90, 20);
+  motors.watch.written({1400, 4, 90});
+  motors.watch.passed(100'000);
+  EXPECT_EQ(motors.watch.counts().stray, 1u);
+  EXPECT_EQ(motors.watch.counts().missing, 1u);
+  EXPECT_EQ(motors.watch.counts().not_ended, 1u);
+}
+
+}  // namespace
+}  // namespace cabinet_bench

@@ -1,0 +1,171 @@
+#include "calibration.h"
+
+#include <algorithm>
+#include <atomic>
+#include <barrier>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "frames.h"
+#include "session.h"
+#include "simulated_person.h"
+
+namespace cabinet_bench {
+namespace {
+
+constexpr double kPutBackSeconds = 0.5;
+
+cabinet::GuideOptions guide_options(int rod) {
+  const auto& spec =
+      foosball::table_spec(foosball::Layout::tournament).rods[static_cast<std::size_t>(rod)];
+  return {.reach = spec.slide_limit,
+          .push_side = foosball::push_sign(spec.team),
+          .forward_sign = -foosball::attack_sign(spec.team)};
+}
+
+calibrate::SessionOptions session_options(int rod, double counts_per_mm) {
+  calibrate::SessionOptions options;
+  options.rods = {rod};
+  options.start = cabinet::nominal_calibration(counts_per_mm);
+  return options;
+}
+
+// A rod of the table, of which its person hears what the controller counts.
+class RodOnTable final : public cabinet_test::SimulatedRod {
+ public:
+  RodOnTable(std::uint32_t seed, std::function<void()> wait_for_ms)
+      : SimulatedRod({}, seed), wait_for_ms_(std::move(wait_for_ms)) {}
+  void step(double to_slide, double to_angle) override {
+    slide = to_slide;
+    angle = to_angle;
+    wait_for_ms_();
+  }
+
+ private:
+  std::function<void()> wait_for_ms_;
+};
+
+// One rod, its person and the program that leads him.
+struct Place {
+  Place(int rod, const std::function<void()>& wait_for_ms)
+      : options(guide_options(rod)),
+        guide(options),
+        session(session_options(rod, 8)),
+        hand(static_cast<std::uint32_t>(50 + rod), wait_for_ms),
+        person(guide, hand, options) {
+    person.on_start = [this] { session.confirm(); };
+  }
+  cabinet::GuideOptions options;
+  cabinet::CalibrationGuide guide;  // as the person reads it on the screen
+  calibrate::Session session;
+  RodOnTable hand;
+  cabinet_test::Person person;
+};
+
+// The persons move on a millisecond, all at once, each on a thread of its own; then this thread's
+// simulator does.
+class Workshop {
+ public:
+  Workshop(Controller& controller, Table& table)
+      : controller_(controller), table_(table), frames_(controller.framing()) {
+    for (int rod = 0; rod < cabinet::kRods; ++rod) {
+      places_[static_cast<std::size_t>(rod)].emplace(rod, [this] {
+        moved_.arrive_and_wait();
+        passed_.arrive_and_wait();
+      });
+    }
+  }
+
+  CalibrationResult run() {
+    const std::int64_t began_us = controller_.now_us();
+    std::vector<std::jthread> persons;
+    for (auto& place : places_) {
+      persons.emplace_back([this, &place] {
+        place->person.follow();
+        const double turns = std::round(place->hand.angle / (2 * M_PI));
+        place->hand.move(0, turns * 2 * M_PI, kPutBackSeconds);
+        --at_work_;
+        moved_.arrive_and_drop();
+        passed_.arrive_and_drop();
+      });
+    }
+    for (;;) {
+      moved_.arrive_and_wait();
+      if (at_work_ == 0) break;
+      pass_ms();
+      passed_.arrive_and_wait();
+    }
+    persons.clear();
+    if (failure_) std::rethrow_exception(failure_);
+    table_.forget_turns();
+    return result(static_cast<double>(controller_.now_us() - began_us) * 1e-6);
+  }
+
+ private:
+  // Nobody else runs. After a failure the persons find that nothing moves, and give up.
+  void pass_ms() {
+    if (failure_) return;
+    try {
+      PerRod<Pose> poses;
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        poses[i] = {places_[i]->hand.slide, places_[i]->hand.angle};
+      }
+      table_.move(poses);
+      controller_.advance(table_.surfaces());
+      for (const Packet& packet : controller_.take_packets()) {
+        frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { hear(frame); });
+      }
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+  }
+  void hear(const wire::DeviceFrame& frame) {
+    const auto counts = [](std::uint16_t from, std::uint16_t to) {
+      return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
+    };
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      places_[i]->session.hear(frame);
+      if (!last_) continue;
+      places_[i]->hand.increments.push_back(
+          {counts(last_->slide[i], frame.slide[i]), counts(last_->spin[i], frame.spin[i]),
+           static_cast<float>(frame.time_us - last_->time_us) * 1e-6f});
+    }
+    last_ = frame;
+  }
+  CalibrationResult result(double seconds) const {
+    CalibrationResult result;
+    result.seconds = seconds;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const calibrate::Session& session = places_[i]->session;
+      result.calibration.rods[i] = session.calibration().rods[i];
+      if (!session.fit()) {
+        result.problem += "rod " + std::to_string(i + 1) + ": " + session.problem() + " (step " +
+                          std::to_string(session.guide().step()) + "); ";
+        continue;
+      }
+      result.slide_rms = std::max(result.slide_rms, session.fit()->slide_rms);
+      result.angle_rms = std::max(result.angle_rms, session.fit()->angle_rms);
+    }
+    return result;
+  }
+
+  Controller& controller_;
+  Table& table_;
+  Frames frames_;
+  PerRod<std::optional<Place>> places_;
+  std::optional<wire::DeviceFrame> last_;
+  std::exception_ptr failure_;
+  std::barrier<> moved_{cabinet::kRods + 1}, passed_{cabinet::kRods + 1};
+  std::atomic<int> at_work_{cabinet::kRods};
+};
+
+}  // namespace
+
+CalibrationResult calibrate(Controller& controller, Table& table) {
+  return Workshop(controller, table).run();
+}
+
+}  // namespace cabinet_bench

@@ -1,0 +1,81 @@
+// A controller of the cabinet: its own firmware in a simulator, eight simulated sensors on its
+// pins, eight motors where the firmware has any, and a PC at the other end of its cable. Time is
+// the simulator's, and passes in advance() alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cabinet/device_source.h"
+#include "cabinet/rod_input.h"
+
+namespace cabinet_bench {
+
+enum class Board { mega32u4, mega2560, rp2040 };
+inline constexpr std::array kBoards{Board::mega32u4, Board::mega2560, Board::rp2040};
+std::string name_of(Board board);
+std::optional<Board> board_named(const std::string& name);
+// Of the sensors that the documents give it [counts/mm].
+double usual_counts_per_mm(Board board);
+
+template <class T>
+using PerRod = std::array<T, cabinet::kRods>;
+
+// What has passed under a sensor since power-on [counts]; real, for a sensor hands over whole ones.
+struct Surface {
+  double slide = 0, spin = 0;
+};
+
+struct Packet {
+  std::int64_t time_us;  // when the PC had all of it
+  std::vector<std::uint8_t> bytes;
+};
+struct MotorWrite {  // the register of a driver that its motor obeys
+  std::int64_t time_us;
+  int rod, amplitude;
+};
+// Of all that passed under a sensor, whole counts of power-on until it spoke last.
+struct Told {
+  std::int64_t time_us;
+  std::int64_t slide, spin;
+};
+
+class Controller {
+ public:
+  virtual ~Controller() = default;
+
+  // One millisecond, in which the surfaces move on evenly to where they are at its end. Throws
+  // std::runtime_error where the firmware crashes.
+  virtual void advance(const PerRod<Surface>& to) = 0;
+  virtual std::int64_t now_us() const = 0;
+  virtual cabinet::DeviceFraming framing() const = 0;
+  // What came to the PC since the last call, oldest first.
+  virtual std::vector<Packet> take_packets() = 0;
+
+  // ---- motors
+  virtual bool has_motors() const = 0;
+  // A packet from the PC, as cabinet::DeviceSource::send() gives it to the line.
+  virtual void command(std::span<const std::uint8_t> packet) = 0;
+  virtual std::vector<MotorWrite> take_motor_writes() = 0;
+
+  // ---- troubles
+  // What the rod's sensor has told, oldest first; asking forgets it.
+  virtual std::vector<Told> take_told(int rod) = 0;
+  // Does something to the rod's sensor or to the controller, and returns what. Empty: not now.
+  virtual std::string trouble(int rod, std::mt19937& random) = 0;
+};
+
+// Powered just now. Throws std::runtime_error where a part of the simulator is missing.
+std::unique_ptr<Controller> power_on(Board board);
+
+std::unique_ptr<Controller> power_on_avr(Board board);
+std::unique_ptr<Controller> power_on_rp2040();
+
+}  // namespace cabinet_bench

@@ -1,0 +1,37 @@
+// Follows each pulse from the server's command to the driver of its motor.
+#pragma once
+
+#include <deque>
+#include <span>
+
+#include "match_run.h"
+
+namespace cabinet_bench {
+
+class PulseWatch {
+ public:
+  // A packet to the controller; what is no pulse is passed over.
+  void commanded(std::span<const std::uint8_t> packet, cabinet::DeviceFraming framing,
+                 std::int64_t now_us);
+  void written(const MotorWrite& write);
+  void passed(std::int64_t now_us);
+  const PulseCounts& counts() const { return counts_; }
+
+ private:
+  static constexpr std::int64_t kMostUs = 20'000;  // a pulse that has not begun by then is missing
+
+  struct Pulse {
+    std::int64_t us;
+    int amplitude;
+    bool runs_already;  // its motor, at this amplitude
+  };
+  struct Motor {
+    std::deque<Pulse> waiting;
+    int amplitude = 0;        // as its driver has it
+    std::int64_t end_us = 0;  // by when it has to be silent
+  };
+  PerRod<Motor> motors_;
+  PulseCounts counts_;
+};
+
+}  // namespace cabinet_bench
