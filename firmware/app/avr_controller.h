@@ -1,5 +1,5 @@
-// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog. Frames
-// come out, commands go in.
+// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog.
+// Frames come out, commands go in.
 #ifndef FIRMWARE_APP_AVR_CONTROLLER_H
 #define FIRMWARE_APP_AVR_CONTROLLER_H
 
@@ -20,8 +20,8 @@ class AvrController {
   // A round of the loop: false until it is time for a turn, of which each step is short. Meanwhile
   // the motors' bus moves on, or the processor sleeps.
   bool due();
-  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that nobody
-  // does. Returns the time [us].
+  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that
+  // nobody does. Returns the time [us].
   uint32_t turn(bool host);
 
   void obey(const wire::DeviceCommand& command);
