@@ -62,10 +62,11 @@ int main() {
     g_uart.poll();  // a byte each time round: one takes 10 us, two rounds of a sleep 20
     if (!g_controller.due()) continue;
     const uint32_t now_us = g_controller.turn(true);
-    take_commands();
-    if (static_cast<int32_t>(now_us - next_us) >= 0) {
+    if (static_cast<int32_t>(now_us - next_us) >= 0 && !g_controller.after_frame()) {
       next_us += kFrameUs;
       report(now_us);
+    } else {
+      take_commands();
     }
   }
 }
