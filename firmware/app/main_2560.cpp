@@ -37,7 +37,9 @@ void take_commands() {
   }
 }
 
+// A frame that finds no room is left out before it is made: what it would count is in the next.
 void report(uint32_t now_us) {
+  if (!g_uart.has_room(wire::kDeviceCobsBytes)) return;
   wire::DeviceFrame frame;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
   g_controller.make_frame(now_us, frame);
