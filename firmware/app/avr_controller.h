@@ -24,6 +24,10 @@ class AvrController {
   // nobody does. Returns the time [us].
   uint32_t turn(bool host);
 
+  // The turn before this one made a frame. What takes long has a turn of its own, else the edges of
+  // the mice find their ring full: a frame, a command, the motors' bus.
+  bool after_frame() const { return after_frame_; }
+
   void obey(const wire::DeviceCommand& command);
   // An error of the line of commands, told in the next frame.
   void count_error();
@@ -51,6 +55,7 @@ class AvrController {
   uint32_t ms_began_us_ = 0;
   uint8_t errors_ = 0;  // counted in the next frame
   uint8_t present_ = 0;
+  bool frame_made_ = false, after_frame_ = false;
   bool host_ = false;
   bool watchdog_has_reset_ = false;
   uint8_t light_ms_ = 0;
