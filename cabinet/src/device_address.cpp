@@ -68,13 +68,19 @@ std::string objection(const std::string& text, const Address& address) {
 // An attempt costs the poller nothing, and the device is in its hands at the second.
 constexpr std::int64_t kReopenUs = 100'000;
 
-std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path) {
+std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path,
+                                          CalibrationFinder find) {
   auto arrivals = std::make_shared<ArrivalWatch>();
-  auto keeper = std::make_shared<LineKeeper>([path, arrivals] {
+  // Written by the thread that opens before it hands a descriptor over, read by the poller then.
+  auto found = std::make_shared<std::optional<Calibration>>();
+  auto keeper = std::make_shared<LineKeeper>([path, arrivals, found, find = std::move(find)] {
     const int fd = open_exclusively(path.c_str());
-    if (fd >= 0) arrivals->watch(fd);
+    if (fd < 0) return fd;
+    arrivals->watch(fd);
+    if (find) *found = find();
     return fd;
   });
+  options.calibration_of_open = [found] { return *found ? &**found : nullptr; };
   options.reopen_us = kReopenUs;
   options.opener_sets_line = true;
   options.arrived_us = [arrivals] { return arrivals->last_us(); };
@@ -138,7 +144,7 @@ std::string why_no_device(const std::string& address) {
 
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
-    const std::array<double, kRods>& slide_limit) {
+    const std::array<double, kRods>& slide_limit, CalibrationFinder find) {
   if (std::string why = why_no_device(address); !why.empty()) return tl::unexpected(std::move(why));
   const auto parsed = parse_address(address);
   DeviceOptions options;
@@ -147,7 +153,7 @@ tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
   options.calibration = calibration;
   options.slide_limit = slide_limit;
   if (parsed->scheme == Scheme::file) return recording_source(std::move(options), parsed->path);
-  return line_source(std::move(options), parsed->path);
+  return line_source(std::move(options), parsed->path, std::move(find));
 }
 
 }  // namespace cabinet

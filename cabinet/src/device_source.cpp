@@ -127,6 +127,8 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
   if (!options.opener_sets_line && isatty(fd) != 0) make_raw(fd);
   reader.reset(packing);
   tracker.forget_base();
+  const Calibration* own = options.calibration_of_open ? options.calibration_of_open() : nullptr;
+  if (own != nullptr) tracker.calibrate(*own);
   heard = pending = false;
   bytes_us.reset();
 }

@@ -73,6 +73,14 @@ RodTracker::RodTracker(const Calibration& calibration, const std::array<double, 
       filters_(of_each<StateFilter>(calibration, count_of)),
       index_(of_each<IndexReference>(calibration, std::identity())) {}
 
+void RodTracker::calibrate(const Calibration& calibration) {
+  longest_gap_us_ = longest_gap_us(calibration);
+  integrators_ = of_each<RodIntegrator>(calibration, std::identity());
+  filters_ = of_each<StateFilter>(calibration, count_of);
+  index_ = of_each<IndexReference>(calibration, std::identity());
+  have_last_ = false;
+}
+
 bool RodTracker::follows(const wire::DeviceFrame& last, const wire::DeviceFrame& frame) const {
   const std::int32_t elapsed = elapsed_us(last, frame);
   return sequence_step(last, frame) > 0 && elapsed >= 0 && elapsed <= longest_gap_us_;

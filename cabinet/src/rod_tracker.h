@@ -32,6 +32,8 @@ class RodTracker {
   void hold();
   // The next frame is of another run of the device: it moves nothing.
   void forget_base() { have_last_ = false; }
+  // From the next run on; the rods stay where they are.
+  void calibrate(const Calibration& calibration);
 
   const RodInputs& rods() const { return rods_; }
   const RodCounts& counts() const { return counts_; }

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "simulated_device.h"
@@ -327,6 +333,45 @@ TEST(OpenDevice, ReadsAPtyByItsAddress) {
   for (int i = 0; i < 1'000; ++i) (*source)->poll(now_us += 1'000);
   EXPECT_FALSE((*source)->connected());
   EXPECT_EQ((*source)->rods()[0].status, RodStatus::held);
+}
+
+// Before the first is plugged in nobody knows which it will be, and the next may be another.
+TEST(OpenDevice, WhatIsPluggedInIsMeasuredByItsOwnCalibration) {
+  const std::string link = testing::TempDir() + "sf_line_" + std::to_string(::getpid());
+  std::filesystem::remove(link);
+  std::atomic<int> asked{0};
+  auto source = open_device("serial:" + link, nominal_calibration(), {}, [&asked] {
+    Calibration own = nominal_calibration();
+    own.rods[0].m[0][0] *= 2.0 + asked++;
+    return std::optional(own);
+  });
+  ASSERT_TRUE(source.has_value()) << source.error();
+  std::int64_t now_us = 0;
+  double expected = 0;
+  for (int turn = 0; turn < 2; ++turn) {
+    SerialLine line;
+    line.plug();
+    std::filesystem::create_symlink(line.path, link);
+    SimulatedDevice device;
+    const auto poll_until = [&](const auto& done) {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+      while (!done() && std::chrono::steady_clock::now() < end) {
+        (void)line.master.send_what_fits(cobs(device.frame(1'000)));
+        (*source)->poll(now_us += 1'000);
+      }
+      return done();
+    };
+    ASSERT_TRUE(poll_until([&] { return (*source)->connected(); }));
+    device.slide[0] += 80;
+    expected += (2.0 + turn) * 80 * kMetresPerCount;
+    EXPECT_TRUE(poll_until([&] {
+      return std::abs(measured_slide((*source)->rods()[0]) - expected) < 1e-9;
+    })) << measured_slide((*source)->rods()[0])
+        << " " << expected;
+    std::filesystem::remove(link);
+    line.master.close();
+    EXPECT_TRUE(poll_until([&] { return !(*source)->connected(); }));
+  }
 }
 
 TEST(OpenDevice, ARecordingIsInMemoryBeforeTheFirstPoll) {

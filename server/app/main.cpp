@@ -11,8 +11,12 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <new>
 #include <optional>
+#include <set>
+#include <system_error>
 
 #include "cabinet/controller.h"
 #include "cabinet/device_haptics.h"
@@ -154,6 +158,41 @@ tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string
   return cabinet::nominal_calibration();
 }
 
+// Says what has changed since it was last asked.
+server::Log only_news(const server::Log& log) {
+  return [log, told = std::make_shared<std::set<std::string>>()](server::LogLevel level,
+                                                                 const std::string& text) {
+    if (told->insert(text).second) log(level, text);
+  };
+}
+
+// For a controller that is plugged in while the server runs, or another in its place.
+cabinet::CalibrationFinder finder(const std::string& address, const server::Log& log) {
+  return [address, log]() -> std::optional<cabinet::Calibration> {
+    auto found = calibration_of(address, {}, log);
+    if (found) return std::move(*found);
+    log(server::LogLevel::warning, found.error());
+    return std::nullopt;
+  };
+}
+
+tl::expected<std::unique_ptr<cabinet::DeviceSource>, std::string> open_controller(
+    const std::string& address, const std::string& named,
+    const std::array<double, cabinet::kRods>& slide_limit, const server::Log& log) {
+  if (std::string why = cabinet::why_no_device(address); !why.empty())
+    return tl::unexpected(std::move(why));
+  const server::Log news = only_news(log);
+  const bool is_line = address.rfind("file:", 0) != 0;
+  std::error_code unknown;
+  const bool is_there = std::filesystem::exists(address.substr(address.find(':') + 1), unknown);
+  tl::expected<cabinet::Calibration, std::string> own = cabinet::nominal_calibration();
+  if (is_there || !named.empty()) own = calibration_of(address, named, news);
+  if (!own) return tl::unexpected(own.error());
+  const bool finds = is_line && named.empty();
+  return cabinet::open_device(address, *own, slide_limit,
+                              finds ? finder(address, news) : cabinet::CalibrationFinder());
+}
+
 tl::expected<Devices, std::string> open_devices(const app::Options& options,
                                                 const server::Log& log) {
   tl::expected<cabinet::Calibration, std::string> calibration = cabinet::nominal_calibration();
@@ -179,11 +218,7 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options,
     devices.all.push_back(std::move(*device));
   }
   for (const std::string& address : options.devices) {
-    if (std::string why = cabinet::why_no_device(address); !why.empty())
-      return tl::unexpected(std::move(why));
-    auto own = calibration_of(address, options.calibration, log);
-    if (!own) return tl::unexpected(own.error());
-    auto device = cabinet::open_device(address, *own, slide_limit);
+    auto device = open_controller(address, options.calibration, slide_limit, log);
     if (!device) return tl::unexpected(device.error());
     devices.haptics->add(**device);
     devices.all.push_back(std::move(*device));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -38,6 +39,9 @@ struct DeviceOptions {
   // Sends a packet to the descriptor from another thread, where write(2) would wait, as at hidraw;
   // false: not now. None: nothing is sent to such a device.
   std::function<bool(int, std::span<const std::byte>)> send_apart;
+  // Of the device that the opener has just opened; null: as before. Called from poll(), so it never
+  // waits. None: the one above.
+  std::function<const Calibration*()> calibration_of_open;
 };
 
 // Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno
@@ -88,8 +92,12 @@ class DeviceSource final : public Device {
 // poll() of the source never waits: a device is opened, set up and closed on a thread of its own,
 // and found within two attempts, 200 ms; a recording (64 MiB at most, 6 hours) is read whole here.
 std::string why_no_device(const std::string& address);
+//
+// find: the calibration of the controller that is there, looked for whenever one is plugged in, so
+// that it may be another; nothing: as before. On the thread that opens: it may wait.
+using CalibrationFinder = std::function<std::optional<Calibration>()>;
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,
-    const std::array<double, kRods>& slide_limit = {});
+    const std::array<double, kRods>& slide_limit = {}, CalibrationFinder find = {});
 
 }  // namespace cabinet
