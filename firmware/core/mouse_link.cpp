@@ -35,8 +35,8 @@ MouseLink::Event MouseLink::other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms)
   return error();
 }
 
-// One that is absent has nothing to lose: what is heard of it may be the clock of a command that was
-// given up when it had just begun to take it.
+// One that is absent has nothing to lose: what is heard of it may be the clock of a command that
+// was given up when it had just begun to take it.
 MouseLink::Event MouseLink::error() const {
   return state_ == kAbsent ? kNone : kError;
 }
