@@ -75,11 +75,7 @@ void report(const std::string& board, const std::string& what, const Errors& err
   rows.add(board, name + "_within", within, "% within 1 mm and 2 degrees");
 }
 
-void report(const std::string& board, const PulseCounts& pulses, bool motors, Rows& rows) {
-  if (!motors) {
-    fmt::print("  {} hits, {} pulses; this firmware has no motors\n", pulses.hits, pulses.pulses);
-    return;
-  }
+void report(const std::string& board, const PulseCounts& pulses, Rows& rows) {
   const Spread latency = spread(pulses.latency_us);
   fmt::print(
       "  {} hits, {} pulses: {} begun at their motors, {} merged, {} missing, {} stray, {} not "
@@ -130,7 +126,7 @@ bool play(Board board, const Options& options, Rows& rows) {
   report(name, "rod after the tick", match.rod, rows);
   report(name, "free of the ball", match.free, rows);
   report(name, "ideal: given the truth", match.ideal, rows);
-  report(name, match.pulses, controller->has_motors(), rows);
+  report(name, match.pulses, rows);
   fmt::print("  {} frames: {} lost, {} bad, {} overflows, {} impossible, {} line errors\n",
              match.frames, match.lost, match.bad, match.overflows, match.impossible,
              match.line_errors);
