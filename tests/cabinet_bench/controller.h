@@ -1,6 +1,6 @@
 // A controller of the cabinet: its own firmware in a simulator, eight simulated sensors and eight
-// motors on its pins, and a PC at the other end of its cable. Time is the simulator's, and passes in
-// advance() alone.
+// motors on its pins, and a PC at the other end of its cable. Time is the simulator's, and passes
+// in advance() alone.
 #pragma once
 
 #include <array>
