@@ -189,6 +189,24 @@ def ports_in(source, define):
     return (found['CLOCK'], found['DATA']) if sound else None
 
 
+def signals_of(board):
+    """Those of an AVR board besides the rods' lines, by the name of the firmware's table."""
+    return {'I2C_DATA': board['i2c']['sda'], 'I2C_CLOCK': board['i2c']['scl'], 'MOTORS': board['motors_enable'],
+            'LED': board['led']}
+
+
+def signals_in(source, define):
+    """The pins of signals_of() in the firmware's table of pins; None where it has none."""
+    block = re.search(rf'defined\({define}\)\n(.*?)#(?:elif|else|endif)', source, re.S)
+    text = block.group(1) if block else ''
+    ports = dict(re.findall(r'#define BOARD_(I2C|MOTORS|LED)_DDR DDR([A-L])\b', text))
+    bits = dict(re.findall(r'#define BOARD_(I2C_DATA|I2C_CLOCK|MOTORS|LED)_BIT ([0-7])\b', text))
+    registers = re.findall(r'#define BOARD_(I2C|MOTORS)_(PIN|PORT|DDR) (PIN|PORT|DDR)([A-L])\b', text)
+    sound = all(a == b and ports.get(role) == port for role, a, b, port in registers) and len(registers) == 5
+    found = {name: f'P{ports.get(name.split("_")[0])}{bit}' for name, bit in bits.items()}
+    return found if sound and len(found) == 4 and len(ports) == 3 else None
+
+
 def pin_faults():
     for name, board in pins().items():
         if name == 'about':
@@ -201,7 +219,13 @@ def pin_faults():
             for role, port in zip(('clock', 'data'), ports):
                 if board[role] != [f'P{port}{bit}' for bit in range(8)]:
                     yield f'pins.json: {name}: the firmware has {role} at P{port}0 to P{port}7'
-            unknown = set(board['printed']) - {*board['clock'], *board['data']}
+            signals = signals_of(board)
+            if signals_in((ROOT / board['source']).read_text(), board['define']) != signals:
+                yield f'pins.json: {name}: the firmware has other pins for bus, motors and LED than {signals}'
+            used = [*board['clock'], *board['data'], *signals.values()]
+            if len(set(used)) != len(used):
+                yield f'pins.json: {name}: a pin is used twice'
+            unknown = set(board['printed']) - set(used)
             if unknown:
                 yield f'pins.json: {name}: printed names of pins that are not used: {sorted(unknown)}'
         else:
@@ -249,6 +273,18 @@ def pins_table():
     return lines
 
 
+def signals_table():
+    small, mega = pins()['32u4'], pins()['2560']
+    rows = [('SDA of the multiplexer', 'I2C_DATA'), ('SCL of the multiplexer', 'I2C_CLOCK'), ('EN of all drivers', 'MOTORS'),
+            ('LED, by 1 kOhm to ground', 'LED')]
+    lines = ['| signal | 32U4 | Mega 2560 |', '|---|---|---|']
+    for what, name in rows:
+        pin = signals_of(mega)[name]
+        own = ', the board\'s own' if name == 'LED' else ''
+        lines.append(f'| {what} | {signals_of(small)[name]} | {pin}, pin {mega["printed"][pin]}{own} |')
+    return lines
+
+
 def pico_table():
     board, pin = pins()['pico'], wiring_svg.pico_pin
     lines = ['| rod | data (MISO) | select (NCS) |', '| ---: | --- | --- |']
@@ -278,7 +314,7 @@ def drawings():
 
 # --- pages ---
 
-MAKERS = {'bill': bill_table, 'sums': sums_table, 'rods': rods_table, 'screens': screens_table, 'pins': pins_table,
+MAKERS = {'bill': bill_table, 'sums': sums_table, 'rods': rods_table, 'screens': screens_table, 'pins': pins_table, 'signals': signals_table,
           'pico-pins': pico_table, 'pico-state': pico_state}
 
 
@@ -306,6 +342,13 @@ def self_test():
     assert ports_in(head + six.replace('DDRD', 'DDRC') + '#endif', 'M') is None
     assert ports_in(head + six.replace('BOARD_DATA_PIN PIND', 'BOARD_DATA_PIN DDRD') + '#endif', 'M') is None
     assert ports_in(head + six + '#endif', 'N') is None
+    more = ('#define BOARD_I2C_PIN PINF\n#define BOARD_I2C_PORT PORTF\n#define BOARD_I2C_DDR DDRF\n#define BOARD_I2C_DATA_BIT 0\n'
+            '#define BOARD_I2C_CLOCK_BIT 1\n#define BOARD_MOTORS_PORT PORTC\n#define BOARD_MOTORS_DDR DDRC\n'
+            '#define BOARD_MOTORS_BIT 6\n#define BOARD_LED_DDR DDRC  // x\n#define BOARD_LED_BIT 7\n')
+    assert signals_in(head + six + more + '#endif', 'M') == {'I2C_DATA': 'PF0', 'I2C_CLOCK': 'PF1', 'MOTORS': 'PC6', 'LED': 'PC7'}
+    assert signals_in(head + six + more.replace('PORTF', 'PORTD') + '#endif', 'M') is None
+    assert signals_in(head + six + '#endif', 'M') is None
+    assert ports_in(head + six + more + '#endif', 'M') == ('B', 'D')
     pico = {'data': list(range(8)), 'select': list(range(8, 16)), 'spi': {'sck': 18, 'mosi': 19},
             'i2c': {'unit': 0, 'sda': 20, 'scl': 21}, 'motors_enable': 17, 'button': 22, 'led': 25}
     firmware = ('constexpr unsigned kFirstData = 0, kFirstSelect = 8;\nconstexpr unsigned kMotorsEnable = 17, '

@@ -52,10 +52,10 @@ class Svg:
 
 
 def ps2_wiring(board):
-    """Eight mice at one AVR: each line has its pull-up, the supplies are two buses."""
+    """Eight mice at one AVR: each line has its pull-up, the supplies are two buses. Motors and LED beside it."""
     top, pitch, gap = 116, 120, 26
     low = top + RODS * pitch
-    svg = Svg(1080, low + 190, f'Eight PS/2 mice at an {board["name"]}')
+    svg = Svg(1120, low + 190, f'Eight PS/2 mice at an {board["name"]}')
     svg.words(20, 34, f'Eight PS/2 mice at an {board["name"]}', 20, bold=True)
     svg.words(20, 60, 'Mini-DIN pins 2 and 6 stay free. Each resistor: 4.7 kOhm. A dot joins; lines that cross do not.', 14)
     plug_right, plus_x, ground_x, board_x = 200, 440, 500, 680
@@ -100,7 +100,8 @@ def ps2_wiring(board):
     svg.words(board_x + 26, low + 12, 'GND', 13, colour=COLOURS['ground'])
     svg.words(board_x + 56, ground_at - 8, 'Grounds are joined; the supply\'s', 13)
     svg.words(board_x + 56, ground_at + 10, '+5 V is not joined to USB\'s.', 13)
-    pc_y = top + 3 * pitch
+    avr_signals(svg, board, board_x + 190, top + 5 * pitch + 97)
+    pc_y = top + 2 * pitch
     svg.box(980, pc_y, 90, 70, '#eef0fa')
     svg.words(1025, pc_y + 42, 'PC', 18, 'middle', bold=True)
     svg.line([(board_x + 190, pc_y + 35), (980, pc_y + 35)], '#555555', 5)
@@ -108,6 +109,34 @@ def ps2_wiring(board):
     for i, part in enumerate(board['link'].split(', ')[1:]):
         svg.words(882, pc_y + 58 + 18 * i, part, 13)
     return svg.text()
+
+
+def avr_signals(svg, board, right, top):
+    """What need not be there: the motors' multiplexer, and an LED. right: of the controller's box."""
+    i2c = board['i2c']
+
+    def pin(port, at, colour):
+        printed = board['printed'].get(port)
+        svg.words(right - 8, at + 5, (f'pin {printed} = ' if printed else '') + port, 14, 'end', colour)
+
+    box_x = 950
+    svg.box(box_x, top - 20, 120, 152)
+    for i, words in enumerate(['TCA9548A and', 'eight DRV2605L:', 'as at the Pico,', 'all at +5 V']):
+        svg.words(box_x + 60, top + 68 + 18 * i, words, 12, 'middle')
+    for i, (net, port) in enumerate([('SDA', i2c['sda']), ('SCL', i2c['scl']), ('EN', board['motors_enable'])]):
+        at, colour = top + 18 * i, COLOURS[net]
+        pin(port, at, colour)
+        svg.line([(right, at), (box_x, at)], colour)
+        svg.words(box_x + 8, at + 5, net, 13, colour=colour)
+    svg.words(right + 10, top - 48, '4.7 kOhm from SDA and SCL to +5 V,', 12)
+    svg.words(right + 10, top - 32, '10 kOhm from EN to ground', 12)
+    at = top - 108  # between the lines of two rods, as the three above
+    pin(board['led'], at, '#555555')
+    if board['led'] in board['printed']:
+        svg.words(right + 10, at + 5, 'LED on the board', 12)
+    else:
+        svg.line([(right, at), (box_x, at)], '#555555')
+        svg.words(box_x + 8, at + 5, 'LED, 1 kOhm, ground', 12)
 
 
 def spi_wiring(board):

@@ -5,10 +5,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "cabinet/device_haptics.h"
 #include "os/socket_address.h"
+#include "wire/device_frame.h"
 
 namespace end_to_end {
 namespace {
@@ -45,7 +49,11 @@ CabinetRig::CabinetRig(foosball::Layout layout) {
   server_ = std::move(*created);
   connect_cable(to_server_);
   connect_cable(to_tap_);
-  server_->add_device(device_on(to_server_));
+  auto device = device_on(to_server_);
+  auto motors = std::make_unique<cabinet::CabinetHaptics>();
+  motors->add(*device);
+  server_->set_cabinet_haptics(std::move(motors));
+  server_->add_device(std::move(device));
   tap_ = device_on(to_tap_);
   join();
   while (!sim_.all_enabled()) step();
@@ -162,9 +170,24 @@ void CabinetRig::forward_reports() {
   tap_->poll(static_cast<std::int64_t>(sim_.now_us()));
 }
 
+// As hidraw takes them: the report's number, then the report.
+void CabinetRig::forward_commands() {
+  if (to_server_.writing < 0) return;
+  std::array<std::uint8_t, 1 + wire::kDeviceReportBytes> bytes{};
+  while (recv(to_server_.writing, bytes.data(), bytes.size(), MSG_DONTWAIT) ==
+         static_cast<ssize_t>(bytes.size())) {
+    sim_.send(std::span(bytes).subspan(1));
+  }
+}
+
+std::uint64_t CabinetRig::haptic_pulses() const {
+  return server_->counters().haptic_pulses;
+}
+
 void CabinetRig::tick() {
   server_->tick(static_cast<std::int64_t>(sim_.now_us()));
   server_->wait_sent();
+  forward_commands();
 }
 
 const wire::Snapshot& CabinetRig::step() {

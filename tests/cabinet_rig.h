@@ -38,6 +38,8 @@ class CabinetRig {
 
   // A second reader of the same reports: what the PC made of the counts, before the physics.
   const cabinet::DeviceSource& tap() const { return *tap_; }
+  std::uint64_t haptic_pulses() const;  // that the server has sent to whoever has the rods
+
   // Ticks without a snapshot, or with one for another tick, since the listener joined.
   int snapshots_missed() const { return missed_; }
 
@@ -55,6 +57,7 @@ class CabinetRig {
   bool receive(wire::Snapshot& snapshot);
   void tick();
   void forward_reports();
+  void forward_commands();
 
   firmware_sim::CabinetSim sim_{firmware_sim::Board::mega32u4};
   Cable to_server_, to_tap_;  // before what reads from them

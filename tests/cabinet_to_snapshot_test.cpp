@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "cabinet_rig.h"
+#include "foosball/match.h"
 #include "foosball/table.h"
 
 namespace {
@@ -185,6 +187,39 @@ TEST(CabinetToSnapshot, EightMiceAtOnceLoseNoCountInTenSeconds) {
   EXPECT_EQ(rig.snapshots_missed(), 0);
   std::printf("8 mice, 10 s: %llu packets, no count lost\n",
               static_cast<unsigned long long>(reports));
+}
+
+// From a hit in the physics by the server's command over the controller's real firmware to a motor.
+TEST(CabinetToSnapshot, AHitIsFeltAtTheMotorOfItsRod) {
+  CabinetRig rig(foosball::Layout::tournament);
+  firmware_sim::MotorBus& motors = rig.cabinet().motors();
+  const auto played = [&] {
+    return std::ranges::count_if(motors.writes(), [](const firmware_sim::MotorBus::Write& write) {
+      return write.address == 2 && write.value != 0;
+    });
+  };
+  // Pushes of 0.12 m begin the match; then the men go round and round.
+  bool playing = false;
+  unsigned hit = 0;  // rods, a bit each
+  for (int ms = 0; ms < 30'000 && played() < 5; ++ms) {
+    const int along = playing ? (ms / 50 % 2 == 0 ? 2 : -2) : (ms / 100 % 2 == 0 ? 10 : -10);
+    for (int rod = 0; rod < 8; ++rod) rig.cabinet().mouse(rod).move(along, playing ? 3 : 0);
+    const wire::Snapshot& now = rig.step();
+    playing = now.ball_in_play || playing;
+    for (const wire::EventSnapshot& event : now.events) {
+      if (event.kind == static_cast<std::uint8_t>(foosball::EventKind::man_hit))
+        hit |= 1u << event.rod;
+    }
+  }
+  for (const firmware_sim::MotorBus::Write& write : motors.writes()) {
+    if (write.address == 2 && write.value != 0) {
+      EXPECT_NE(hit >> write.rod & 1u, 0u) << "rod " << write.rod;
+    }
+  }
+  EXPECT_GE(played(), 5);
+  EXPECT_GE(static_cast<std::ptrdiff_t>(rig.haptic_pulses()), played());
+  EXPECT_EQ(motors.violations(), std::vector<std::string>{});
+  EXPECT_EQ(rig.tap().counters().line_errors, 0u);
 }
 
 }  // namespace

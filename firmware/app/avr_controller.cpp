@@ -35,8 +35,11 @@ void AvrController::step_bus() {
 
 uint32_t AvrController::turn(bool host) {
   feed_watchdog();
-  // With all mice moving there may be no time between two turns.
-  for (uint8_t i = 0; i < kStepsATurn && bus_.busy(); ++i) step_bus();
+  after_frame_ = frame_made_;
+  frame_made_ = false;
+  if (!after_frame_) {
+    for (uint8_t i = 0; i < kStepsATurn && bus_.busy(); ++i) step_bus();
+  }
   const uint32_t now_us = micros();
   mice_.poll(now_us);
   host_ = host;
@@ -98,6 +101,7 @@ void AvrController::make_frame(uint32_t now_us, wire::DeviceFrame& frame) {
   frame.quality = add_saturating(frame.quality, errors_);
   errors_ = 0;
   present_ = frame.present;
+  frame_made_ = true;
 }
 
 }  // namespace firmware

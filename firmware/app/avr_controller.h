@@ -1,5 +1,5 @@
-// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog. Frames
-// come out, commands go in.
+// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog.
+// Frames come out, commands go in.
 #ifndef FIRMWARE_APP_AVR_CONTROLLER_H
 #define FIRMWARE_APP_AVR_CONTROLLER_H
 
@@ -20,9 +20,13 @@ class AvrController {
   // A round of the loop: false until it is time for a turn, of which each step is short. Meanwhile
   // the motors' bus moves on, or the processor sleeps.
   bool due();
-  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that nobody
-  // does. Returns the time [us].
+  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that
+  // nobody does. Returns the time [us].
   uint32_t turn(bool host);
+
+  // The turn before this one made a frame. What takes long has a turn of its own, else the edges of
+  // the mice find their ring full: a frame, a command, the motors' bus.
+  bool after_frame() const { return after_frame_; }
 
   void obey(const wire::DeviceCommand& command);
   // An error of the line of commands, told in the next frame.
@@ -51,6 +55,7 @@ class AvrController {
   uint32_t ms_began_us_ = 0;
   uint8_t errors_ = 0;  // counted in the next frame
   uint8_t present_ = 0;
+  bool frame_made_ = false, after_frame_ = false;
   bool host_ = false;
   bool watchdog_has_reset_ = false;
   uint8_t light_ms_ = 0;

@@ -37,7 +37,9 @@ void take_commands() {
   }
 }
 
+// A frame that finds no room is left out before it is made: what it would count is in the next.
 void report(uint32_t now_us) {
+  if (!g_uart.has_room(wire::kDeviceCobsBytes)) return;
   wire::DeviceFrame frame;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
   g_controller.make_frame(now_us, frame);
@@ -62,10 +64,11 @@ int main() {
     g_uart.poll();  // a byte each time round: one takes 10 us, two rounds of a sleep 20
     if (!g_controller.due()) continue;
     const uint32_t now_us = g_controller.turn(true);
-    take_commands();
-    if (static_cast<int32_t>(now_us - next_us) >= 0) {
+    if (static_cast<int32_t>(now_us - next_us) >= 0 && !g_controller.after_frame()) {
       next_us += kFrameUs;
       report(now_us);
+    } else {
+      take_commands();
     }
   }
 }

@@ -55,7 +55,10 @@ int main() {
     if (!g_controller.due()) continue;
     const uint32_t now_us = g_controller.turn(g_usb.configured());
     g_usb.poll();
-    take_command();
-    if (g_usb.wants_report()) report(now_us);
+    if (g_usb.wants_report() && !g_controller.after_frame()) {
+      report(now_us);
+    } else {
+      take_command();
+    }
   }
 }

@@ -27,12 +27,18 @@ MouseLink::Event MouseLink::other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms)
       return on_byte(receiver_.byte(), true, now_ms);
     case Ps2Receiver::kParityError:
       on_byte(receiver_.byte(), false, now_ms);
-      return kError;
+      return error();
     case Ps2Receiver::kFramingError:
       break;
   }
   parser_.lose();
-  return kError;
+  return error();
+}
+
+// One that is absent has nothing to lose: what is heard of it may be the clock of a command that was
+// given up when it had just begun to take it.
+MouseLink::Event MouseLink::error() const {
+  return state_ == kAbsent ? kNone : kError;
 }
 
 MouseLink::Event MouseLink::on_byte(uint8_t value, bool good, uint16_t now_ms) {
@@ -172,7 +178,7 @@ MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) 
   // A byte that our holding the clock cut off is no error.
   if (state_ != kInhibit && receiver_.sweep(tick) == Ps2Receiver::kFramingError) {
     parser_.lose();
-    return kError;
+    return error();
   }
   const uint8_t waited = static_cast<uint8_t>(tick - since_tick_);
   switch (state_) {

@@ -62,6 +62,7 @@ class MouseLink {
   static const uint8_t kTries = 3;          // of each command
 
  private:
+  Event error() const;
   Event on_byte(uint8_t value, bool good, uint16_t now_ms);
   Event on_stream_byte(uint8_t value, bool good, uint16_t now_ms);
   void on_reply(uint8_t value, uint16_t now_ms);

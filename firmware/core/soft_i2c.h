@@ -13,8 +13,9 @@
 namespace firmware {
 
 // Wires: static void clock_low(), clock_free(), data_low(), data_free(); bool clock(), data();
-// void wait_high(), at least 0.6 us, and wait_low(), so that together with what a step does between
-// a clock is low for 1.3 us. The tests measure both.
+// void settle(), in which a line that was let go rises by its pull-up, else it counts as held for
+// this step; wait_high(), at least 0.6 us; wait_low(), so that together with what a step does
+// between a clock is low for 1.3 us. The tests measure both.
 template <typename Wires>
 class SoftI2c final : public I2cBus {
  public:
@@ -90,10 +91,17 @@ class SoftI2c final : public I2cBus {
     state_ = kFailed;
   }
 
-  void clock_bit(uint8_t tick) {
+  // A clock that a part has stretched is high for its time from when it is found high.
+  bool raise_clock(uint8_t tick) {
     Wires::clock_free();
+    Wires::settle();
+    if (!clock_is_high(tick)) return false;
     Wires::wait_high();
-    if (clock_is_high(tick)) end_bit();
+    return true;
+  }
+
+  void clock_bit(uint8_t tick) {
+    if (raise_clock(tick)) end_bit();
   }
 
   // All but the last that are left of the byte under way, for as long as nobody holds a line:
@@ -104,8 +112,10 @@ class SoftI2c final : public I2cBus {
     bool high = sent_high_;
     while (bit < 7) {
       Wires::clock_free();
+      Wires::settle();
+      if (!Wires::clock()) break;
       Wires::wait_high();
-      if (!Wires::clock() || Wires::data() != high) break;
+      if (Wires::data() != high) break;
       Wires::clock_low();
       high = (shift & 0x80) != 0;
       if (high) {
@@ -200,9 +210,7 @@ class SoftI2c final : public I2cBus {
         phase_ = kBit;
         break;
       case kStop:
-        Wires::clock_free();
-        Wires::wait_high();
-        if (!clock_is_high(tick)) break;
+        if (!raise_clock(tick)) break;
         Wires::data_free();
         if (clocks_ != 0) {  // the bus is free: now the transfer
           clocks_ = 0;
@@ -213,9 +221,7 @@ class SoftI2c final : public I2cBus {
         state_ = failed_ ? kFailed : kIdle;
         break;
       case kFree:
-        Wires::clock_free();
-        Wires::wait_high();
-        if (!clock_is_high(tick)) break;
+        if (!raise_clock(tick)) break;
         if (Wires::data()) {
           Wires::clock_low();
           stop();

@@ -17,14 +17,11 @@ void Uart::poll() {
   tail_ = static_cast<uint8_t>((tail_ + 1) & kRingMask);
 }
 
-bool Uart::send(const uint8_t* bytes, uint8_t size) {
-  const uint8_t used = static_cast<uint8_t>((head_ - tail_) & kRingMask);
-  if (size >= kRing - used) return false;
+void Uart::send(const uint8_t* bytes, uint8_t size) {
   for (uint8_t i = 0; i < size; ++i) {
     ring_[head_] = bytes[i];
     head_ = static_cast<uint8_t>((head_ + 1) & kRingMask);
   }
-  return true;
 }
 
 }  // namespace firmware

@@ -18,8 +18,11 @@ class Uart {
  public:
   void start();
   void poll();
-  // Takes all of it or, when it does not fit, nothing.
-  bool send(const uint8_t* bytes, uint8_t size);
+  bool has_room(uint8_t size) const {
+    return size < kRing - static_cast<uint8_t>((head_ - tail_) & kRingMask);
+  }
+  // Precondition: has_room(size).
+  void send(const uint8_t* bytes, uint8_t size);
 
   // The interrupt's.
   FIRMWARE_INLINE void receive() {

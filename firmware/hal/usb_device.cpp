@@ -11,8 +11,8 @@ namespace {
 const uint8_t kEndpointSize = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank
 const uint8_t kInterruptEndpoint = _BV(EPTYPE1) | _BV(EPTYPE0);
 
-// Flags of UEINTX are cleared by writing 0; writing 1 leaves them. Not so at an endpoint towards the
-// host: there a 1 in the place of RXOUTI throws away what was written (KILLBK).
+// Flags of UEINTX are cleared by writing 0; writing 1 leaves them. Not so at an endpoint towards
+// the host: there a 1 in the place of RXOUTI throws away what was written (KILLBK).
 void clear_endpoint_flags(uint8_t flags) {
   UEINTX = static_cast<uint8_t>(~flags);
 }

@@ -31,6 +31,17 @@ void settle(HostRig& rig) {
 class AtEachClock : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Hertz, AtEachClock, testing::Values(10'000u, 12'500u, 14'300u, 16'700u));
 
+// The reset that it was asked for is given up while it takes it.
+TEST(BringUp, AMouseThatWakesWhileItIsAskedIsNoLineError) {
+  for (std::uint32_t ms = 360; ms < 400; ++ms) {
+    MouseOptions options;
+    options.self_test_ms = ms;
+    HostRig rig(options);
+    ASSERT_TRUE(all_present(rig)) << ms;
+    EXPECT_EQ(rig.frame().quality, 0) << ms;
+  }
+}
+
 TEST_P(AtEachClock, AllMiceAreSetUpAndCountExactly) {
   MouseOptions options;
   options.clock_hz = GetParam();

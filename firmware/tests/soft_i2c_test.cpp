@@ -12,8 +12,8 @@ namespace {
 
 using firmware_sim::MotorBus;
 
-constexpr std::uint64_t kEdgeNs = 130, kHighNs = 600, kLowNs = 1050, kStepNs = 1500,
-                        kTickNs = 20'000;
+constexpr std::uint64_t kEdgeNs = 130, kSettleNs = 300, kHighNs = 600, kLowNs = 1050,
+                        kStepNs = 1500, kTickNs = 20'000;
 
 // The parts, and what a master pulls low; time passes by what it does.
 struct Bench {
@@ -21,8 +21,18 @@ struct Bench {
   std::uint64_t now_ns = 1'000'000;
   bool clock_low = false, data_low = false;
 
+  // What the parts do by themselves they do at its time.
+  void pass(std::uint64_t ns) {
+    const std::uint64_t end = now_ns + ns;
+    while (bus.next_event_ns() && *bus.next_event_ns() <= end) {
+      now_ns = *bus.next_event_ns();
+      bus.drive(now_ns, clock_low, data_low);
+    }
+    now_ns = end;
+  }
+
   void drive() {
-    now_ns += kEdgeNs;
+    pass(kEdgeNs);
     bus.drive(now_ns, clock_low, data_low);
   }
 };
@@ -35,8 +45,9 @@ struct Wires {
   static void data_free() { set(g_bench->data_low, false); }
   static bool clock() { return !g_bench->clock_low && !g_bench->bus.pulls_clock(); }
   static bool data() { return !g_bench->data_low && !g_bench->bus.pulls_data(); }
-  static void wait_high() { g_bench->now_ns += kHighNs; }
-  static void wait_low() { g_bench->now_ns += kLowNs; }
+  static void settle() { g_bench->pass(kSettleNs); }
+  static void wait_high() { g_bench->pass(kHighNs); }
+  static void wait_low() { g_bench->pass(kLowNs); }
 
  private:
   static void set(bool& line, bool low) {
@@ -55,8 +66,8 @@ struct SoftI2cTest : testing::Test {
   int run(int limit = 2000) {
     int steps = 0;
     while (master.busy() && steps < limit) {
-      bench.now_ns += kStepNs;
-      bench.bus.drive(bench.now_ns, bench.clock_low, bench.data_low);
+      bench.pass(kStepNs);
+      bench.bus.drive(bench.now_ns, bench.clock_low, bench.data_low);  // held or let go since
       master.step(static_cast<std::uint8_t>(bench.now_ns / kTickNs));
       ++steps;
     }
@@ -133,6 +144,18 @@ TEST_F(SoftI2cTest, AStretchedClockIsWaitedForBelowAMillisecond) {
   bench.bus.stretch_us = 1200;
   EXPECT_EQ(write(MotorBus::kMultiplexer, {1}), I2cBus::kFailed);
   EXPECT_FALSE(bench.clock_low || bench.data_low);
+}
+
+// Wherever between two looks at it the clock is let go.
+TEST_F(SoftI2cTest, AStretchedClockIsHighForItsTimeToo) {
+  for (std::uint32_t us = 1; us < 40; ++us) {
+    bench.bus.stretch_us = us;
+    for (int shift = 0; shift < 20; ++shift) {
+      bench.pass(70);
+      ASSERT_EQ(write(MotorBus::kMultiplexer, {1}), I2cBus::kIdle);
+    }
+  }
+  expect_at_rest();
 }
 
 TEST_F(SoftI2cTest, AClockThatIsHeldForEverIsAFailureAfterAMillisecond) {
