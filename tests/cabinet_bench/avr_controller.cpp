@@ -13,6 +13,7 @@ using firmware_sim::SimMouse;
 
 // Bytes of a serial line have no time of their own: they are taken so often.
 constexpr std::uint64_t kSliceUs = 250;
+constexpr std::uint8_t kPlayback = 0x02;  // a driver's register that its motor obeys
 
 // Mice differ: their clocks, how long they think, whether they say that they moved too far.
 firmware_sim::MouseOptions drawn_mouse(std::mt19937& random) {
@@ -78,9 +79,19 @@ class AvrController final : public Controller {
     return std::exchange(packets_, {});
   }
 
-  bool has_motors() const override { return false; }
-  void command(std::span<const std::uint8_t>) override {}
-  std::vector<MotorWrite> take_motor_writes() override { return {}; }
+  void command(std::span<const std::uint8_t> packet) override {
+    sim_.send(board_ == Board::mega32u4 ? packet.subspan(1) : packet);  // no number of the report
+  }
+  std::vector<MotorWrite> take_motor_writes() override {
+    std::vector<MotorWrite> fresh;
+    const auto& writes = sim_.motors().writes();
+    for (; writes_ < writes.size(); ++writes_) {
+      const firmware_sim::MotorBus::Write& write = writes[writes_];
+      if (write.address != kPlayback) continue;
+      fresh.push_back({static_cast<std::int64_t>(write.time_ns / 1000), write.rod, write.value});
+    }
+    return fresh;
+  }
 
   std::vector<Told> take_told(int rod) override {
     return std::exchange(sensors_[static_cast<std::size_t>(rod)].told, {});
@@ -140,6 +151,7 @@ class AvrController final : public Controller {
   std::int64_t began_us_ = 0;
   PerRod<Sensor> sensors_{};
   std::vector<Packet> packets_;
+  std::size_t writes_ = 0;  // of the motors, taken
 };
 
 std::string AvrController::trouble(int rod, std::mt19937& random) {
@@ -153,7 +165,7 @@ std::string AvrController::trouble(int rod, std::mt19937& random) {
     mouse.unplug();
     sensor(rod).plug_in_us = now_us() + away_us;
   };
-  switch (below(14)) {
+  switch (below(15)) {
     case 0:
       mouse.flip_parity();
       return "wrong parity";
@@ -195,6 +207,9 @@ std::string AvrController::trouble(int rod, std::mt19937& random) {
     case 12:
       unplug(300'000 + below(1'500'000));
       return "unplugged";
+    case 13:
+      sim_.stick_program(below(2) == 0);
+      return "a program that hangs, until the watchdog's reset";
     default:
       mouse.set_options(drawn_mouse(random));
       unplug(400'000 + below(1'500'000));

@@ -1,14 +1,11 @@
 #include "calibration.h"
 
 #include <algorithm>
-#include <atomic>
-#include <barrier>
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <stdexcept>
-#include <thread>
 
+#include "fiber.h"
 #include "frames.h"
 #include "session.h"
 #include "simulated_person.h"
@@ -17,6 +14,7 @@ namespace cabinet_bench {
 namespace {
 
 constexpr double kPutBackSeconds = 0.5;
+constexpr int kMostSetUpMs = 5000;  // of the sensors, before the persons begin
 
 cabinet::GuideOptions guide_options(int rod) {
   const auto& spec =
@@ -65,61 +63,49 @@ struct Place {
   cabinet_test::Person person;
 };
 
-// The persons move on a millisecond, all at once, each on a thread of its own; then this thread's
-// simulator does.
 class Workshop {
  public:
   Workshop(Controller& controller, Table& table)
       : controller_(controller), table_(table), frames_(controller.framing()) {
-    for (int rod = 0; rod < cabinet::kRods; ++rod) {
-      places_[static_cast<std::size_t>(rod)].emplace(rod, [this] {
-        moved_.arrive_and_wait();
-        passed_.arrive_and_wait();
-      });
+    for (std::size_t rod = 0; rod < places_.size(); ++rod) {
+      places_[rod].emplace(static_cast<int>(rod), [this, rod] { persons_[rod]->give_way(); });
+      persons_[rod].emplace([this, rod] { work(*places_[rod]); });
     }
   }
 
   CalibrationResult run() {
+    for (int ms = 0; ms < kMostSetUpMs && !all_answer(); ++ms) pass_ms();
     const std::int64_t began_us = controller_.now_us();
-    std::vector<std::jthread> persons;
-    for (auto& place : places_) {
-      persons.emplace_back([this, &place] {
-        place->person.follow();
-        const double turns = std::round(place->hand.angle / (2 * M_PI));
-        place->hand.move(0, turns * 2 * M_PI, kPutBackSeconds);
-        --at_work_;
-        moved_.arrive_and_drop();
-        passed_.arrive_and_drop();
-      });
-    }
-    for (;;) {
-      moved_.arrive_and_wait();
-      if (at_work_ == 0) break;
-      pass_ms();
-      passed_.arrive_and_wait();
-    }
-    persons.clear();
-    if (failure_) std::rethrow_exception(failure_);
+    while (all_move_on()) pass_ms();
     table_.forget_turns();
     return result(static_cast<double>(controller_.now_us() - began_us) * 1e-6);
   }
 
  private:
-  // Nobody else runs. After a failure the persons find that nothing moves, and give up.
+  static void work(Place& place) {
+    place.person.follow();
+    const double turns = std::round(place.hand.angle / (2 * M_PI));
+    place.hand.move(0, turns * 2 * M_PI, kPutBackSeconds);
+  }
+  // Each person by a millisecond; false: all are done.
+  bool all_move_on() {
+    bool anybody = false;
+    for (auto& person : persons_) {
+      if (!person->done()) person->resume();
+      anybody = anybody || !person->done();
+    }
+    return anybody;
+  }
+  bool all_answer() const { return last_ && last_->present == 0xFF; }
   void pass_ms() {
-    if (failure_) return;
-    try {
-      PerRod<Pose> poses;
-      for (std::size_t i = 0; i < poses.size(); ++i) {
-        poses[i] = {places_[i]->hand.slide, places_[i]->hand.angle};
-      }
-      table_.move(poses);
-      controller_.advance(table_.surfaces());
-      for (const Packet& packet : controller_.take_packets()) {
-        frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { hear(frame); });
-      }
-    } catch (...) {
-      failure_ = std::current_exception();
+    PerRod<Pose> poses;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = {places_[i]->hand.slide, places_[i]->hand.angle};
+    }
+    table_.move(poses);
+    controller_.advance(table_.surfaces());
+    for (const Packet& packet : controller_.take_packets()) {
+      frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { hear(frame); });
     }
   }
   void hear(const wire::DeviceFrame& frame) {
@@ -157,9 +143,7 @@ class Workshop {
   Frames frames_;
   PerRod<std::optional<Place>> places_;
   std::optional<wire::DeviceFrame> last_;
-  std::exception_ptr failure_;
-  std::barrier<> moved_{cabinet::kRods + 1}, passed_{cabinet::kRods + 1};
-  std::atomic<int> at_work_{cabinet::kRods};
+  PerRod<std::optional<Fiber>> persons_;
 };
 
 }  // namespace

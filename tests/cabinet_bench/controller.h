@@ -1,6 +1,6 @@
-// A controller of the cabinet: its own firmware in a simulator, eight simulated sensors on its
-// pins, eight motors where the firmware has any, and a PC at the other end of its cable. Time is
-// the simulator's, and passes in advance() alone.
+// A controller of the cabinet: its own firmware in a simulator, eight simulated sensors and eight
+// motors on its pins, and a PC at the other end of its cable. Time is the simulator's, and passes
+// in advance() alone.
 #pragma once
 
 #include <array>
@@ -60,7 +60,6 @@ class Controller {
   virtual std::vector<Packet> take_packets() = 0;
 
   // ---- motors
-  virtual bool has_motors() const = 0;
   // A packet from the PC, as cabinet::DeviceSource::send() gives it to the line.
   virtual void command(std::span<const std::uint8_t> packet) = 0;
   virtual std::vector<MotorWrite> take_motor_writes() = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace cabinet_bench {
 namespace {
@@ -86,8 +87,10 @@ void Ledger::judge(int rod, const wire::DeviceFrame& frame, std::int64_t now_us)
     r.offsets = possible(r, counts);
     r.good_us = now_us;
     r.lost = false;
+    r.back = true;
     return;
   }
+  if (std::exchange(r.back, false)) r.offsets = possible(r, counts);  // what it began to tell at
   // Counts that were missing once are missing, whatever later frames happen to be equal to.
   if (!r.lost && agrees(r, counts)) {
     ++totals_.exact;

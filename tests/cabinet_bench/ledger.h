@@ -34,7 +34,7 @@ class Ledger {
 
   // A frame's counts are as old as this at most: made before it was asked for, and on the line.
   // Less than a mouse's 5 ms, so that a lost report does not look like a late one.
-  static constexpr std::int64_t kOldUs = 3'000;
+  static constexpr std::int64_t kOldUs = 4'000;
   // An error is counted no later than this after the loss.
   static constexpr std::int64_t kCountedUs = 60'000;
   // A sensor that is gone is known to be within this.
@@ -51,6 +51,7 @@ class Ledger {
     std::int64_t good_us = 0;         // the last frame that agreed
     std::int64_t fault_us = -1;       // the last that was counted for this rod
     bool present = false, lost = false;
+    bool back = false;  // it was absent in the frame before
   };
 
   void note_faults(const wire::DeviceFrame& frame, std::int64_t now_us);

@@ -14,7 +14,7 @@ namespace cabinet_bench {
 struct Motion {
   std::size_t rod = 0;  // from 0
   double slide = 0;     // [m]
-  double turns = 0;     // forward and back, right-handed about +y
+  double turns = 0;     // right-handed about +y
 };
 // "6:252:-5": rod 6 (from 1) by 252 mm and five turns.
 std::optional<Motion> motion_of(const std::string& text);

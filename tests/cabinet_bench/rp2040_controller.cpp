@@ -124,7 +124,6 @@ class Rp2040Controller final : public Controller {
   cabinet::DeviceFraming framing() const override { return cabinet::DeviceFraming::report; }
   std::vector<Packet> take_packets() override { return std::exchange(packets_, {}); }
 
-  bool has_motors() const override { return true; }
   void command(std::span<const std::uint8_t> packet) override {
     request_["commands"].push_back(hex(packet.subspan(1)));  // without the report's number
   }
