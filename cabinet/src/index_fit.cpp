@@ -127,6 +127,7 @@ Fit solve(const Seen& seen, double noise, double feet_error) {
 // Of a mark of which the rod turned back half way, nothing is known.
 void drop_turned_back(std::vector<IndexPass>& passes) {
   std::vector<double> widths;
+  widths.reserve(passes.size());
   for (const IndexPass& pass : passes) widths.push_back(std::abs(pass.turned));
   std::ranges::sort(widths);
   const double typical = widths.empty() ? 0 : widths[widths.size() / 2];
