@@ -17,7 +17,7 @@ namespace {
 constexpr double kNoiseSlide = 0.5e-3, kNoiseAngle = 3 * std::numbers::pi / 180;
 // A mouse that moves its rod so far is in a hand: some 500 counts. Noise is less.
 constexpr double kHandSlide = 20e-3, kHandAngle = 45 * std::numbers::pi / 180;
-constexpr double kHandStick = 0.5;                       // likewise, of a stick's way
+constexpr double kHandStick = 0.5;                       // a gamepad's stick, of its way, in a hand
 constexpr double kHidFrames = 900, kSerialFrames = 225;  // a second; 1000 and 250 are sent
 constexpr double kMouseReports = 90;                     // the slowest mice send 125
 constexpr double kLatencyUs = 1'500;                     // a poll each 1 ms leaves 0.5
@@ -25,35 +25,27 @@ constexpr double kOldDays = 180;  // sensors and rods are moved in half a year
 const char* const kBusyCure =
     "end what keeps the machine busy; the server asks for real-time priority (CAP_SYS_NICE)";
 
-const char* called(const FoundDevice& device) {
-  switch (device.kind) {
-    case DeviceKind::mouse:
-      return "the mouse";
-    case DeviceKind::gamepad:
-      return "the gamepad";
-    case DeviceKind::hid_controller:
-    case DeviceKind::serial_controller:
-      break;
-  }
-  return "the controller";
-}
+struct KindWords {
+  const char* named;    // in a sentence of its own
+  const char* a_class;  // of what a path may be
+};
 
-const char* class_of(const FoundDevice& device) {
-  switch (device.kind) {
+KindWords words_of(DeviceKind kind) {
+  switch (kind) {
     case DeviceKind::hid_controller:
-      return "HID device";
+      return {"the controller", "HID device"};
     case DeviceKind::serial_controller:
-      return "serial line";
+      return {"the controller", "serial line"};
     case DeviceKind::mouse:
-      return "mouse";
+      return {"the mouse", "mouse"};
     case DeviceKind::gamepad:
       break;
   }
-  return "gamepad";
+  return {"the gamepad", "gamepad"};
 }
 
 Trouble not_readable(const FoundDevice& device) {
-  const std::string what = called(device);
+  const std::string what = words_of(device.kind).named;
   const std::string sentence =
       fmt::format("{} may not be read: {}", what, std::strerror(device.error));
   switch (device.error) {
@@ -77,7 +69,7 @@ Trouble not_readable(const FoundDevice& device) {
       return {device.path, what + " is known to the kernel but has no node",
               "start udev; in a container pass the device in"};
     case ENOTTY:
-      return {device.path, std::string("this is no ") + class_of(device),
+      return {device.path, std::string("this is no ") + words_of(device.kind).a_class,
               "name one that is; without --device those are listed that are connected"};
     default:
       return {device.path, sentence, "plug it in again, into another socket or with another cable"};
@@ -188,7 +180,7 @@ void judge_reports(const FoundDevice& device, std::vector<Trouble>& troubles) {
 
 void judge_input(const FoundDevice& device, std::vector<Trouble>& troubles) {
   if (device.state != DeviceState::live) {
-    troubles.push_back({device.path, fmt::format("{} went away", called(device)),
+    troubles.push_back({device.path, fmt::format("{} went away", words_of(device.kind).named),
                         "plug it in again; if it happens by itself, change the cable"});
     return;
   }

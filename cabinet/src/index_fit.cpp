@@ -23,7 +23,7 @@ namespace {
 using Kind = CalibrationMark::Kind;
 
 constexpr double kLag = 0.03, kDelay = 0.010;  // [rad], [s] deviations, known beforehand
-constexpr double kScaleDrift = 0.002;          // [rad / rad], likewise
+constexpr double kScaleDrift = 0.002;          // [rad / rad] deviation, known beforehand
 constexpr double kNoise = 0.02;                // [rad] of a pass in a fast turn, at first
 constexpr double kLeastNoise = 0.002;          // [rad]
 constexpr double kFarOff = 2.5;                // of the deviations of all

@@ -51,8 +51,6 @@ void report(uint32_t now_us) {
 
 ISR(TIMER1_COMPA_vect) {
   firmware::sample_lines(g_controller.lines());
-}
-ISR(USART0_RX_vect) {
   g_uart.receive();
 }
 

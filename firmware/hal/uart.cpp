@@ -8,7 +8,7 @@ void Uart::start() {
   UCSR0A = _BV(U2X0);
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
   UBRR0 = 1;  // 16 MHz / (8 * 2) = 1 Mbaud, exact
-  UCSR0B = _BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0);
+  UCSR0B = _BV(TXEN0) | _BV(RXEN0);
 }
 
 void Uart::poll() {

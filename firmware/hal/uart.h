@@ -1,9 +1,8 @@
 // UART0 at 1 Mbaud. A frame is copied and goes out byte by byte from poll(): at 250 frames of 48
 // bytes the line is busy an eighth of the time, so no interrupt is needed that could delay the
-// sampling one. Commands are rare and come ten times as fast as the loop goes round: their bytes
-// are taken by an interrupt, which the application defines, for the same reason as that of
-// sampling:
-//   ISR(USART0_RX_vect) { g_uart.receive(); }
+// sampling one. Commands are rare and come ten times as fast as the loop goes round, two bytes in
+// the time from one sample to the next, which is what the controller keeps: the sampling interrupt
+// takes them. An interrupt of their own would wait for it, and bytes would be lost.
 #ifndef FIRMWARE_HAL_UART_H
 #define FIRMWARE_HAL_UART_H
 
@@ -24,18 +23,9 @@ class Uart {
   // Precondition: has_room(size).
   void send(const uint8_t* bytes, uint8_t size);
 
-  // The interrupt's.
+  // The sampling interrupt's, each time.
   FIRMWARE_INLINE void receive() {
-    const uint8_t faults = UCSR0A & (_BV(FE0) | _BV(DOR0));
-    const uint8_t value = UDR0;
-    const uint8_t head = received_head_;
-    const uint8_t next = static_cast<uint8_t>((head + 1) & kRingMask);
-    if (faults != 0 || next == received_tail_) {
-      lost_ = 1;
-      return;
-    }
-    received_[head] = value;
-    received_head_ = next;
+    for (uint8_t i = 0; i < 3 && (UCSR0A & _BV(RXC0)) != 0; ++i) receive_byte();
   }
   // The oldest byte not yet taken; false: none.
   bool take(uint8_t& out) {
@@ -53,6 +43,19 @@ class Uart {
   }
 
  private:
+  FIRMWARE_INLINE void receive_byte() {
+    const uint8_t faults = UCSR0A & (_BV(FE0) | _BV(DOR0));
+    const uint8_t value = UDR0;
+    const uint8_t head = received_head_;
+    const uint8_t next = static_cast<uint8_t>((head + 1) & kRingMask);
+    if (faults != 0 || next == received_tail_) {
+      lost_ = 1;
+      return;
+    }
+    received_[head] = value;
+    received_head_ = next;
+  }
+
   static const uint8_t kRing = 128;  // two frames to send; seven commands to take
   static const uint8_t kRingMask = kRing - 1;
 

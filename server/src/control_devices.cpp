@@ -2,6 +2,8 @@
 // while somebody looks.
 #include <sys/eventfd.h>
 
+#include <utility>
+
 #include "control_server.h"
 #include "os/clock.h"
 
@@ -25,9 +27,8 @@ void ControlServer::take_device_query(ControlConnection& connection) {
 }
 
 void ControlServer::publish_devices() {
-  DeviceTable table;
-  while (devices_.pop(table)) {
-    const wire::Devices devices = to_wire(table);
+  while (devices_.pop(device_table_)) {
+    const wire::Devices devices = to_wire(device_table_);
     for (auto& connection : connections_) {
       if (connection->state == ControlConnection::State::joined &&
           std::exchange(connection->awaits_devices, false))

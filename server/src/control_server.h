@@ -259,6 +259,7 @@ class ControlServer {
   std::optional<wire::Game> game_;  // as it was last told
   std::atomic<bool> devices_asked_{false};
   SpscQueue<DeviceTable, 2> devices_;
+  DeviceTable device_table_;  // taken out of it
   SpscQueue<wire::Report, 8> reports_;
   std::optional<wire::Report> report_;                // the last one
   SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's

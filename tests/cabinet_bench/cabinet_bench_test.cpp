@@ -45,9 +45,8 @@ void expect_played(Board board, const MatchResult& match) {
   EXPECT_EQ(match.impossible, 0u);
   EXPECT_GT(match.pulses.pulses, 0u);
   const PulseCounts& pulses = match.pulses;
-  // A serial line of 1 Mbaud is too fast for the ATmega2560 now and then: 2 % of the commands.
-  EXPECT_EQ(pulses.missing, match.line_errors) << "what is lost is counted";
-  EXPECT_LE(pulses.missing, board == Board::mega2560 ? 2u : 0u);
+  EXPECT_EQ(pulses.missing, 0u);
+  EXPECT_EQ(match.line_errors, 0u);
   EXPECT_EQ(pulses.stray, 0u);
   EXPECT_EQ(pulses.not_ended, 0u);
   EXPECT_LE(pulses.pulses - pulses.begun - pulses.merged, 1u) << "one may be on its way";

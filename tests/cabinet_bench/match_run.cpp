@@ -64,14 +64,25 @@ class Cable {
       under_way_.pop_front();
     }
   }
-  // What the server has sent, to the controller.
+  // What the server has sent, to the controller: packet by packet, which a serial line runs
+  // together.
   template <class Each>
   void carry_back(const Each& each) {
-    std::uint8_t packet[256];
+    std::uint8_t bytes[4096];
     for (;;) {
-      const ssize_t got = ::recv(device_.get(), packet, sizeof packet, MSG_DONTWAIT);
+      const ssize_t got = ::recv(device_.get(), bytes, sizeof bytes, MSG_DONTWAIT);
       if (got <= 0) return;
-      each(std::span(packet, static_cast<std::size_t>(got)));
+      const std::span<const std::uint8_t> all(bytes, static_cast<std::size_t>(got));
+      if (controller_.framing() == cabinet::DeviceFraming::report) {
+        each(all);
+        continue;
+      }
+      for (auto at = all.begin(); at != all.end();) {
+        const auto end = std::find(at, all.end(), std::uint8_t{0});
+        require(end != all.end(), "a packet was cut");
+        each(std::span(at, end + 1));
+        at = end + 1;
+      }
     }
   }
 

@@ -44,7 +44,7 @@ class Session {
   void line_is(cabinet::DeviceState state, int error);
   cabinet::DeviceState line() const { return line_; }
   int line_error() const { return line_error_; }
-  // This rod was begun anew: frames were missing, and with them counts.
+  // This rod was started again: frames were missing, and with them counts.
   bool interrupted() const { return interrupted_; }
   // The one key that everything can be done with: what is next is done. At the start of a rod it
   // marks; where its guide waits it marks by force; after a fit it goes on to the next rod, after a

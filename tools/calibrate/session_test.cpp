@@ -165,8 +165,8 @@ TEST(CalibrationSession, SaysWhichRodMovesAndWhichSensorIsSilent) {
   EXPECT_EQ(advice_words(table.session), "");
 }
 
-// Restarted: its counts, clock and sequence begin anew, which is no motion.
-TEST(CalibrationSession, AControllerThatIsRestartedBeginsTheRodAnew) {
+// Its counts, clock and sequence start again at 0, which is no motion.
+TEST(CalibrationSession, AControllerThatIsRestartedStartsTheRodAgain) {
   for (const bool only_the_sensor : {false, true}) {
     Table table;
     table.session.line_is(cabinet::DeviceState::live, 0);
@@ -186,7 +186,7 @@ TEST(CalibrationSession, AControllerThatIsRestartedBeginsTheRodAnew) {
     table.rest(0.1);
     EXPECT_TRUE(table.session.interrupted());
     EXPECT_EQ(table.session.guide().step(), 0);
-    EXPECT_NE(advice_words(table.session).find("begins anew"), std::string::npos);
+    EXPECT_NE(advice_words(table.session).find("start this rod again"), std::string::npos);
     table.session.confirm();
     EXPECT_FALSE(table.session.interrupted());
   }

@@ -87,7 +87,7 @@ const char* line_sentence(const Session& session) {
     case cabinet::DeviceState::over:
       return N_("The recording is over.");
     case cabinet::DeviceState::silent:
-      return N_("The controller sends nothing: plug it in anew.");
+      return N_("The controller sends nothing: plug it in again.");
     case cabinet::DeviceState::live:
       break;
   }
@@ -135,7 +135,7 @@ std::string advice_words(const Session& session) {
     return tr(N_("The sensor of this rod does not answer: look at its cable."));
   if (session.state(session.rod()) != RodState::guided) return {};
   if (session.interrupted())
-    return tr(N_("The controller or its sensor was away: this rod begins anew."));
+    return tr(N_("The controller or its sensor was away: start this rod again."));
   if (const int other = session.other_rod_moves(); other >= 0)
     return with(tr(N_("Rod %1 moves, and it is not asked for.")), std::to_string(other + 1));
   const char* text = sentence(session.guide().advice());

@@ -77,7 +77,7 @@ struct DoctorOptions {
 };
 
 // Listens to controllers, each by itself, for options.seconds from its first frame on; waits for
-// that frame for as long and 3 s more (a board that is opened may start anew). Then to all mice and
+// that frame for as long and 3 s more (a board may restart when it is opened). Then to all mice and
 // gamepads at once.
 Diagnosis examine(const DoctorOptions& options);
 

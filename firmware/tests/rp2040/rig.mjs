@@ -101,3 +101,28 @@ export class Rig {
 export function say(text) {
   console.log(`# ${text}`);
 }
+
+export const pulse = (rod, amplitude, durationMs) => ({ kind: 1, rod, amplitude, durationMs });
+export const lastWrite = (rig, rod) => rig.motors.drivers[rod].writes.at(-1);
+
+// Pulses one after the other, then one on all rods at once: how long after its command the latest
+// begins [ns]. Each ends in time.
+export function slowestPulses(rig, rounds) {
+  let longest = 0;
+  for (let round = 0; round < rounds; ++round) {
+    rig.board.run(5e6 + 137e3 * round);
+    const sent = rig.board.clock.nanos;
+    assert.ok(rig.command(pulse(round % 8, 40 + round, 20)));
+    assert.ok(rig.board.runUntil(() => lastWrite(rig, round % 8).value === 40 + round, 3));
+    longest = Math.max(longest, lastWrite(rig, round % 8).at - sent);
+    rig.board.runMs(24);
+    const end = lastWrite(rig, round % 8);
+    assert.equal(end.value, 0);
+    assert.ok(Math.abs(end.at - sent - 20e6) < 2e6, `${end.at - sent}`);
+  }
+  const sent = rig.board.clock.nanos;
+  for (const rod of kRods) assert.ok(rig.board.runUntil(() => rig.command(pulse(rod, 200, 50)), 1));
+  rig.board.runMs(4);
+  kRods.forEach((rod) => assert.equal(lastWrite(rig, rod).value, 200));
+  return { longest, all: Math.max(...kRods.map((rod) => lastWrite(rig, rod).at)) - sent };
+}

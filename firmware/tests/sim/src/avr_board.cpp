@@ -63,6 +63,7 @@ constexpr std::uint16_t kEepromControl = 0x3F, kFlashControl = 0x57;
 constexpr std::uint8_t kEepromWrite = 2, kEepromMasterWrite = 4;  // of the first
 constexpr std::uint8_t kReadSignature = 0x21;                     // of the second
 constexpr std::uint64_t kEepromUs = 3400;
+constexpr std::uint8_t kReceived = 0x80;  // of the serial line's status
 constexpr std::uint16_t kWatchdogControl = 0x60;
 constexpr std::uint8_t kWatchdogInterrupts = 0x40;  // of that
 constexpr std::uint8_t kWatchdogVector = 12;
@@ -109,6 +110,13 @@ AvrBoard::AvrBoard(const std::string& elf_path, const char* mcu, char clock_port
   }
   avr_register_io_write(avr_, kEepromControl, on_eeprom, this);
   avr_register_io_write(avr_, kFlashControl, on_flash_control, this);
+  uart_ = uart('0');
+  if (uart_ != nullptr) {
+    auto& reading = avr_->io[AVR_DATA_TO_IO(uart_->r_ucsra)].r;
+    chip_reads_serial_status_ = reading.c;
+    reading.c = on_serial_status_read;
+    reading.param = this;
+  }
   avr_irq_register_notify(avr_get_interrupt_irq(avr_, kWatchdogVector) + AVR_INT_IRQ_PENDING,
                           on_watchdog_interrupt, this);
 }
@@ -241,6 +249,17 @@ void AvrBoard::on_watchdog_interrupt(avr_irq_t*, std::uint32_t value, void* para
 avr_cycle_count_t AvrBoard::on_watchdog_not_served(avr_t* avr, avr_cycle_count_t, void*) {
   avr->data[kWatchdogControl] &= static_cast<std::uint8_t>(~kWatchdogInterrupts);
   return 0;
+}
+
+// What is in the receiver is there to be read; simavr would show each byte for as long as it takes
+// on the line after the one before was read.
+std::uint8_t AvrBoard::on_serial_status_read(avr_t* avr, avr_io_addr_t address, void* parameter) {
+  auto& board = *static_cast<AvrBoard*>(parameter);
+  (void)board.chip_reads_serial_status_(avr, address, board.uart_);
+  const bool waits = board.uart_->input.read != board.uart_->input.write;
+  std::uint8_t& status = avr->data[address];
+  status = static_cast<std::uint8_t>(waits ? status | kReceived : status & ~kReceived);
+  return status;
 }
 
 // For the next load from flash, which must come within three cycles, the signature row is in its

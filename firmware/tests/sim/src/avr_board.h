@@ -79,6 +79,7 @@ class AvrBoard {
   static void on_watchdog_interrupt(avr_irq_t* irq, std::uint32_t value, void* parameter);
   static avr_cycle_count_t on_watchdog_not_served(avr_t* avr, avr_cycle_count_t when,
                                                   void* parameter);
+  static std::uint8_t on_serial_status_read(avr_t* avr, avr_io_addr_t address, void* parameter);
   static avr_cycle_count_t on_signature_read(avr_t* avr, avr_cycle_count_t when, void* parameter);
 
   avr_t* avr_ = nullptr;
@@ -91,6 +92,8 @@ class AvrBoard {
   bool eeprom_busy_ = false, eeprom_misused_ = false;
   std::uint64_t eeprom_writes_ = 0;
   std::optional<std::array<std::uint8_t, 32>> flash_behind_signature_;
+  avr_uart_t* uart_ = nullptr;  // null: none
+  avr_io_read_t chip_reads_serial_status_ = nullptr;
   void (*chip_reset_)(avr_t*) = nullptr;
   bool was_reset_ = false;
   int resets_ = 0;
