@@ -193,8 +193,9 @@ void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t n
   }
   measured.angle += moved.angle;
   const bool under = (frame.index >> rod & 1) != 0;
+  const std::uint64_t disagreements = index_[rod].disagreements();
   measured.angle += index_[rod].frame(under, measured, moved.angle, seconds);
-  counters.index_disagreements[rod] = index_[rod].disagreements();
+  counters.index_disagreements[rod] += index_[rod].disagreements() - disagreements;
   input.angle_known = index_[rod].known();
   input.time_us = now_us;
   input.status = RodStatus::live;

@@ -344,6 +344,9 @@ TEST(IndexMark, WhatContradictsByMoreThanAQuarterTurnIsCountedAndChangesNothing)
   EXPECT_EQ(h.counters.index_disagreements[0], 2u);
   EXPECT_NEAR(h.corrected(), corrected, 1e-9);
   EXPECT_EQ(h.counters.index_disagreements[1], 0u);
+  h.tracker.calibrate(Handle::calibration());  // another controller is plugged in
+  h.send();
+  EXPECT_EQ(h.counters.index_disagreements[0], 2u) << "what was counted stays counted";
 }
 
 TEST(IndexMark, WhatIsNoSlowPassSaysNothing) {
