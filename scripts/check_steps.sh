@@ -39,8 +39,8 @@ step_docs() {
   python3 scripts/rigid_tables.py --self-test
   python3 scripts/plot_rigid.py --self-test
   python3 scripts/plot_study.py --self-test
-  python3 scripts/readme_figures.py --self-test
-  python3 scripts/readme_figures.py --check
+  python3 scripts/benchmark_tables.py --self-test
+  python3 scripts/benchmark_tables.py --check
   python3 scripts/build_guide.py --self-test
   python3 scripts/build_guide.py --check
   python3 scripts/render_parts.py --self-test

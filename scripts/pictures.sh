@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes README's figures anew: see the usage below.
+# Makes the pictures and tables of README.md and docs: see the usage below.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/packages.sh
@@ -7,14 +7,14 @@ cd "$(dirname "$0")/.."
 
 usage() {
   cat <<'TEXT'
-scripts/pictures.sh [NAME...] makes what README.md shows of the engine anew: all of it, or only
-NAME...
+scripts/pictures.sh [NAME...] makes what the documents show: all of it, or only NAME...
 
   sandbox   docs/pictures/sandbox-*.png: scenes in the sandbox's window, on a virtual display, with the
             step times that they took just then; on a machine that does nothing else
   plots     docs/pictures/rigid-*.png, drift-*.png: from the files that ./bench rigid, ./bench scaling
             and ./bench drift have kept in benchmarks/results; of several machines the newest file
-  tables    README.md's tables, from the same files
+  tables    the tables of docs/benchmarks.md, from the same files
+  play      docs/pictures/play.webp: a goal of two computer players, drawn in software
 TEXT
 }
 
@@ -61,16 +61,34 @@ make_plots() {
   [[ -z $file ]] || /usr/bin/python3 scripts/plot_drift.py "$file" docs/pictures
 }
 
-make_tables() { python3 scripts/readme_figures.py; }
+make_tables() { python3 scripts/benchmark_tables.py; }
+
+# The recording is the same in every run.
+make_play() {
+  local folder
+  packages_install build/log/packages.log build play video
+  [[ -f build/release/build.ninja ]] || configure release build/log/configure.log -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
+  build release build/log/pictures.log space-foosball-server space-foosball-video
+  folder=$(mktemp -d)
+  build/release/bin/space-foosball-server --quiet --port 0 --no-real-time --seconds 12 --seed 11 --level 5 \
+    --team0 computer --team1 computer --record "$folder/match.sfr"
+  virtual_display
+  trap 'stop "$XVFB_PID"' EXIT
+  LIBGL_ALWAYS_SOFTWARE=1 build/release/bin/space-foosball-video "$folder/match.sfr" "$folder/match.mp4" \
+    --from 4.4 --to 9.4 --fps 20 --size 960x540 --mute </dev/null
+  ffmpeg -v error -y -i "$folder/match.mp4" -vf scale=640:-1:flags=lanczos -c:v libwebp_anim -loop 0 -quality 55 \
+    docs/pictures/play.webp </dev/null
+  rm -r "$folder"
+}
 
 names=()
 while (($#)); do
   case $1 in
     --help | -h) usage && exit 0 ;;
-    sandbox | plots | tables) names+=("$1") ;;
-    *) die 2 "there is no \"$1\" to make; there is: sandbox, plots, tables. See --help." ;;
+    sandbox | plots | tables | play) names+=("$1") ;;
+    *) die 2 "there is no \"$1\" to make; there is: sandbox, plots, tables, play. See --help." ;;
   esac
   shift
 done
-((${#names[@]})) || names=(sandbox plots tables)
+((${#names[@]})) || names=(sandbox plots tables play)
 for name in "${names[@]}"; do "make_$name"; done

@@ -5,7 +5,7 @@
   scripts/plot_rigid.py scaling SCALING.csv FOLDER    FOLDER/rigid-scaling.png
   scripts/plot_rigid.py --self-test                   checks what is drawn, not how: without matplotlib
 
-Each picture names, by its SHA-256, the file that it was drawn from (readme_figures.py asks for it).
+Each picture names, by its SHA-256, the file that it was drawn from (benchmark_tables.py asks for it).
 """
 import argparse
 import csv

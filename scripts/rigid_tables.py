@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""README.md's tables of ./bench rigid and ./bench scaling, for readme_figures.py.
+"""Tables of ./bench rigid and ./bench scaling, for benchmark_tables.py.
 
   scripts/rigid_tables.py --self-test    checks them against rows whose tables are known
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Puts the figures of benchmarks/results/*/NAME.csv into README.md, between
+"""Puts the figures of benchmarks/results/*/NAME.csv into docs/benchmarks.md, between
 
     <!-- figures: NAME -->    and    <!-- end of figures -->
 
-so that README never says what was not measured. With --check it changes nothing and fails where
-README and the files differ, or where a picture over a table was drawn from another file.
+so that it never says what was not measured. With --check it changes nothing and fails where
+it and the files differ, or where a picture over a table was drawn from another file.
 With --self-test it checks itself, on small trees.
 """
 import argparse
@@ -20,6 +20,7 @@ from rigid_tables import grid, in_order
 
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r'(<!-- figures: (\w+) -->\n)(.*?)(<!-- end of figures -->)', re.S)
+PAGE = 'docs/benchmarks.md'
 COLUMNS = ['subject', 'engine', 'metric', 'value', 'unit']
 
 
@@ -85,12 +86,12 @@ def picture(name, files, root):
     if not any(hashlib.sha256(f.read_bytes()).hexdigest().encode() in drawn for f in files):
         raise ValueError(f'docs/pictures/{file} was drawn from figures that are not kept: run '
                          f'scripts/pictures.sh plots')
-    return [f'![{title}](docs/pictures/{file})', '']
+    return [f'![{title}](pictures/{file})', '']
 
 
 def table(name, root):
     if name not in LAYOUTS:
-        raise ValueError(f'README.md asks for figures of {name}; there are {", ".join(LAYOUTS)}')
+        raise ValueError(f'{PAGE} asks for figures of {name}; there are {", ".join(LAYOUTS)}')
     files = sorted((root / 'benchmarks/results').glob(f'*/{name}.csv'))
     if not files:
         return f'Not measured yet; `./bench {name}` does it.'
@@ -109,13 +110,13 @@ def filled(text, root):
 
 
 def self_test():
-    """A tree whose README is filled; then what must be found amiss in it, each by itself."""
+    """A tree whose page is filled; then what must be found amiss in it, each by itself."""
     wrong = []
 
     def expect(what, root, wanted):
-        readme = root / 'README.md'
+        page = root / PAGE
         try:
-            text = readme.read_text()
+            text = page.read_text()
             found = 'same' if filled(text, root) == text else 'differs'
         except ValueError as error:
             found = str(error)
@@ -124,27 +125,27 @@ def self_test():
 
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        readme, kept = root / 'README.md', root / 'benchmarks/results/cpu/scaling.csv'
+        page, kept = root / PAGE, root / 'benchmarks/results/cpu/scaling.csv'
         drawn = root / 'docs/pictures/rigid-scaling.png'
         for path in (kept, drawn):
             path.parent.mkdir(parents=True)
         empty = 'before\n<!-- figures: scaling -->\n<!-- end of figures -->\nafter\n'
-        readme.write_text(filled(empty, root))
+        page.write_text(filled(empty, root))
         expect('nothing measured', root, 'same')
-        if 'Not measured yet; `./bench scaling`' not in readme.read_text():
-            wrong.append('README does not say that nothing is measured')
+        if 'Not measured yet; `./bench scaling`' not in page.read_text():
+            wrong.append('the page does not say that nothing is measured')
         figures = ','.join(COLUMNS) + '\nheap1000@60,Virtual Physics,step_settled_us,1500,us\n'
         kept.write_text(figures)
         expect('the first figures', root, 'differs')
-        readme.write_text(filled(readme.read_text(), root))
+        page.write_text(filled(page.read_text(), root))
         expect('filled in', root, 'same')
-        if '| 1,000 | 1.50 |' not in readme.read_text() or not readme.read_text().startswith('before\n<!--'):
-            wrong.append('README is not as its figures')
+        if '| 1,000 | 1.50 |' not in page.read_text() or not page.read_text().startswith('before\n<!--'):
+            wrong.append('the page is not as its figures')
         kept.write_text(figures.replace('1500', '1600'))
         expect('other figures', root, 'differs')
         kept.write_text(figures)
         drawn.write_bytes(b'of ' + hashlib.sha256(kept.read_bytes()).hexdigest().encode())
-        readme.write_text(filled(readme.read_text(), root))
+        page.write_text(filled(page.read_text(), root))
         expect('with its picture', root, 'same')
         drawn.write_bytes(b'of others')
         expect('a picture of other figures', root, 'scripts/pictures.sh plots')
@@ -152,7 +153,7 @@ def self_test():
         expect('no picture', root, 'differs')
         kept.write_text('a,b\n1,2\n')
         expect('other columns', root, 'expected the columns')
-        readme.write_text(empty.replace('scaling', 'scalling'))
+        page.write_text(empty.replace('scaling', 'scalling'))
         expect('no such comparison', root, 'scalling')
     for line in wrong:
         print(line, file=sys.stderr)
@@ -161,15 +162,15 @@ def self_test():
 
 
 def main():
-    parser = argparse.ArgumentParser(description='Figures of README.md from benchmarks/results.')
+    parser = argparse.ArgumentParser(description=f'Tables of {PAGE} from benchmarks/results.')
     parser.add_argument('--check', action='store_true')
     parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--root', type=Path, default=ROOT)
     args = parser.parse_args()
     if args.self_test:
         return self_test()
-    readme = args.root / 'README.md'
-    text = readme.read_text()
+    page = args.root / PAGE
+    text = page.read_text()
     try:
         wanted = filled(text, args.root)
     except ValueError as error:
@@ -177,12 +178,12 @@ def main():
         return 1
     blocks = len(BLOCK.findall(text))
     if args.check:
-        print(f'figures: {blocks} tables in README.md, {"all as measured" if wanted == text else "out of date"}')
+        print(f'figures: {blocks} tables in {PAGE}, {"all as measured" if wanted == text else "out of date"}')
         if wanted != text:
-            print('README.md differs from benchmarks/results: run scripts/readme_figures.py', file=sys.stderr)
+            print(f'{PAGE} differs from benchmarks/results: run scripts/benchmark_tables.py', file=sys.stderr)
         return wanted != text
-    readme.write_text(wanted)
-    print(f'figures: {blocks} tables written into README.md')
+    page.write_text(wanted)
+    print(f'figures: {blocks} tables written into {PAGE}')
     return 0
 
 
