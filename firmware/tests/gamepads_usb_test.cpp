@@ -270,6 +270,7 @@ TEST_F(GamepadsOf32u4, SwitchAndScalesOutliveThePowerAndOtherSettingsDoNotEnumer
 }
 
 TEST_F(GamepadsOf32u4, AWatchdogResetLeavesThemGamepads) {
+  cabinet.sim.advance_us(300'000);  // until they are kept
   const int before = cabinet.sim.usb_enumerations();
   cabinet.sim.stick_program(false);
   ASSERT_TRUE(cabinet.advance_until([&] { return cabinet.sim.usb_enumerations() > before; }, 2000));
