@@ -37,7 +37,7 @@ class Gamepads {
   // Little endian: i16 X, Y, Rx, Ry, of -32767..32767, down and right positive; u16 buttons: bit 0
   // a fast turn of the left rod, bit 1 of the right one.
   const uint8_t* report(uint8_t pad);
-  // Of GET_REPORT: the same, told before or not.
+  // The last of these, told before or not.
   const uint8_t* last_report(uint8_t pad) const { return reports_[pad]; }
 
   // Of a player, whose own goal is to the left.
