@@ -24,7 +24,11 @@ namespace fs = std::filesystem;
 
 // Bits of linux/input-event-codes.h.
 constexpr unsigned kRelX = 0, kRelY = 1, kButtonSouth = 0x130;
-constexpr const char* kControllerId = ":00001209:00000001";  // pid.codes' test id
+// pid.codes' test ids: of a controller, and of one that is four gamepads besides, of whose
+// interfaces the first has the frames.
+constexpr const char* kControllerId = ":00001209:00000001";
+constexpr const char* kGamepadsId = ":00001209:00000002";
+constexpr const char* kFirstInterface = "/input0";
 // The USB bridges of the boards that our serial firmware is for: Arduino Mega 2560 with an
 // ATmega8U2 and 16U2, and the CH340 of its copies. Any other line is another device's, which
 // opening might restart.
@@ -97,6 +101,18 @@ bool is_known_bridge(const std::string& usb_id) {
   return std::ranges::find(kBridges, usb_id) != kBridges.end();
 }
 
+bool has_frames(const std::string& uevent) {
+  const std::string id = value_of(uevent, "HID_ID");
+  if (id.ends_with(kControllerId)) return true;
+  return id.ends_with(kGamepadsId) && value_of(uevent, "HID_PHYS").ends_with(kFirstInterface);
+}
+
+// Its sticks rest wherever its rods do, and the controller itself is examined.
+bool is_of_controller(const fs::path& input) {
+  return read_text(input / "id" / "vendor") == "1209" &&
+         read_text(input / "id" / "product") == "0002";
+}
+
 void find_controllers(const DoctorOptions& options, std::vector<FoundDevice>& devices) {
   const fs::path nodes(options.dev), classes = fs::path(options.sys) / "class";
   const auto identify = [&](FoundDevice& device, const char* kind, const std::string& node) {
@@ -107,7 +123,7 @@ void find_controllers(const DoctorOptions& options, std::vector<FoundDevice>& de
   };
   for (const std::string& name : entries(classes / "hidraw", "hidraw")) {
     const std::string uevent = read_text(classes / "hidraw" / name / "device" / "uevent");
-    if (value_of(uevent, "HID_ID").find(kControllerId) == std::string::npos) continue;
+    if (!has_frames(uevent)) continue;
     devices.push_back(
         found(DeviceKind::hid_controller, nodes / name, value_of(uevent, "HID_NAME")));
     identify(devices.back(), "hidraw", name);
@@ -128,7 +144,7 @@ void find_inputs(const DoctorOptions& options, std::vector<FoundDevice>& devices
     const std::string axes = read_text(device / "capabilities" / "rel");
     const bool mouse = has_bit(axes, kRelX) && has_bit(axes, kRelY);
     const bool gamepad = has_bit(read_text(device / "capabilities" / "key"), kButtonSouth);
-    if (!mouse && !gamepad) continue;
+    if ((!mouse && !gamepad) || is_of_controller(device)) continue;
     devices.push_back(found(mouse ? DeviceKind::mouse : DeviceKind::gamepad, nodes / "input" / name,
                             read_text(device / "name")));
   }

@@ -100,9 +100,12 @@ class Doctor : public testing::Test {
     fs::create_symlink(line.path, root_ / node);
     return line;
   }
-  void describe_hid(const char* id = "0003:00001209:00000001") const {
-    write("sys/class/hidraw/hidraw3/device/uevent",
-          std::string("DRIVER=hid-generic\nHID_ID=") + id + "\nHID_NAME=Space Foosball cabinet\n");
+  void describe_hid(const char* id = "0003:00001209:00000001", int number = 3,
+                    int interface = 0) const {
+    write("sys/class/hidraw/hidraw" + std::to_string(number) + "/device/uevent",
+          std::string("DRIVER=hid-generic\nHID_ID=") + id +
+              "\nHID_NAME=Space Foosball cabinet\nHID_PHYS=usb-0000:00:14.0-1/input" +
+              std::to_string(interface) + "\n");
   }
   void plug_hid() {
     describe_hid();
@@ -198,6 +201,24 @@ TEST_F(Doctor, AHidControllerIsFoundByItsId) {
   EXPECT_EQ(diagnosis.devices[0].name, "Space Foosball cabinet");
   describe_hid("0003:0000046D:0000C077");
   EXPECT_TRUE(examine(options).devices.empty());
+}
+
+// Its gamepads are its rods once more, and rest where those do.
+TEST_F(Doctor, AControllerThatIsGamepadsTooIsFoundOnce) {
+  plug_hid();
+  for (int interface = 0; interface < 5; ++interface)
+    describe_hid("0003:00001209:00000002", 3 + interface, interface);
+  SerialLine& line = plug_gamepad();
+  write("sys/class/input/event9/device/id/vendor", "1209\n");
+  write("sys/class/input/event9/device/id/product", "0002\n");
+  happen(line, EV_ABS, ABS_Y, 30'000);
+  const Diagnosis diagnosis = examine(options);
+  EXPECT_TRUE(diagnosis.troubles.empty()) << diagnosis_text(diagnosis);
+  ASSERT_EQ(diagnosis.devices.size(), 1u);
+  EXPECT_EQ(diagnosis.devices[0].kind, DeviceKind::hid_controller);
+  EXPECT_TRUE(diagnosis.devices[0].path.ends_with("hidraw3"));
+  write("sys/class/input/event9/device/id/product", "0001\n");
+  EXPECT_EQ(examine(options).devices.size(), 2u) << "another gamepad is one";
 }
 
 TEST_F(Doctor, MiceAndGamepadsAreToldFromTheRest) {

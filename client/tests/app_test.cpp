@@ -22,8 +22,9 @@ tl::expected<Options, draw::Leave> parse(std::vector<const char*> words) {
 }
 
 TEST(Options, AreTakenAsGiven) {
-  const auto o = parse({"--server", "table.local:9000", "--team", "watch", "--size", "800x600",
-                        "--quality", "low", "--seconds", "3.5", "--screenshot", "a.png", "--mute"});
+  const auto o =
+      parse({"--server", "table.local:9000", "--team", "watch", "--size", "800x600", "--quality",
+             "low", "--seconds", "3.5", "--screenshot", "a.png", "--mute", "--cabinet-gamepads"});
   ASSERT_TRUE(o);
   EXPECT_EQ(o->connection.host, "table.local");
   EXPECT_EQ(o->connection.port, 9000);
@@ -31,6 +32,7 @@ TEST(Options, AreTakenAsGiven) {
   EXPECT_EQ(o->size, glm::ivec2(800, 600));
   EXPECT_EQ(o->quality, draw::Quality::low);
   EXPECT_EQ(o->seconds, 3.5);
+  EXPECT_TRUE(o->cabinet_gamepads);
   EXPECT_TRUE(o->mute);
 }
 

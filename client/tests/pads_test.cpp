@@ -69,6 +69,30 @@ TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
   EXPECT_TRUE(input.connected(0)) << "has the place that it had";
 }
 
+// A server beside a cabinet has its rods from the controller: they are not played twice.
+TEST(Pads, ThoseOfACabinetArePlayedOnlyWhenAskedFor) {
+  for (const bool asked : {false, true}) {
+    Pads pads(asked);
+    InputCollector input;
+    SDL_VirtualJoystickDesc desc{};
+    desc.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
+    desc.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
+    desc.naxes = SDL_CONTROLLER_AXIS_MAX;
+    desc.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
+    desc.vendor_id = 0x1209;
+    desc.product_id = 0x0002;
+    const int device = SDL_JoystickAttachVirtualEx(&desc);
+    ASSERT_GE(device, 0) << SDL_GetError();
+    pads.poll(input);
+    EXPECT_EQ(input.connected(0), asked);
+    SDL_JoystickDetachVirtual(device);
+    SDL_JoystickUpdate();
+    pads.poll(input);
+    EXPECT_FALSE(input.connected(0));
+    EXPECT_EQ(pads.take_news().size(), asked ? 1u : 0u);
+  }
+}
+
 struct Motors {
   int calls = 0;
   Uint16 low = 0, high = 0;

@@ -81,14 +81,14 @@ void AvrController::obey(const wire::DeviceCommand& command) {
       haptics_.all_off();
       haptics_.poll(ms_);
       break;
-    case wire::kSettingsCommand: {
-      const Settings wanted = settings_of(command);
-      if (same(wanted, settings_)) break;  // EEPROM wears
-      settings_ = wanted;
+    case wire::kSettingsCommand:
+      if (!take_settings(command, settings_)) break;  // EEPROM wears
       store_.save(settings_);
       haptics_.allow(pulses_allowed());
       break;
-    }
+    case wire::kStickCommand:
+      if (take_stick(command, settings_)) store_.save(settings_);
+      break;
   }
 }
 

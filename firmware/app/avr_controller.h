@@ -34,6 +34,10 @@ class AvrController {
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
 
   Ps2Lines& lines() { return mice_.lines(); }
+  const MouseHost& mice() const { return mice_; }
+  const Settings& settings() const { return settings_; }
+  bool pulsing() const { return bus_.busy(); }                // the motors' bus is
+  uint16_t ms() const { return static_cast<uint16_t>(ms_); }  // since start(), wraps
 
  private:
   // Of the motors' bus, 40 us at most; a pulse takes nine. While all mice send, a turn takes half a
@@ -44,7 +48,7 @@ class AvrController {
   void pass_ms();
   void guard_motors();
   void show_state();
-  bool pulses_allowed() const { return (settings_.switches & kPulsesOff) == 0; }
+  bool pulses_allowed() const { return (settings_.switches & wire::kPulsesOff) == 0; }
 
   MouseHost mice_;
   SoftI2c<I2cWires> bus_;

@@ -16,6 +16,11 @@ firmware::AvrController g_controller;
 firmware::Uart g_uart;
 firmware::CommandStream g_commands;
 
+// Its USB is a bridge of serial bytes: it can be no gamepad, and says so by an error counted.
+bool asks_for_gamepads(const wire::DeviceCommand& command) {
+  return command.kind == wire::kStickCommand || (command.switches & wire::kGamepads) != 0;
+}
+
 void take_commands() {
   if (g_uart.take_lost()) {
     g_commands.spoil();
@@ -28,7 +33,11 @@ void take_commands() {
       case firmware::CommandStream::kNone:
         break;
       case firmware::CommandStream::kCommand:
-        g_controller.obey(command);
+        if (asks_for_gamepads(command)) {
+          g_controller.count_error();
+        } else {
+          g_controller.obey(command);
+        }
         return;  // one a turn: the mice wait
       case firmware::CommandStream::kError:
         g_controller.count_error();

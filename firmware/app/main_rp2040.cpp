@@ -1,6 +1,7 @@
 // Raspberry Pi Pico: eight SPI motion sensors or PS/2 mice in, one 64-byte HID report a millisecond
 // out, sampled just before the host asks for it; commands in, for haptics and settings. Index marks
-// share the motors' bus.
+// share the motors' bus. By a setting four gamepads too.
+#include "core/gamepads.h"
 #include "core/haptics.h"
 #include "core/index_marks.h"
 #include "core/mouse_host.h"
@@ -32,6 +33,8 @@ firmware::SensorHost g_sensors(g_sensor_pins);
 firmware::MouseHost g_mice;
 firmware::Haptics g_haptics(g_i2c);
 firmware::IndexMarks g_marks(g_i2c);
+firmware::Gamepads g_pads;
+uint8_t g_pads_moved = 0;  // bit i: gamepad i, since its last report was made
 firmware::ReportClock g_clock;
 firmware::Settings g_settings;
 alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
@@ -53,12 +56,65 @@ void make_serial() {
   g_serial.set(id);
 }
 
-void apply_settings() {
+bool gamepads_on() {
+  return (g_settings.switches & wire::kGamepads) != 0;
+}
+
+void scale_sticks() {
+  const uint16_t mouse_counts_per_cm = 80;
+  const uint16_t counts_per_cm = static_cast<uint16_t>(g_settings.resolution * 10000u / 254);
+  for (uint8_t rod = 0; rod < wire::kDeviceRods; ++rod) {
+    const bool mouse = (g_settings.ps2 >> rod & 1) != 0;
+    g_pads.scale(rod, g_settings, mouse ? mouse_counts_per_cm : counts_per_cm);
+  }
+}
+
+void set_up_sensors() {
   const uint8_t sensors = static_cast<uint8_t>(~g_settings.ps2);
   rp2040::Ps2Pins::begin(g_settings.ps2);
   g_sensor_pins.begin(sensors);
   g_sensors.begin(sensors, g_settings.resolution);
-  g_haptics.allow((g_settings.switches & firmware::kPulsesOff) == 0);
+}
+
+void apply_settings() {
+  g_haptics.allow((g_settings.switches & wire::kPulsesOff) == 0);
+  scale_sticks();
+  g_usb.set_gamepads(gamepads_on());
+}
+
+// Once for each sample. While gamepads are off nobody follows the counts.
+void move_sticks() {
+  static bool on = false;
+  static uint32_t told = 0;
+  if (!gamepads_on()) {
+    on = false;
+    return;
+  }
+  if (!on) g_pads.begin();
+  on = true;
+  const uint16_t now_ms = static_cast<uint16_t>(g_ms);
+  if (g_ms / 256 != told) g_pads.forget_host();
+  told = g_ms / 256;
+  for (uint8_t rod = 0; rod < wire::kDeviceRods; ++rod) {
+    if ((g_settings.ps2 >> rod & 1) != 0) {
+      g_pads.move(rod, g_mice.slide(rod), g_mice.spin(rod), now_ms);
+    } else {
+      g_pads.move(rod, g_sensors.slide(rod), g_sensors.spin(rod), now_ms);
+    }
+  }
+  g_pads_moved = (1u << firmware::kPads) - 1;
+}
+
+// As soon as the host has taken the reports before: those of now wait a millisecond for it, so that
+// nothing comes between a sample and its frame.
+void report_gamepads() {
+  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {
+    const uint8_t bit = static_cast<uint8_t>(1u << pad);
+    if ((g_pads_moved & bit) == 0 || !g_usb.wants_pad_report(pad)) continue;
+    g_pads_moved = static_cast<uint8_t>(g_pads_moved & ~bit);
+    const uint8_t* report = g_pads.report(pad);
+    if (report != nullptr) g_usb.send_pad_report(pad, report);
+  }
 }
 
 void report() {
@@ -100,7 +156,7 @@ void watch_button() {
 
 void guard_motors() {
   const uint32_t line = rp2040::bit(rp2040::kMotorsEnable);
-  const bool on = (g_settings.switches & firmware::kPulsesOff) == 0;
+  const bool on = (g_settings.switches & wire::kPulsesOff) == 0;
   if (g_haptics.safe() && on) {
     rp2040::reg(rp2040::kGpioOutSet) = line;
     return;
@@ -110,6 +166,7 @@ void guard_motors() {
 }
 
 void each_ms() {
+  g_usb.poll();
   watch_button();
   show_state();
   guard_motors();
@@ -123,6 +180,15 @@ void pass_time(uint32_t now_us) {
   }
 }
 
+// Nothing stops a motor while flash is written: they have no power.
+void keep_settings() {
+  g_haptics.all_off();
+  rp2040::reg(rp2040::kGpioOutClear) = rp2040::bit(rp2040::kMotorsEnable);
+  rp2040::save_settings(g_settings);
+  g_haptics.made_safe();
+  pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
+}
+
 void obey(const wire::DeviceCommand& command) {
   switch (command.kind) {
     case wire::kPulseCommand:
@@ -132,18 +198,19 @@ void obey(const wire::DeviceCommand& command) {
       g_haptics.all_off();
       break;
     case wire::kSettingsCommand: {
-      const firmware::Settings wanted = firmware::settings_of(command);
-      if (firmware::same(wanted, g_settings)) break;  // flash wears
-      g_settings = wanted;
-      // Nothing stops a motor while flash is written: they have no power.
-      g_haptics.all_off();
-      rp2040::reg(rp2040::kGpioOutClear) = rp2040::bit(rp2040::kMotorsEnable);
-      rp2040::save_settings(g_settings);
-      g_haptics.made_safe();
-      pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
+      const bool others =
+          command.resolution != g_settings.resolution || command.ps2 != g_settings.ps2;
+      if (!firmware::take_settings(command, g_settings)) break;  // flash wears
+      keep_settings();
+      if (others) set_up_sensors();  // which loses their motion of meanwhile
       apply_settings();
       break;
     }
+    case wire::kStickCommand:
+      if (!firmware::take_stick(command, g_settings)) break;
+      keep_settings();
+      scale_sticks();
+      break;
   }
 }
 
@@ -192,8 +259,9 @@ int main() {
   make_serial();
   rp2040::load_settings(g_settings);
   g_i2c.start();
+  set_up_sensors();
   apply_settings();
-  g_usb.start(g_serial.descriptor);
+  g_usb.start(g_serial.descriptor, gamepads_on());
   g_ms_began_us = rp2040::micros();
   g_clock.begin(g_ms_began_us);
   bool served = false;
@@ -218,7 +286,9 @@ int main() {
       // Enumeration first: the mice would fill counters that nobody reads.
       g_mice.allow_streaming(g_usb.configured());
     }
+    report_gamepads();
     if (!served) {
+      move_sticks();
       g_sensors.service(g_ms);
       served = true;
     } else {

@@ -30,6 +30,10 @@ class MouseHost {
   // Counts since power-on, and what happened since the last call.
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
 
+  // Counts since power-on, wrapping.
+  uint16_t slide(uint8_t mouse) const { return slide_[mouse]; }
+  uint16_t spin(uint8_t mouse) const { return spin_[mouse]; }
+
   Ps2Lines& lines() { return lines_; }
   const MouseLink& link(uint8_t mouse) const { return links_[mouse]; }
 

@@ -32,6 +32,10 @@ class SensorHost {
   // forgets what happened since the last call.
   void add_to_frame(wire::DeviceFrame& frame);
 
+  // Counts since power-on, wrapping.
+  uint16_t slide(uint8_t sensor) const { return slide_[sensor]; }
+  uint16_t spin(uint8_t sensor) const { return spin_[sensor]; }
+
   uint8_t present() const { return live_; }
   // The first round of setting up is over: present() means something.
   bool tried() const { return tried_; }

@@ -20,27 +20,23 @@ constexpr uint8_t high(uint16_t value) {
   return static_cast<uint8_t>(value >> 8);
 }
 
-// pid.codes' number for tests and prototypes: a cabinet that is sold needs its own.
-const uint16_t kUsbVendor = 0x1209, kUsbProduct = 0x0001, kUsbRelease = 0x0100;
+// pid.codes' numbers for tests and prototypes: a cabinet that is sold needs its own. Two of them:
+// hosts remember what interfaces a product has.
+const uint16_t kUsbVendor = 0x1209, kUsbProduct = 0x0001, kGamepadsProduct = 0x0002,
+               kUsbRelease = 0x0100;
 
-const uint8_t kDevice[] FIRMWARE_FLASH = {18,
-                                          1,
-                                          low(0x0200),
-                                          high(0x0200),
-                                          0,
-                                          0,
-                                          0,
-                                          kControlBytes,
-                                          low(kUsbVendor),
-                                          high(kUsbVendor),
-                                          low(kUsbProduct),
-                                          high(kUsbProduct),
-                                          low(kUsbRelease),
-                                          high(kUsbRelease),
-                                          1,
-                                          2,
-                                          kSerialString,
-                                          1};
+template <uint8_t N>
+struct Bytes {
+  uint8_t at[N];
+};
+
+constexpr Bytes<18> device(uint16_t product) {
+  return {{18, 1, low(0x0200), high(0x0200), 0, 0, 0, kControlBytes, low(kUsbVendor),
+           high(kUsbVendor), low(product), high(product), low(kUsbRelease), high(kUsbRelease), 1, 2,
+           kSerialString, 1}};
+}
+constexpr Bytes<18> kDevice FIRMWARE_FLASH = device(kUsbProduct);
+constexpr Bytes<18> kGamepadsDevice FIRMWARE_FLASH = device(kGamepadsProduct);
 
 const uint8_t kReport[] FIRMWARE_FLASH = {0x06, 0x00,
                                           0xFF,        // usage page: vendor defined
@@ -57,58 +53,82 @@ const uint8_t kReport[] FIRMWARE_FLASH = {0x06, 0x00,
                                           0x91, 0x02,  //   output: data, variable, absolute
                                           0xC0};
 
-const uint8_t kHidVersionLow = 0x11, kHidVersionHigh = 0x01;
+// A full scale of 15 bits: 0 is the middle. Button 1 makes it a gamepad for Linux and SDL, the
+// right stick is where they look for it, and buttons up to Start keep games from asking for
+// another.
+const uint8_t kPadReport[] FIRMWARE_FLASH = {0x05, 0x01,        // usage page: generic desktop
+                                             0x09, 0x05,        // usage: gamepad
+                                             0xA1, 0x01,        // collection: application
+                                             0x16, 0x01, 0x80,  //   -32767
+                                             0x26, 0xFF, 0x7F,  //   to 32767
+                                             0x75, 0x10,        //   of 16 bits
+                                             0x95, 0x04,        //   4 of them
+                                             0x09, 0x30,        //   usage: X
+                                             0x09, 0x31,        //   usage: Y
+                                             0x09, 0x33,        //   usage: Rx
+                                             0x09, 0x34,        //   usage: Ry
+                                             0x81, 0x02,        //   input: data, variable, absolute
+                                             0x05, 0x09,        //   usage page: button
+                                             0x19, 0x01,        //   1
+                                             0x29, 0x0C,        //   to 12
+                                             0x15, 0x00,        //
+                                             0x25, 0x01,        //
+                                             0x75, 0x01,        //   of a bit
+                                             0x95, 0x0C,        //   12 of them
+                                             0x81, 0x02,        //   input
+                                             0x95, 0x04,        //   and 4 bits
+                                             0x81, 0x03,        //   of nothing
+                                             0xC0};
+
 const uint8_t kSelfPowered = 0xC0;  // eight sensors need more than a port gives: see docs/wiring.md
 const uint8_t kMilliampsHalved = 50;
-const uint8_t kInterrupt = 3, kEveryFrame = 1;
-const uint8_t kEndpoints = 2;
-const uint8_t kConfigurationBytes = 9 + 9 + 9 + 7 * kEndpoints;
-const uint8_t kHidAt = 9 + 9;
+const uint8_t kHid = 3, kInterrupt = 3, kEveryFrame = 1;
+const uint8_t kHeadBytes = 9, kInterfaceBytes = 9, kHidBytes = 9, kEndpointBytes = 7;
+const uint8_t kFramesBytes = kInterfaceBytes + kHidBytes + 2 * kEndpointBytes;
+const uint8_t kPadInterfaceBytes = kInterfaceBytes + kHidBytes + kEndpointBytes;
 
-const uint8_t kConfiguration[] FIRMWARE_FLASH = {
-    9,
-    2,
-    kConfigurationBytes,
-    0,
-    1,
-    1,
-    0,
-    kSelfPowered,
-    kMilliampsHalved,
-    9,
-    4,
-    0,
-    0,
-    kEndpoints,
-    3,
-    0,
-    0,
-    0,  // interface: HID, no boot protocol
-    9,
-    0x21,
-    kHidVersionLow,
-    kHidVersionHigh,
-    0,
-    1,
-    0x22,
-    sizeof kReport,
-    0,
-    7,
-    5,
-    0x80 | kReportEndpoint,
-    kInterrupt,
-    wire::kDeviceReportBytes,
-    0,
-    kEveryFrame,
-    7,
-    5,
-    kCommandEndpoint,
-    kInterrupt,
-    wire::kDeviceReportBytes,
-    0,
-    kEveryFrame,
+constexpr uint8_t hid_at(uint8_t interface) {
+  return static_cast<uint8_t>(
+      kHeadBytes + kInterfaceBytes +
+      (interface == 0 ? 0 : kFramesBytes + (interface - 1) * kPadInterfaceBytes));
+}
+
+template <uint8_t N>
+struct Writer {
+  Bytes<N> out{};
+  uint8_t at = 0;
+
+  template <uint8_t M>
+  constexpr void put(const Bytes<M>& part) {
+    for (uint8_t i = 0; i < M; ++i) out.at[at++] = part.at[i];
+  }
+  constexpr void interface(uint8_t number, uint8_t endpoints, uint8_t report_bytes) {
+    put(Bytes<kInterfaceBytes>{
+        {kInterfaceBytes, 4, number, 0, endpoints, kHid, 0, 0, 0}});  // no boot protocol
+    put(Bytes<kHidBytes>{{kHidBytes, 0x21, 0x11, 0x01, 0, 1, 0x22, report_bytes, 0}});
+  }
+  constexpr void endpoint(uint8_t address, uint8_t packet_bytes) {
+    put(Bytes<kEndpointBytes>{
+        {kEndpointBytes, 5, address, kInterrupt, packet_bytes, 0, kEveryFrame}});
+  }
 };
-static_assert(sizeof kConfiguration == kConfigurationBytes, "wTotalLength");
+
+template <uint8_t PADS>
+constexpr Bytes<kHeadBytes + kFramesBytes + PADS * kPadInterfaceBytes> configuration() {
+  Writer<kHeadBytes + kFramesBytes + PADS * kPadInterfaceBytes> writer;
+  writer.put(Bytes<kHeadBytes>{
+      {kHeadBytes, 2, sizeof writer.out, 0, 1 + PADS, 1, 0, kSelfPowered, kMilliampsHalved}});
+  writer.interface(0, 2, sizeof kReport);
+  writer.endpoint(0x80 | kReportEndpoint, wire::kDeviceReportBytes);
+  writer.endpoint(kCommandEndpoint, wire::kDeviceReportBytes);
+  for (uint8_t pad = 0; pad < PADS; ++pad) {
+    writer.interface(static_cast<uint8_t>(1 + pad), 1, sizeof kPadReport);
+    writer.endpoint(static_cast<uint8_t>(0x80 | (kPadEndpoint + pad)), kPadPacketBytes);
+  }
+  return writer.out;
+}
+constexpr auto kConfiguration FIRMWARE_FLASH = configuration<0>();
+constexpr auto kGamepadsConfiguration FIRMWARE_FLASH = configuration<kPads>();
 
 const uint8_t kLanguages[] FIRMWARE_FLASH = {4, 3, 0x09, 0x04};  // English
 const uint8_t kMaker[] FIRMWARE_FLASH = {30,  3, 'S', 0, 'p', 0, 'a', 0, 'c', 0,
@@ -122,6 +142,10 @@ template <uint8_t N>
 Descriptor whole(const uint8_t (&flash)[N]) {
   return {flash, N};
 }
+template <uint8_t N>
+Descriptor whole(const Bytes<N>& flash) {
+  return {flash.at, N};
+}
 
 Descriptor find_string(uint8_t number) {
   if (number == 0) return whole(kLanguages);
@@ -132,22 +156,23 @@ Descriptor find_string(uint8_t number) {
 
 }  // namespace
 
-Descriptor find_descriptor(uint16_t value, uint16_t index) {
+Descriptor find_descriptor(uint16_t value, uint16_t index, bool gamepads) {
   const uint8_t number = low(value);
+  const bool there = index == 0 || (gamepads && index <= kPads);
   switch (high(value)) {
     case 1:
-      if (number == 0) return whole(kDevice);
+      if (number == 0) return gamepads ? whole(kGamepadsDevice) : whole(kDevice);
       break;
     case 2:
-      if (number == 0) return whole(kConfiguration);
+      if (number == 0) return gamepads ? whole(kGamepadsConfiguration) : whole(kConfiguration);
       break;
     case 3:
       return find_string(number);
     case 0x21:
-      if (index == 0) return {kConfiguration + kHidAt, 9};
+      if (there) return {kGamepadsConfiguration.at + hid_at(low(index)), kHidBytes};
       break;
     case 0x22:
-      if (index == 0) return whole(kReport);
+      if (there) return index == 0 ? whole(kReport) : whole(kPadReport);
       break;
   }
   return {nullptr, 0};

@@ -51,29 +51,24 @@ void UsbRequests::on_bus_reset() {
   configuration_ = 0;
   report_halted_ = false;
   command_halted_ = false;
+  pads_halted_ = 0;
 }
 
 UsbAnswer UsbRequests::answer(const UsbSetup& setup) {
   new_address_ = 0;
   const uint8_t kind = setup.type & kTypeMask;
   if (kind == 0) return standard(setup);
-  if (kind == kClass && (setup.type & kRecipientMask) == kOfInterface && setup.index == 0) {
+  if (kind == kClass && (setup.type & kRecipientMask) == kOfInterface &&
+      has_interface(setup.index)) {
     return hid(setup);
   }
   return stall();
 }
 
 UsbAnswer UsbRequests::standard(const UsbSetup& setup) {
-  const uint8_t recipient = setup.type & kRecipientMask;
   switch (setup.request) {
-    case kGetStatus: {
-      if (recipient > kOfEndpoint) return stall();
-      if (recipient == kOfDevice) return send_byte(1, 2, setup);  // self-powered
-      const bool halted = recipient == kOfEndpoint &&
-                          ((setup.index == (0x80 | kReportEndpoint) && report_halted_) ||
-                           (setup.index == kCommandEndpoint && command_halted_));
-      return send_byte(halted ? 1 : 0, 2, setup);
-    }
+    case kGetStatus:
+      return status(setup);
     case kClearFeature:
       return feature(setup, false);
     case kSetFeature:
@@ -91,29 +86,58 @@ UsbAnswer UsbRequests::standard(const UsbSetup& setup) {
       configuration_ = static_cast<uint8_t>(setup.value);
       report_halted_ = false;
       command_halted_ = false;
+      pads_halted_ = 0;
       return without_bytes(UsbAnswer::kConfigure);
     case kGetInterface:
       return send_byte(0, 1, setup);
     case kSetInterface:
-      return setup.value == 0 && setup.index == 0 ? done() : stall();
+      return setup.value == 0 && has_interface(setup.index) ? done() : stall();
   }
   return stall();
 }
 
+UsbAnswer UsbRequests::status(const UsbSetup& setup) {
+  const uint8_t recipient = setup.type & kRecipientMask;
+  if (recipient > kOfEndpoint) return stall();
+  if (recipient == kOfDevice) return send_byte(1, 2, setup);  // self-powered
+  if (recipient == kOfInterface) return send_byte(0, 2, setup);
+  const uint8_t pad = pad_of_endpoint(setup.index);
+  const bool halted = (setup.index == (0x80 | kReportEndpoint) && report_halted_) ||
+                      (setup.index == kCommandEndpoint && command_halted_) ||
+                      (pad < kPads && pad_halted(pad));
+  return send_byte(halted ? 1 : 0, 2, setup);
+}
+
+// kPads: none.
+uint8_t UsbRequests::pad_of_endpoint(uint16_t address) const {
+  const uint16_t first = 0x80 | kPadEndpoint;
+  const bool pad = gamepads_ && address >= first && address < first + kPads;
+  return pad ? static_cast<uint8_t>(address - first) : kPads;
+}
+
 UsbAnswer UsbRequests::feature(const UsbSetup& setup, bool set) {
-  const bool report = setup.index == (0x80 | kReportEndpoint);
-  const bool command = setup.index == kCommandEndpoint;
   const bool endpoint = (setup.type & kRecipientMask) == kOfEndpoint;
-  if (!endpoint || (!report && !command) || setup.value != 0 || configuration_ == 0) return stall();
-  (report ? report_halted_ : command_halted_) = set;
-  return without_bytes(report ? UsbAnswer::kReportHalt : UsbAnswer::kCommandHalt);
+  if (!endpoint || setup.value != 0 || configuration_ == 0) return stall();
+  if (setup.index == (0x80 | kReportEndpoint)) {
+    report_halted_ = set;
+    return without_bytes(UsbAnswer::kReportHalt);
+  }
+  if (setup.index == kCommandEndpoint) {
+    command_halted_ = set;
+    return without_bytes(UsbAnswer::kCommandHalt);
+  }
+  const uint8_t pad = pad_of_endpoint(setup.index);
+  if (pad == kPads) return stall();
+  const uint8_t bit = static_cast<uint8_t>(1u << pad);
+  pads_halted_ = static_cast<uint8_t>(set ? pads_halted_ | bit : pads_halted_ & ~bit);
+  return {UsbAnswer::kPadHalt, nullptr, pad, false, false};
 }
 
 UsbAnswer UsbRequests::descriptor(const UsbSetup& setup) {
   if (serial_ != nullptr && setup.value == (kStringKind << 8 | kSerialString)) {
     return send(serial_, serial_[0], setup);
   }
-  const Descriptor found = find_descriptor(setup.value, setup.index);
+  const Descriptor found = find_descriptor(setup.value, setup.index, gamepads_);
   if (found.flash == nullptr) return stall();
   UsbAnswer answer = send(found.flash, found.size, setup);
   answer.in_flash = true;
@@ -124,21 +148,26 @@ UsbAnswer UsbRequests::hid(const UsbSetup& setup) {
   const uint8_t kind = static_cast<uint8_t>(setup.value >> 8);
   switch (setup.request) {
     case kGetReport:
-      if (kind != kInputReport || report_ == nullptr) return stall();
-      return send(report_, wire::kDeviceReportBytes, setup);
+      return kind == kInputReport ? get_report(setup) : stall();
     case kSetReport:
-      if (kind != kOutputReport || setup.to_host() || setup.length == 0 ||
+      if (kind != kOutputReport || setup.to_host() || setup.length == 0 || setup.index != 0 ||
           setup.length > wire::kDeviceReportBytes) {
         return stall();
       }
       return {UsbAnswer::kTake, nullptr, static_cast<uint8_t>(setup.length), false, false};
     case kGetIdle:
-      return send_byte(idle_, 1, setup);
-    case kSetIdle:  // accepted; a report goes out every millisecond whatever is asked
-      idle_ = static_cast<uint8_t>(setup.value >> 8);
+      return send_byte(idle_[setup.index], 1, setup);
+    case kSetIdle:  // accepted; a report goes out whenever there is one, whatever is asked
+      idle_[setup.index] = static_cast<uint8_t>(setup.value >> 8);
       return done();
   }
   return stall();
+}
+
+UsbAnswer UsbRequests::get_report(const UsbSetup& setup) {
+  const uint8_t* report = setup.index == 0 ? report_ : pad_reports_[setup.index - 1];
+  if (report == nullptr) return stall();
+  return send(report, setup.index == 0 ? wire::kDeviceReportBytes : kPadBytes, setup);
 }
 
 UsbAnswer UsbRequests::send_byte(uint8_t value, uint8_t size, const UsbSetup& setup) {

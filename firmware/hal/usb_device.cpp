@@ -8,8 +8,10 @@ namespace firmware {
 
 namespace {
 
-const uint8_t kEndpointSize = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC);  // 64 bytes, one bank
-const uint8_t kInterruptEndpoint = _BV(EPTYPE1) | _BV(EPTYPE0);
+// One bank each: two would age a report.
+const uint8_t k64Bytes = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC),
+              k16Bytes = _BV(EPSIZE0) | _BV(ALLOC);
+const uint8_t kInterruptEndpoint = _BV(EPTYPE1) | _BV(EPTYPE0), kToHost = _BV(EPDIR);
 
 // Flags of UEINTX are cleared by writing 0; writing 1 leaves them. Not so at an endpoint towards
 // the host: there a 1 in the place of RXOUTI throws away what was written (KILLBK).
@@ -39,8 +41,11 @@ uint8_t read_packet(uint8_t* out) {
 
 }  // namespace
 
-void UsbDevice::start(const uint8_t* serial) {
+void UsbDevice::start(const uint8_t* serial, bool gamepads) {
   requests_.set_serial(serial);
+  requests_.set_gamepads(gamepads);
+  gamepads_wanted_ = gamepads;
+  polls_ = 0;
   UDCON = _BV(DETACH);  // a boot loader may have been on the bus
   USBCON = 0;
   UHWCON = _BV(UVREGE);
@@ -55,6 +60,19 @@ void UsbDevice::attach() {
   attached_ = true;
 }
 
+void UsbDevice::change() {
+  if (++polls_ < kPollsBeforeDetach) return;
+  UDCON = _BV(DETACH);
+  attached_ = false;
+  polls_ = kPollsDetached;
+  UDADDR = 0;
+  requests_.set_gamepads(gamepads_wanted_);
+  requests_.on_bus_reset();
+  sending_ = nullptr;
+  taking_ = false;
+  configure_endpoints();
+}
+
 void UsbDevice::on_bus_reset() {
   UDINT = static_cast<uint8_t>(UDINT & ~_BV(EORSTI));
   requests_.on_bus_reset();
@@ -64,13 +82,23 @@ void UsbDevice::on_bus_reset() {
   UENUM = 0;
   UECONX = _BV(EPEN);
   UECFG0X = 0;  // control
-  UECFG1X = kEndpointSize;
+  UECFG1X = k64Bytes;
 }
 
 void UsbDevice::poll() {
   if (!attached_) {
-    attach();
+    if (polls_ != 0) {
+      --polls_;
+    } else {
+      attach();
+    }
     return;
+  }
+  if (gamepads_wanted_ != requests_.gamepads()) {
+    change();
+    if (!attached_) return;
+  } else {
+    polls_ = 0;
   }
   if ((UDINT & _BV(EORSTI)) != 0) on_bus_reset();
   serve_control();
@@ -125,8 +153,7 @@ void UsbDevice::on_setup() {
       taking_ = true;
       return;
     case UsbAnswer::kConfigure:
-      configure_report_endpoint();
-      configure_command_endpoint();
+      configure_endpoints();
       break;
     case UsbAnswer::kReportHalt:
       UENUM = kReportEndpoint;
@@ -135,6 +162,10 @@ void UsbDevice::on_setup() {
     case UsbAnswer::kCommandHalt:
       UENUM = kCommandEndpoint;
       stall_endpoint(requests_.command_halted());
+      break;
+    case UsbAnswer::kPadHalt:
+      UENUM = static_cast<uint8_t>(kPadEndpoint + answer.size);
+      stall_endpoint(requests_.pad_halted(answer.size));
       break;
     case UsbAnswer::kDone:
       break;
@@ -162,34 +193,41 @@ void UsbDevice::take_control_packet() {
   send_empty_packet();
 }
 
-// Endpoints get their memory in the order of their numbers: this one is the first.
-void UsbDevice::configure_report_endpoint() {
+// Endpoints get their memory in the order of their numbers.
+void UsbDevice::configure_endpoints() {
   report_pending_ = false;
-  UENUM = kReportEndpoint;
-  if (!configured()) {
+  configure_endpoint(kReportEndpoint, configured(), kToHost, k64Bytes);
+  configure_endpoint(kCommandEndpoint, configured(), 0, k64Bytes);
+  for (uint8_t pad = 0; pad < kPads; ++pad) {
+    configure_endpoint(static_cast<uint8_t>(kPadEndpoint + pad), gamepads(), kToHost, k16Bytes);
+  }
+}
+
+void UsbDevice::configure_endpoint(uint8_t number, bool on, uint8_t direction, uint8_t size) {
+  UENUM = number;
+  if (!on) {
     UECONX = 0;
     UECFG1X = 0;
     return;
   }
   UECONX = _BV(EPEN);
-  UECFG0X = kInterruptEndpoint | _BV(EPDIR);  // to the host
-  UECFG1X = kEndpointSize;                    // two banks would age a report
-  UERST = _BV(kReportEndpoint);
+  UECFG0X = kInterruptEndpoint | direction;
+  UECFG1X = size;
+  UERST = static_cast<uint8_t>(1u << number);
   UERST = 0;
 }
 
-void UsbDevice::configure_command_endpoint() {
-  UENUM = kCommandEndpoint;
-  if (!configured()) {
-    UECONX = 0;
-    UECFG1X = 0;
-    return;
-  }
-  UECONX = _BV(EPEN);
-  UECFG0X = kInterruptEndpoint;
-  UECFG1X = kEndpointSize;
-  UERST = _BV(kCommandEndpoint);
-  UERST = 0;
+bool UsbDevice::wants_pad_report(uint8_t pad) const {
+  if (!gamepads() || requests_.pad_halted(pad)) return false;
+  UENUM = static_cast<uint8_t>(kPadEndpoint + pad);
+  return (UEINTX & _BV(TXINI)) != 0;
+}
+
+void UsbDevice::send_pad_report(uint8_t pad, const uint8_t* report) {
+  requests_.set_pad_report(pad, report);
+  UENUM = static_cast<uint8_t>(kPadEndpoint + pad);
+  for (uint8_t i = 0; i < kPadBytes; ++i) UEDATX = report[i];
+  hand_over_report();
 }
 
 void UsbDevice::send_report(const uint8_t* report) {

@@ -14,7 +14,8 @@ using firmware::UsbSetup;
 constexpr uint32_t kReportControl = kUsbMemory + 0x08, kCommandControl = kUsbMemory + 0x0C,
                    kControlIn = kUsbMemory + 0x80, kControlOut = kUsbMemory + 0x84,
                    kReportIn = kUsbMemory + 0x88, kCommandOut = kUsbMemory + 0x8C,
-                   kControlBuffer = 0x100, kReportBuffer = 0x180, kCommandBuffer = 0x1C0;
+                   kControlBuffer = 0x100, kReportBuffer = 0x180, kCommandBuffer = 0x1C0,
+                   kPadBuffer = 0x200;  // of the first gamepad, the others 64 bytes each behind it
 constexpr uint32_t kMemoryBytes = 4096;
 
 // Of an endpoint's control.
@@ -25,6 +26,19 @@ constexpr uint32_t kFull = bit(15), kData1 = bit(13), kStall = bit(11), kAvailab
 constexpr uint32_t kSetupReceived = bit(17), kBusReset = bit(19);  // SIE_STATUS
 constexpr uint32_t kControlInDone = bit(0), kControlOutDone = bit(1), kReportDone = bit(2),
                    kCommandDone = bit(3);  // BUFF_STATUS
+constexpr uint32_t pad_control(uint8_t pad) {
+  return kUsbMemory + 8 * (firmware::kPadEndpoint + pad);
+}
+constexpr uint32_t pad_in(uint8_t pad) {
+  return kUsbMemory + 0x80 + 8 * (firmware::kPadEndpoint + pad);
+}
+constexpr uint32_t pad_buffer(uint8_t pad) {
+  return kPadBuffer + 64u * pad;
+}
+constexpr uint32_t pad_done(uint8_t pad) {  // BUFF_STATUS
+  return bit(2 * (firmware::kPadEndpoint + pad));
+}
+constexpr uint32_t kPullUp = bit(16);  // SIE_CTRL
 
 volatile uint32_t* memory(uint32_t offset) {
   return &reg(kUsbMemory + offset);
@@ -50,8 +64,10 @@ void copy_to(uint32_t offset, const uint8_t* bytes, uint32_t size) {
 
 }  // namespace
 
-void UsbController::start(const uint8_t* serial) {
+void UsbController::start(const uint8_t* serial, bool gamepads) {
   requests_.set_serial(serial);
+  requests_.set_gamepads(gamepads);
+  gamepads_wanted_ = gamepads;
   for (uint32_t i = 0; i < kMemoryBytes; i += 4) *memory(i) = 0;
   reg(kUsbMuxing) = bit(0) | bit(3);  // the controller's own PHY, attached by software
   reg(kUsbPower) = bit(2) | bit(3);   // powered: nobody measures
@@ -59,7 +75,31 @@ void UsbController::start(const uint8_t* serial) {
   reg(kUsbSieCtrl) = bit(29);  // an interrupt for each buffer of endpoint 0
   reg(kUsbInterruptEnable) = bit(4) | bit(12) | bit(16);  // buffers, bus reset, setup
   reg(kNvicEnable) = bit(kIrqUsb);
-  set_bits(kUsbSieCtrl, bit(16));  // the pull-up: here I am
+  set_bits(kUsbSieCtrl, kPullUp);  // here I am
+  attached_ = true;
+}
+
+void UsbController::poll() {
+  const uint32_t now_us = micros();
+  if (attached_ && gamepads_wanted_ == requests_.gamepads()) {
+    since_us_ = now_us;
+  } else if (attached_) {
+    if (now_us - since_us_ < kUsBeforeDetach) return;
+    since_us_ = now_us;
+    detach();
+  } else if (now_us - since_us_ >= kUsDetached) {
+    set_bits(kUsbSieCtrl, kPullUp);
+    attached_ = true;
+  }
+}
+
+void UsbController::detach() {
+  hold_interrupts();
+  clear_bits(kUsbSieCtrl, kPullUp);
+  attached_ = false;
+  requests_.set_gamepads(gamepads_wanted_);
+  on_bus_reset();
+  allow_interrupts();
 }
 
 void UsbController::on_interrupt() {
@@ -82,6 +122,11 @@ void UsbController::on_interrupt() {
     on_control_received();
   }
   if ((status & kSetupReceived) != 0) on_setup();
+  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {
+    if ((buffers & pad_done(pad)) == 0) continue;
+    reg(kUsbBuffStatus) = pad_done(pad);
+    pads_ready_ = static_cast<uint8_t>(pads_ready_ | 1u << pad);
+  }
   if ((buffers & kCommandDone) != 0) {
     reg(kUsbBuffStatus) = kCommandDone;
     on_command();
@@ -93,9 +138,14 @@ void UsbController::on_bus_reset() {
   requests_.on_bus_reset();
   sending_ = nullptr;
   taking_ = false;
+  restart_all();
+  reg(kUsbSieStatus) = kBusReset;
+}
+
+void UsbController::restart_all() {
   restart_reports();
   restart_commands();
-  reg(kUsbSieStatus) = kBusReset;
+  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) restart_pad(pad);
 }
 
 void UsbController::on_setup() {
@@ -115,8 +165,7 @@ void UsbController::on_setup() {
       reg(kControlOut) = kStall;
       break;
     case UsbAnswer::kConfigure:
-      restart_reports();
-      restart_commands();
+      restart_all();
       give_buffer(kControlIn, kFull | kData1);
       break;
     case UsbAnswer::kReportHalt:
@@ -125,6 +174,10 @@ void UsbController::on_setup() {
       break;
     case UsbAnswer::kCommandHalt:
       restart_commands();
+      give_buffer(kControlIn, kFull | kData1);
+      break;
+    case UsbAnswer::kPadHalt:
+      restart_pad(answer.size);
       give_buffer(kControlIn, kFull | kData1);
       break;
     case UsbAnswer::kDone:
@@ -214,13 +267,26 @@ uint8_t UsbController::take_dropped() {
   return dropped;
 }
 
-// Begins with DATA0, empty; what was waiting to be sent is thrown away.
-void UsbController::restart_reports() {
-  if ((reg(kReportIn) & kAvailable) != 0) {
-    set_bits(kUsbAbort, kReportDone);
-    for (uint32_t tries = 0; tries < 1000 && (reg(kUsbAbortDone) & kReportDone) == 0; ++tries) {
-    }
+namespace {
+
+// What was waiting to be sent is thrown away. done: its bit of BUFF_STATUS.
+void abort_buffer(uint32_t control, uint32_t done) {
+  if ((reg(control) & kAvailable) == 0) return;
+  set_bits(kUsbAbort, done);
+  for (uint32_t tries = 0; tries < 1000 && (reg(kUsbAbortDone) & done) == 0; ++tries) {
   }
+}
+// Its buffer is set as it shall be.
+void end_abort(uint32_t done) {
+  reg(kUsbAbortDone) = done;
+  clear_bits(kUsbAbort, done);
+}
+
+}  // namespace
+
+// Begins with DATA0, empty.
+void UsbController::restart_reports() {
+  abort_buffer(kReportIn, kReportDone);
   report_data1_ = false;
   report_pending_ = false;
   configured_ = requests_.configured();
@@ -228,8 +294,20 @@ void UsbController::restart_reports() {
   reg(kReportControl) =
       (configured_ ? kEndpointOn | kInterruptEachBuffer | kInterruptType : 0) | kReportBuffer;
   reg(kReportIn) = halted_ ? kStall : 0;
-  reg(kUsbAbortDone) = kReportDone;
-  clear_bits(kUsbAbort, kReportDone);
+  end_abort(kReportDone);
+}
+
+void UsbController::restart_pad(uint8_t pad) {
+  const bool on = requests_.configured() && requests_.gamepads();
+  const bool halted = requests_.pad_halted(pad);
+  const uint8_t mask = static_cast<uint8_t>(1u << pad);
+  abort_buffer(pad_in(pad), pad_done(pad));
+  pads_data1_ = static_cast<uint8_t>(pads_data1_ & ~mask);
+  pads_ready_ = static_cast<uint8_t>(on && !halted ? pads_ready_ | mask : pads_ready_ & ~mask);
+  reg(pad_control(pad)) =
+      (on ? kEndpointOn | kInterruptEachBuffer | kInterruptType : 0) | pad_buffer(pad);
+  reg(pad_in(pad)) = on && halted ? kStall : 0;
+  end_abort(pad_done(pad));
 }
 
 // Begins with DATA0.
@@ -255,6 +333,24 @@ void UsbController::send_report(const uint8_t* report) {
     give_buffer(kReportIn, kFull | (report_data1_ ? kData1 : 0) | wire::kDeviceReportBytes);
     report_data1_ = !report_data1_;
     report_pending_ = true;
+  }
+  allow_interrupts();
+}
+
+bool UsbController::wants_pad_report(uint8_t pad) const {
+  return (pads_ready_ >> pad & 1) != 0;
+}
+
+void UsbController::send_pad_report(uint8_t pad, const uint8_t* report) {
+  const uint8_t mask = static_cast<uint8_t>(1u << pad);
+  requests_.set_pad_report(pad, report);
+  hold_interrupts();
+  if (wants_pad_report(pad)) {
+    copy_to(pad_buffer(pad), report, firmware::kPadBytes);
+    give_buffer(pad_in(pad),
+                kFull | ((pads_data1_ & mask) != 0 ? kData1 : 0) | firmware::kPadBytes);
+    pads_data1_ = static_cast<uint8_t>(pads_data1_ ^ mask);
+    pads_ready_ = static_cast<uint8_t>(pads_ready_ & ~mask);
   }
   allow_interrupts();
 }

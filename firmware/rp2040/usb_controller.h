@@ -12,15 +12,24 @@ namespace rp2040 {
 
 class UsbController {
  public:
-  // serial: a string descriptor, which stays where it is.
-  void start(const uint8_t* serial);
+  // serial: a string descriptor, which stays where it is. gamepads: four of them besides.
+  void start(const uint8_t* serial, bool gamepads);
   void on_interrupt();
+  // What the host hears by enumerating again: the device leaves the bus for a while, not at once.
+  void set_gamepads(bool on) { gamepads_wanted_ = on; }
+  // Every millisecond or so.
+  void poll();
 
   bool configured() const { return configured_; }
   // The host has taken the last report, or has not been given one.
   bool wants_report() const { return configured_ && !halted_ && !report_pending_; }
   // report: wire::kDeviceReportBytes, 4-aligned, which stay where they are: GET_REPORT reads them.
   void send_report(const uint8_t* report);
+
+  // The host has taken the last report of this gamepad.
+  bool wants_pad_report(uint8_t pad) const;
+  // report: firmware::kPadBytes, which stay where they are.
+  void send_pad_report(uint8_t pad, const uint8_t* report);
 
   // When the host took a report, once for each; false: not since the last call.
   bool take_report_time(uint32_t& at_us);
@@ -36,7 +45,13 @@ class UsbController {
   void on_control_sent();
   void on_control_received();
   void on_command();
+  // Until the transfer that asked for it has ended, and until no hub takes it for the same device.
+  static const uint32_t kUsBeforeDetach = 100'000, kUsDetached = 100'000;
+
+  void detach();
+  void restart_all();
   void restart_reports();
+  void restart_pad(uint8_t pad);
   void restart_commands();
   void send_control_packet();
   void keep_command(const volatile uint32_t* from, uint8_t size);
@@ -49,11 +64,16 @@ class UsbController {
   bool control_data1_ = false;  // of the next packet to the host
   bool report_data1_ = false;
   bool command_data1_ = false;
+  bool attached_ = false;
+  bool gamepads_wanted_ = false;
+  uint32_t since_us_ = 0;  // of what the host was told, while that is wanted; then of the detaching
 
   // Shared with the polling loop.
   volatile bool configured_ = false;
   volatile bool halted_ = false;
   volatile bool report_pending_ = false;
+  volatile uint8_t pads_ready_ = 0;  // bit i: gamepad i may be given a report
+  volatile uint8_t pads_data1_ = 0;
   volatile bool report_taken_ = false;
   volatile uint32_t taken_us_ = 0;
   static const uint8_t kCommands = 9;  // a pulse for each rod at once, and one place empty

@@ -12,6 +12,8 @@ class OnBoard : public testing::TestWithParam<Board> {};
 INSTANTIATE_TEST_SUITE_P(Boards, OnBoard, testing::Values(Board::mega32u4, Board::mega2560),
                          [](const auto& chosen) { return name_of(chosen.param); });
 
+constexpr std::uint64_t kSavedUs = 300'000;  // 42 bytes of 3.4 ms, and what else the loop does
+
 // Ticks of 100 ms with light, of ten, and the brightest width.
 struct Light {
   int lit = 0;
@@ -34,11 +36,11 @@ TEST_P(OnBoard, SettingsAreKeptThroughPowerOffAndWrittenOnlyWhenTheyDiffer) {
     MotorCabinet cabinet(GetParam());
     ASSERT_TRUE(cabinet.start());
     cabinet.send(settings_command(200));
-    cabinet.sim.advance_us(100'000);
+    cabinet.sim.advance_us(kSavedUs);
     const std::uint64_t writes = cabinet.sim.eeprom_writes();
     EXPECT_GT(writes, 0u);
     cabinet.send(settings_command(200));
-    cabinet.sim.advance_us(100'000);
+    cabinet.sim.advance_us(kSavedUs);
     EXPECT_EQ(cabinet.sim.eeprom_writes(), writes);
     cabinet.expect_no_fault();
     kept = cabinet.sim.eeprom();
@@ -72,7 +74,7 @@ TEST_P(OnBoard, PowerThatFailsWhileSavingLeavesTheOldTheNewOrTheDefaultSettings)
   MotorCabinet cabinet(GetParam());
   ASSERT_TRUE(cabinet.start());
   cabinet.send(settings_command(200));
-  cabinet.sim.advance_us(100'000);
+  cabinet.sim.advance_us(kSavedUs);
   const std::uint64_t before = cabinet.sim.eeprom_writes();
   cabinet.send(settings_command(100));
   std::vector<std::vector<std::uint8_t>> torn;

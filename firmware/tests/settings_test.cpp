@@ -9,12 +9,27 @@
 namespace firmware {
 namespace {
 
+bool same(const StickScale& a, const StickScale& b) {
+  return a.travel == b.travel && a.turn == b.turn;
+}
+bool same(const Settings& a, const Settings& b) {
+  for (int rod = 0; rod < wire::kDeviceRods; ++rod) {
+    if (!same(a.sticks[rod], b.sticks[rod])) return false;
+  }
+  return a.resolution == b.resolution && a.brightness == b.brightness && a.ps2 == b.ps2 &&
+         a.switches == b.switches && a.slide_reversed == b.slide_reversed &&
+         a.spin_reversed == b.spin_reversed;
+}
+
 TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
   Settings settings;
   settings.resolution = 60;
   settings.brightness = 200;
   settings.ps2 = 0x0F;
-  settings.switches = kPulsesOff;
+  settings.switches = wire::kPulsesOff | wire::kGamepads;
+  settings.sticks[7] = {2016, 402};
+  settings.slide_reversed = 0x81;
+  settings.spin_reversed = 0x42;
   std::uint8_t bytes[kSettingsBytes];
   encode_settings(settings, bytes);
   Settings read;
@@ -22,12 +37,80 @@ TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
   EXPECT_EQ(read.resolution, 60);
   EXPECT_EQ(read.brightness, 200);
   EXPECT_EQ(read.ps2, 0x0F);
-  EXPECT_EQ(read.switches, kPulsesOff);
+  EXPECT_EQ(read.switches, 3);
+  EXPECT_EQ(read.sticks[7].travel, 2016);
+  EXPECT_EQ(read.sticks[7].turn, 402);
+  EXPECT_EQ(read.sticks[6].travel, 0);
+  EXPECT_EQ(read.slide_reversed, 0x81);
+  EXPECT_EQ(read.spin_reversed, 0x42);
   for (unsigned bit = 0; bit < 8 * sizeof bytes; ++bit) {
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1u << bit % 8);
     EXPECT_FALSE(decode_settings(bytes, read)) << bit;
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1u << bit % 8);
   }
+}
+
+// As controllers of before kept them: bytes of theirs, with their own CRC.
+TEST(Settings, ThoseOfVersion1AreReadAndHaveNoSticks) {
+  std::uint8_t bytes[kSettingsBytes];
+  for (auto& byte : bytes) byte = 0xFF;
+  const std::uint8_t before[] = {1, 60, 200, 0x0F, 1, 0, 0, 0};
+  for (std::size_t i = 0; i < sizeof before; ++i) bytes[i] = before[i];
+  wire::device_put16(bytes + 6, wire::device_crc16(bytes, 6));
+  Settings settings;
+  ASSERT_TRUE(decode_settings(bytes, settings));
+  EXPECT_EQ(settings.resolution, 60);
+  EXPECT_EQ(settings.brightness, 200);
+  EXPECT_EQ(settings.ps2, 0x0F);
+  EXPECT_EQ(settings.switches, wire::kPulsesOff);
+  for (const StickScale& stick : settings.sticks) EXPECT_TRUE(same(stick, StickScale()));
+  bytes[4] = 2;  // a switch that version 1 had not
+  wire::device_put16(bytes + 6, wire::device_crc16(bytes, 6));
+  EXPECT_FALSE(decode_settings(bytes, settings));
+}
+
+TEST(Settings, AScaleThatIsNoTravelIsRefusedUnderARightCrcToo) {
+  Settings settings;
+  std::uint8_t bytes[kSettingsBytes];
+  for (const int at : {6, 8, 34, 36}) {
+    encode_settings(settings, bytes);
+    bytes[at] = 63;
+    wire::device_put16(bytes + 40, wire::device_crc16(bytes, 40));
+    EXPECT_FALSE(decode_settings(bytes, settings)) << at;
+  }
+}
+
+wire::DeviceCommand stick_command(std::uint8_t rod, std::uint16_t travel, std::uint16_t turn,
+                                  std::uint8_t reversed) {
+  wire::DeviceCommand command{};
+  command.kind = wire::kStickCommand;
+  command.rod = rod;
+  command.travel = travel;
+  command.turn = turn;
+  command.reversed = reversed;
+  return command;
+}
+
+TEST(Settings, ACommandForAStickChangesThatRodAloneAndSaysWhetherItDid) {
+  Settings settings;
+  settings.slide_reversed = 0x08;
+  EXPECT_TRUE(take_stick(stick_command(5, 2016, 402, wire::kSpinReversed), settings));
+  EXPECT_FALSE(take_stick(stick_command(5, 2016, 402, wire::kSpinReversed), settings));
+  EXPECT_TRUE(same(settings.sticks[5], StickScale{2016, 402}));
+  EXPECT_TRUE(same(settings.sticks[4], StickScale{}));
+  EXPECT_EQ(settings.slide_reversed, 0x08);
+  EXPECT_EQ(settings.spin_reversed, 0x20);
+  EXPECT_TRUE(take_stick(stick_command(5, 0, 0, 0), settings));
+  EXPECT_EQ(settings.spin_reversed, 0);
+  wire::DeviceCommand command{};
+  command.kind = wire::kSettingsCommand;
+  command.resolution = settings.resolution;
+  command.brightness = settings.brightness;
+  EXPECT_FALSE(take_settings(command, settings));
+  command.switches = wire::kGamepads;
+  EXPECT_TRUE(take_settings(command, settings));
+  EXPECT_EQ(settings.switches, wire::kGamepads);
+  EXPECT_EQ(settings.slide_reversed, 0x08);
 }
 
 TEST(Settings, AnErasedSectorHasNone) {
@@ -85,7 +168,7 @@ TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
   Memory::erase();
   Settings settings;
   EXPECT_FALSE(Store::load(settings));
-  const Settings wanted = settings_with(60, 200, 0x0F, kPulsesOff);
+  const Settings wanted = settings_with(60, 200, 0x0F, wire::kPulsesOff);
   save(wanted);
   ASSERT_TRUE(Store::load(settings));
   EXPECT_TRUE(same(settings, wanted));
@@ -94,7 +177,8 @@ TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
 // All pairs out of a few settings, power lost after each number of bytes: never a mixture.
 TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
   const Settings some[] = {settings_with(20, 64, 0, 0), settings_with(20, 65, 0, 0),
-                           settings_with(60, 200, 0xFF, kPulsesOff), settings_with(1, 0, 1, 0)};
+                           settings_with(60, 200, 0xFF, wire::kPulsesOff),
+                           settings_with(1, 0, 1, 0)};
   for (const Settings& before : some) {
     for (const Settings& after : some) {
       for (int bytes = 0; bytes <= kSettingsBytes + 1; ++bytes) {
@@ -115,13 +199,13 @@ TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
 
 TEST(SettingsStore, ASaveThatOvertakesAnotherWins) {
   const Settings first = settings_with(20, 10, 0, 0), second = settings_with(30, 20, 3, 1);
-  for (int steps = 0; steps < 40; ++steps) {
+  for (int steps = 0; steps < 200; ++steps) {
     Memory::erase();
     Store store;
     store.save(first);
     for (int i = 0; i < steps; ++i) store.step();
     store.save(second);
-    for (int i = 0; i < 100; ++i) store.step();
+    for (int i = 0; i < 300; ++i) store.step();
     Memory::busy = 0;
     Settings read;
     ASSERT_TRUE(Store::load(read)) << steps;

@@ -20,8 +20,11 @@ TEST(UsbRequests, AnyEightBytesAreAnsweredWithinBounds) {
   const std::uint8_t serial[] = {4, 3, '1', 0};
   requests.set_report(report);
   requests.set_serial(serial);
+  const std::uint8_t pad_report[kPadBytes] = {};
+  for (std::uint8_t pad = 0; pad < kPads; ++pad) requests.set_pad_report(pad, pad_report);
   std::mt19937 random(81);
   for (int i = 0; i < 200'000; ++i) {
+    requests.set_gamepads(i % 5 < 2);
     std::uint8_t bytes[8];
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random() % (i % 2 ? 256 : 12));
     if (i % 3 == 0) bytes[0] = static_cast<std::uint8_t>(bytes[0] | 0x80);
@@ -34,6 +37,9 @@ TEST(UsbRequests, AnyEightBytesAreAnsweredWithinBounds) {
     }
     if (answer.kind == UsbAnswer::kTake) {
       EXPECT_LE(answer.size, wire::kDeviceReportBytes);
+    }
+    if (answer.kind == UsbAnswer::kPadHalt) {
+      EXPECT_LT(answer.size, kPads);
     }
   }
 }
@@ -70,6 +76,33 @@ TEST(UsbRequests, AHaltConcernsItsOwnEndpointOnly) {
   EXPECT_TRUE(requests.command_halted());
   EXPECT_EQ(ask(requests, 0x02, 1, 0, kCommandEndpoint, 0).kind, UsbAnswer::kCommandHalt);
   EXPECT_FALSE(requests.command_halted());
+}
+
+TEST(UsbRequests, GamepadsAreThereWhenTheyAreSwitchedOnAndOnlyThen) {
+  UsbRequests requests;
+  ask(requests, 0x00, 9, 1, 0, 0);
+  const std::uint8_t report[kPadBytes] = {1, 2, 3};
+  requests.set_pad_report(3, report);
+  for (const bool on : {false, true, false}) {
+    requests.set_gamepads(on);
+    const auto there = on ? UsbAnswer::kSend : UsbAnswer::kStall;
+    EXPECT_EQ(ask(requests, 0x81, 6, 0x2200, 4, 255).kind, there) << "report descriptor";
+    EXPECT_EQ(ask(requests, 0xA1, 1, 0x0100, 4, 64).kind, there) << "report";
+    EXPECT_EQ(ask(requests, 0x02, 3, 0, 0x86, 0).kind,
+              on ? UsbAnswer::kPadHalt : UsbAnswer::kStall);
+    EXPECT_EQ(ask(requests, 0x21, 9, 0x0200, 4, 64).kind, UsbAnswer::kStall) << "takes nothing";
+    EXPECT_EQ(ask(requests, 0x81, 6, 0x2200, 5, 255).kind, UsbAnswer::kStall) << "no fifth";
+  }
+  requests.set_gamepads(true);
+  EXPECT_EQ(ask(requests, 0xA1, 1, 0x0100, 4, 64).bytes, report);
+  EXPECT_TRUE(requests.pad_halted(3));
+  EXPECT_FALSE(requests.pad_halted(2) || requests.report_halted());
+  EXPECT_EQ(ask(requests, 0x02, 1, 0, 0x86, 0).size, 3);
+  EXPECT_FALSE(requests.pad_halted(3));
+  ask(requests, 0x21, 10, 0x0700, 2, 0);
+  ask(requests, 0xA1, 2, 0, 2, 1);
+  EXPECT_EQ(ask(requests, 0xA1, 2, 0, 2, 1).bytes[0], 7) << "idle of one interface";
+  EXPECT_EQ(ask(requests, 0xA1, 2, 0, 1, 1).bytes[0], 0);
 }
 
 TEST(UsbRequests, WhatLiesInFlashIsMarked) {

@@ -84,8 +84,8 @@ TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
     std::size_t at;
     std::uint8_t value;
   };
-  // Version, kind, rod, durations of 0 and 256 ms, a setting in a pulse, the reserved bytes.
-  for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 4}, Case{4, 8}, Case{6, 0}, Case{7, 1},
+  // Version, no kind, rod, durations of 0 and 256 ms, a setting in a pulse, the reserved bytes.
+  for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 5}, Case{4, 8}, Case{6, 0}, Case{7, 1},
                         Case{8, 1}, Case{12, 1}, Case{13, 1}}) {
     Octets bytes = encoded(pulse(2, 90, 100));
     ASSERT_TRUE(accepted(bytes));
@@ -102,8 +102,41 @@ TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
   settings.resolution = kMaxSensorResolution + 1;
   EXPECT_FALSE(valid_device_command(settings));
   settings.resolution = 20;
-  settings.switches = 2;
+  settings.switches = 3;
+  EXPECT_TRUE(valid_device_command(settings));
+  settings.switches = 4;
   EXPECT_FALSE(valid_device_command(settings));
+}
+
+TEST(DeviceCommand, AStickHasATravelAndATurnOrNoneAndNothingOfOtherKinds) {
+  DeviceCommand stick{};
+  stick.kind = kStickCommand;
+  stick.rod = 7;
+  EXPECT_TRUE(accepted(encoded(stick))) << "by the table's dimensions";
+  stick.travel = 0x1234;
+  stick.turn = kMinStickCounts;
+  stick.reversed = 3;
+  const Octets bytes = encoded(stick);
+  EXPECT_EQ(Octets(bytes.begin(), bytes.begin() + 14),
+            (Octets{1, 4, 0, 0, 7, 3, 0, 0, 0x34, 0x12, 64, 0, 0, 0}));
+  DeviceCommand decoded{};
+  ASSERT_TRUE(decode_device_command(bytes.data(), bytes.size(), decoded));
+  EXPECT_EQ(decoded.travel, 0x1234);
+  EXPECT_EQ(decoded.turn, 64);
+  EXPECT_EQ(decoded.reversed, 3);
+  EXPECT_EQ(decoded.resolution, 0);
+  struct Case {
+    std::size_t at;
+    std::uint8_t value;
+  };
+  // No such rod, no such direction, a duration, less than a travel, less than a turn, reserved.
+  for (const Case& c :
+       {Case{4, 8}, Case{5, 4}, Case{6, 1}, Case{9, 0}, Case{10, 63}, Case{12, 1}}) {
+    Octets broken = bytes;
+    broken[c.at] = c.value;
+    seal(broken);
+    EXPECT_FALSE(accepted(broken)) << c.at;
+  }
 }
 
 TEST(DeviceCommand, GarbageIsRefusedOrComesBackToTheBit) {

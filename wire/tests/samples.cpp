@@ -330,7 +330,7 @@ DeviceFrame device_frame() {
 }
 
 std::vector<std::pair<std::string, DeviceCommand>> device_commands() {
-  DeviceCommand pulse{}, off{}, settings{};
+  DeviceCommand pulse{}, off{}, settings{}, stick{};
   pulse.kind = kPulseCommand;
   pulse.sequence = off.sequence = settings.sequence = 0x0102;
   pulse.rod = 5;
@@ -342,7 +342,12 @@ std::vector<std::pair<std::string, DeviceCommand>> device_commands() {
   settings.brightness = 64;
   settings.ps2 = 0x81;
   settings.switches = 1;
-  return {{"pulse", pulse}, {"off", off}, {"settings", settings}};
+  stick.kind = kStickCommand;
+  stick.rod = 3;
+  stick.travel = 1216;
+  stick.turn = 402;
+  stick.reversed = kSpinReversed;
+  return {{"pulse", pulse}, {"off", off}, {"settings", settings}, {"stick", stick}};
 }
 
 Snapshot random_snapshot(std::mt19937_64& random, bool full) {

@@ -29,7 +29,8 @@ std::string App::start(int& exit_code) {
   auto window = Window::open({.size = options_.size,
                               .fullscreen = options_.fullscreen,
                               .title = "Space Foosball",
-                              .otherwise = "play with ./play --headless"});
+                              .otherwise = "play with ./play --headless"},
+                             options_.cabinet_gamepads);
   if (!window) return window.error().sentence;
   window_ = std::move(*window);
   exit_code = 1;

@@ -66,6 +66,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
       ->delimiter(',')
       ->expected(1)
       ->take_all();
+  cli.add_flag(
+      "--cabinet-gamepads", options.cabinet_gamepads,
+      "take the gamepads of a cabinet's controller too: at a server that has not its rods");
   cli.add_option("--seconds", options.seconds, "leave after so many seconds")
       ->check(draw::within(0.1, 1e6));
   cli.add_flag("--until-server-ends", options.until_server_ends,

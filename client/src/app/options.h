@@ -21,6 +21,7 @@ struct Options {
   std::optional<View> view;  // none: as the settings say
   bool mute = false;
   bool show_fps = false;
+  bool cabinet_gamepads = false;         // a cabinet's, whose server has its rods otherwise
   bool until_server_ends = false;        // leave when the server says good-bye, else wait for it
   std::optional<draw::Quality> quality;  // none: picked by what the machine can do
   std::optional<double> seconds;         // play so long, then leave

@@ -47,6 +47,12 @@ std::optional<PadButton> meaning_of(int button) {
   }
 }
 
+// A cabinet's controller whose rods are gamepads: firmware/core/usb_descriptors.cpp.
+bool is_cabinet(int device) {
+  return SDL_JoystickGetDeviceVendor(device) == 0x1209 &&
+         SDL_JoystickGetDeviceProduct(device) == 0x0002;
+}
+
 std::string guid_of(int device) {
   char text[33];
   SDL_JoystickGetGUIDString(SDL_JoystickGetDeviceGUID(device), text, sizeof text);
@@ -55,7 +61,7 @@ std::string guid_of(int device) {
 
 }  // namespace
 
-Pads::Pads() {
+Pads::Pads(bool cabinets) : cabinets_(cabinets) {
   SDL_SetMainReady();
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");                // the program has its own
   SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // the window is not SDL's
@@ -77,6 +83,7 @@ int Pads::place_of(std::int32_t instance) const {
 
 // The place where one of its model was, else one where none was, else any that is free.
 void Pads::plug_in(int device, InputCollector& into) {
+  if (is_cabinet(device) && !cabinets_) return;
   const std::string guid = guid_of(device);
   Place* best = nullptr;
   int worth = -1;

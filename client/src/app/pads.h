@@ -14,7 +14,9 @@ namespace client {
 
 class Pads {
  public:
-  Pads();  // without a driver for gamepads there are none
+  // Without a driver for gamepads there are none. cabinets: those that a cabinet's controller makes
+  // of its rods too; the server beside it has them from the controller itself.
+  explicit Pads(bool cabinets = false);
   ~Pads();
   Pads(const Pads&) = delete;
   Pads& operator=(const Pads&) = delete;
@@ -43,6 +45,7 @@ class Pads {
   void turn_axis(std::int32_t instance, int axis, int value, InputCollector& into);
 
   bool started_ = false;
+  bool cabinets_ = false;
   std::array<Place, kPads> places_;
   std::vector<std::string> news_;
   std::uint64_t rumbles_ = 0;

@@ -8,7 +8,8 @@
 namespace client {
 
 struct Window::Impl {
-  explicit Impl(draw::Window opened) : window(std::move(opened)), handle(window.handle()) {}
+  Impl(draw::Window opened, bool cabinet_gamepads)
+      : window(std::move(opened)), handle(window.handle()), pads(cabinet_gamepads) {}
 
   draw::Window window;
   GLFWwindow* handle;
@@ -50,10 +51,11 @@ void Window::Impl::moved(double x, double y) {
   have_last = true;
 }
 
-tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& options) {
+tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& options,
+                                                     bool cabinet_gamepads) {
   auto opened = draw::Window::open(options);
   if (!opened) return tl::unexpected(opened.error());
-  auto impl = std::make_unique<Impl>(std::move(*opened));
+  auto impl = std::make_unique<Impl>(std::move(*opened), cabinet_gamepads);
   GLFWwindow* handle = impl->handle;
   glfwSetWindowUserPointer(handle, impl.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int action, int) {

@@ -15,7 +15,9 @@ namespace client {
 
 class Window {
  public:
-  static tl::expected<Window, draw::WindowError> open(const draw::WindowOptions& options);
+  // cabinet_gamepads: as Pads has it.
+  static tl::expected<Window, draw::WindowError> open(const draw::WindowOptions& options,
+                                                      bool cabinet_gamepads = false);
   Window(Window&&) noexcept;
   Window& operator=(Window&&) noexcept;
   ~Window();

@@ -5,7 +5,7 @@ import { Mouse } from './mice.mjs';
 import { crc16 } from './packets.mjs';
 import { Rig, kImage, kRods, randomNumbers, say } from './rig.mjs';
 
-// A flash whose settings say which rods have a mouse.
+// A flash whose settings, of version 1, say which rods have a mouse.
 function flashWithMice(mask) {
   const flash = kImage.slice();
   const settings = Uint8Array.of(1, 20, 64, mask, 0, 0);
@@ -82,4 +82,29 @@ test('a mouse that is unplugged is absent within 0.6 s, and counts again when it
   rig.moveMouse(rig.mice[6], -30, 44);
   rig.settle();
   rig.expectCounts();
+});
+
+// Defence, 393 mm: of a mouse 8 counts/mm, of a sensor 78.7; 50 mm around the rod.
+test('a mouse and a sensor are sticks of gamepads by the same travel and turn', () => {
+  const rig = new MouseRig(0x02).start(); // rod 2 of the table; rod 7 is the other team's
+  rig.command({ kind: 3, resolution: 20, brightness: 64, ps2: 0x02, switches: 2 });
+  assert.ok(rig.board.runUntil(() => !rig.host.isAttached, 1500));
+  rig.host.polling = false;
+  rig.host.enumerate();
+  assert.ok(rig.waitForPresent(0xff, 2600));
+  rig.moveMouse(rig.mice[0], 786, 100);
+  const sensor = rig.sensors.sensors.find(({ index }) => index === 6);
+  for (let i = 0; i < 10; ++i) {
+    rig.moveSensor(sensor, 773, 98);
+    rig.board.runMs(20);
+  }
+  rig.settle();
+  rig.expectCounts();
+  const pads = rig.host.takePads();
+  for (const number of [1, 3]) {
+    const bytes = pads.filter((report) => report.interface === number).at(-1).bytes;
+    const right = new DataView(bytes.buffer, bytes.byteOffset + 4, 4);
+    assert.ok(Math.abs(right.getInt16(0, true) - 32767) <= 700, `spin ${right.getInt16(0, true)}`);
+    assert.ok(Math.abs(right.getInt16(2, true) + 16384) <= 100, `slide ${right.getInt16(2, true)}`);
+  }
 });

@@ -29,14 +29,20 @@ export function decodeFrame(report) {
 }
 
 export function encodeCommand({ kind, sequence = 0, rod = 0, amplitude = 0, durationMs = 0, resolution = 0,
-  brightness = 0, ps2 = 0, switches = 0 }) {
+  brightness = 0, ps2 = 0, switches = 0, travel = 0, turn = 0, reversed = 0 }) {
   const bytes = new Uint8Array(16);
   const view = new DataView(bytes.buffer);
   bytes.set([1, kind]);
   view.setUint16(2, sequence, true);
   bytes.set([rod, amplitude], 4);
   view.setUint16(6, durationMs, true);
-  bytes.set([resolution, brightness, ps2, switches], 8);
+  if (kind === 4) {
+    bytes[5] = reversed;
+    view.setUint16(8, travel, true);
+    view.setUint16(10, turn, true);
+  } else {
+    bytes.set([resolution, brightness, ps2, switches], 8);
+  }
   view.setUint16(14, crc16(bytes.subarray(0, 14)), true);
   return bytes;
 }

@@ -8,7 +8,8 @@ import { Rig, kRods } from './rig.mjs';
 
 const html = readFileSync(process.env.CONTROLLER_PAGE, 'utf8');
 const script = html.match(/<script id="packets">([^]*?)<\/script>/)[1];
-const page = new Function(`${script}; return { decodeFrame, increment, pulseReport, settingsReport, crc16 };`)();
+const page = new Function(`${script}; return { decodeFrame, increment, pulseReport,
+  settingsReport, stickReport, measuredStick, withFrames, crc16 };`)();
 const view = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
 
 test('what the firmware reports is what the page shows', () => {
@@ -57,4 +58,50 @@ test('settings and pulses of the page are those that the firmware takes', () => 
   assert.ok(rig.host.sendReport(settings.subarray(0, 16)));
   rig.board.runMs(400);
   assert.equal(rig.sensors.sensors[7].registers[0x0f], 59);
+});
+
+test('the switch of gamepads and what was measured of a rod are what the firmware takes', () => {
+  const report = page.settingsReport({ resolution: 20, brightness: 64, ps2: 0, silent: true, gamepads: true });
+  assert.deepEqual([...report.subarray(0, 16)],
+    [...encodeCommand({ kind: 3, resolution: 20, brightness: 64, switches: 3 })]);
+  const stick = page.stickReport(6, { travel: -9876, turn: 4021 });
+  assert.deepEqual([...stick.subarray(0, 16)],
+    [...encodeCommand({ kind: 4, rod: 6, travel: 9876, turn: 4021, reversed: 1 })]);
+  assert.deepEqual([...page.stickReport(0, { travel: 64, turn: -64 }).subarray(0, 16)],
+    [...encodeCommand({ kind: 4, rod: 0, travel: 64, turn: 64, reversed: 2 })]);
+  const rig = new Rig().start();
+  rig.frames();
+  for (const bytes of [stick, report])
+    assert.ok(rig.board.runUntil(() => rig.host.sendReport(bytes.subarray(0, 16)), 500));
+  assert.ok(rig.board.runUntil(() => !rig.host.isAttached, 1500));
+  assert.equal(rig.frames().reduce((errors, frame) => errors + frame.quality, 0), 0);
+  rig.host.polling = false;
+  rig.host.enumerate();
+  assert.equal(rig.host.interfaces.length, 5);
+});
+
+// A hand that is not exact: a rod turns a little as it is pushed, and slides a little as it is turned.
+test('a rod that was pushed to both stops and turned once is measured, either way round', () => {
+  for (const [slideSign, spinSign] of [[1, 1], [-1, 1], [1, -1], [-1, -1]]) {
+    const trace = [];
+    const go = (slide, spin) => trace.push([500 + slideSign * slide, -300 + spinSign * spin]);
+    go(0, 0);
+    for (let i = 0; i <= 100; ++i) go(7 * i, (i * 3) % 40);
+    for (let i = 0; i <= 100; ++i) go(700 - 12 * i, 30 - (i * 5) % 50);
+    for (let i = 0; i <= 100; ++i) go(-500 + (i % 7), 4 * i);
+    go(-499, 401);
+    assert.deepEqual(page.measuredStick(trace), { travel: slideSign * 1200, turn: spinSign * 401 });
+  }
+  assert.equal(page.measuredStick([]), null);
+  assert.equal(page.measuredStick([[5, 7]]), null);
+  assert.equal(page.measuredStick([[0, 0], [700, 0], [-500, 0]]), null, 'not turned');
+  assert.equal(page.measuredStick([[0, 0], [0, 400]]), null, 'not pushed');
+});
+
+test('of the devices that a browser lists the one with frames is taken', () => {
+  const pad = { collections: [{ usagePage: 1, usage: 5 }] };
+  const frames = { collections: [{ usagePage: 0xff00, usage: 1 }] };
+  assert.equal(page.withFrames([pad, pad, frames, pad]), frames);
+  assert.equal(page.withFrames([pad]), undefined);
+  assert.equal(page.withFrames([]), undefined);
 });

@@ -1,5 +1,5 @@
 // The host at the other end of the RP2040's USB controller: control transfers, and once a millisecond an
-// IN token for the report. rp2040js takes a buffer the moment it is handed over; a host does that when it
+// IN token for the report of each interface. rp2040js takes a buffer the moment it is handed over; a host does that when it
 // asks, so its DPRAMUpdated() is not called, and the buffers are looked at here.
 const kFull = 1 << 15;
 const kData1 = 1 << 13;
@@ -37,6 +37,9 @@ export class UsbHost {
     this.jitterUs = jitterUs;
     this.reports = []; // {at, bytes}: when the token came
     this.naks = 0;
+    this.padReports = []; // {interface, bytes}: of the interfaces besides that of the frames
+    this.readsFrames = true; // no: no program has opened that one, and Linux does not ask for it
+    this.interfaces = [];
     this.faults = [];
     this.frames = 0;
     this.polling = false;
@@ -53,7 +56,11 @@ export class UsbHost {
     this.configured = false;
     const { clock } = board;
     this.reportDone = clock.createAlarm(() => this.usb.indicateBufferReady(1, false));
-    this.token = clock.createAlarm(() => this.pollReport());
+    this.token = clock.createAlarm(() => {
+      if (this.readsFrames) this.pollReport();
+      for (const pad of this.interfaces.slice(1)) this.pollPad(pad);
+    });
+    this.padDone = new Map(); // by endpoint
     this.frame = clock.createAlarm(() => {
       ++this.frames;
       this.frame.schedule(1e6);
@@ -86,6 +93,27 @@ export class UsbHost {
     }
     this.reportPid = !pid;
     this.reports.push({ at: this.board.clock.nanos, bytes });
+  }
+  pollPad(pad) {
+    const at = 0x80 + 8 * pad.endpoint;
+    const control = this.control(at);
+    if (control & kStall || !(control & kAvailable)) return;
+    const buffer = this.control(8 * pad.endpoint) & 0xffc0;
+    const bytes = this.board.rp2040.usbDPRAM.slice(buffer, buffer + (control & 0x3ff));
+    if (((control & kData1) !== 0) !== pad.pid) this.faults.push('a report of a gamepad with the wrong PID');
+    pad.pid = !pad.pid;
+    this.memory.setUint32(at, control & ~(kAvailable | kFull), true);
+    if (!this.padDone.has(pad.endpoint)) {
+      this.padDone.set(pad.endpoint,
+        this.board.clock.createAlarm(() => this.usb.indicateBufferReady(pad.endpoint, false)));
+    }
+    this.padDone.get(pad.endpoint).schedule(kTokenNanos + packetNanos(bytes) + 2000);
+    this.padReports.push({ interface: pad.number, bytes });
+  }
+  takePads() {
+    const { padReports } = this;
+    this.padReports = [];
+    return padReports;
   }
   take() {
     const { reports } = this;
@@ -175,9 +203,18 @@ export class UsbHost {
     this.device = this.descriptor(1, 0, 18);
     const head = this.descriptor(2, 0, 9);
     this.configuration = this.descriptor(2, 0, head[2] | (head[3] << 8));
-    this.reportDescriptor = this.request(0x81, 6, 0x2200, 0, 255);
+    this.interfaces = [];
+    for (let i = 0; i < this.configuration.length; i += this.configuration[i]) {
+      const [, kind, address] = this.configuration.subarray(i);
+      if (kind === 4) this.interfaces.push({ number: address, pid: false });
+      if (kind === 5 && address & 0x80) this.interfaces.at(-1).endpoint = address & 15;
+    }
     this.request(0x00, 9, 1, 0, 0);
-    this.request(0x21, 10, 0, 0, 0);
+    for (const one of this.interfaces) {
+      this.request(0x21, 10, 0, one.number, 0);
+      one.descriptor = this.request(0x81, 6, 0x2200, one.number, 255);
+    }
+    this.reportDescriptor = this.interfaces[0].descriptor;
     this.reportPid = false;
     this.commandPid = false;
     this.configured = true;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "avr_board.h"
+#include "more_endpoints.h"
 #include "usb_host.h"
 
 namespace firmware_sim {
@@ -53,14 +54,18 @@ UsbBus::Answer answer_of(int result) {
   return result == AVR_IOCTL_USB_OK ? UsbBus::Answer::ok : UsbBus::Answer::nak;
 }
 
-UsbBus bus_of(avr_t* avr) {
+UsbBus bus_of(avr_t* avr, MoreEndpoints& more) {
   UsbBus bus;
-  bus.reset = [avr] { avr_ioctl(avr, AVR_IOCTL_USB_RESET, nullptr); };
+  bus.reset = [avr, &more] {
+    more.reset();
+    avr_ioctl(avr, AVR_IOCTL_USB_RESET, nullptr);
+  };
   bus.setup = [avr](std::array<std::uint8_t, 8> setup) {
     avr_io_usb packet{0, 8, setup.data()};
     return answer_of(avr_ioctl(avr, AVR_IOCTL_USB_SETUP, &packet));
   };
-  bus.read = [avr](int endpoint, std::vector<std::uint8_t>& out) {
+  bus.read = [avr, &more](int endpoint, std::vector<std::uint8_t>& out) {
+    if (endpoint >= MoreEndpoints::kFirst) return more.read(endpoint, out);
     out.resize(64);
     avr_io_usb packet{static_cast<std::uint8_t>(endpoint), 64, out.data()};
     const auto answer = answer_of(avr_ioctl(avr, AVR_IOCTL_USB_READ, &packet));
@@ -94,6 +99,7 @@ struct CabinetSim::Impl {
   avr_ioport_t* motors_port;
   MotorBus motors;
   bool drove_high = false;
+  std::unique_ptr<MoreEndpoints> more_endpoints;
   std::unique_ptr<UsbHost> host;
   std::vector<std::uint8_t> serial;
   std::deque<std::uint8_t> to_serial;
@@ -120,11 +126,16 @@ struct CabinetSim::Impl {
     std::copy(options.unique_id.begin(), options.unique_id.end(),
               board.signature_row.begin() + 0x0E);
     board.on_reset = [this] {
-      if (host) host->detached();
+      if (host) {
+        host->detached();
+        more_endpoints->reset();
+      }
       begin_timers();
     };
     if (kind == Board::mega32u4) {
-      host = std::make_unique<UsbHost>(bus_of(avr), options.host_poll_us);
+      more_endpoints = std::make_unique<MoreEndpoints>(avr);
+      more_endpoints->on_detach = [this] { host->detached(); };
+      host = std::make_unique<UsbHost>(bus_of(avr, *more_endpoints), options.host_poll_us);
       avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_USB_GETIRQ(), USB_IRQ_ATTACH), on_attach,
                               this);
     } else {
@@ -259,6 +270,9 @@ bool CabinetSim::all_enabled() const {
 std::vector<Report> CabinetSim::take_reports() {
   return impl_->usb().take_reports();
 }
+std::vector<PadReport> CabinetSim::take_pad_reports() {
+  return impl_->usb().take_pad_reports();
+}
 std::vector<std::uint8_t> CabinetSim::take_serial() {
   return std::exchange(impl_->serial, {});
 }
@@ -329,8 +343,21 @@ const std::vector<std::uint8_t>& CabinetSim::device_descriptor() const {
 const std::vector<std::uint8_t>& CabinetSim::configuration_descriptor() const {
   return impl_->usb().configuration;
 }
-const std::vector<std::uint8_t>& CabinetSim::report_descriptor() const {
-  return impl_->usb().report;
+const std::vector<std::uint8_t>& CabinetSim::report_descriptor(int interface) const {
+  return impl_->usb().report.at(static_cast<std::size_t>(interface));
+}
+int CabinetSim::usb_interfaces() const {
+  return static_cast<int>(impl_->usb().report.size());
+}
+int CabinetSim::usb_enumerations() const {
+  return impl_->usb().enumerations();
+}
+void CabinetSim::usb_read_frames(bool on) {
+  impl_->usb().read_frames(on);
+}
+const std::vector<std::string>& CabinetSim::usb_violations() const {
+  impl_->usb();
+  return impl_->more_endpoints->violations();
 }
 
 const std::vector<std::uint8_t>& CabinetSim::serial_descriptor() const {

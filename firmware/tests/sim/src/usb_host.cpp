@@ -20,8 +20,7 @@ constexpr std::array<std::uint8_t, 8> kGetName{0x80, 6, 2, 3, 9, 4, 255, 0};
 constexpr std::array<std::uint8_t, 8> kGetSerial{0x80, 6, 3, 3, 9, 4, 255, 0};
 constexpr std::array<std::uint8_t, 8> kSetAddress{0, 5, 5, 0, 0, 0, 0, 0};
 constexpr std::array<std::uint8_t, 8> kSetConfiguration{0, 9, 1, 0, 0, 0, 0, 0};
-constexpr std::array<std::uint8_t, 8> kSetIdle{0x21, 10, 0, 0, 0, 0, 0, 0};
-constexpr std::array<std::uint8_t, 8> kGetReportDescriptor{0x81, 6, 0, 0x22, 0, 0, 255, 0};
+constexpr std::uint8_t kInterfaceDescriptor = 4, kEndpointDescriptor = 5;
 }  // namespace
 
 void UsbHost::attached(std::uint64_t now_us) {
@@ -54,15 +53,32 @@ void UsbHost::enumerate() {
   add(kSetAddress);
   add(kGetDevice, [this](Result result) { device = std::move(result.data); });
   add(kGetConfigurationHead);
-  add(kGetConfiguration, [this](Result result) { configuration = std::move(result.data); });
+  add(kGetConfiguration, [this](Result result) { take_configuration(std::move(result)); });
+}
+
+void UsbHost::take_configuration(CabinetSim::ControlResult got) {
+  using Result = CabinetSim::ControlResult;
+  configuration = std::move(got.data);
+  in_endpoints_.clear();
+  for (std::size_t at = 0; at + 4 < configuration.size() && configuration[at] > 1;
+       at += configuration[at]) {
+    const std::uint8_t kind = configuration[at + 1], address = configuration[at + 2];
+    if (kind == kInterfaceDescriptor) in_endpoints_.push_back(0);
+    const bool to_host = kind == kEndpointDescriptor && (address & 0x80) != 0;
+    if (to_host && !in_endpoints_.empty()) in_endpoints_.back() = address & 0x0F;
+  }
   add(kGetName);
   add(kGetSerial, [this](Result result) { serial = std::move(result.data); });
   add(kSetConfiguration);
-  add(kSetIdle);
-  add(kGetReportDescriptor, [this](Result result) {
-    report = std::move(result.data);
-    configured_ = true;
-  });
+  report.assign(in_endpoints_.size(), {});
+  for (std::uint8_t number = 0; number < in_endpoints_.size(); ++number) {
+    add({0x21, 10, 0, 0, number, 0, 0, 0});  // SET_IDLE
+    add({0x81, 6, 0, 0x22, number, 0, 255, 0}, [this, number](Result result) {
+      report[number] = std::move(result.data);
+      configured_ = number + 1u == in_endpoints_.size();
+      enumerations_ += configured_ ? 1 : 0;
+    });
+  }
 }
 
 void UsbHost::request(const Setup& setup, std::vector<std::uint8_t> data) {
@@ -88,7 +104,8 @@ std::uint32_t UsbHost::run(std::uint64_t now_us) {
   }
   if (configured_ && now_us >= next_poll_us_) {
     next_poll_us_ = std::max(next_poll_us_ + poll_us_, now_us);
-    poll_report(now_us);
+    if (reads_frames_) poll_report(now_us);
+    poll_pads(now_us);
     send_report(now_us);
   }
   if (!transfers_.empty()) {
@@ -107,6 +124,14 @@ void UsbHost::poll_report(std::uint64_t now_us) {
   taken.time_us = now_us;
   std::copy(bytes.begin(), bytes.end(), taken.bytes.begin());
   reports_.push_back(taken);
+}
+
+void UsbHost::poll_pads(std::uint64_t now_us) {
+  for (std::size_t number = 1; number < in_endpoints_.size(); ++number) {
+    std::vector<std::uint8_t> bytes;
+    if (bus_.read(in_endpoints_[number], bytes) != UsbBus::Answer::ok) continue;
+    pad_reports_.push_back({now_us, static_cast<int>(number), std::move(bytes)});
+  }
 }
 
 void UsbHost::send_report(std::uint64_t now_us) {

@@ -1,5 +1,5 @@
-// A USB host's port: resets the device, enumerates it, then asks endpoint 1 for a report every
-// poll.
+// A USB host's port: resets the device, enumerates it, then asks the endpoint of each of its HID
+// interfaces for a report every poll.
 #pragma once
 
 #include <array>
@@ -36,7 +36,11 @@ class UsbHost {
   std::uint32_t run(std::uint64_t now_us);
 
   bool configured() const { return configured_; }
+  int enumerations() const { return enumerations_; }
+  // Linux does not ask for what no program has opened.
+  void read_frames(bool on) { reads_frames_ = on; }
   std::vector<Report> take_reports() { return std::exchange(reports_, {}); }
+  std::vector<PadReport> take_pad_reports() { return std::exchange(pad_reports_, {}); }
 
   // A transfer of the test's own, begun between two reports. data: what the host sends, at most a
   // packet.
@@ -48,7 +52,8 @@ class UsbHost {
   std::size_t unsent() const { return outgoing_.size(); }
   std::uint64_t last_sent_us() const { return last_sent_us_; }  // when the device took it
 
-  std::vector<std::uint8_t> device, configuration, report, serial;
+  std::vector<std::uint8_t> device, configuration, serial;
+  std::vector<std::vector<std::uint8_t>> report;  // descriptors, by interface
 
  private:
   using Setup = std::array<std::uint8_t, 8>;
@@ -63,10 +68,12 @@ class UsbHost {
   };
 
   void enumerate();
+  void take_configuration(CabinetSim::ControlResult result);
   void add(const Setup& setup, Done done = {}, std::vector<std::uint8_t> data = {});
   void step_transfer();
   void end_transfer(bool stalled);
   void poll_report(std::uint64_t now_us);
+  void poll_pads(std::uint64_t now_us);
   void send_report(std::uint64_t now_us);
 
   UsbBus bus_;
@@ -74,6 +81,10 @@ class UsbHost {
   bool attached_ = false, unplugged_ = false;
   bool configured_ = false;
   bool reset_due_ = false;
+  bool reads_frames_ = true;
+  int enumerations_ = 0;
+  std::vector<int> in_endpoints_;  // by interface
+  std::vector<PadReport> pad_reports_;
   std::uint64_t next_poll_us_ = 0;
   std::deque<Transfer> transfers_;
   std::vector<Report> reports_;

@@ -32,6 +32,13 @@ struct Report {
   std::array<std::uint8_t, 64> bytes{};
 };
 
+// Of an interface besides that of the frames.
+struct PadReport {
+  std::uint64_t time_us = 0;  // when the host took it
+  int interface = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
 struct CabinetOptions {
   std::array<MouseOptions, kMice> mice{};
   std::uint32_t host_poll_us = 1000;  // how often the USB host asks for a report
@@ -60,6 +67,8 @@ class CabinetSim {
 
   // mega32u4: the reports taken since the last call.
   std::vector<Report> take_reports();
+  // The same of all other interfaces.
+  std::vector<PadReport> take_pad_reports();
   // mega2560: the bytes that left UART0 since the last call.
   std::vector<std::uint8_t> take_serial();
 
@@ -88,10 +97,16 @@ class CabinetSim {
   bool usb_configured() const;
   void usb_reset();  // and enumerates again
   void usb_unplug();
+  int usb_enumerations() const;  // so far
+  // Off: no program has opened the interface of the frames, so the host does not ask for them.
+  void usb_read_frames(bool on);
+  // What the data sheet forbids; only of the endpoints that simavr has not.
+  const std::vector<std::string>& usb_violations() const;
   // As read during enumeration; empty before.
   const std::vector<std::uint8_t>& device_descriptor() const;
   const std::vector<std::uint8_t>& configuration_descriptor() const;
-  const std::vector<std::uint8_t>& report_descriptor() const;
+  const std::vector<std::uint8_t>& report_descriptor(int interface = 0) const;
+  int usb_interfaces() const;
   const std::vector<std::uint8_t>& serial_descriptor() const;
   struct ControlResult {
     bool stalled = false;
