@@ -1,5 +1,5 @@
-// The page for browsers (cabinet/page/controller.html) over a serial line: its own scripts in a document and a
-// browser that are made of as little as they use. Frames are those of the ATmega2560's firmware in its simulator.
+// The page for browsers (cabinet/page/controller.html) over a serial line, and over HID what is the page's own: its
+// scripts in a document and a browser that are made of as little as they use. Frames are those of the ATmega2560's firmware in its simulator.
 // Environment: CONTROLLER_PAGE, BIN (the folder of cabinet-bench).
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -66,6 +66,24 @@ class Port extends EventTarget {
     this.listenAgain();
     before.error(new Error('framing'));
   }
+}
+
+// A HID device as a browser gives it.
+class Device extends EventTarget {
+  constructor() {
+    super();
+    Object.assign(this, { productName: 'Space Foosball rods', collections: [{ outputReports: [{}] }], opened: false, written: [] });
+  }
+  async open() { this.opened = true; }
+  async close() { this.opened = false; }
+  async sendReport(id, report) { this.written.push([id, ...report]); }
+  report(frame) {
+    const data = new DataView(Uint8Array.from([...frame, ...new Array(64 - frame.length).fill(0)]).buffer);
+    this.dispatchEvent(Object.assign(new Event('inputreport'), { data }));
+  }
+}
+function hidApi(device, known = []) {
+  return Object.assign(new EventTarget(), { getDevices: async () => known, requestDevice: async () => (device ? [device] : []) });
 }
 
 // Lets what waits for streams go on.
@@ -223,7 +241,7 @@ test('the helpers of this test agree with the golden bytes', () => {
 
 test('only lines behind which our firmware may be are offered, and choosing none says nothing', async () => {
   const serial = serialApi(null);
-  const page = new Page({ serial, hid: Object.assign(new EventTarget(), { getDevices: async () => [] }) });
+  const page = new Page({ serial, hid: hidApi() });
   const before = page.id('state').textContent;
   await page.id('serial').onclick();
   assert.ok(serial.filters.some(({ usbVendorId, usbProductId }) => usbVendorId === 0x2341 && usbProductId === 0x42));
@@ -271,4 +289,27 @@ test('a line that was allowed before is opened without a question', async () => 
   new Page({ serial: serialApi(null, [port]) });
   await settled();
   assert.equal(port.opened?.baudRate, 1000000);
+});
+
+test('over HID the page shows and sends the same, also when it is connected twice', async () => {
+  const device = new Device(), hid = hidApi(device);
+  const page = new Page({ hid, serial: serialApi(null) });
+  await page.id('hid').onclick();
+  await page.id('hid').onclick();
+  const frame = unstuffed([...bytes(kGolden)]);
+  const later = sealed([...frame.slice(0, 2), frame[2] + 2, ...frame.slice(3, 28), frame[28] + 5, ...frame.slice(29, 44)]);
+  device.report(frame);
+  device.report(later);
+  page.later(50);
+  assert.deepEqual([page.id('state').textContent, page.id('resolution').disabled], ['Space Foosball rods is connected.', false]);
+  assert.deepEqual(page.rods[5].slice(2, 4), [5, 0]);
+  assert.match(page.id('faults').textContent, /^lost 1, not a frame 0,/);
+  page.id('motors').children[0].onclick();
+  await settled();
+  assert.deepEqual(device.written[0].slice(0, 17), [0, ...sealed([1, 1, 0, 0, 0, 128, 60, 0, 0, 0, 0, 0, 0, 0])]);
+  assert.equal(device.written[0].length, 65);
+  hid.dispatchEvent(Object.assign(new Event('disconnect'), { device }));
+  await settled();
+  page.later(50);
+  assert.match(page.id('state').textContent, /unplugged/);
 });
