@@ -34,7 +34,7 @@ BOUNDS = {
     'cabinet': (2000, 'a full cabinet of eight rods, with screen and PC'),
 }
 # Bills of what may be added to another, whose bound holds with all that may be.
-EXTRAS = {'marks': 'cabinet'}
+EXTRAS = {'marks': 'cabinet', 'motors': 'cabinet'}
 COLUMNS = ['part', 'quantity', 'unit_usd', 'for', 'alternatives']
 SCREENS_INCH = [65, 55, 43, 32]
 
@@ -100,6 +100,8 @@ def bill_faults():
         if bound and total >= bound:
             yield f'{name}.csv: {total} USD with all that may be added, not below {bound}'
         yield from (f'{name}.csv: {fault}' for fault in spares_faults(bill(name)))
+    for name in BOUNDS:
+        yield from (f'{name}.csv: {fault}' for fault in bumper_faults(bill(name)))
     total = sum(rod['length'] for rod in rods())
     metres = next(p['quantity'] for p in bill('cabinet') if 'by the metre' in p['part'] and 'steel' in p['part'])
     if metres * 1000 < total:
@@ -113,6 +115,15 @@ def spares_faults(parts):
             share = cost / (sum_of(parts) - cost)
             if not Decimal('0.095') <= share <= Decimal('0.105'):
                 yield f'{part["part"]}: {100 * share:.1f} % of the rest, not a tenth'
+
+
+def bumper_faults(parts):
+    """The rubber rings that are bought fit the collar that is printed."""
+    for part in parts:
+        if size := re.fullmatch(r'rubber ring, (\d+) x \d+ x (\d+) mm', part['part']):
+            printed = printed_mm('bumper_inside'), printed_mm('bumper_thickness')
+            if printed != tuple(map(float, size.groups())):
+                yield f'{part["part"]}: the collar is printed for {printed[0]:g} mm inside and {printed[1]:g} mm thick'
 
 
 def size_faults(text):
@@ -358,6 +369,8 @@ def self_test():
     assert list(spares_faults(spares)) == ['spares: 7.6 % of the rest, not a tenth']
     assert not list(spares_faults([spares[0], {**spares[1], 'unit_usd': Decimal(10)}]))
     assert list(size_faults('| two walls of 300 x 110 mm |\n- Two walls of 350 x 110 mm')) and not list(size_faults('x'))
+    ring = {**spares[0], 'part': 'rubber ring, 30 x 40 x 5 mm'}
+    assert not list(bumper_faults([ring])) and list(bumper_faults([{**ring, 'part': 'rubber ring, 28 x 40 x 5 mm'}]))
     head = '#if defined(M)\n'
     six = ''.join(f'#define BOARD_{role}_{k} {k}{port}\n' for role, port in [('CLOCK', 'B'), ('DATA', 'D')]
                   for k in ('PIN', 'PORT', 'DDR'))

@@ -14,7 +14,9 @@ build firmware build/log/firmware.log "${images[@]}"
 
 version=$(sed -n 's/^project(.* VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 # Between releases the commit too, and "changed" where the tree is not as committed.
-if ! git describe --exact-match --tags --match 'v*' >/dev/null 2>&1; then
+if ! git rev-parse --verify --quiet HEAD >/dev/null 2>&1; then
+  version+=-unversioned # a copy without its history
+elif ! git describe --exact-match --tags --match 'v*' >/dev/null 2>&1; then
   version+=-$(git rev-parse --short=9 HEAD)
   git diff --quiet HEAD -- firmware wire || version+=-changed
 fi

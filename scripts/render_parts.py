@@ -2,7 +2,8 @@
 """Renders the printed parts of cabinet/parts/ with OpenSCAD: scripts/build_parts.sh runs it.
 
 Each part becomes an STL file, which is checked: every edge joins exactly two triangles that run it in
-opposite ways (a closed mesh), the volume is positive, the part fits the printer's bed and lies on it.
+opposite ways (a closed mesh), the volume is positive, the part fits the printer's bed and lies on it. Parts
+that are put together must not be in one place (cabinet/parts/fits.scad).
 With --pictures the guide's pictures are drawn too. --pictures-current fails where a picture is missing
 or older than what it shows. --self-test checks the check of meshes.
 """
@@ -35,11 +36,14 @@ PARTS = {
     'index_ring': ('index_ring.scad', {}),
     'handle': ('handle.scad', {}),
 }
+# What is put together: pairs of cabinet/parts/fits.scad.
+FITS = ['gauge plate', 'board plate', 'rod plate', 'rod clamp', 'clamp plate', 'bearing clamp']
+BOARDS = ['pmw3360', 'ps2']
 # Name of the picture: source, definitions, rotation of the camera.
 VIEWS = {
     'step-1-bearing': ('assembly.scad', {'stage': 1}, '62,0,40'),
-    'step-2-rod': ('assembly.scad', {'stage': 2}, '62,0,40'),
-    'step-3-clamp': ('assembly.scad', {'stage': 3}, '62,0,40'),
+    'step-2-clamp': ('assembly.scad', {'stage': 2}, '62,0,40'),
+    'step-3-rod': ('assembly.scad', {'stage': 3}, '62,0,40'),
     'step-4-board': ('assembly.scad', {'stage': 4}, '62,0,40'),
     'step-5-distance': ('assembly.scad', {'stage': 5}, '68,0,48'),
     'step-6-finished': ('assembly.scad', {'stage': 6}, '62,0,40'),
@@ -92,13 +96,27 @@ def extent_of(triangles):
     return [min(p[i] for p in points) for i in range(3)], [max(p[i] for p in points) for i in range(3)]
 
 
-def openscad(source, defined, out, *options):
+def ran_openscad(source, defined, out, *options):
     words = ['openscad', '-o', str(out), *options]
     for name, value in defined.items():
         words += ['-D', f'{name}={value}' if isinstance(value, int) else f'{name}="{value}"']
-    ran = subprocess.run([*words, str(SOURCES / source)], capture_output=True, text=True)
+    return subprocess.run([*words, str(SOURCES / source)], capture_output=True, text=True)
+
+
+def openscad(source, defined, out, *options):
+    ran = ran_openscad(source, defined, out, *options)
     if ran.returncode or 'WARNING' in ran.stderr:
         sys.exit(f'openscad {source} {defined}:\n{ran.stderr}')
+
+
+def overlaps():
+    """Of what is put together."""
+    with tempfile.TemporaryDirectory() as folder:
+        for pair in FITS:
+            for board in BOARDS:
+                ran = ran_openscad('fits.scad', {'pair': pair, 'board': board}, Path(folder) / 'common.stl')
+                if 'object is empty' not in ran.stderr or 'WARNING' in ran.stderr:
+                    yield f'{" and ".join(pair.split())}, board {board}, are in one place\n{ran.stderr}'
 
 
 def make_parts(out):
@@ -116,6 +134,9 @@ def make_parts(out):
         for fault in faults:
             print(f'{name}: {fault}', file=sys.stderr)
         bad += len(faults)
+    for fault in overlaps():
+        print(fault, file=sys.stderr)
+        bad += 1
     return bad
 
 

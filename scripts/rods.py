@@ -229,10 +229,11 @@ def read_calibration(path):
 
 def write_file(path, data):
     try:
+        os.makedirs(os.path.dirname(path) or '.', exist_ok=True)  # out/ is not there in a fresh copy
         with open(path, 'wb') as file:
             file.write(data)
     except OSError as error:
-        refuse(f'{path} cannot be written: {error.strerror}. Name a file in a folder that is there.')
+        refuse(f'{path} cannot be written: {error.strerror}. Name a file in a folder that can be written.')
     print(f'written {path}')
 
 
@@ -322,7 +323,9 @@ def self_test_of_options():
         return text
 
     with tempfile.TemporaryDirectory() as folder:
-        table, lost = f'{folder}/table.json', f'{folder}/missing/file'
+        table, lost = f'{folder}/table.json', f'{folder}/file/within'
+        with open(f'{folder}/file', 'wb'):
+            pass
         for option, values in {'--diameter-mm': (0, -16, 'nan', 'inf', 'a', 1e300), '--counts-per-mm': (0, 'nan'),
                                '--rod': (0, 9, 1.5, 'a', -1), '--turns': (0, 'nan'),
                                '--stroke': ('1', '1,a', '')}.items():
@@ -349,8 +352,8 @@ def self_test_of_options():
         for address in ('file:' + folder, f'file:{folder}/pipe', f'serial:{folder}/pipe', 'serial:/dev/null',
                         f'hid:{table}', 'x', 'serial:', f'serial:{lost}'):
             leaves_with(2, 'counts', address)
-        leaves_with(0, 'simulate', f'{folder}/bench.bin', '--seconds=0.1')
-        leaves_with(0, 'counts', f'file:{folder}/bench.bin')
+        leaves_with(0, 'simulate', f'{folder}/out/bench.bin', '--seconds=0.1')
+        leaves_with(0, 'counts', f'file:{folder}/out/bench.bin')
     assert table_of_rods() == [str(rod) for rod in range(1, 9)]
 
 

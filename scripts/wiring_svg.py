@@ -94,13 +94,15 @@ def ps2_wiring(board):
         svg.line([(plug_right, at), (bus, at)], COLOURS[net], 3)
         svg.line([(bus, at), (bus, top + 26 + (gap if net == '+5 V' else 3 * gap))], COLOURS[net], 3)
         svg.words(bus + 8, low + 24 if net == '+5 V' else low + 44, net, 13, colour=COLOURS[net])
+    if 'serial' in board['link']:
+        svg.words(40, supply_y + 104, 'One or two mice: from the board\'s 5V instead.', 13)
     ground_at = supply_y + 62
     svg.line([(ground_x, ground_at), (board_x + 40, ground_at), (board_x + 40, low + 20)], COLOURS['ground'], 3)
     svg.dot(ground_x, ground_at, COLOURS['ground'])
     svg.words(board_x + 26, low + 12, 'GND', 13, colour=COLOURS['ground'])
     svg.words(board_x + 56, ground_at - 8, 'Grounds are joined; the supply\'s', 13)
     svg.words(board_x + 56, ground_at + 10, '+5 V is not joined to USB\'s.', 13)
-    avr_signals(svg, board, board_x + 190, top + 5 * pitch + 97)
+    avr_signals(svg, board, board_x + 190, top + 5 * pitch + 95)
     pc_y = top + 2 * pitch
     svg.box(980, pc_y, 90, 70, '#eef0fa')
     svg.words(1025, pc_y + 42, 'PC', 18, 'middle', bold=True)
@@ -145,7 +147,7 @@ def avr_signals(svg, board, right, top):
     for i, words in enumerate(['TCA9548A and', 'eight DRV2605L:', 'as at the Pico,', 'all at +5 V']):
         svg.words(box_x + 60, top + 68 + 18 * i, words, 12, 'middle')
     for i, (net, port) in enumerate([('SDA', i2c['sda']), ('SCL', i2c['scl']), ('EN', board['motors_enable'])]):
-        at, colour = top + 18 * i, COLOURS[net]
+        at, colour = top + 17 * i, COLOURS[net]
         pin(port, at, colour)
         svg.line([(right, at), (box_x, at)], colour)
         svg.words(box_x + 8, at + 5, net, 13, colour=colour)

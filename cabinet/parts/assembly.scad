@@ -1,5 +1,5 @@
 // The guide's pictures: a rod's bearing, mount and sensor, step by step.
-//   stage = 1 bearing on the wall; 2 rod, collars, index ring; 3 clamp; 4 board and plate;
+//   stage = 1 bearing on the wall; 2 clamp; 3 rod, collars, index ring; 4 board and plate;
 //   5 set the distance; 6 handle, finished; 7 exploded; 8 the same with a whole mouse on a broomstick
 use <rod_bearing.scad>
 use <sensor_mount.scad>
@@ -19,10 +19,13 @@ print = [0.25, 0.45, 0.70];
 print_2 = [0.88, 0.52, 0.20];
 board_green = [0.10, 0.45, 0.25];
 black = [0.15, 0.15, 0.17];
+rubber = [0.45, 0.20, 0.16];
 
 // Flush but for what would flicker in the picture.
 clamp_x = flange_thickness + barrel_length - clamp_width - 0.4;
 plate_x = clamp_x + clamp_width + 3;
+ring_x = -wall - 70;
+rod_end = ring_x - 30 - 70;  // free for the hand; in the handle
 board_top = rod_diameter / 2 + lens_distance + 3.4;
 
 module wall() color(wood) difference() {
@@ -36,11 +39,14 @@ module sensor_board() translate([plate_x + 22, 0, board_top]) {
   color([0.9, 0.9, 0.9]) translate([9, -8, 1.6]) cube([4, 16, 5]);
 }
 module rod(from, to) color(steel) along_x(rod_diameter, to - from, from);
-module collar_outside() color(black) translate([-wall - 70, 0, 0]) stop_collar();
-module collar_inside() color(black) translate([150, 0, 0]) mirror([1, 0, 0]) stop_collar();
+module collar() {
+  color(black) stop_collar();
+  color(rubber) rubber_ring();
+}
+module collar_inside() translate([150, 0, 0]) mirror([1, 0, 0]) collar();
 
 module screws() color([0.55, 0.57, 0.6]) for (side = [-1, 1], x = [-12, 12])
-  translate([plate_x + 22 + x, side * (25.5 + 22 * apart), board_top + 6]) rotate([side * 90, 0, 0]) {
+  translate([plate_x + 22 + x, side * (25.8 + 22 * apart), board_top + 6]) rotate([side * 90, 0, 0]) {
     translate([0, 0, -2]) cylinder(d = 5.5, h = 2);
     cylinder(d = 3, h = 9);
   }
@@ -48,13 +54,13 @@ module screws() color([0.55, 0.57, 0.6]) for (side = [-1, 1], x = [-12, 12])
 if (stage < 8) {
   if (stage < 7) wall();
   color(print) translate([apart * -60, 0, 0]) rod_bearing();
-  if (stage >= 2) rod(stage >= 6 ? -170 : -130, 175);
-  if (stage >= 2 && stage < 7) collar_outside();
-  if (stage == 7) color(black) translate([-115, 0, 0]) stop_collar();
-  if (stage >= 2) translate([apart * 20, 0, 0]) collar_inside();
-  if (stage >= 2 && stage != 7) color(print_2) translate([-wall - 84, 0, 0]) index_ring();
-  if (stage == 7) color(print_2) translate([-150, 0, 0]) index_ring();
-  if (stage >= 3) color(print_2) translate([clamp_x, 0, 0]) sensor_clamp();
+  if (stage >= 2) color(print_2) translate([clamp_x, 0, 0]) sensor_clamp();
+  if (stage >= 3) {
+    rod(rod_end, 175);
+    translate([ring_x + 10 - 35 * apart, 0, 0]) collar();
+    translate([apart * 20, 0, 0]) collar_inside();
+    color(print_2) translate([ring_x - 60 * apart, 0, 0]) index_ring();
+  }
   if (stage >= 4) {
     lift = stage == 4 ? 34 : 45 * apart;
     translate([0, 0, lift]) color(print) translate([plate_x, 0, 0]) sensor_plate();
@@ -62,7 +68,7 @@ if (stage < 8) {
   }
   if (stage == 5) color([0.85, 0.2, 0.2]) translate([plate_x + 12, 0, 0]) lens_gauge();
   if (stage >= 5) screws();
-  if (stage >= 6) color(black) translate([-170 - 50 + 5 - apart * 60, 0, 0]) handle();
+  if (stage >= 6) color(black) translate([rod_end - 45 - apart * 60, 0, 0]) handle();
 }
 
 // A whole mouse on two rails beside a broomstick of 24 mm, which turns and slides in two V-blocks. The

@@ -23,9 +23,10 @@ arm_thickness = 5;        // [mm]
 arm_gap = 0.25;           // between arm and plate, each side [mm]
 height_range = 3;         // the plate moves up and down by this, each way [mm]
 
-collar_width = 18;        // stop collar, along the rod [mm]
+collar_width = 18;        // stop collar with its rubber ring, along the rod [mm]
 collar_diameter = 34;     // [mm]
-bumper_width = 6;         // seat of a rubber ring on its end [mm]
+bumper_inside = 30;       // inner diameter of the rubber ring [mm]
+bumper_thickness = 5;     // of the rubber ring, along the rod [mm]
 magnet_diameter = 6.1;    // disc magnet of 6 x 3 mm [mm]
 magnet_depth = 3.1;       // [mm]
 

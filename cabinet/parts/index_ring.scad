@@ -1,6 +1,5 @@
-// A narrow clamp ring with a pointer, for "feet straight down", and a pocket for a disc magnet of 6 x 3 mm.
-// It is outside the wall, where a switch would be in the hands' way: the index mark that the program reads
-// is the magnet of the inner stop collar.
+// A narrow clamp ring with a pointer, for "feet straight down". It is outside the wall, where a switch would
+// be in the hands' way: the index mark that the program reads is the magnet of the inner stop collar.
 include <dimensions.scad>
 
 ring_width = 10;     // along the rod [mm]
@@ -21,7 +20,6 @@ module index_ring() {
       translate([0, 0, 6]) cylinder(d = nut_width / cos(30), h = 20, $fn = 6);
       translate([0, 0, -26]) cylinder(d = 6.2, h = 20);
     }
-    translate([-0.01, 0, (ring_diameter + rod_diameter) / 4]) along_x(magnet_diameter, magnet_depth);
   }
 }
 

@@ -17,9 +17,8 @@ function lens_below(b) = b == "pmw3360" ? 3.4 : 4.0;
 pilot_hole = 1.7;
 
 plate_thickness = 4;       // [mm]
-rim = 4;                   // of the plate round the board [mm]
 plate_length = 44;         // along the rod [mm]
-plate_width = 40;          // across it; the widest board and its rim [mm]
+plate_width = 41;          // across it; the widest board, its clearance and the two ears [mm]
 ear_height = 12;           // of the plate's two sides [mm]
 ear_thickness = 5;         // holds the nut [mm]
 screw_pitch = 24;          // of a side's two screws, along the rod [mm]
@@ -79,8 +78,8 @@ module sensor_plate() {
     translate([plate_length / 2, 0, 0]) {
       window = board_window(board);
       translate([-window[0] / 2, -window[1] / 2, 0]) cube([window[0], window[1], 40]);
-      // The rod passes below.
-      along_x(rod_diameter + 3, plate_length + 2, -plate_length / 2 - 1);
+      // The rod passes below, and the gauge on it, which has to touch the lens and not the plate.
+      along_x(rod_diameter + 2 * lens_distance + 1, plate_length + 2, -plate_length / 2 - 1);
       for (x = [-1, 1], y = [-1, 1])
         translate([x * board_pitch(board)[0] / 2, y * board_pitch(board)[1] / 2, 0]) cylinder(d = pilot_hole, h = 60);
       for (x = [-1, 1], side = [-1, 1])
