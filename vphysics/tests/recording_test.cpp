@@ -114,6 +114,14 @@ std::vector<Change> changes() {
        [](Yard& y) { must(y.world.set_mass_from_colliders(y.boxes[5])); }},
       {"create_articulation",
        [](Yard& y) { must(y.world.create_articulation(rod_desc(-2.0, 0.5))); }},
+      {"create_articulation of an inertia that no body has",
+       [](Yard& y) {
+         LinkSpec link;
+         link.joint = RevoluteJoint{{0, 1, 0}};
+         link.inertia = Inertia(1.0, Vec3{3.0, 1.0, 1.0});
+         link.inertia_as_stated = true;
+         must(y.world.create_articulation({model_of({link})}));
+       }},
       {"create_joint",
        [](Yard& y) {
          JointDesc desc;

@@ -235,7 +235,7 @@ class VariationalStep {
       node.D = of_joint(n);
       if (parent != kWorld) node.D = work_.nodes[static_cast<std::size_t>(parent)].D * node.D;
       node.momentum = {};
-      if (node.J.mass() == T(0)) continue;
+      if (node.J == InertiaT<T>{}) continue;
       if (!(node.D.c > T(0))) return false;
       const se3T<T> W = screw_of(node.D);
       const dse3T<T> P = rate * (node.J * W);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "multibody/principal.h"
 #include "multibody/tree.h"
 
 namespace vp::detail {
@@ -16,49 +17,6 @@ double wider(B x) {
 template <class B>
 Vec3 wider(const Vec3T<B>& a) {
   return {wider(a.x), wider(a.y), wider(a.z)};
-}
-
-struct Principal {
-  std::array<double, 3> moments;  // the least first
-  std::array<Vec3, 3> axes;
-};
-// By Jacobi's rotations, in a fixed order; eight sweeps leave nothing beside the diagonal.
-Principal principal_of(const Sym3& A) {
-  double m[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
-  double Q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  constexpr int kPairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
-  for (int sweep = 0; sweep < 8; ++sweep) {
-    for (const auto& pair : kPairs) {
-      const int i = pair[0], j = pair[1];
-      if (m[i][j] == 0.0) continue;
-      // The turn by atan t that makes m[i][j] zero: t = cot - sqrt, the smaller of two.
-      const double cot = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
-      const double t = (cot >= 0.0 ? 1.0 : -1.0) / (std::fabs(cot) + std::sqrt(cot * cot + 1.0));
-      const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-      for (auto& row : m) {
-        const double x = row[i], y = row[j];
-        row[i] = c * x - s * y;
-        row[j] = s * x + c * y;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const double x = m[i][k], y = m[j][k];
-        m[i][k] = c * x - s * y;
-        m[j][k] = s * x + c * y;
-        const double u = Q[k][i], v = Q[k][j];
-        Q[k][i] = c * u - s * v;
-        Q[k][j] = s * u + c * v;
-      }
-    }
-  }
-  std::array<int, 3> order = {0, 1, 2};
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return m[a][a] < m[b][b]; });
-  Principal out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int i = order[k];
-    out.moments[k] = m[i][i];
-    out.axes[k] = {Q[0][i], Q[1][i], Q[2][i]};
-  }
-  return out;
 }
 
 template <class B>
@@ -302,13 +260,14 @@ class LayOut {
     set(kDamping, wider(node.damping));
     set(kComposite, composites_[i]);
     set(kLeast, least(i));
-    if (!ends_node(i) || !(node.J.mass() > B(0))) return;
+    if (!ends_node(i) || node.J == InertiaT<B>{}) return;
     const auto& I = node.J.rotational();
     const Inertia J(wider(node.J.mass()), wider(node.J.first_moment()),
                     {wider(I.xx), wider(I.yy), wider(I.zz), wider(I.xy), wider(I.yz), wider(I.zx)});
-    const Principal p = principal_of(J.central());
+    const bool has_centre = J.mass() > 0.0;  // files of robots have moments without a mass
+    const Principal p = principal_of(has_centre ? J.central() : J.rotational());
     set(kMass, J.mass());
-    set3(kCentre, J.centre_of_mass());
+    if (has_centre) set3(kCentre, J.centre_of_mass());
     set(kSpin, p.moments[0]);
     set3(kAxisA, std::sqrt(p.moments[1] - p.moments[0]) * p.axes[1]);
     set3(kAxisB, std::sqrt(p.moments[2] - p.moments[0]) * p.axes[2]);

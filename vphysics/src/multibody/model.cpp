@@ -255,7 +255,8 @@ Expected<int> ModelBuilder::add(LinkSpec link) {
   const Inertia& J = link.inertia;
   const Sym3& I = J.rotational();
   if (!std::isfinite(J.mass()) || !is_finite(J.first_moment()) ||
-      !is_finite(Vec3{I.xx, I.yy, I.zz}) || !is_finite(Vec3{I.xy, I.yz, I.zx}) || !of_a_body(J)) {
+      !is_finite(Vec3{I.xx, I.yy, I.zz}) || !is_finite(Vec3{I.xy, I.yz, I.zx}) ||
+      !(link.inertia_as_stated || of_a_body(J))) {
     return refuse(link,
                   "no body has this inertia: the mass must be positive, the moments about the "
                   "centre of mass positive and none larger than the two others together");
@@ -283,12 +284,12 @@ Expected<Model> ModelBuilder::build() const {
                                      "dynamics; add a link with a joint that does"});
   }
   // What each joint moves; armature alone is enough.
-  std::vector<double> moved(tree->nodes.size());
+  std::vector<char> moves(tree->nodes.size());
   for (std::size_t i = tree->nodes.size(); i-- > 0;) {
     const Node<double>& node = tree->nodes[i];
-    moved[i] += node.J.mass();
-    if (node.parent != kWorld) moved[static_cast<std::size_t>(node.parent)] += moved[i];
-    if (moved[i] > 0.0 || node.armature > 0.0) continue;
+    if (node.J != Inertia{}) moves[i] = 1;
+    if (moves[i] && node.parent != kWorld) moves[static_cast<std::size_t>(node.parent)] = 1;
+    if (moves[i] || node.armature > 0.0) continue;
     for (std::size_t l = 0; l < links_.size(); ++l) {
       if (tree->places[l].v <= node.v &&
           node.v < tree->places[l].v + velocities_of(links_[l].joint)) {

@@ -26,7 +26,7 @@ template <class T, class F>
 void for_each_body(const Tree<base_t<T>>& tree, const Work<T>& work, const F& f) {
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const int node = static_cast<int>(i);
-    if (tree.nodes[i].J.mass() > 0) f(node, inertia_of(tree, work, node));
+    if (tree.nodes[i].J != InertiaT<base_t<T>>{}) f(node, inertia_of(tree, work, node));
   }
 }
 // f(velocity's number, S) for every joint that moves the node.

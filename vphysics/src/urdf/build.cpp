@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "urdf/mend.h"
+
 namespace vp::detail {
 namespace {
 
@@ -73,12 +75,6 @@ SE3 to_pose(const urdf::Pose& pose) {
   const urdf::Rotation& r = pose.rotation;
   return {from_quaternion(Quaternion{r.x, r.y, r.z, r.w}), to_vec3(pose.position)};
 }
-Inertia to_inertia(const urdf::Link& link) {
-  if (!link.inertial) return {};
-  const urdf::Inertial& i = *link.inertial;
-  return Inertia(i.mass, {}, {i.ixx, i.iyy, i.izz, i.ixy, i.iyz, i.ixz})
-      .InvXform(to_pose(i.origin));
-}
 
 // The rotation that takes z to the axis.
 Mat3 frame_of_plane(const Vec3& axis) {
@@ -104,20 +100,23 @@ Joint to_joint(const urdf::Joint& joint) {
   }
 }
 
-UrdfJoint to_urdf_joint(const urdf::Joint& joint, int link) {
+double bounded(double stated) {
+  return std::fabs(stated) < kUrdfUnbounded ? stated : std::copysign(JointForces::kNever, stated);
+}
+UrdfJoint to_urdf_joint(const urdf::Joint& joint, int link, bool mimics) {
   UrdfJoint out;
   out.name = joint.name;
   out.link = link;
   if (joint.limits) {
     if (joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::PRISMATIC) {
-      out.lower = joint.limits->lower;
-      out.upper = joint.limits->upper;
+      out.lower = bounded(joint.limits->lower);
+      out.upper = bounded(joint.limits->upper);
     }
-    out.effort = joint.limits->effort;
-    out.velocity = joint.limits->velocity;
+    out.effort = bounded(joint.limits->effort);
+    out.velocity = bounded(joint.limits->velocity);
   }
   if (joint.dynamics) out.friction = joint.dynamics->friction;
-  if (joint.mimic) {
+  if (mimics) {
     out.mimics = joint.mimic->joint_name;
     out.multiplier = joint.mimic->multiplier;
     out.offset = joint.mimic->offset;
@@ -137,31 +136,24 @@ std::vector<JointForces> to_forces(const UrdfJoint& joint, int velocities) {
 
 class Builder {
  public:
-  explicit Builder(const UrdfLines& lines) : lines_(lines) {}
+  Builder(const UrdfLines& lines, std::vector<std::string>& notes) : lines_(lines), notes_(notes) {}
 
   Expected<UrdfModel> build(const UrdfTree& tree, const UrdfOptions& options) {
     LinkSpec root;
     root.T_parent_joint = options.T_world_root;
     if (options.base == UrdfBase::floating) root.joint = FreeJoint{};
-    if (auto added = add(std::move(root), *tree->getRoot()); !added) {
-      return tl::make_unexpected(added.error());
-    }
+    add(std::move(root), *tree->getRoot());
     // Depth first; of one link's joints the first in the file goes first.
     while (!waiting_.empty()) {
       const auto [joint, parent] = waiting_.back();
       waiting_.pop_back();
-      if (auto added = this->joint(*joint, parent, *tree->getLink(joint->child_link_name));
-          !added) {
-        return tl::make_unexpected(added.error());
-      }
+      this->joint(*joint, parent, *tree->getLink(joint->child_link_name));
     }
-    if (auto good = every_joint_moves_mass(); !good) return tl::make_unexpected(good.error());
-    auto model = builder_.build();
-    if (!model) return tl::make_unexpected(urdf_error(1, model.error().message));
-    auto couplings = this->couplings(*model);
-    if (!couplings) return tl::make_unexpected(couplings.error());
-    return UrdfModel{
-        tree->getName(), *std::move(model), std::move(joints_), *std::move(couplings), {}};
+    auto model = this->model();
+    if (!model) return tl::make_unexpected(model.error());
+    std::vector<ConstraintPtr> couplings = this->couplings(*model);
+    return UrdfModel{tree->getName(), *std::move(model), std::move(joints_), std::move(couplings),
+                     std::move(notes_)};
   }
 
  private:
@@ -169,94 +161,119 @@ class Builder {
     const urdf::Joint* joint;
     int parent;
   };
-  struct Added {
-    int parent, velocities, line;
-    double mass;
-  };
 
   // Adds a link below its joint, and has its own joints wait.
-  Expected<int> add(LinkSpec spec, const urdf::Link& link) {
+  void add(LinkSpec spec, const urdf::Link& link) {
     spec.name = link.name;
-    spec.inertia = to_inertia(link);
+    spec.inertia = inertia_of(link);
+    spec.inertia_as_stated = true;
     const auto inertial = lines_.inertials.find(link.name);
-    const int line =
-        inertial != lines_.inertials.end() ? inertial->second : lines_.links.at(link.name);
-    auto number = add(std::move(spec), line);
-    if (!number) return number;
+    const int number =
+        add(std::move(spec),
+            inertial != lines_.inertials.end() ? inertial->second : lines_.links.at(link.name));
     const std::size_t first = waiting_.size();
-    for (const auto& joint : link.child_joints) waiting_.push_back({joint.get(), *number});
+    for (const auto& joint : link.child_joints) waiting_.push_back({joint.get(), number});
     std::sort(waiting_.begin() + static_cast<std::ptrdiff_t>(first), waiting_.end(),
               [&](const Waiting& a, const Waiting& b) { return order(a) > order(b); });
-    return number;
   }
-  Expected<int> add(LinkSpec spec, int line) {
-    added_.push_back({spec.parent, velocities_of(spec.joint), line, spec.inertia.mass()});
-    auto number = builder_.add(std::move(spec));
-    if (!number) return tl::make_unexpected(urdf_error(line, number.error().message));
-    return number;
+  int add(LinkSpec spec, int line) {
+    links_.push_back(std::move(spec));
+    link_lines_.push_back(line);
+    return static_cast<int>(links_.size()) - 1;
+  }
+
+  Inertia inertia_of(const urdf::Link& link) {
+    if (!link.inertial) return {};
+    const urdf::Inertial& i = *link.inertial;
+    Sym3 moments{i.ixx, i.iyy, i.izz, i.ixy, i.iyz, i.ixz};
+    const StatedMoments stated = judged(i.mass, moments);
+    if (stated != StatedMoments::of_a_body) {
+      std::string what = "no body has the inertia of link \"" + link.name + "\": ";
+      if (stated == StatedMoments::negative) {
+        moments = without_negative(moments);
+        what += "a principal moment is negative, and taken as zero";
+      } else {
+        what += i.mass > 0.0 ? "one principal moment is more than the two others together; "
+                             : "it has moments and no mass; ";
+        what += "it is taken as it stands";
+      }
+      notes_.push_back(urdf_note(lines_.inertials.at(link.name), what));
+    }
+    return Inertia(i.mass, {}, moments).InvXform(to_pose(i.origin));
+  }
+
+  Expected<Model> model() {
+    for (const int link : give_armatures(links_)) {
+      const auto i = static_cast<std::size_t>(link);
+      notes_.push_back(urdf_note(link_lines_[i],
+                                 "the joint above this link moves no mass in some direction, and "
+                                 "is given an armature; better give the link, or one after it, an "
+                                 "<inertial>"));
+    }
+    ModelBuilder builder;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (const auto added = builder.add(std::move(links_[i])); !added) {
+        return tl::make_unexpected(urdf_error(link_lines_[i], added.error().message));
+      }
+    }
+    auto model = builder.build();
+    if (!model) {
+      return tl::make_unexpected(
+          urdf_error(1,
+                     "no joint of the robot moves, so that it has no dynamics; load it with "
+                     "UrdfBase::floating, or take bodies in its place"));
+    }
+    return model;
   }
   int order(const Waiting& waiting) const { return lines_.joints.at(waiting.joint->name).order; }
 
-  Expected<int> joint(const urdf::Joint& joint, int parent, const urdf::Link& child) {
+  void joint(const urdf::Joint& joint, int parent, const urdf::Link& child) {
     LinkSpec spec;
     spec.parent = parent;
     spec.joint = to_joint(joint);
     spec.T_parent_joint = to_pose(joint.parent_to_joint_origin_transform);
     if (joint.dynamics) spec.damping = joint.dynamics->damping;
     const Vec3 axis = to_vec3(joint.axis);
-    joints_.push_back(to_urdf_joint(joint, static_cast<int>(added_.size())));
+    joints_.push_back(to_urdf_joint(joint, static_cast<int>(links_.size()),
+                                    lines_.joints.at(joint.name).mimic_line != 0));
     spec.forces = to_forces(joints_.back(), velocities_of(spec.joint));
     if (joint.type == urdf::Joint::PLANAR && !(axis.x == 0.0 && axis.y == 0.0 && axis.z > 0.0)) {
       // The plane's frame is turned against the link's, and turned back by a fixed joint.
       const Mat3 Q = frame_of_plane(axis);
       spec.T_parent_joint = spec.T_parent_joint * SE3(Q, {});
-      auto plane = add(std::move(spec), lines_.joints.at(joint.name).line);
-      if (!plane) return plane;
+      const int plane = add(std::move(spec), lines_.joints.at(joint.name).line);
       spec = {};
-      spec.parent = *plane;
+      spec.parent = plane;
       spec.T_parent_joint = SE3(transpose(Q), {});
     }
-    return add(std::move(spec), child);
+    add(std::move(spec), child);
   }
 
   // q - multiplier q of the other = offset.
-  Expected<std::vector<ConstraintPtr>> couplings(const Model& model) const {
+  std::vector<ConstraintPtr> couplings(const Model& model) {
     std::map<std::string_view, int> links;
     for (const UrdfJoint& joint : joints_) links[joint.name] = joint.link;
     std::vector<ConstraintPtr> out;
-    for (const UrdfJoint& joint : joints_) {
+    for (UrdfJoint& joint : joints_) {
       if (joint.mimics.empty()) continue;
       const int other = links.at(joint.mimics);
-      if (joint.link == other || coordinates_of(model.link(joint.link).joint) != 1 ||
+      if (coordinates_of(model.link(joint.link).joint) != 1 ||
           coordinates_of(model.link(other).joint) != 1) {
-        return tl::make_unexpected(urdf_error(
+        notes_.push_back(urdf_note(
             lines_.joints.at(joint.name).mimic_line,
-            "a joint of one coordinate may mimic another joint of one coordinate, no other"));
+            "what joint \"" + joint.name + "\" mimics is left out: both need one coordinate"));
+        joint.mimics.clear();
+        continue;
       }
       out.push_back(couple({{joint.link, 0, 1.0}, {other, 0, -joint.multiplier}}, joint.offset));
     }
     return out;
   }
 
-  Expected<void> every_joint_moves_mass() const {
-    std::vector<double> moved(added_.size());
-    for (std::size_t i = added_.size(); i-- > 0;) {
-      const Added& link = added_[i];
-      moved[i] += link.mass;
-      if (link.velocities > 0 && !(moved[i] > 0.0)) {
-        return tl::make_unexpected(
-            urdf_error(link.line,
-                       "the joint above this link moves no mass; give it, or a link "
-                       "after it, an <inertial>"));
-      }
-      if (link.parent != kWorld) moved[static_cast<std::size_t>(link.parent)] += moved[i];
-    }
-    return {};
-  }
-
   const UrdfLines& lines_;
-  ModelBuilder builder_;
-  std::vector<Added> added_;
+  std::vector<std::string>& notes_;
+  std::vector<LinkSpec> links_;
+  std::vector<int> link_lines_;
   std::vector<Waiting> waiting_;
   std::vector<UrdfJoint> joints_;
 };
@@ -264,10 +281,10 @@ class Builder {
 }  // namespace
 
 Expected<UrdfModel> build_urdf(const std::string& text, const UrdfLines& lines,
-                               const UrdfOptions& options) {
+                               const UrdfOptions& options, std::vector<std::string> notes) {
   const UrdfTree tree(text);
   if (!tree) return tl::make_unexpected(urdf_error(1, "urdfdom refuses it: " + tree.refusal()));
-  return Builder(lines).build(tree, options);
+  return Builder(lines, notes).build(tree, options);
 }
 
 }  // namespace vp::detail

@@ -8,8 +8,8 @@
 
 namespace vp::detail {
 
-// text: what check_urdf has left of the document.
+// text: what check_urdf has left of the document. notes: of what was left out or mended until here.
 Expected<UrdfModel> build_urdf(const std::string& text, const UrdfLines& lines,
-                               const UrdfOptions& options);
+                               const UrdfOptions& options, std::vector<std::string> notes);
 
 }  // namespace vp::detail

@@ -58,8 +58,9 @@ class Checker {
     }
     if (fault_) return tl::make_unexpected(*std::move(fault_));
     for (const auto& [name, seen] : left_out_) {
-      notes_.push_back("line " + std::to_string(seen.line) + ": " + name + " left out" +
-                       (seen.count > 1 ? ", " + std::to_string(seen.count) + " in all" : ""));
+      notes_.push_back(urdf_note(
+          seen.line, name + " left out" +
+                         (seen.count > 1 ? ", " + std::to_string(seen.count) + " in all" : "")));
     }
     return std::move(lines_);
   }
@@ -77,10 +78,18 @@ class Checker {
   void leave_out(const std::string& what, int line) {
     ++left_out_.try_emplace(what, Seen{line, 0}).first->second.count;
   }
+  void note(const XMLElement& at, const std::string& what) {
+    notes_.push_back(urdf_note(at.GetLineNum(), what));
+  }
 
   void robot(XMLElement& robot) {
     attributes(robot, {"name", "version"});
-    (void)name_of(robot);
+    if (const char* name = robot.Attribute("name"); !name || !*name) {
+      note(robot, "the robot has no name");
+      robot.SetAttribute("name", "");  // urdfdom asks for the attribute
+    } else {
+      (void)name_of(robot);
+    }
     if (const char* version = robot.Attribute("version");
         version && std::string_view(version) != "1.0") {
       fail(robot, "version " + quoted(version) + " of URDF is not known, only 1.0");
@@ -113,8 +122,12 @@ class Checker {
     }
     if (XMLElement* inertia = once(*inertial, "inertia", Need::required)) {
       attributes(*inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
-      for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) {
-        number(*inertia, moment, Need::required);
+      for (const char* moment : {"ixx", "iyy", "izz"}) number(*inertia, moment, Need::required);
+      for (const char* product : {"ixy", "ixz", "iyz"}) {
+        number(*inertia, product, Need::optional);
+        if (inertia->Attribute(product)) continue;
+        note(*inertia, std::string(product) + " is not given, and taken as zero");
+        inertia->SetAttribute(product, "0");
       }
     }
   }
@@ -140,9 +153,8 @@ class Checker {
     place.order = static_cast<int>(lines_.joints.size());
     end(joint, "parent", place.parent, place.parent_line);
     end(joint, "child", place.child, place.child_line);
-    axis(joint);
-    const bool bounded = type == "revolute" || type == "prismatic";
-    limit(joint, bounded ? Need::required : Need::optional);
+    axis(joint, type != "fixed" && type != "floating");
+    limit(joint, type == "revolute" || type == "prismatic");
     dynamics(joint);
     mimic(joint, place);
     if (const auto [at, fresh] = lines_.joints.try_emplace(name, std::move(place)); !fresh) {
@@ -160,33 +172,63 @@ class Checker {
   }
 
   void end(XMLElement& joint, const char* which, std::string& name, int& line) {
-    XMLElement* end = once(joint, which, Need::required);
-    if (!end) return;
+    XMLElement* end = joint.FirstChildElement(which);
+    if (!end) return fail(joint, tag(joint) + " needs a <" + which + ">");
+    if (const XMLElement* second = end->NextSiblingElement(which)) {
+      return fail(*second, tag(joint) + " has a second <" + which + ">");
+    }
     attributes(*end, {"link"});
     name = text(*end, "link", Need::required);
     line = end->GetLineNum();
   }
 
-  void axis(XMLElement& joint) {
+  // needed: a joint of this type has one.
+  void axis(XMLElement& joint, bool needed) {
     XMLElement* axis = once(joint, "axis", Need::optional);
     if (!axis) return;
+    if (!needed) {
+      joint.DeleteChild(axis);
+      return;
+    }
     attributes(*axis, {"xyz"});
+    if (!axis->Attribute("xyz")) {
+      note(*axis, "the axis says nothing, and is taken as x");
+      joint.DeleteChild(axis);
+      return;
+    }
     const auto [x, y, z] = numbers<3>(*axis, "xyz", Need::required);
     const double length = std::hypot(x, y, z);
     if (!(length > 1e-100 && length < 1e100)) fail(*axis, "the axis has no length");
   }
 
-  void limit(XMLElement& joint, Need need) {
-    XMLElement* limit = once(joint, "limit", need);
-    if (!limit) return;
+  // bounded: a joint of this type has limits.
+  void limit(XMLElement& joint, bool bounded) {
+    XMLElement* limit = once(joint, "limit", Need::optional);
+    if (!limit) {
+      if (!bounded) return;
+      note(joint, "the joint has no <limit>, and moves without one");
+      limit = joint.InsertNewChildElement("limit");
+      limit->SetAttribute("lower", written(-kUrdfUnbounded).c_str());
+      limit->SetAttribute("upper", written(kUrdfUnbounded).c_str());
+    }
     attributes(*limit, {"lower", "upper", "effort", "velocity"});
     const double lower = number(*limit, "lower", Need::optional);
-    if (lower > number(*limit, "upper", Need::optional)) {
-      fail(*limit, "the lower limit is above the upper one (either is 0 if it is not given)");
+    const double upper = number(*limit, "upper", Need::optional);
+    if (lower > upper) {
+      note(*limit,
+           "the lower limit is above the upper one (either is 0 if it is not given): the two "
+           "are exchanged");
+      limit->SetAttribute("lower", written(upper).c_str());
+      limit->SetAttribute("upper", written(lower).c_str());
     }
-    if (number(*limit, "effort", Need::required) < 0.0 ||
-        number(*limit, "velocity", Need::required) < 0.0) {
-      fail(*limit, "effort and velocity must not be negative");
+    for (const char* bound : {"effort", "velocity"}) {
+      const double most = number(*limit, bound, Need::optional);
+      if (limit->Attribute(bound) && most >= 0.0) continue;
+      if (limit->GetLineNum() > 0) {  // it stands in the file
+        note(*limit, std::string(bound) + (most < 0.0 ? " is negative" : " is not given") +
+                         ", and taken as unlimited");
+      }
+      limit->SetAttribute(bound, written(kUrdfUnbounded).c_str());
     }
   }
 
@@ -194,9 +236,10 @@ class Checker {
     XMLElement* dynamics = once(joint, "dynamics", Need::optional);
     if (!dynamics) return;
     attributes(*dynamics, {"damping", "friction"});
-    if (number(*dynamics, "damping", Need::optional) < 0.0 ||
-        number(*dynamics, "friction", Need::optional) < 0.0) {
-      fail(*dynamics, "damping and friction must not be negative");
+    for (const char* what : {"damping", "friction"}) {
+      if (number(*dynamics, what, Need::optional) >= 0.0) continue;
+      note(*dynamics, std::string(what) + " is negative, and taken as zero");
+      dynamics->SetAttribute(what, "0");
     }
     // An empty one is a fault to urdfdom.
     if (!dynamics->FirstAttribute()) joint.DeleteChild(dynamics);
@@ -248,8 +291,9 @@ class Checker {
     if (!found && need == Need::required) {
       fail(parent, tag(parent) + " needs a <" + name + ">");
     }
-    if (const XMLElement* second = found ? found->NextSiblingElement(name) : nullptr) {
-      fail(*second, tag(parent) + " has a second <" + name + ">");
+    while (XMLElement* second = found ? found->NextSiblingElement(name) : nullptr) {
+      leave_out("second " + tag(*second) + " of " + tag(parent), second->GetLineNum());
+      parent.DeleteChild(second);
     }
     return fault_ ? nullptr : found;
   }
@@ -311,20 +355,31 @@ class Checker {
 
 }  // namespace
 
+std::string urdf_note(int line, const std::string& what) {
+  return "line " + std::to_string(line) + ": " + what;
+}
 Error urdf_error(int line, const std::string& what) {
-  return {Errc::bad_data, "line " + std::to_string(line) + ": " + what};
+  return {Errc::bad_data, urdf_note(line, what)};
 }
 
 Expected<UrdfLines> check_urdf(XMLElement& robot, std::vector<std::string>& notes) {
   return Checker(notes).check(robot);
 }
 
-Expected<void> check_tree(const UrdfLines& lines) {
+void ignore_mimic(const std::string& name, UrdfLines::Joint& joint, const std::string& why,
+                  std::vector<std::string>& notes) {
+  notes.push_back(
+      urdf_note(joint.mimic_line, "what joint " + quoted(name) + " mimics is left out: " + why));
+  joint.mimics.clear();
+  joint.mimic_line = 0;
+}
+
+Expected<void> check_tree(UrdfLines& lines, std::vector<std::string>& notes) {
   const auto fault = [](int line, const std::string& what) {
     return tl::make_unexpected(urdf_error(line, what));
   };
   std::map<std::string, const UrdfLines::Joint*> above;  // the joint that carries a link
-  for (const auto& [name, joint] : lines.joints) {
+  for (auto& [name, joint] : lines.joints) {
     if (!lines.links.contains(joint.parent)) {
       return fault(joint.parent_line, "joint " + quoted(name) + " has the parent link " +
                                           quoted(joint.parent) + ", and there is none");
@@ -334,8 +389,7 @@ Expected<void> check_tree(const UrdfLines& lines) {
                                          quoted(joint.child) + ", and there is none");
     }
     if (joint.mimic_line && !lines.joints.contains(joint.mimics)) {
-      return fault(joint.mimic_line, "joint " + quoted(name) + " mimics the joint " +
-                                         quoted(joint.mimics) + ", and there is none");
+      ignore_mimic(name, joint, "there is no joint " + quoted(joint.mimics), notes);
     }
     const auto [other, fresh] = above.try_emplace(joint.child, &joint);
     if (!fresh) {
@@ -345,16 +399,14 @@ Expected<void> check_tree(const UrdfLines& lines) {
                                std::to_string(first) + "; a loop is closed by a constraint");
     }
   }
-  for (const auto& [name, joint] : lines.joints) {
+  for (auto& [name, joint] : lines.joints) {
     const UrdfLines::Joint* at = &joint;
     for (std::size_t steps = 0; at->mimic_line; ++steps) {
-      const UrdfLines::Joint* next = &lines.joints.at(at->mimics);
-      if (next == at) break;  // told where joints are built
       if (steps > lines.joints.size()) {
-        return fault(joint.mimic_line, "joint " + quoted(name) + " mimics joints that mimic each " +
-                                           "other in a circle; one of them must move by itself");
+        ignore_mimic(name, joint, "it leads in a circle", notes);
+        break;
       }
-      at = next;
+      at = &lines.joints.at(at->mimics);
     }
   }
   const std::string* root = nullptr;

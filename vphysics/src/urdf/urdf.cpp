@@ -73,6 +73,8 @@ std::size_t overfull_element(std::string_view text) {
 
 Expected<UrdfModel> parse(std::string_view text, const UrdfOptions& options) {
   if (text.size() > kLargest) return too_large();
+  // Written by programs in C: the end of their string with it.
+  while (!text.empty() && text.back() == '\0') text.remove_suffix(1);
   const auto fault_at = [&](std::size_t at, const char* what) {
     const auto lines = std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
     return tl::make_unexpected(detail::urdf_error(1 + static_cast<int>(lines), what));
@@ -91,16 +93,14 @@ Expected<UrdfModel> parse(std::string_view text, const UrdfOptions& options) {
   tinyxml2::XMLElement* robot = document.RootElement();
   if (!robot) return tl::make_unexpected(detail::urdf_error(1, "there is no element"));
   std::vector<std::string> notes;
-  const auto lines = detail::check_urdf(*robot, notes);
+  auto lines = detail::check_urdf(*robot, notes);
   if (!lines) return tl::make_unexpected(lines.error());
-  if (auto good = detail::check_tree(*lines); !good) return tl::make_unexpected(good.error());
+  if (auto good = detail::check_tree(*lines, notes); !good)
+    return tl::make_unexpected(good.error());
 
   tinyxml2::XMLPrinter cleaned;
   robot->Accept(&cleaned);
-  auto model = detail::build_urdf(cleaned.CStr(), *lines, options);
-  if (!model) return model;
-  model->notes = std::move(notes);
-  return model;
+  return detail::build_urdf(cleaned.CStr(), *lines, options, std::move(notes));
 }
 
 }  // namespace

@@ -356,10 +356,15 @@ void fields(Io& io, Field<Io, JointForces> f) {
 // Names are the user's, and not the world's.
 template <class Io>
 void fields(Io& io, Field<Io, LinkSpec> link) {
-  auto behind = static_cast<std::uint32_t>(link.parent + 1);
+  // The top bit, which no parent's number has: the inertia is taken as stated.
+  auto behind = static_cast<std::uint32_t>(link.parent + 1) |
+                static_cast<std::uint32_t>(link.inertia_as_stated) << 31;
   io(behind, link.joint, link.T_parent_joint, link.inertia, link.armature, link.damping,
      link.forces);
-  if constexpr (Io::kReads) link.parent = static_cast<int>(behind & 0x7fffffffu) - 1;
+  if constexpr (Io::kReads) {
+    link.parent = static_cast<int>(behind & 0x7fffffffu) - 1;
+    link.inertia_as_stated = behind >> 31 != 0;
+  }
 }
 
 // Joints between bodies.

@@ -30,6 +30,9 @@ struct LinkSpec {
   // None, or one for each of its velocities. Those of a ball or free joint, which have no
   // coordinate of their own, know friction and the motor's limit only.
   std::vector<JointForces> forces{};
+  // Take the inertia as it is stated, though no body may have it, as robots' files do. It should be
+  // positive semidefinite: else forward dynamics may have no solution.
+  bool inertia_as_stated = false;
 };
 
 namespace detail {
@@ -71,9 +74,9 @@ class ModelBuilder {
  public:
   // The link's number. Refused: a parent that does not exist, a number that is not finite, an axis
   // of length zero, parallel axes, an inertia that no body has (negative mass, not positive
-  // semidefinite, moments against the triangle inequality), negative armature or damping, forces
-  // that are not the joint's or contradict themselves, a user joint that says less than 1 or more
-  // than 6 degrees of freedom.
+  // semidefinite, moments against the triangle inequality; taken where it is inertia_as_stated),
+  // negative armature or damping, forces that are not the joint's or contradict themselves, a user
+  // joint that says less than 1 or more than 6 degrees of freedom.
   Expected<int> add(LinkSpec link);
   // Refused: no joint that moves; a joint that moves no mass, neither by itself nor through its
   // children.

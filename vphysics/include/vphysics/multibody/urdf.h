@@ -16,6 +16,22 @@
 // What a model has no place for is told in notes: visual and collision geometry, materials,
 // transmissions and other extensions are left out; a joint that mimics another keeps a coordinate
 // of its own, and UrdfJoint says what it shall follow.
+//
+// What robots' files have wrong is mended, and told in notes by its line:
+//   an inertia that no body has           taken as stated; a negative principal moment is zero
+//   a joint that moves no mass            an armature of a millionth of the robot's mass (times the
+//                                         square of its length)
+//   a lower limit above the upper one     the two exchanged
+//   no <limit>, effort or velocity, or    no bound
+//   a negative one
+//   negative damping or friction          zero
+//   products of inertia not given         zero
+//   an <axis> without xyz                 x; of a fixed or floating joint it is never read
+//   an element twice                      the first
+//   a mimic that leads in a circle, to    left out
+//   no joint, or not from one coordinate
+//   to one
+//   a robot without a name, zero bytes at its end
 #pragma once
 
 #include <limits>
@@ -62,7 +78,7 @@ struct UrdfModel {
   std::vector<UrdfJoint> joints{};  // of the file, in the order of the links
   // One for each joint that mimics another: for a ConstraintSet. Both have one coordinate.
   std::vector<ConstraintPtr> couplings{};
-  std::vector<std::string> notes{};  // what was left out, with the line where it first stands
+  std::vector<std::string> notes{};  // what was left out or mended, with its line
 
   // The joint of this name, or null; valid as long as the joints are.
   const UrdfJoint* find_joint(std::string_view joint_name) const;
@@ -70,10 +86,10 @@ struct UrdfModel {
 
 // Reads a robot from the text of a file. An error's message begins with the line: "line 12: ...".
 // Errc::bad_data: not well-formed XML (also nested more than 100 deep), not a <robot>, an element
-// or attribute missing or twice, a value that is no finite number, a joint of unknown type or axis
-// zero, a name that is unknown or taken, a joint that mimics itself or one of not one coordinate,
-// links that are no single tree, a negative mass, friction or damping, an inertia that no body has,
-// a joint that moves no mass. Errc::unsupported: more than 16 MiB of text. Errc::invalid_argument:
+// or attribute missing that has no default, a value that is no finite number, a joint of unknown
+// type, with two parents or children, or that moves along an axis of length zero, a name that is
+// unknown or taken, links that are no single tree, a negative mass, no joint that moves (with a
+// fixed base). Errc::unsupported: more than 16 MiB of text. Errc::invalid_argument:
 // T_world_root is no pose.
 Expected<UrdfModel> parse_urdf(std::string_view text, const UrdfOptions& options = {});
 

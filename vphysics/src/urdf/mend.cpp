@@ -1,0 +1,107 @@
+#include "urdf/mend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/principal.h"
+
+namespace vp::detail {
+namespace {
+
+double size_of(const Sym3& a) {
+  return std::fabs(a.xx) + std::fabs(a.yy) + std::fabs(a.zz);
+}
+
+// The velocities that a joint of URDF allows, in its link's frame, which is the joint's.
+std::vector<se3> columns_of(const Joint& joint) {
+  if (const auto* revolute = std::get_if<RevoluteJoint>(&joint)) {
+    return {{(1.0 / norm(revolute->axis)) * revolute->axis, {}}};
+  }
+  if (const auto* prismatic = std::get_if<PrismaticJoint>(&joint)) {
+    return {{{}, (1.0 / norm(prismatic->axis)) * prismatic->axis}};
+  }
+  const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  if (std::holds_alternative<PlanarJoint>(joint)) return {{{}, x}, {{}, y}, {z, {}}};
+  if (std::holds_alternative<FreeJoint>(joint)) {
+    return {{x, {}}, {y, {}}, {z, {}}, {{}, x}, {{}, y}, {{}, z}};
+  }
+  return {};
+}
+
+// What is felt of J beyond a joint, which lets it go along the columns. False if along one of them
+// there is nothing, or as good as nothing beside what there is across it.
+bool let_go(AInertia& J, const std::vector<se3>& columns, double armature) {
+  const double angular = size_of(J.angular()), linear = size_of(J.linear());
+  for (const se3& S : columns) {
+    const dse3 F = J * S;
+    const double along = S * F + armature;
+    if (!(along > 1e-12 * (S.w == Vec3{} ? linear : angular))) return false;
+    J = J - outer(1.0 / along, F);
+  }
+  return true;
+}
+
+// Of the whole tree: its mass, and from its root to its farthest link along the others.
+struct Scale {
+  double mass = 0.0, length = 0.0;
+};
+Scale scale_of(const std::vector<LinkSpec>& links) {
+  Scale scale;
+  std::vector<double> reaches;
+  for (const LinkSpec& link : links) {
+    double reach = 0.0;
+    if (link.parent != kWorld) {
+      reach = reaches[static_cast<std::size_t>(link.parent)] + norm(link.T_parent_joint.position());
+    }
+    reaches.push_back(reach);
+    scale.mass += link.inertia.mass();
+    scale.length = std::max(scale.length, reach);
+  }
+  if (!(scale.mass > 0.0)) scale.mass = 1.0;
+  if (!(scale.length > 0.0)) scale.length = 1.0;
+  return scale;
+}
+
+}  // namespace
+
+StatedMoments judged(double mass, const Sym3& moments) {
+  const double slack = 1e-9 * size_of(moments);
+  const std::array<double, 3> m = principal_of(moments).moments;
+  if (m[0] < -slack) return StatedMoments::negative;
+  const bool too_much = m[2] > m[0] + m[1] + 2.0 * slack;
+  const bool without_mass = !(mass > 0.0) && moments != Sym3{};
+  return too_much || without_mass ? StatedMoments::of_no_body : StatedMoments::of_a_body;
+}
+
+Sym3 without_negative(const Sym3& moments) {
+  const Principal p = principal_of(moments);
+  Sym3 out{};
+  for (std::size_t k = 0; k < 3; ++k) out = out + outer(std::max(p.moments[k], 0.0), p.axes[k]);
+  return out;
+}
+
+std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
+  std::vector<int> given;
+  const Scale scale = scale_of(links);
+  std::vector<AInertia> felt(links.size());  // of what hangs on each link
+  for (std::size_t i = links.size(); i-- > 0;) {
+    LinkSpec& link = links[i];
+    const AInertia J = felt[i] + link.inertia;
+    const std::vector<se3> columns = columns_of(link.joint);
+    AInertia beyond = J;
+    if (!let_go(beyond, columns, link.armature)) {
+      const bool slides = std::holds_alternative<PrismaticJoint>(link.joint);
+      link.armature = 1e-6 * scale.mass * (slides ? 1.0 : scale.length * scale.length);
+      given.push_back(static_cast<int>(i));
+      beyond = J;
+      let_go(beyond, columns, link.armature);
+    }
+    if (link.parent == kWorld) continue;
+    AInertia& below = felt[static_cast<std::size_t>(link.parent)];
+    below = below + beyond.Xform(Inv(link.T_parent_joint));
+  }
+  std::reverse(given.begin(), given.end());
+  return given;
+}
+
+}  // namespace vp::detail
