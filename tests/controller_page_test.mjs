@@ -72,7 +72,7 @@ class Port extends EventTarget {
 class Device extends EventTarget {
   constructor() {
     super();
-    Object.assign(this, { productName: 'Space Foosball rods', collections: [{ outputReports: [{}] }], opened: false, written: [] });
+    Object.assign(this, { productName: 'Space Foosball rods', collections: [{ usagePage: 0xff00, outputReports: [{}] }], opened: false, written: [] });
   }
   async open() { this.opened = true; }
   async close() { this.opened = false; }

