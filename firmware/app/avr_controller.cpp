@@ -22,9 +22,9 @@ bool AvrController::due() {
   if (mice_.due()) return true;
   if (bus_.busy()) {
     step_bus();
-  } else {
-    sleep_until_sample();
+    if (!MotorsBus::kRunsByItself) return false;
   }
+  sleep_until_sample();
   return false;
 }
 
@@ -37,11 +37,13 @@ uint32_t AvrController::turn(bool host) {
   feed_watchdog();
   after_frame_ = frame_made_;
   frame_made_ = false;
-  if (!after_frame_) {
-    for (uint8_t i = 0; i < kStepsATurn && bus_.busy(); ++i) step_bus();
+  // While all mice send, a turn takes half a millisecond, and there is no time between two.
+  if (MotorsBus::kRunsByItself || !after_frame_) {
+    for (uint8_t i = 0; i < MotorsBus::kPulseSteps && bus_.busy(); ++i) step_bus();
   }
   const uint32_t now_us = micros();
   mice_.poll(now_us);
+  if (MotorsBus::kRunsByItself && bus_.busy()) step_bus();
   host_ = host;
   mice_.allow_streaming(host);
   while (now_us - ms_began_us_ >= 1000) {

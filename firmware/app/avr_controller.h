@@ -6,9 +6,8 @@
 #include "core/haptics.h"
 #include "core/mouse_host.h"
 #include "core/settings_store.h"
-#include "core/soft_i2c.h"
 #include "hal/eeprom.h"
-#include "hal/i2c_wires.h"
+#include "hal/motors_bus.h"
 
 namespace firmware {
 
@@ -25,7 +24,7 @@ class AvrController {
   uint32_t turn(bool host);
 
   // The turn before this one made a frame. What takes long has a turn of its own, else the edges of
-  // the mice find their ring full: a frame, a command, the motors' bus.
+  // the mice find their ring full: a frame, a command, a bus that does not run by itself.
   bool after_frame() const { return after_frame_; }
 
   void obey(const wire::DeviceCommand& command);
@@ -34,12 +33,9 @@ class AvrController {
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
 
   Ps2Lines& lines() { return mice_.lines(); }
+  MotorsBus& bus() { return bus_; }
 
  private:
-  // Of the motors' bus, 40 us at most; a pulse takes nine. While all mice send, a turn takes half a
-  // millisecond, and there is no time between two.
-  static const uint8_t kStepsATurn = 9;
-
   void step_bus();
   void pass_ms();
   void guard_motors();
@@ -47,7 +43,7 @@ class AvrController {
   bool pulses_allowed() const { return (settings_.switches & kPulsesOff) == 0; }
 
   MouseHost mice_;
-  SoftI2c<I2cWires> bus_;
+  MotorsBus bus_;
   Haptics haptics_{bus_};
   Settings settings_;
   SettingsStore<Eeprom> store_;
