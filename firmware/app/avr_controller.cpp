@@ -24,13 +24,20 @@ bool AvrController::due() {
     step_bus();
     if (!MotorsBus::kRunsByItself) return false;
   }
-  sleep_until_sample();
+  if (marks_due_ && !bus_.busy()) {  // marks have what time nobody else wants
+    marks_due_ = false;
+    marks_.poll(ms_);
+  } else {
+    sleep_until_sample();
+  }
   return false;
 }
 
 void AvrController::step_bus() {
   bus_.step(mice_.lines().tick());
-  if (!bus_.busy()) haptics_.poll(ms_);
+  if (bus_.busy()) return;
+  marks_.poll(ms_);  // first: a pulse that waited for its reading begins at once
+  haptics_.poll(ms_);
 }
 
 uint32_t AvrController::turn(bool host) {
@@ -57,6 +64,7 @@ uint32_t AvrController::turn(bool host) {
 void AvrController::pass_ms() {
   guard_motors();
   haptics_.poll(ms_);
+  marks_due_ = true;
   store_.step();
   if (++light_ms_ < kLightTickMs) return;
   light_ms_ = 0;
@@ -100,6 +108,7 @@ void AvrController::count_error() {
 
 void AvrController::make_frame(uint32_t now_us, wire::DeviceFrame& frame) {
   mice_.make_frame(now_us, frame);
+  frame.index = marks_.under();
   frame.quality = add_saturating(frame.quality, errors_);
   errors_ = 0;
   present_ = frame.present;

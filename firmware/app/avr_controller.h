@@ -4,6 +4,7 @@
 #define FIRMWARE_APP_AVR_CONTROLLER_H
 
 #include "core/haptics.h"
+#include "core/index_marks.h"
 #include "core/mouse_host.h"
 #include "core/settings_store.h"
 #include "hal/eeprom.h"
@@ -36,6 +37,9 @@ class AvrController {
   MotorsBus& bus() { return bus_; }
 
  private:
+  // A mouse's counts come each 5 ms.
+  static const uint8_t kMarksMs = 4;
+
   void step_bus();
   void pass_ms();
   void guard_motors();
@@ -45,6 +49,8 @@ class AvrController {
   MouseHost mice_;
   MotorsBus bus_;
   Haptics haptics_{bus_};
+  IndexMarks marks_{bus_, kMarksMs};
+  bool marks_due_ = false;
   Settings settings_;
   SettingsStore<Eeprom> store_;
   uint32_t ms_ = 0;
