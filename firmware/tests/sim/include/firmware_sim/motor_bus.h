@@ -31,7 +31,7 @@ class MotorBus {
     int rod = 0;
     std::uint8_t address = 0, value = 0;
   };
-  const std::vector<Write>& writes() const { return writes_; }  // to the drivers
+  const std::vector<Write>& writes() const { return writes_; }              // to the drivers
   const std::vector<std::uint64_t>& reads_ns() const { return reads_ns_; }  // of the expander
   std::uint8_t running(int rod) const { return registers_[static_cast<std::size_t>(rod)][2]; }
   std::uint8_t driver_register(int rod, std::uint8_t address) const {
