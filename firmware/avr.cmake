@@ -35,5 +35,5 @@ function(firmware_elf board mcu)
 endfunction()
 
 firmware_elf(32u4 atmega32u4 hal/usb_device.cpp ${FIRMWARE_CORE_USB} app/main_32u4.cpp)
-firmware_elf(2560 atmega2560 hal/uart.cpp app/main_2560.cpp)
+firmware_elf(2560 atmega2560 hal/twi.cpp hal/uart.cpp app/main_2560.cpp)
 add_custom_target(firmware_elfs ALL DEPENDS ${FIRMWARE_ELFS})

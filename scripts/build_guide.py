@@ -305,7 +305,7 @@ def pins_table():
 
 def signals_table():
     small, mega = pins()['32u4'], pins()['2560']
-    rows = [('SDA of the multiplexer', 'I2C_DATA'), ('SCL of the multiplexer', 'I2C_CLOCK'), ('EN of all drivers', 'MOTORS'),
+    rows = [('SDA of the multiplexer and the expander', 'I2C_DATA'), ('SCL of both', 'I2C_CLOCK'), ('EN of all drivers', 'MOTORS'),
             ('LED, by 1 kOhm to ground', 'LED')]
     lines = ['| signal | 32U4 | Mega 2560 |', '|---|---|---|']
     for what, name in rows:

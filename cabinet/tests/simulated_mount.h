@@ -37,6 +37,14 @@ struct Mount {
   Mark mark{};
 };
 
+// Whether the switch of a mark is on, with the rod here.
+inline bool switched_on(const Mount::Mark& mark, bool was_on, double slide, double angle) {
+  const double beside = std::abs(slide - mark.slide) / mark.reach;
+  const double half = beside < 1 ? 0.5 * mark.width * std::sqrt(1 - beside * beside) : 0;
+  const double switches = half + (was_on ? 0.5 : -0.5) * mark.hysteresis;
+  return half > 0 && std::abs(std::remainder(angle - mark.angle, 2 * M_PI)) < switches;
+}
+
 struct SurfaceCounts {
   double slide, spin;
 };
@@ -81,7 +89,7 @@ class SimulatedRod {
     seen_[1] += passed.spin;
     slide = to_slide;
     angle = to_angle;
-    sense_mark();
+    under = switched_on(mount_.mark, under, slide, angle);
     if (++steps_ % mount_.report == 0) report();
   }
 
@@ -102,13 +110,6 @@ class SimulatedRod {
   }
 
  private:
-  void sense_mark() {
-    const Mount::Mark& mark = mount_.mark;
-    const double beside = std::abs(slide - mark.slide) / mark.reach;
-    const double half = beside < 1 ? 0.5 * mark.width * std::sqrt(1 - beside * beside) : 0;
-    const double switches = half + (under ? 0.5 : -0.5) * mark.hysteresis;
-    under = half > 0 && std::abs(std::remainder(angle - mark.angle, 2 * M_PI)) < switches;
-  }
   void report() {
     std::int16_t told[2];
     const bool lost = mount_.loss > 0 && between(0, 1) < mount_.loss;
@@ -204,6 +205,19 @@ inline Mount drawn_mount(std::mt19937& random, double counts_per_mm) {
   mount.optical_distance = between(0.004, 0.006);
   mount.noise = 0.004;
   return mount;
+}
+
+// At a near stop, off up to 2 degrees later than on, anywhere around the rod.
+inline Mount::Mark drawn_mark(std::mt19937& random, double near_stop) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Mount::Mark mark;
+  mark.angle = between(-M_PI, M_PI);
+  mark.width = between(18, 26) * M_PI / 180;
+  mark.hysteresis = between(0.5, 2) * M_PI / 180;
+  mark.slide = near_stop + between(-0.5e-3, 0.5e-3);
+  return mark;
 }
 
 struct PlayErrors {

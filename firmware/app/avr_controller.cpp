@@ -22,6 +22,11 @@ bool AvrController::due() {
   if (mice_.due()) return true;
   if (bus_.busy()) {
     step_bus();
+    if (!MotorsBus::kRunsByItself) return false;
+  }
+  if (marks_due_ && !bus_.busy()) {  // marks have what time nobody else wants
+    marks_due_ = false;
+    marks_.poll(ms_);
   } else {
     sleep_until_sample();
   }
@@ -30,18 +35,22 @@ bool AvrController::due() {
 
 void AvrController::step_bus() {
   bus_.step(mice_.lines().tick());
-  if (!bus_.busy()) haptics_.poll(ms_);
+  if (bus_.busy()) return;
+  marks_.poll(ms_);  // first: a pulse that waited for its reading begins at once
+  haptics_.poll(ms_);
 }
 
 uint32_t AvrController::turn(bool host) {
   feed_watchdog();
   after_frame_ = frame_made_;
   frame_made_ = false;
-  if (!after_frame_) {
-    for (uint8_t i = 0; i < kStepsATurn && bus_.busy(); ++i) step_bus();
+  // While all mice send, a turn takes half a millisecond, and there is no time between two.
+  if (MotorsBus::kRunsByItself || !after_frame_) {
+    for (uint8_t i = 0; i < MotorsBus::kPulseSteps && bus_.busy(); ++i) step_bus();
   }
   const uint32_t now_us = micros();
   mice_.poll(now_us);
+  if (MotorsBus::kRunsByItself && bus_.busy()) step_bus();
   host_ = host;
   mice_.allow_streaming(host);
   while (now_us - ms_began_us_ >= 1000) {
@@ -55,6 +64,7 @@ uint32_t AvrController::turn(bool host) {
 void AvrController::pass_ms() {
   guard_motors();
   haptics_.poll(ms_);
+  marks_due_ = true;
   store_.step();
   if (++light_ms_ < kLightTickMs) return;
   light_ms_ = 0;
@@ -98,6 +108,7 @@ void AvrController::count_error() {
 
 void AvrController::make_frame(uint32_t now_us, wire::DeviceFrame& frame) {
   mice_.make_frame(now_us, frame);
+  frame.index = marks_.under();
   frame.quality = add_saturating(frame.quality, errors_);
   errors_ = 0;
   present_ = frame.present;

@@ -4,11 +4,11 @@
 #define FIRMWARE_APP_AVR_CONTROLLER_H
 
 #include "core/haptics.h"
+#include "core/index_marks.h"
 #include "core/mouse_host.h"
 #include "core/settings_store.h"
-#include "core/soft_i2c.h"
 #include "hal/eeprom.h"
-#include "hal/i2c_wires.h"
+#include "hal/motors_bus.h"
 
 namespace firmware {
 
@@ -25,7 +25,7 @@ class AvrController {
   uint32_t turn(bool host);
 
   // The turn before this one made a frame. What takes long has a turn of its own, else the edges of
-  // the mice find their ring full: a frame, a command, the motors' bus.
+  // the mice find their ring full: a frame, a command, a bus that does not run by itself.
   bool after_frame() const { return after_frame_; }
 
   void obey(const wire::DeviceCommand& command);
@@ -36,13 +36,13 @@ class AvrController {
   Ps2Lines& lines() { return mice_.lines(); }
   const MouseHost& mice() const { return mice_; }
   const Settings& settings() const { return settings_; }
-  bool pulsing() const { return bus_.busy(); }                // the motors' bus is
+  MotorsBus& bus() { return bus_; }
+  bool bus_busy() const { return bus_.busy(); }               // motors and marks
   uint16_t ms() const { return static_cast<uint16_t>(ms_); }  // since start(), wraps
 
  private:
-  // Of the motors' bus, 40 us at most; a pulse takes nine. While all mice send, a turn takes half a
-  // millisecond, and there is no time between two.
-  static const uint8_t kStepsATurn = 9;
+  // A mouse's counts come each 5 ms.
+  static const uint8_t kMarksMs = 4;
 
   void step_bus();
   void pass_ms();
@@ -51,8 +51,10 @@ class AvrController {
   bool pulses_allowed() const { return (settings_.switches & wire::kPulsesOff) == 0; }
 
   MouseHost mice_;
-  SoftI2c<I2cWires> bus_;
+  MotorsBus bus_;
   Haptics haptics_{bus_};
+  IndexMarks marks_{bus_, kMarksMs};
+  bool marks_due_ = false;
   Settings settings_;
   SettingsStore<Eeprom> store_;
   uint32_t ms_ = 0;

@@ -38,7 +38,7 @@ void take_commands() {
         } else {
           g_controller.obey(command);
         }
-        return;  // one a turn: the mice wait
+        return;  // one at a time: the mice wait
       case firmware::CommandStream::kError:
         g_controller.count_error();
         return;
@@ -63,19 +63,28 @@ ISR(TIMER1_COMPA_vect) {
   g_uart.receive();
 }
 
+// Lets samples through: the flag, which stays set, does not interrupt again before it is done.
+ISR(TWI_vect) {
+  TWCR = _BV(TWEN);
+  sei();
+  g_controller.bus().on_interrupt();
+}
+
 int main() {
   g_controller.start();
   g_uart.start();
   uint32_t next_us = kFrameUs;
   for (;;) {
     g_uart.poll();  // a byte each time round: one takes 10 us, two rounds of a sleep 20
-    if (!g_controller.due()) continue;
+    if (!g_controller.due()) {
+      if (g_uart.has_received()) take_commands();  // else they wait for a turn
+      continue;
+    }
     const uint32_t now_us = g_controller.turn(true);
     if (static_cast<int32_t>(now_us - next_us) >= 0 && !g_controller.after_frame()) {
       next_us += kFrameUs;
       report(now_us);
-    } else {
-      take_commands();
     }
+    take_commands();
   }
 }

@@ -68,7 +68,7 @@ void serve_gamepads() {
     on = false;
     return;
   }
-  if (static_cast<uint8_t>(now_ms) == served_ms || g_controller.pulsing()) return;
+  if (static_cast<uint8_t>(now_ms) == served_ms || g_controller.bus_busy()) return;
   served_ms = static_cast<uint8_t>(now_ms);
   if (!on) g_pads.begin();
   on = true;

@@ -74,10 +74,14 @@ void Haptics::pass_ms() {
   }
 }
 
-void Haptics::poll(uint32_t now_ms) {
+void Haptics::pass_time(uint32_t now_ms) {
   if (!begun_) now_ms_ = now_ms;
   begun_ = true;
   for (; now_ms_ != now_ms; ++now_ms_) pass_ms();
+}
+
+void Haptics::poll(uint32_t now_ms) {
+  if (now_ms_ != now_ms || !begun_) pass_time(now_ms);
   if (working_) {
     const I2cBus::State state = bus_.state();
     if (state == I2cBus::kBusy) return;
@@ -90,16 +94,12 @@ void Haptics::poll(uint32_t now_ms) {
 
 void Haptics::begin_job(uint32_t now_ms) {
   const uint8_t due = due_ & present_;
-  for (uint8_t i = 0; due != 0 && i < kMotors; ++i) {
-    const uint8_t rod = (first_ + i) & (kMotors - 1u);
-    if ((due & 1u << rod) == 0) continue;
-    first_ = static_cast<uint8_t>(rod + 1);
-    rod_ = rod;
+  if (due != 0) {
+    uint8_t rod = first_;
+    while ((due >> rod & 1) == 0) rod = (rod + 1u) & (kMotors - 1u);
+    first_ = (rod + 1u) & (kMotors - 1u);
     value_ = motors_[rod].wanted;
-    setting_up_ = false;
-    step_ = 0;
-    working_ = true;
-    next_write();
+    begin_job_of(rod, false);
     return;
   }
   if (present_ == 0xFF || static_cast<int32_t>(now_ms - retry_ms_) < 0) return;
@@ -108,29 +108,34 @@ void Haptics::begin_job(uint32_t now_ms) {
   do {
     probe_ = (probe_ + 1u) & (kMotors - 1u);
   } while ((present_ & 1u << probe_) != 0);
-  rod_ = probe_;
-  setting_up_ = true;
+  begin_job_of(probe_, true);
+}
+
+void Haptics::begin_job_of(uint8_t rod, bool setting_up) {
+  rod_ = rod;
+  rod_bit_ = static_cast<uint8_t>(1u << rod);
+  setting_up_ = setting_up;
   step_ = 0;
   working_ = true;
   next_write();
 }
 
 void Haptics::next_write() {
-  if (step_ == 0) {
-    const uint8_t channel = static_cast<uint8_t>(1u << rod_);
-    bus_.write(kMultiplexer, &channel, 1);
+  const uint8_t at = step_ == 0 ? 0 : step_ - 1;  // of the registers
+  const Write write = setting_up_ ? kSetUp[at] : Write{kPlaybackRegister, value_};
+  const uint8_t bytes[2] = {write.address, write.value};
+  if (step_ != 0) {
+    bus_.write(kDriver, bytes, 2);
     return;
   }
-  const Write write = setting_up_ ? kSetUp[step_ - 1] : Write{kPlaybackRegister, value_};
-  const uint8_t bytes[2] = {write.address, write.value};
-  bus_.write(kDriver, bytes, 2);
+  bus_.write(kMultiplexer, &rod_bit_, 1);
+  if (bus_.chain(kDriver, bytes, 2)) step_ = 1;
 }
 
 void Haptics::transfer_ended(bool good) {
-  const uint8_t mask = static_cast<uint8_t>(1u << rod_);
   if (!good) {
     working_ = false;
-    present_ = static_cast<uint8_t>(present_ & ~mask);
+    present_ = static_cast<uint8_t>(present_ & ~rod_bit_);
     // A write that failed late may have started it.
     if (motors_[rod_].sent != 0 || (!setting_up_ && value_ != 0 && step_ != 0)) safe_ = false;
     want(rod_, 0);
@@ -143,7 +148,7 @@ void Haptics::transfer_ended(bool good) {
   }
   working_ = false;
   if (setting_up_) {
-    present_ = static_cast<uint8_t>(present_ | mask);
+    present_ = static_cast<uint8_t>(present_ | rod_bit_);
     sent(rod_, 0);
   } else {
     sent(rod_, value_);

@@ -21,8 +21,11 @@ class I2cBus {
   enum State : uint8_t { kIdle, kBusy, kFailed };  // kFailed: not acknowledged, or the bus is stuck
   // Begins a write of 1 or 2 bytes. Precondition: state() is not kBusy.
   virtual void write(uint8_t address, const uint8_t* bytes, uint8_t size) = 0;
-  // Of the last write.
+  // Of the last write, and of one that was chained to it.
   virtual State state() = 0;
+  // A write that begins by itself where the one that was begun last ends well. False: this bus has
+  // no such thing.
+  virtual bool chain(uint8_t, const uint8_t*, uint8_t) { return false; }
 
   // Who uses the bus has it until the end of its last transfer is seen. False: another has it.
   bool claim(const void* who) {
@@ -84,11 +87,14 @@ class Haptics {
     uint16_t credit = kMaxCredit;
   };
 
+  // Apart from poll(), so that what most calls do saves no registers for them.
+  void pass_time(uint32_t now_ms) __attribute__((noinline));
   void pass_ms();
   void want(uint8_t rod, uint8_t amplitude);
   void sent(uint8_t rod, uint8_t amplitude);
-  void transfer_ended(bool good);
-  void begin_job(uint32_t now_ms);
+  void transfer_ended(bool good) __attribute__((noinline));
+  void begin_job(uint32_t now_ms) __attribute__((noinline));
+  void begin_job_of(uint8_t rod, bool setting_up);
   void next_write();
 
   I2cBus& bus_;
@@ -104,7 +110,7 @@ class Haptics {
   // The job in hand: the multiplexer, then one register or those of setting up.
   bool working_ = false;
   bool setting_up_ = false;
-  uint8_t rod_ = 0;
+  uint8_t rod_ = 0, rod_bit_ = 0;
   uint8_t value_ = 0;  // that the register gets
   uint8_t step_ = 0;   // 0: the multiplexer
   uint8_t probe_ = 0;  // the next absent one to be tried

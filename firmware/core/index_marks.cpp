@@ -11,7 +11,7 @@ void IndexMarks::poll(uint32_t now_ms) {
     return;  // others have the bus first
   }
   if (static_cast<int32_t>(now_ms - next_ms_) < 0 || !bus_.claim(this)) return;
-  next_ms_ = now_ms + kReadMs;
+  next_ms_ = now_ms + read_ms_;
   reading_ = true;
   bus_.read(kExpander);
 }

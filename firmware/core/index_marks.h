@@ -14,22 +14,22 @@ namespace firmware {
 
 class IndexMarks {
  public:
-  explicit IndexMarks(I2cReadBus& bus) : bus_(bus) {}
+  explicit IndexMarks(I2cReadBus& bus, uint8_t read_ms = 1) : bus_(bus), read_ms_(read_ms) {}
 
-  // At least once a millisecond.
+  // Once a millisecond, and until then if a reading may have ended.
   void poll(uint32_t now_ms);
 
   // Bit i: the mark of rod i is under its switch, as of the last reading.
   uint8_t under() const { return under_; }
 
   static constexpr uint8_t kExpander = 0x20;
-  static constexpr uint16_t kReadMs = 1;      // between readings
-  static constexpr uint16_t kRetryMs = 1000;  // ... of an expander that does not answer
+  static constexpr uint16_t kRetryMs = 1000;  // between readings of one that does not answer
 
  private:
   void reading_ended(bool good, uint32_t now_ms);
 
   I2cReadBus& bus_;
+  const uint8_t read_ms_;  // between readings
   bool reading_ = false;
   uint8_t under_ = 0;
   uint32_t next_ms_ = 0;

@@ -17,16 +17,15 @@ namespace firmware {
 // this step; wait_high(), at least 0.6 us; wait_low(), so that together with what a step does
 // between a clock is low for 1.3 us. The tests measure both.
 template <typename Wires>
-class SoftI2c final : public I2cBus {
+class SoftI2c final : public I2cReadBus {
  public:
   void write(uint8_t address, const uint8_t* bytes, uint8_t size) override {
     bytes_[0] = bytes[0];
     if (size > 1) bytes_[1] = bytes[1];
     begin(static_cast<uint8_t>(address << 1), size, false);
   }
-  // One byte; byte_read() once state() is kIdle. Precondition: state() is not kBusy.
-  void read(uint8_t address) { begin(static_cast<uint8_t>(address << 1 | 1), 1, true); }
-  uint8_t byte_read() const { return shift_; }
+  void read(uint8_t address) override { begin(static_cast<uint8_t>(address << 1 | 1), 1, true); }
+  uint8_t byte() override { return shift_; }
   State state() override { return state_; }
   bool busy() const { return state_ == kBusy; }
 
@@ -36,12 +35,19 @@ class SoftI2c final : public I2cBus {
       other_step(tick);
       return;
     }
-    if (!taking_ && bit_ < 7) send_bits();
+    if (taking_) {
+      take_bits();
+    } else if (bit_ < 7) {
+      send_bits();
+    }
     clock_bit(tick);
     if (phase_ != kBit || bit_ != 8) return;
     Wires::wait_low();
     clock_bit(tick);
   }
+
+  static const uint8_t kPulseSteps = 9;  // of a motor, 40 us at most each
+  static const bool kRunsByItself = false;
 
   static const uint8_t kStretchTicks = 50;  // 1 ms
   static const uint8_t kFreeingClocks = 9;
@@ -130,6 +136,25 @@ class SoftI2c final : public I2cBus {
     shift_ = shift;
     bit_ = bit;
     sent_high_ = high;
+  }
+
+  // The same of the byte that the other sends.
+  void take_bits() {
+    uint8_t shift = shift_, bit = bit_;
+    while (bit < 7) {
+      Wires::clock_free();
+      Wires::settle();
+      if (!Wires::clock()) break;
+      Wires::wait_high();
+      const bool high = Wires::data();
+      Wires::clock_low();
+      shift = static_cast<uint8_t>(shift << 1 | (high ? 1 : 0));
+      ++bit;
+      Wires::wait_low();
+      Wires::settle();  // less is done meanwhile than where a bit is sent
+    }
+    shift_ = shift;
+    bit_ = bit;
   }
 
   // The clock is high, bit_ on the data line.

@@ -27,12 +27,13 @@ class Uart {
   FIRMWARE_INLINE void receive() {
     for (uint8_t i = 0; i < 3 && (UCSR0A & _BV(RXC0)) != 0; ++i) receive_byte();
   }
+  bool has_received() const { return received_tail_ != received_head_; }
   // The oldest byte not yet taken; false: none.
   bool take(uint8_t& out) {
     const uint8_t tail = received_tail_;
     if (tail == received_head_) return false;
     out = received_[tail];
-    received_tail_ = static_cast<uint8_t>((tail + 1) & kRingMask);
+    received_tail_ = static_cast<uint8_t>(tail + 1);
     return true;
   }
   // Bytes were lost or damaged since the last call.
@@ -47,7 +48,7 @@ class Uart {
     const uint8_t faults = UCSR0A & (_BV(FE0) | _BV(DOR0));
     const uint8_t value = UDR0;
     const uint8_t head = received_head_;
-    const uint8_t next = static_cast<uint8_t>((head + 1) & kRingMask);
+    const uint8_t next = static_cast<uint8_t>(head + 1);
     if (faults != 0 || next == received_tail_) {
       lost_ = 1;
       return;
@@ -56,15 +57,16 @@ class Uart {
     received_head_ = next;
   }
 
-  static const uint8_t kRing = 128;  // two frames to send; seven commands to take
+  static const uint8_t kRing = 128;  // two frames to send
   static const uint8_t kRingMask = kRing - 1;
 
   uint8_t ring_[kRing] = {};
   uint8_t head_ = 0;
   uint8_t tail_ = 0;
 
-  // One writer each: head the interrupt, tail the polling side.
-  volatile uint8_t received_[kRing] = {};
+  // One writer each: head the interrupt, tail the polling side. As long as a uint8_t counts: twelve
+  // commands.
+  volatile uint8_t received_[256] = {};
   volatile uint8_t received_head_ = 0;
   volatile uint8_t received_tail_ = 0;
   volatile uint8_t lost_ = 0;

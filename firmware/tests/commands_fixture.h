@@ -18,6 +18,18 @@ inline std::string name_of(Board board) {
   return board == Board::mega32u4 ? "Mega32u4" : "Mega2560";
 }
 
+// Clocks over all of the standard's range, each with jitter of its own.
+inline CabinetOptions mixed_mice() {
+  CabinetOptions options;
+  for (std::size_t i = 0; i < kMice; ++i) {
+    options.mice[i].clock_hz = std::array{10'000u, 12'500u, 16'700u}[i % 3];
+    options.mice[i].jitter_ns = 500;
+    options.mice[i].self_test_ms = static_cast<std::uint32_t>(400 + 13 * i);
+    options.mice[i].seed = 100 + i;
+  }
+  return options;
+}
+
 inline wire::DeviceCommand pulse_command(int rod, int amplitude, int duration_ms) {
   wire::DeviceCommand command{};
   command.kind = wire::kPulseCommand;

@@ -13,7 +13,13 @@ struct Bus : I2cBus {
   std::array<std::uint8_t, kMotors> running{};
   State state_ = kIdle;
   bool stuck = false;
+  bool chains = false;  // takes a second write with the first
 
+  bool chain(std::uint8_t address, const std::uint8_t* bytes, std::uint8_t size) override {
+    if (!chains) return false;
+    if (state_ == kIdle) write(address, bytes, size);
+    return true;
+  }
   void write(std::uint8_t address, const std::uint8_t* bytes, std::uint8_t size) override {
     EXPECT_NE(state_, kBusy);
     if (stuck) {
@@ -59,6 +65,25 @@ TEST(Haptics, APulseIsAsLongAsItWasAskedFor) {
   EXPECT_EQ(rig.bus.running[4], 99);
   rig.run(3);
   EXPECT_EQ(rig.bus.running[4], 0);
+}
+
+TEST(Haptics, ABusThatChainsWritesPlaysTheSameAndMissesTheSameDrivers) {
+  Rig rig;
+  rig.bus.chains = true;
+  rig.bus.attached = 0xFD;
+  rig.run(50);
+  EXPECT_EQ(rig.haptics.present(), 0xFD);
+  for (std::uint8_t rod = 0; rod < kMotors; ++rod) {
+    rig.haptics.pulse(rod, static_cast<std::uint8_t>(50 + rod), 20, rig.ms);
+  }
+  rig.run(8);
+  for (std::uint8_t rod = 0; rod < kMotors; ++rod) {
+    EXPECT_EQ(rig.bus.running[rod], rod == 1 ? 0 : 50 + rod);
+  }
+  rig.bus.attached = 0xFC;
+  rig.run(30);
+  EXPECT_EQ(rig.haptics.present(), 0xFC) << "found out where its motor was to stop";
+  EXPECT_FALSE(rig.haptics.safe());
 }
 
 TEST(Haptics, NoPulseIsLongerThanTheLongest) {

@@ -102,7 +102,7 @@ TEST_F(SoftI2cTest, ReadsEveryValue) {
     master.read(MotorBus::kExpander);
     run();
     ASSERT_EQ(master.state(), I2cBus::kIdle);
-    EXPECT_EQ(master.byte_read(), value);
+    EXPECT_EQ(master.byte(), value);
   }
   ASSERT_EQ(write(MotorBus::kMultiplexer, {1}), I2cBus::kIdle) << "and the bus is free";
   expect_at_rest();

@@ -64,6 +64,9 @@ class AvrController final : public Controller {
     }
     for (int rod = 0; rod < cabinet::kRods; ++rod) note_told(rod);
   }
+  void show_marks(std::uint8_t under) override {
+    sim_.motors().expander = static_cast<std::uint8_t>(~under);
+  }
   std::int64_t now_us() const override { return static_cast<std::int64_t>(sim_.now_us()); }
   cabinet::DeviceFraming framing() const override {
     return board_ == Board::mega32u4 ? cabinet::DeviceFraming::report

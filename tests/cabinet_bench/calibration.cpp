@@ -85,7 +85,8 @@ class Workshop {
   static void work(Place& place) {
     place.person.follow();
     const double turns = std::round(place.hand.angle / (2 * M_PI));
-    place.hand.move(0, turns * 2 * M_PI, kPutBackSeconds);
+    const double down = turns * 2 * M_PI + place.hand.draw(place.person.angle_error);
+    place.hand.move(0, down, kPutBackSeconds);
   }
   // Each person by a millisecond; false: all are done.
   bool all_move_on() {
@@ -103,7 +104,7 @@ class Workshop {
       poses[i] = {places_[i]->hand.slide, places_[i]->hand.angle};
     }
     table_.move(poses);
-    controller_.advance(table_.surfaces());
+    table_.pass(controller_);
     for (const Packet& packet : controller_.take_packets()) {
       frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { hear(frame); });
     }
@@ -132,6 +133,7 @@ class Workshop {
                           std::to_string(session.guide().step()) + "); ";
         continue;
       }
+      if (result.calibration.rods[i].index) ++result.marks;
       result.slide_rms = std::max(result.slide_rms, session.fit()->slide_rms);
       result.angle_rms = std::max(result.angle_rms, session.fit()->angle_rms);
     }

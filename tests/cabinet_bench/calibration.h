@@ -13,10 +13,11 @@ struct CalibrationResult {
   cabinet::Calibration calibration;
   double seconds = 0;                   // that the slowest person took
   double slide_rms = 0, angle_rms = 0;  // of the marks' residuals, of the worst rod [m], [rad]
+  int marks = 0;                        // rods whose index mark was found
   std::string problem;                  // why a rod was refused; empty: all fit
 };
 
-// Afterwards the rods are in the middle, feet down.
+// Afterwards the rods are in the middle, feet down as well as a person sees it.
 CalibrationResult calibrate(Controller& controller, Table& table);
 
 }  // namespace cabinet_bench

@@ -54,6 +54,9 @@ class Controller {
   // One millisecond, in which the surfaces move on evenly to where they are at its end. Throws
   // std::runtime_error where the firmware crashes.
   virtual void advance(const PerRod<Surface>& to) = 0;
+  // From now on: a bit for each rod whose index mark is under its switch. Until the first call no
+  // expander is attached.
+  virtual void show_marks(std::uint8_t under) = 0;
   virtual std::int64_t now_us() const = 0;
   virtual cabinet::DeviceFraming framing() const = 0;
   // What came to the PC since the last call, oldest first.

@@ -22,6 +22,7 @@ struct Options {
   double seconds = 600;
   double counts_per_mm = 0;  // 0: the usual of the board
   bool square = false;
+  bool no_marks = false, no_swings = false;
   int level = 4;
   std::uint64_t seed = 1;
   bool faults = false;
@@ -31,6 +32,13 @@ struct Options {
   std::vector<std::string> moves;
   std::string recording;
 };
+
+Table table_of(const Options& options, double counts_per_mm) {
+  // Marks mean nothing without a calibration that has seen them.
+  const bool marks = !options.square && !options.no_marks;
+  return {options.square ? Mounting::square : Mounting::drawn, marks ? Marks::drawn : Marks::none,
+          counts_per_mm, static_cast<std::uint32_t>(options.seed)};
+}
 
 class Rows {
  public:
@@ -88,18 +96,29 @@ void report(const std::string& board, const PulseCounts& pulses, Rows& rows) {
   rows.add(board, "pulse_latency_max", 1e-3 * latency.most, "ms");
 }
 
+void report(const std::string& board, const MatchResult& match, Rows& rows) {
+  const double minutes = static_cast<double>(match.marks.ticks) / 60e3;  // of rods
+  const double passes = static_cast<double>(match.marks.passes) / minutes,
+               slow = static_cast<double>(match.marks.slow) / minutes;
+  fmt::print(
+      "  index marks: rods at their near stop {:.1f} % of the time; of each rod {:.2f} passes a "
+      "minute, {:.2f} slow; {} disagreed\n",
+      100 * static_cast<double>(match.marks.at_stop) / static_cast<double>(match.marks.ticks),
+      passes, slow, match.disagreements);
+  rows.add(board, "mark_passes_slow", slow, "1/min");
+}
+
 bool play(Board board, const Options& options, Rows& rows) {
   const std::string name = name_of(board);
   const double counts_per_mm =
       options.counts_per_mm > 0 ? options.counts_per_mm : usual_counts_per_mm(board);
   Stopwatch watch;
   const auto controller = power_on(board);
-  Table table(options.square ? Mounting::square : Mounting::drawn, counts_per_mm,
-              static_cast<std::uint32_t>(options.seed));
+  Table table = table_of(options, counts_per_mm);
   fmt::print("{}, {:.1f} counts/mm\n", name, counts_per_mm);
   cabinet::Calibration calibration = cabinet::nominal_calibration(counts_per_mm);
   if (options.square) {
-    for (int ms = 0; ms < 4000; ++ms) controller->advance(table.surfaces());
+    for (int ms = 0; ms < 4000; ++ms) table.pass(*controller);
   } else {
     const CalibrationResult made = calibrate(*controller, table);
     if (!made.problem.empty()) {
@@ -107,14 +126,17 @@ bool play(Board board, const Options& options, Rows& rows) {
       return false;
     }
     calibration = made.calibration;
-    fmt::print("  calibrated in {:.0f} s; marks off by {:.2f} mm, {:.2f} deg rms (worst rod)\n",
-               made.seconds, 1e3 * made.slide_rms, kDegrees * made.angle_rms);
+    fmt::print(
+        "  calibrated in {:.0f} s; places off by {:.2f} mm, {:.2f} deg rms (worst rod); {} index "
+        "marks found\n",
+        made.seconds, 1e3 * made.slide_rms, kDegrees * made.angle_rms, made.marks);
   }
   std::fflush(stdout);
   MatchOptions wanted;
   wanted.most_seconds = options.seconds;
   wanted.level = options.level;
   wanted.seed = options.seed;
+  wanted.swings = !options.no_swings;
   const MatchResult match = play_match(*controller, table, calibration, wanted);
   fmt::print("  {:.0f} s of a match, {}:{}{}; hands up to {:.1f} m/s, {:.0f} rad/s\n",
              match.seconds, match.score[0], match.score[1], match.over ? ", over" : "",
@@ -127,6 +149,7 @@ bool play(Board board, const Options& options, Rows& rows) {
   report(name, "free of the ball", match.free, rows);
   report(name, "ideal: given the truth", match.ideal, rows);
   report(name, match.pulses, rows);
+  if (table.has_marks()) report(name, match, rows);
   fmt::print("  {} frames: {} lost, {} bad, {} overflows, {} impossible, {} line errors\n",
              match.frames, match.lost, match.bad, match.overflows, match.impossible,
              match.line_errors);
@@ -183,8 +206,7 @@ int record(const Options& options) {
   const Board board = *board_named(options.boards.front());
   const double counts_per_mm =
       options.counts_per_mm > 0 ? options.counts_per_mm : usual_counts_per_mm(board);
-  Table table(options.square ? Mounting::square : Mounting::drawn, counts_per_mm,
-              static_cast<std::uint32_t>(options.seed));
+  Table table = table_of(options, counts_per_mm);
   std::vector<Motion> motions;
   for (const std::string& move : options.moves) motions.push_back(*motion_of(move));
   if (!write(options.recording, record_motions(*power_on(board), table, motions))) {
@@ -227,6 +249,10 @@ int main(int argc, char** argv) {
   app.add_option("--counts-per-mm", options.counts_per_mm, "of the sensors")
       ->check(CLI::Range(1.0, 472.0));
   app.add_flag("--square", options.square, "sensors without errors, and no calibration");
+  app.add_flag("--no-marks", options.no_marks, "rods without index marks");
+  app.add_flag("--no-swings", options.no_swings,
+               "hands do not pull their rods to the near stop, and swing them past their marks, "
+               "before the match and after each goal");
   app.add_option("--level", options.level, "of the computer players that move the hands")
       ->check(CLI::Range(1, 5));
   app.add_option("--seed", options.seed);

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numeric>
 #include <stdexcept>
 
 #include "cabinet/device_haptics.h"
-#include "foosball/computer_player.h"
-#include "foosball/rod_motion.h"
+#include "hands.h"
+#include "mark_watch.h"
 #include "os/file_descriptor.h"
 #include "pulse_watch.h"
 #include "server/server.h"
@@ -17,20 +18,10 @@
 namespace cabinet_bench {
 namespace {
 
-constexpr foosball::Layout kLayout = foosball::Layout::tournament;
 constexpr std::int64_t kSettleMs = 50;  // frames, before a hand moves
 
 void require(bool held, const char* what) {
   if (!held) throw std::runtime_error(what);
-}
-
-foosball::RodState step_rod(const foosball::MatchView& view, std::size_t rod,
-                            const foosball::RodState& now, const foosball::RodTarget& target) {
-  const foosball::TableSpec& table = foosball::table_spec(kLayout);
-  const foosball::RodSpec& spec = table.rods[rod];
-  const auto& body = view.bodies[static_cast<std::size_t>(spec.team)];
-  return foosball::step_rod(spec, foosball::rod_inertia(table, spec, body, view.tuning), now,
-                            target);
 }
 
 // The cable between the controller and the server, on which a packet takes as long as the PC needs
@@ -94,39 +85,6 @@ class Cable {
   std::int64_t arrived_us_ = 0;
 };
 
-// Both teams' hands: where computer players want the rods, as fast as a hand can.
-class Hands {
- public:
-  Hands(const MatchOptions& options, const PerRod<Pose>& begin) {
-    for (int team = 0; team < foosball::kTeams; ++team) {
-      foosball::ComputerPlayerDesc desc;
-      desc.team = team;
-      desc.seed = options.seed + static_cast<std::uint64_t>(team);
-      desc.player.level = options.level;
-      players_.emplace_back(desc);
-    }
-    for (std::size_t rod = 0; rod < begin.size(); ++rod) {
-      rods_[rod] = {begin[rod].slide, begin[rod].angle, 0, 0};
-      targets_[rod] = {begin[rod].slide, begin[rod].angle, 0, 0, true};
-    }
-  }
-  PerRod<Pose> move(const foosball::MatchView& view) {
-    for (foosball::ComputerPlayer& player : players_) player.play(view, targets_);
-    PerRod<Pose> poses;
-    for (std::size_t rod = 0; rod < poses.size(); ++rod) {
-      rods_[rod] = step_rod(view, rod, rods_[rod], targets_[rod]);
-      poses[rod] = {rods_[rod].slide, rods_[rod].angle};
-    }
-    return poses;
-  }
-  const foosball::RodState& rod(std::size_t i) const { return rods_[i]; }
-
- private:
-  std::vector<foosball::ComputerPlayer> players_;
-  foosball::RodTargets targets_{};
-  std::array<foosball::RodState, foosball::kRods> rods_{};
-};
-
 class MatchRun {
  public:
   MatchRun(Controller& controller, Table& table, const cabinet::Calibration& calibration,
@@ -182,7 +140,8 @@ class MatchRun {
   void tick(bool played) {
     const PerRod<Pose> to = played ? hands_.move(server_->match().view()) : table_.poses();
     table_.move(to);
-    controller_.advance(table_.surfaces());
+    if (played) marks_.moved(table_);
+    table_.pass(controller_);
     if (played) note_rods();
     for (const MotorWrite& write : controller_.take_motor_writes()) pulses_.written(write);
     cable_.carry();
@@ -235,6 +194,9 @@ class MatchRun {
     const std::uint64_t hits = result_.pulses.hits;
     result_.pulses = pulses_.counts();
     result_.pulses.hits = hits;
+    result_.marks = marks_.counts();
+    result_.disagreements = std::accumulate(counted.index_disagreements.begin(),
+                                            counted.index_disagreements.end(), std::uint64_t{0});
   }
 
   Controller& controller_;
@@ -247,6 +209,7 @@ class MatchRun {
   std::unique_ptr<server::Server> server_;
   const cabinet::DeviceSource* source_ = nullptr;
   PulseWatch pulses_;
+  MarkWatch marks_;
   MatchResult result_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "cabinet/calibration.h"
 #include "controller.h"
+#include "mark_watch.h"
 #include "table.h"
 
 namespace cabinet_bench {
@@ -40,6 +41,7 @@ struct MatchOptions {
   double most_seconds = 600;
   int level = 4;
   std::uint64_t seed = 1;
+  bool swings = true;  // people re-zero their rods before the match and after each goal
 };
 struct MatchResult {
   double seconds = 0;
@@ -52,9 +54,11 @@ struct MatchResult {
   double fastest_slide = 0, fastest_angle = 0;  // of the hands [m/s], [rad/s]
   std::uint64_t frames = 0, lost = 0, bad = 0, overflows = 0, impossible = 0, line_errors = 0;
   PulseCounts pulses;
+  MarkCounts marks;
+  std::uint64_t disagreements = 0;  // of marks with the counts
 };
 
-// From rods in the middle, feet down.
+// From rods in the middle, whose feet the server takes to be straight down.
 MatchResult play_match(Controller& controller, Table& table,
                        const cabinet::Calibration& calibration, const MatchOptions& options);
 

@@ -12,7 +12,7 @@ constexpr int kSetUpMs = 3000, kRestMs = 300;
 void pass(Controller& controller, Table& table, const PerRod<Pose>& poses,
           std::vector<std::uint8_t>& recording) {
   table.move(poses);
-  controller.advance(table.surfaces());
+  table.pass(controller);
   for (const Packet& packet : controller.take_packets()) {
     recording.insert(recording.end(), packet.bytes.begin(), packet.bytes.end());
   }

@@ -120,6 +120,7 @@ class Rp2040Controller final : public Controller {
     take(json::parse(script_.ask(request_.dump())));
     request_ = json::object();
   }
+  void show_marks(std::uint8_t under) override { request_["marks"] = under; }
   std::int64_t now_us() const override { return now_us_; }
   cabinet::DeviceFraming framing() const override { return cabinet::DeviceFraming::report; }
   std::vector<Packet> take_packets() override { return std::exchange(packets_, {}); }

@@ -1,14 +1,33 @@
 #include "table.h"
 
 #include <cmath>
+#include <numeric>
+
+#include "foosball/table.h"
 
 namespace cabinet_bench {
 
-Table::Table(Mounting mounting, double counts_per_mm, std::uint32_t seed) : random_(seed) {
+Table::Table(Mounting mounting, Marks marks, double counts_per_mm, std::uint32_t seed)
+    : marks_(marks), random_(seed) {
   for (cabinet_test::Mount& mount : mounts_) {
     mount.counts_per_mm = counts_per_mm;
     if (mounting == Mounting::drawn) mount = cabinet_test::drawn_mount(random_, counts_per_mm);
   }
+  if (has_marks()) draw_marks(seed);
+}
+
+// By numbers of their own: a table with marks has the sensors of one without.
+void Table::draw_marks(std::uint32_t seed) {
+  std::mt19937 random(seed + 1000);
+  for (std::size_t rod = 0; rod < mounts_.size(); ++rod) {
+    mounts_[rod].mark = cabinet_test::drawn_mark(random, near_stop(rod));
+    mounts_[rod].mark.angle /= 4;
+  }
+}
+
+double Table::near_stop(std::size_t rod) {
+  const foosball::RodSpec& spec = foosball::table_spec(foosball::Layout::tournament).rods[rod];
+  return -foosball::push_sign(spec.team) * spec.slide_limit;
 }
 
 void Table::move(const PerRod<Pose>& to) {
@@ -22,9 +41,18 @@ void Table::move(const PerRod<Pose>& to) {
         mounts_[rod], poses_[rod].slide, poses_[rod].angle, to[rod].slide, to[rod].angle);
     surfaces_[rod].slide += scale_[rod].slide * passed.slide;
     surfaces_[rod].spin += scale_[rod].spin * passed.spin;
+    const bool on = cabinet_test::switched_on(mounts_[rod].mark, under(rod),
+                                              std::midpoint(poses_[rod].slide, to[rod].slide),
+                                              std::midpoint(poses_[rod].angle, to[rod].angle));
+    under_ = static_cast<std::uint8_t>((under_ & ~(1u << rod)) | (on ? 1u : 0u) << rod);
   }
   ++ms_;
   poses_ = to;
+}
+
+void Table::pass(Controller& controller) const {
+  if (has_marks()) controller.show_marks(under_);
+  controller.advance(surfaces_);
 }
 
 void Table::forget_turns() {

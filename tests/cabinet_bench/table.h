@@ -17,25 +17,40 @@ enum class Mounting {
   drawn,   // tilt and lean up to 4 degrees, 3 % of scale, 0.15 mm of eccentricity, 0.4 % of noise
 };
 
+enum class Marks {
+  none,
+  drawn,  // a magnet a rod, up to an eighth of a turn from the feet, with a switch at the near stop
+};
+
 class Table {
  public:
-  Table(Mounting mounting, double counts_per_mm, std::uint32_t seed);
+  Table(Mounting mounting, Marks marks, double counts_per_mm, std::uint32_t seed);
 
   // The hands move the rods in one millisecond.
   void move(const PerRod<Pose>& to);
+  // That millisecond on the controller, whose switches are as they were in the middle of it.
+  void pass(Controller& controller) const;
   // The rods are taken for feet down after whole turns; nothing passes under a sensor.
   void forget_turns();
 
   const PerRod<Pose>& poses() const { return poses_; }
   const PerRod<Surface>& surfaces() const { return surfaces_; }
+  bool has_marks() const { return marks_ == Marks::drawn; }
+  bool under(std::size_t rod) const { return (under_ >> rod & 1) != 0; }
+  // Towards the person, along the rod.
+  static double near_stop(std::size_t rod);
 
  private:
   static constexpr int kNoiseMs = 5;  // a sensor's error of scale lasts so long
 
+  void draw_marks(std::uint32_t seed);
+
+  Marks marks_;
   PerRod<cabinet_test::Mount> mounts_;
   PerRod<Pose> poses_{};
   PerRod<Surface> surfaces_{}, scale_{};
   std::mt19937 random_;
+  std::uint8_t under_ = 0;
   int ms_ = 0;
 };
 

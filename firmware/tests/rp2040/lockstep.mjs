@@ -1,6 +1,6 @@
 // The simulated RP2040 in the hands of another program: each line that comes in is a millisecond, each
 // line that goes out what happened in it. In: {to: the surface under each sensor [counts since power-on;
-// slide and spin of each rod], commands: [hex], troubles: [{kind, rod, ms}]}. Out: {now, packets: [[us,
+// slide and spin of each rod], marks: those under their switches, commands: [hex], troubles: [{kind, rod, ms}]}. Out: {now, packets: [[us,
 // hex]], motors: [[us, rod, amplitude]], told: [[rod, us, slide, spin]], resets}.
 import { readSync, writeSync } from 'node:fs';
 import { Rig, kRods } from './rig.mjs';
@@ -82,6 +82,10 @@ function step(request) {
   from = to;
   to = request.to;
   began = end;
+  if (request.marks !== undefined) {
+    motors.expander = true;
+    motors.under = request.marks;
+  }
   for (const hex of request.commands ?? []) commands.push(Buffer.from(hex, 'hex'));
   for (const trouble of request.troubles ?? []) {
     troubles[trouble.kind](trouble);

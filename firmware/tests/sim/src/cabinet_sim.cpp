@@ -12,6 +12,7 @@
 
 #include "avr_board.h"
 #include "more_endpoints.h"
+#include "two_wire.h"
 #include "usb_host.h"
 
 namespace firmware_sim {
@@ -98,6 +99,7 @@ struct CabinetSim::Impl {
   avr_ioport_t* i2c;
   avr_ioport_t* motors_port;
   MotorBus motors;
+  TwoWire two_wire;
   bool drove_high = false;
   std::unique_ptr<MoreEndpoints> more_endpoints;
   std::unique_ptr<UsbHost> host;
@@ -111,7 +113,10 @@ struct CabinetSim::Impl {
       : pins(pins_of(kind)),
         board(elf, pins.mcu, pins.clock_port, pins.data_port),
         i2c(board.find_port(pins.i2c_port)),
-        motors_port(board.find_port(pins.motors_port)) {
+        motors_port(board.find_port(pins.motors_port)),
+        two_wire(board.avr(), {[this] { drive_motors_as_they_are(); },
+                               [this] { return !two_wire.clock_low() && !motors.pulls_clock(); },
+                               [this] { return !two_wire.data_low() && !motors.pulls_data(); }}) {
     avr_t* avr = board.avr();
     for (int rod = 0; rod < kMice; ++rod) {
       Socket& socket = sockets[static_cast<std::size_t>(rod)];
@@ -130,6 +135,7 @@ struct CabinetSim::Impl {
         host->detached();
         more_endpoints->reset();
       }
+      if (two_wire.present()) two_wire.reset();
       begin_timers();
     };
     if (kind == Board::mega32u4) {
@@ -216,17 +222,18 @@ struct CabinetSim::Impl {
     cabinet.drive_motors(cabinet.board.memory(cabinet.i2c->r_ddr), value);
   }
   static avr_cycle_count_t on_motors(avr_t*, avr_cycle_count_t, void* parameter) {
-    auto& cabinet = *static_cast<Impl*>(parameter);
-    cabinet.drive_motors(cabinet.board.memory(cabinet.i2c->r_ddr),
-                         cabinet.board.memory(cabinet.i2c->r_port));
+    static_cast<Impl*>(parameter)->drive_motors_as_they_are();
     return 0;
+  }
+  void drive_motors_as_they_are() {
+    drive_motors(board.memory(i2c->r_ddr), board.memory(i2c->r_port));
   }
   void drive_motors(unsigned direction, unsigned port) {
     const unsigned lines = 1u << pins.i2c_clock | 1u << pins.i2c_data;
     if ((direction & port & lines) != 0) drove_high = true;
     const unsigned low = direction & ~port;
-    motors.drive(ns_of(board.cycle()), (low >> pins.i2c_clock & 1) != 0,
-                 (low >> pins.i2c_data & 1) != 0);
+    motors.drive(ns_of(board.cycle()), (low >> pins.i2c_clock & 1) != 0 || two_wire.clock_low(),
+                 (low >> pins.i2c_data & 1) != 0 || two_wire.data_low());
     board.set_line(i2c, pins.i2c_clock, !motors.pulls_clock());
     board.set_line(i2c, pins.i2c_data, !motors.pulls_data());
     if (const auto event = motors.next_event_ns()) {

@@ -99,7 +99,7 @@ void MotorBus::on_fall(std::uint64_t now_ns) {
 bool MotorBus::take_byte(std::uint64_t now_ns) {
   if (!addressed_) {
     addressed_ = true;
-    return take_address();
+    return take_address(now_ns);
   }
   if (part_ == Part::none) return false;
   if (part_ == Part::multiplexer) new_channels_ = shift_;
@@ -116,7 +116,7 @@ bool MotorBus::take_byte(std::uint64_t now_ns) {
   return true;
 }
 
-bool MotorBus::take_address() {
+bool MotorBus::take_address(std::uint64_t now_ns) {
   const int address = shift_ >> 1;
   const bool reading = (shift_ & 1) != 0;
   if (address == kMultiplexer && multiplexer && !reading) part_ = Part::multiplexer;
@@ -124,6 +124,7 @@ bool MotorBus::take_address() {
     part_ = Part::driver;
   if (address == kExpander && expander && reading) part_ = Part::expander;
   sends_ = part_ == Part::expander;
+  if (sends_) reads_ns_.push_back(now_ns);
   return part_ != Part::none;
 }
 

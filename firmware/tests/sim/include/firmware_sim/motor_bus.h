@@ -31,7 +31,8 @@ class MotorBus {
     int rod = 0;
     std::uint8_t address = 0, value = 0;
   };
-  const std::vector<Write>& writes() const { return writes_; }  // to the drivers
+  const std::vector<Write>& writes() const { return writes_; }              // to the drivers
+  const std::vector<std::uint64_t>& reads_ns() const { return reads_ns_; }  // of the expander
   std::uint8_t running(int rod) const { return registers_[static_cast<std::size_t>(rod)][2]; }
   std::uint8_t driver_register(int rod, std::uint8_t address) const {
     return registers_[static_cast<std::size_t>(rod)][address];
@@ -56,7 +57,7 @@ class MotorBus {
   void on_rise(std::uint64_t now_ns);
   void on_fall(std::uint64_t now_ns);
   bool take_byte(std::uint64_t now_ns);
-  bool take_address();
+  bool take_address(std::uint64_t now_ns);
   void require(bool good, const char* what, std::uint64_t now_ns);
 
   bool master_clock_low_ = false, master_data_low_ = false;
@@ -76,6 +77,7 @@ class MotorBus {
 
   std::array<std::array<std::uint8_t, 256>, 8> registers_{};
   std::vector<Write> writes_;
+  std::vector<std::uint64_t> reads_ns_;
   std::vector<std::string> violations_;
   std::uint64_t clocks_ = 0;
   std::uint64_t rose_ns_ = 0, fell_ns_ = 0, data_ns_ = 0, start_ns_ = 0, stop_ns_ = 0;
