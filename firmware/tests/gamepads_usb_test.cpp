@@ -281,7 +281,8 @@ TEST_F(GamepadsOf32u4, AWatchdogResetLeavesThemGamepads) {
 class GamepadsUnderLoad : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Clocks, GamepadsUnderLoad, testing::Values(10'000u, 12'500u, 16'700u));
 
-// Eight mice that move, at 200 reports a second each; then 100 pulses a second besides.
+// Eight mice that move, at 200 reports a second each, and index marks; then 100 pulses a second
+// besides.
 TEST_P(GamepadsUnderLoad, NoCountIsLostFramesKeepTheirRateAndGamepadsThatOfTheMice) {
   CabinetOptions options;
   for (std::size_t i = 0; i < kMice; ++i) {
@@ -290,6 +291,7 @@ TEST_P(GamepadsUnderLoad, NoCountIsLostFramesKeepTheirRateAndGamepadsThatOfTheMi
     options.mice[i].seed = 100 + i;
   }
   PadCabinet cabinet(options);
+  cabinet.sim.motors().expander = 0xFF;  // no magnet is near
   ASSERT_TRUE(cabinet.start());
   ASSERT_TRUE(cabinet.switch_gamepads(true));
   ASSERT_TRUE(cabinet.wait_for_present(0xFF));
@@ -331,7 +333,7 @@ TEST_P(GamepadsUnderLoad, NoCountIsLostFramesKeepTheirRateAndGamepadsThatOfTheMi
                 static_cast<std::uint16_t>(frames.good[i - 1].sequence + 1));
     }
     EXPECT_GE(static_cast<double>(frames.good.size()), kSeconds * (pulses ? 880 : 990));
-    EXPECT_GE(fewest, pulses ? 120 : 190);  // measured 145, 194
+    EXPECT_GE(fewest, pulses ? 120 : 180);  // measured 132, 190
     EXPECT_LE(longest_us, 2000u);
   }
   cabinet.settle();
