@@ -64,6 +64,7 @@ MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t no
   switch (parser_.byte(value, good, receiver_.after_gap())) {
     case PacketParser::kMovement:
       heard_ms_ = now_ms;
+      count_answer();
       return kMovement;
     case PacketParser::kResync:
       return kResync;
@@ -71,6 +72,15 @@ MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t no
       break;
   }
   return kNone;
+}
+
+void MouseLink::count_answer() {
+  if (!answering_) {
+    answers_ = 0;
+  } else if (movement().slide != 0 || movement().spin != 0) {
+    ++answers_;
+  }
+  answering_ = false;
 }
 
 void MouseLink::on_reply(uint8_t value, uint16_t now_ms) {
@@ -87,11 +97,13 @@ void MouseLink::restart() {
   asking_ = false;
   script_at_ = kAfterReset;
   tries_ = 0;
+  answers_ = 0;
   begin(kScript[script_at_]);
 }
 
 void MouseLink::acknowledged(uint16_t now_ms) {
   tries_ = 0;
+  answering_ = asking_;
   if (asking_) {
     stream(now_ms);
     return;
@@ -146,6 +158,7 @@ void MouseLink::give_up(uint16_t now_ms) {
   present_ = false;
   asking_ = false;
   tries_ = 0;
+  answers_ = 0;
   deadline_ms_ = static_cast<uint16_t>(now_ms + kRetryMs);
 }
 
@@ -164,6 +177,10 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
       return kNone;
     }
     parser_.expire();
+    return kResync;
+  }
+  if (answers_ >= kMostAnswers) {
+    restart();
     return kResync;
   }
   if (passed(now_ms, static_cast<uint16_t>(heard_ms_ + kSilenceMs)) && !receiver_.busy()) {
@@ -202,13 +219,9 @@ MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) 
         state_ = kReply;
         deadline_ms_ = static_cast<uint16_t>(now_ms + kReplyMs);
       } else if (passed(now_ms, deadline_ms_)) {
-        lines_.release(mouse_);
-        // One that is not there is tried again later, one that was there just now at once.
-        if (present_) {
-          try_again(now_ms);
-        } else {
-          give_up(now_ms);
-        }
+        // Not there, or in its self-test: asked again at the end of that, it would answer and
+        // forget to say that it knows nothing any more. A reset it tells of.
+        give_up(now_ms);
       }
       break;
     case kReply:

@@ -4,7 +4,8 @@
 //
 // A mouse at rest sends nothing, so one that is silent is asked for its data (EB): the answer
 // carries the movement since the last packet, hence loses no count, and no answer means that it is
-// gone.
+// gone. One that moves and only says so when it is asked has begun again unheard, and is set up
+// once more.
 #ifndef FIRMWARE_CORE_MOUSE_LINK_H
 #define FIRMWARE_CORE_MOUSE_LINK_H
 
@@ -60,11 +61,15 @@ class MouseLink {
   static const uint16_t kSilenceMs = 250;   // then a streaming mouse is asked whether it is there
   static const uint16_t kUnfinishedMs = 5;  // then an unfinished packet is given up
   static const uint8_t kTries = 3;          // of each command
+  // Answers with movement, and no packet of its own between: of a mouse that streams one in fifty
+  // has some, that of the few milliseconds before the question.
+  static const uint8_t kMostAnswers = 3;
 
  private:
   Event error() const;
   Event on_byte(uint8_t value, bool good, uint16_t now_ms);
   Event on_stream_byte(uint8_t value, bool good, uint16_t now_ms);
+  void count_answer();
   void on_reply(uint8_t value, uint16_t now_ms);
   void restart();
   void begin(uint8_t command);
@@ -82,7 +87,9 @@ class MouseLink {
   PacketParser parser_;
   State state_ = kAbsent;
   bool present_ = false;
-  bool asking_ = false;  // the command under way is EB, not the script's
+  bool asking_ = false;     // the command under way is EB, not the script's
+  bool answering_ = false;  // the next packet is the answer to it
+  uint8_t answers_ = 0;     // with movement, since its last packet that was not asked for
   uint8_t script_at_ = 0;
   uint8_t command_ = 0;
   uint8_t tries_ = 0;

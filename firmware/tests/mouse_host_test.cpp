@@ -133,6 +133,56 @@ TEST(HotPlug, AVanishedMouseIsNoticedAndItsCountsStand) {
   EXPECT_EQ(rig.frame().spin[3], static_cast<std::uint16_t>(-77));
 }
 
+// How long it takes until a mouse is enabled again whose plug has jumped, while its rod moves.
+int ms_to_enabled(HostRig& rig, const MouseOptions& options, bool announced) {
+  SimMouse& mouse = rig.mice[3];
+  mouse.set_options(options);
+  mouse.unplug();
+  if (!announced) mouse.lose_announcement();
+  rig.advance_us(5000);
+  mouse.replug();
+  for (int ms = 0; ms < 2000; ++ms) {
+    if (mouse.enabled() && rig.present() == kAll) return ms;
+    mouse.move(1, 0);
+    rig.advance_us(1000);
+  }
+  return 2000;
+}
+
+// It ends its self-test while the host asks whether it is there: an answer would make it forget to
+// say that it has begun again. The shortest self-tests are of 300 ms, and the host asks 250 ms
+// after the last packet.
+TEST(HotPlug, AMouseIsEnabledAgainWheneverItsSelfTestEnds) {
+  HostRig rig;
+  ASSERT_TRUE(all_present(rig));
+  for (const bool announced : {true, false}) {
+    for (std::uint32_t after_ms = 0; after_ms < 50; ++after_ms) {
+      MouseOptions options;
+      options.self_test_ms = 300 + after_ms;
+      EXPECT_LT(ms_to_enabled(rig, options, announced), 1600)
+          << "self-test of " << options.self_test_ms << " ms, announced: " << announced;
+      settle(rig);
+      options.self_test_ms = 300;
+      rig.advance_us(5000ull * after_ms);
+      EXPECT_LT(ms_to_enabled(rig, options, announced), 1600)
+          << "after " << 5 * after_ms << " ms at rest, announced: " << announced;
+      EXPECT_EQ(rig.mice[3].rate(), 200);
+      settle(rig);
+    }
+  }
+}
+
+TEST(HotPlug, AMouseThatMovesOnlyWhenAskedIsSetUpAgainAndThatIsCounted) {
+  MouseOptions options;
+  options.self_test_ms = 100;  // unheard: before it is asked at all
+  options.counts_disabled = true;
+  HostRig rig;
+  ASSERT_TRUE(all_present(rig));
+  (void)rig.frame();
+  EXPECT_LT(ms_to_enabled(rig, options, false), 1600);
+  EXPECT_EQ(rig.frame().flags, 1) << "a re-synchronisation";
+}
+
 TEST(HotPlug, AMouseIsBackWithinTwoSecondsAndDoesNotJump) {
   HostRig rig;
   ASSERT_TRUE(all_present(rig));

@@ -35,7 +35,7 @@ void SimMouse::set_options(const MouseOptions& options) {
 }
 
 void SimMouse::move(int slide_counts, int spin_counts) {
-  if (!enabled_) return;
+  if (!enabled_ && !options_.counts_disabled) return;
   pending_slide_ += slide_counts;
   pending_spin_ += spin_counts;
 }

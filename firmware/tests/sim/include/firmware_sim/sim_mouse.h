@@ -24,6 +24,7 @@ struct MouseOptions {
   bool splits_overflow = true;  // movement beyond nine bits waits for the next packet; otherwise
                                 // it is lost and the overflow flag says so
   bool forgets_cut_packets = false;  // a command after a packet's first byte loses its counts
+  bool counts_disabled = false;      // answers EB with movement though it is not enabled
   std::uint64_t seed = 1;
 };
 
