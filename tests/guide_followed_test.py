@@ -227,6 +227,8 @@ class GuideFollowed(unittest.TestCase):
 
     def play(self, words):
         """Its window is shown for three seconds; returns the server's figures."""
+        if os.path.exists(self.inside('stats.json')):
+            os.remove(self.inside('stats.json'))
         done = self.run_in_folder([*words, '--seconds', '3', '--mute'])
         self.assertEqual(done.returncode, 0, f'{words}: {done.stdout}{done.stderr}')
         with open(self.inside('stats.json'), encoding='utf-8') as file:

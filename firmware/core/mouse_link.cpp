@@ -67,6 +67,7 @@ MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t no
       count_answer();
       return kMovement;
     case PacketParser::kResync:
+      answering_ = false;
       return kResync;
     case PacketParser::kNone:
       break;
@@ -177,6 +178,7 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
       return kNone;
     }
     parser_.expire();
+    answering_ = false;
     return kResync;
   }
   if (answers_ >= kMostAnswers) {
@@ -219,9 +221,14 @@ MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) 
         state_ = kReply;
         deadline_ms_ = static_cast<uint16_t>(now_ms + kReplyMs);
       } else if (passed(now_ms, deadline_ms_)) {
-        // Not there, or in its self-test: asked again at the end of that, it would answer and
-        // forget to say that it knows nothing any more. A reset it tells of.
-        give_up(now_ms);
+        // One that was there just now may be in its self-test: asked once more at the end of that,
+        // it would answer and forget to say that it knows nothing any more. So it is told all
+        // again.
+        if (present_) {
+          restart();
+        } else {
+          give_up(now_ms);
+        }
       }
       break;
     case kReply:

@@ -33,6 +33,10 @@ inline bool take_settings(const wire::DeviceCommand& command, Settings& settings
       settings.ps2 == command.ps2 && settings.switches == command.switches) {
     return false;
   }
+  if (settings.resolution != command.resolution) {  // what was measured was counts of before
+    for (StickScale& stick : settings.sticks) stick = StickScale();
+    settings.slide_reversed = settings.spin_reversed = 0;
+  }
   settings.resolution = command.resolution;
   settings.brightness = command.brightness;
   settings.ps2 = command.ps2;

@@ -100,7 +100,9 @@ UsbAnswer UsbRequests::status(const UsbSetup& setup) {
   const uint8_t recipient = setup.type & kRecipientMask;
   if (recipient > kOfEndpoint) return stall();
   if (recipient == kOfDevice) return send_byte(1, 2, setup);  // self-powered
-  if (recipient == kOfInterface) return send_byte(0, 2, setup);
+  if (recipient == kOfInterface) {
+    return has_interface(setup.index) ? send_byte(0, 2, setup) : stall();
+  }
   const uint8_t pad = pad_of_endpoint(setup.index);
   const bool halted = (setup.index == (0x80 | kReportEndpoint) && report_halted_) ||
                       (setup.index == kCommandEndpoint && command_halted_) ||

@@ -112,6 +112,11 @@ void UsbController::on_interrupt() {
     report_taken_ = true;
     report_pending_ = false;
   }
+  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {  // before what may halt or restart them
+    if ((buffers & pad_done(pad)) == 0) continue;
+    reg(kUsbBuffStatus) = pad_done(pad);
+    pads_ready_ = static_cast<uint8_t>(pads_ready_ | 1u << pad);
+  }
   if ((status & kBusReset) != 0) on_bus_reset();
   if ((buffers & kControlInDone) != 0) {
     reg(kUsbBuffStatus) = kControlInDone;
@@ -122,11 +127,6 @@ void UsbController::on_interrupt() {
     on_control_received();
   }
   if ((status & kSetupReceived) != 0) on_setup();
-  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {
-    if ((buffers & pad_done(pad)) == 0) continue;
-    reg(kUsbBuffStatus) = pad_done(pad);
-    pads_ready_ = static_cast<uint8_t>(pads_ready_ | 1u << pad);
-  }
   if ((buffers & kCommandDone) != 0) {
     reg(kUsbBuffStatus) = kCommandDone;
     on_command();

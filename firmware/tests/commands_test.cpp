@@ -93,6 +93,7 @@ TEST_P(Commands, EightAtOnceAllArriveWithAllMiceMovingToo) {
   std::printf("%s: eight at once, all mice moving: %lld us after the last was sent\n",
               name_of(GetParam()).c_str(),
               static_cast<long long>(last_us - cabinet.sim.last_sent_us()));
+  EXPECT_LE(last_us, cabinet.sim.last_sent_us() + 7000);  // measured 1055 and 6104
   ASSERT_TRUE(cabinet.settle());
   EXPECT_EQ(cabinet.take().errors(), 0u);
   expect_counts(cabinet.last(), shaker.moved);

@@ -111,6 +111,12 @@ TEST(Settings, ACommandForAStickChangesThatRodAloneAndSaysWhetherItDid) {
   EXPECT_TRUE(take_settings(command, settings));
   EXPECT_EQ(settings.switches, wire::kGamepads);
   EXPECT_EQ(settings.slide_reversed, 0x08);
+  // What was measured was in counts of the resolution of before.
+  EXPECT_TRUE(take_stick(stick_command(5, 900, 300, 0), settings));
+  command.resolution = static_cast<std::uint8_t>(settings.resolution + 1);
+  EXPECT_TRUE(take_settings(command, settings));
+  for (const StickScale& stick : settings.sticks) EXPECT_TRUE(same(stick, StickScale{}));
+  EXPECT_EQ(settings.slide_reversed, 0);
 }
 
 TEST(Settings, AnErasedSectorHasNone) {

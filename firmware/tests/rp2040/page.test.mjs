@@ -92,6 +92,8 @@ test('a rod that was pushed to both stops and turned once is measured, either wa
     go(-499, 401);
     assert.deepEqual(page.measuredStick(trace), { travel: slideSign * 1200, turn: spinSign * 401 });
   }
+  // One that was at its near stop already when the measuring began.
+  assert.deepEqual(page.measuredStick([[0, 0], [4000, 0], [0, 0], [0, 900]]), { travel: 4000, turn: 900 });
   assert.equal(page.measuredStick([]), null);
   assert.equal(page.measuredStick([[5, 7]]), null);
   assert.equal(page.measuredStick([[0, 0], [700, 0], [-500, 0]]), null, 'not turned');
