@@ -232,7 +232,7 @@ if [[ -n $mpi ]]; then
   [[ $(in_file) == 8 ]] || fail "ranks that were stopped: $(in_file) of 8 matches in the checkpoint"
 
   # A rank that is killed ends the job with it; what was finished is not lost, nor played again.
-  lost=(--quiet --matches 24 --max-minutes 0.15)
+  lost=(--quiet --matches 24 --max-minutes 0.3)
   "$match" "${lost[@]}" --json "$folder/none-lost.json" >/dev/null
   launch 3 "$mpi" "${lost[@]}" --checkpoint "$folder/lost" >/dev/null 2>&1 &
   job=$!
