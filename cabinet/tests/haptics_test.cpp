@@ -22,12 +22,13 @@ constexpr double kHard = 0.9, kSoft = 0.2;
 
 TEST(HapticPulse, GrowsWithTheImpulseAndEndsAtTheMotorsMost) {
   float before = 0.0f;
-  for (double impulse = kSoftestFelt; impulse <= kHardestFelt; impulse *= 1.3) {
+  for (double impulse = kSoftestFelt; impulse <= kHardestFelt;) {
     const auto pulse = haptic_pulse(3, impulse, kHard);
     ASSERT_TRUE(pulse) << impulse;
     EXPECT_EQ(pulse->rod, 3);
     EXPECT_GT(pulse->strength, before) << impulse;
     before = pulse->strength;
+    impulse *= 1.3;
   }
   EXPECT_EQ(haptic_pulse(0, 1e9, 1.0)->strength, 1.0f);
   EXPECT_EQ(haptic_pulse(0, std::numeric_limits<double>::infinity(), 1.0)->strength, 1.0f);

@@ -17,6 +17,7 @@ namespace firmware {
 // this step; wait_high(), at least 0.6 us; wait_low(), so that together with what a step does
 // between a clock is low for 1.3 us. The tests measure both.
 template <typename Wires>
+// NOLINTNEXTLINE(cppcoreguidelines-virtual-class-destructor): final, which it misses of templates
 class SoftI2c final : public I2cReadBus {
  public:
   void write(uint8_t address, const uint8_t* bytes, uint8_t size) override {

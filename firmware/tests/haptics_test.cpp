@@ -8,7 +8,7 @@ namespace firmware {
 namespace {
 
 // Each write takes one poll; drivers that are not attached do not acknowledge.
-struct Bus : I2cBus {
+struct Bus final : I2cBus {
   std::uint8_t attached = 0xFF, channel = 0;
   std::array<std::uint8_t, kMotors> running{};
   State state_ = kIdle;

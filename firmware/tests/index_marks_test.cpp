@@ -6,7 +6,7 @@ namespace firmware {
 namespace {
 
 // An expander, and drivers that take what they are told. A transfer takes `polls` looks at state().
-struct Bus : I2cReadBus {
+struct Bus final : I2cReadBus {
   bool attached = true, multiplexer = true;
   std::uint8_t pins = 0xFF;
   int polls = 1, left = 0, reads = 0, writes = 0;

@@ -23,7 +23,7 @@ TEST(Transpose8, IsATurnedMatrix) {
 }
 
 // Sensors that answer at once; time and electricity are those of the simulated board's tests.
-struct Bus : SensorBus {
+struct Bus final : SensorBus {
   struct Sensor {
     bool there = true;
     std::array<std::uint8_t, 128> registers{};
