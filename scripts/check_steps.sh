@@ -146,13 +146,17 @@ step_tsan() {
   sanitized_tests tsan threads_tests threads -E "$without|ServerProgram.(Refuses|Names)"
 }
 
-# Of the unity build only the sources that it generates are made: nothing is compiled.
-step_tidy() {
+# generate PRESET: the sources that a build generates are made; nothing is compiled.
+generate() {
   local generated
+  mapfile -t generated < <(ninja -C "build/$1" -t targets all | sed -En 's/^([^/].*\.(h|cpp)): CUSTOM_COMMAND$/\1/p')
+  build "$1" "$LOGS/$1-generate.log" "${generated[@]}"
+}
+
+step_tidy() {
   configure clang-debug "$LOGS/clang-debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
-  mapfile -t generated < <(ninja -C build/clang-debug -t targets all |
-    sed -En 's/^([^/].*\.(h|cpp)): CUSTOM_COMMAND$/\1/p')
-  build clang-debug "$LOGS/clang-debug-generate.log" "${generated[@]}"
+  generate clang-debug
+  generate clang # step clang has built a part of it alone
   python3 scripts/tidy.py --unity build/clang-debug --build build/clang | tee "$LOGS/tidy.all"
   tail -n 1 "$LOGS/tidy.all" >"$LOGS/tidy.said"
 }

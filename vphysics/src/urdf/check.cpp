@@ -209,7 +209,9 @@ class Checker {
       note(joint, "the joint has no <limit>, and moves without one");
       limit = joint.InsertNewChildElement("limit");
       limit->SetAttribute("lower", written(-kUrdfUnbounded).c_str());
-      limit->SetAttribute("upper", written(kUrdfUnbounded).c_str());
+      for (const char* bound : {"upper", "effort", "velocity"}) {
+        limit->SetAttribute(bound, written(kUrdfUnbounded).c_str());
+      }
     }
     attributes(*limit, {"lower", "upper", "effort", "velocity"});
     const double lower = number(*limit, "lower", Need::optional);
@@ -224,10 +226,8 @@ class Checker {
     for (const char* bound : {"effort", "velocity"}) {
       const double most = number(*limit, bound, Need::optional);
       if (limit->Attribute(bound) && most >= 0.0) continue;
-      if (limit->GetLineNum() > 0) {  // it stands in the file
-        note(*limit, std::string(bound) + (most < 0.0 ? " is negative" : " is not given") +
-                         ", and taken as unlimited");
-      }
+      note(*limit, std::string(bound) + (most < 0.0 ? " is negative" : " is not given") +
+                       ", and taken as unlimited");
       limit->SetAttribute(bound, written(kUrdfUnbounded).c_str());
     }
   }

@@ -17,7 +17,7 @@
 //                              too, of a controller with USB of its own
 //   8  u16  travel             stick: slide counts from stop to stop, kMinStickCounts or more;
 //                              0: by the table's dimensions
-//  10  u16  turn               stick: spin counts of a whole turn, likewise
+//  10  u16  turn               stick: spin counts of a whole turn, in the same bounds
 //  12  u16  reserved           0
 //  14  u16  crc                CRC-16/CCITT-FALSE over bytes 0..13
 // What a kind does not use is 0. Over USB HID: the first bytes of one 64-byte output report, the
