@@ -51,6 +51,7 @@ LAYERS = {
     'wire/': 'wire',
     'wire/include/wire/device_command.h': 'device-frame',
     'wire/include/wire/device_frame.h': 'device-frame',
+    'wire/include/wire/device_settings.h': 'device-frame',
     'cabinet/': 'cabinet',
     'cabinet/include/cabinet/hand.h': 'hand',
     'cabinet/include/cabinet/haptics.h': 'hand',

@@ -151,7 +151,7 @@ test('counts of a rod that is moved are those of the firmware, however the line 
     await hear(port, recording, piece);
     page.later(1000);
     assert.equal(page.id('state').textContent, 'The ATmega2560 at its serial line is connected.');
-    assert.equal(page.id('send').disabled, false);
+    assert.equal(page.id('motors').children[0].disabled, false);
     page.rods.forEach(([, state, slide, spin], rod) => {
       assert.equal(state, 'answers');
       // 100 mm and five turns of a rod of 16 mm, 8 counts/mm; which way depends on the mouse.
@@ -190,22 +190,98 @@ test('a controller that starts again goes on from where its counts were', async 
   assert.match(page.id('faults').textContent, /^lost 0, not a frame 0,/);
 });
 
+const kTell = [1, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+// As wire/device_settings.h has it; sticks: [rod, travel, turn].
+function settingsReport({ abilities = 0, resolution = 20, brightness = 64, ps2 = 0, switches = 0, stick }) {
+  const body = new Array(44).fill(0);
+  [0x81, abilities, 2, resolution, brightness, ps2, switches].forEach((value, at) => { body[at] = value; });
+  if (stick) {
+    const [rod, travel, turn] = stick;
+    [Math.abs(travel) & 255, Math.abs(travel) >> 8, Math.abs(turn) & 255, Math.abs(turn) >> 8]
+      .forEach((value, at) => { body[8 + 4 * rod + at] = value; });
+    body[40] = travel < 0 ? 1 << rod : 0;
+    body[41] = turn < 0 ? 1 << rod : 0;
+  }
+  return sealed(body);
+}
+function stuffed(plain) {
+  const out = [];
+  for (let rest = [...plain]; ;) {
+    const zero = rest.indexOf(0), run = zero < 0 ? rest : rest.slice(0, zero);
+    out.push(run.length + 1, ...run);
+    if (zero < 0) return Uint8Array.from([...out, 0]);
+    rest = rest.slice(zero + 1);
+  }
+}
+
 test('settings and pulses go out as COBS of the bytes that the firmware takes', async () => {
   const { port, page } = await connected();
   await hear(port, bytes('00' + kGolden));
   page.later(50);
-  assert.deepEqual([page.id('resolution').disabled, page.id('mice').disabled], [true, true]);
+  assert.deepEqual(unstuffed(port.written[0]), sealed(kTell));
+  assert.equal(page.id('send').disabled, true, 'what it has is not known yet');
+  await hear(port, stuffed(settingsReport({ resolution: 20, brightness: 9 })));
+  page.later(50);
+  assert.deepEqual([page.id('resolution').disabled, page.id('mice').disabled, page.id('gamepads').disabled,
+    page.id('brightness').value, page.id('send').disabled], [true, true, true, 9, false]);
   Object.assign(page.id('brightness'), { value: '64' });
   page.id('silent').checked = true;
-  page.id('send').onclick();
+  await page.id('send').onclick();
   await settled();
   // Resolution 20, brightness 64, no PS/2 rods, switches 1; a pulse of rod 6 at 128 for 60 ms.
   const settings = [1, 3, 0, 0, 0, 0, 0, 0, 20, 64, 0, 1, 0, 0], pulse = [1, 1, 0, 0, 5, 128, 60, 0, 0, 0, 0, 0, 0, 0];
-  assert.deepEqual(unstuffed(port.written[0]), sealed(settings));
-  assert.match(page.id('sent').textContent, /^Sent/);
+  assert.deepEqual(unstuffed(port.written[1]), sealed(settings));
+  page.later(50);
+  assert.deepEqual(unstuffed(port.written[2]), sealed(kTell), 'whether it has kept them');
+  await hear(port, stuffed(settingsReport({ brightness: 64, switches: 1 })));
+  assert.match(page.id('sent').textContent, /^Kept/);
   page.id('motors').children[5].onclick();
   await settled();
-  assert.deepEqual(unstuffed(port.written[1]), sealed(pulse));
+  assert.deepEqual(unstuffed(port.written[3]), sealed(pulse));
+  assert.match(page.id('faults').textContent, /not a frame 0,/);
+});
+
+test('settings that were not taken are said, and the form shows what the controller has', async () => {
+  const { port, page } = await connected();
+  await hear(port, bytes('00' + kGolden));
+  page.later(50);
+  await hear(port, stuffed(settingsReport({ brightness: 9, stick: [2, -1200, 402] })));
+  assert.equal(page.id('scales').textContent, 'Measured are rod 3: 1200 along, 402 around.');
+  page.id('brightness').value = '200';
+  await page.id('send').onclick();
+  page.later(50);
+  await hear(port, stuffed(settingsReport({ brightness: 9 })));
+  assert.match(page.id('sent').textContent, /^It has not taken them/);
+  assert.deepEqual([page.id('brightness').value, page.id('scales').textContent], [9, 'No rod is measured.']);
+});
+
+test('a question that is lost is put again; firmware of before, which has no answer, can be set all the same', async () => {
+  const { port, page } = await connected();
+  await hear(port, bytes('00' + kGolden));
+  page.later(50);
+  page.later(500);
+  await settled();
+  assert.equal(port.written.length, 1);
+  page.later(600);
+  await settled();
+  assert.equal(port.written.length, 2);
+  const broken = stuffed(settingsReport({ brightness: 9 }));
+  broken[3] ^= 1;
+  await hear(port, broken);
+  assert.equal(page.id('send').disabled, true);
+  page.later(1001);
+  page.later(1001);
+  page.later(50);
+  await settled();
+  assert.equal(port.written.length, 3);
+  assert.match(page.id('told').textContent, /^It does not tell its settings/);
+  assert.equal(page.id('send').disabled, false);
+  await page.id('send').onclick();
+  page.later(50);
+  await hear(port, stuffed(settingsReport({ brightness: 9 })));
+  assert.equal(page.id('brightness').value, 9, 'flashed meanwhile');
+  await hear(port, stuffed(settingsReport({ brightness: 77 })));
+  assert.equal(page.id('brightness').value, 9, 'an answer that nobody asked for');
 });
 
 // CRC-16/CCITT-FALSE as in wire/tests: of "123456789" 29B1h.
@@ -301,13 +377,18 @@ test('over HID the page shows and sends the same, also when it is connected twic
   device.report(frame);
   device.report(later);
   page.later(50);
-  assert.deepEqual([page.id('state').textContent, page.id('resolution').disabled], ['Space Foosball rods is connected.', false]);
+  assert.equal(page.id('state').textContent, 'Space Foosball rods is connected.');
+  assert.deepEqual(device.written[0].slice(0, 17), [0, ...sealed(kTell)]);
+  device.report(settingsReport({ abilities: 3, resolution: 60, ps2: 0x81, switches: 1 }));
+  page.later(50);
+  assert.deepEqual(['resolution', 'mice', 'gamepads', 'measure'].map((id) => page.id(id).disabled), [false, false, false, false]);
+  assert.deepEqual([page.id('resolution').value, page.id('silent').checked, page.id('gamepads').checked], [60, true, false]);
   assert.deepEqual(page.rods[5].slice(2, 4), [5, 0]);
   assert.match(page.id('faults').textContent, /^lost 1, not a frame 0,/);
   page.id('motors').children[0].onclick();
   await settled();
-  assert.deepEqual(device.written[0].slice(0, 17), [0, ...sealed([1, 1, 0, 0, 0, 128, 60, 0, 0, 0, 0, 0, 0, 0])]);
-  assert.equal(device.written[0].length, 65);
+  assert.deepEqual(device.written[1].slice(0, 17), [0, ...sealed([1, 1, 0, 0, 0, 128, 60, 0, 0, 0, 0, 0, 0, 0])]);
+  assert.equal(device.written[1].length, 65);
   hid.dispatchEvent(Object.assign(new Event('disconnect'), { device }));
   await settled();
   page.later(50);

@@ -3,7 +3,20 @@
 #include <algorithm>
 #include <cstring>
 
+#include "wire/device_settings.h"
+
 namespace cabinet {
+
+namespace {
+
+// The controller's page has asked for the settings, and every reader hears the answer.
+bool tells_settings(std::span<const std::uint8_t> bytes) {
+  wire::DeviceSettings settings;
+  std::uint8_t abilities = 0;
+  return wire::decode_settings_report(bytes.data(), bytes.size(), settings, abilities);
+}
+
+}  // namespace
 
 bool decode_report(std::span<const std::uint8_t> report, wire::DeviceFrame& frame) {
   if (report.size() != wire::kDeviceReportBytes) return false;
@@ -57,17 +70,20 @@ bool FrameReader::next_cobs(wire::DeviceFrame& frame, SourceCounters& counters) 
     std::uint8_t decoded[wire::kDeviceFrameBytes];
     const std::size_t got = wire::cobs_decode(first, size, decoded, sizeof decoded);
     if (wire::decode_device_frame(decoded, got, frame)) return true;
-    ++counters.bad;
+    if (!tells_settings({decoded, got})) ++counters.bad;
   }
   return false;
 }
 
 bool FrameReader::next_report(wire::DeviceFrame& frame, SourceCounters& counters) {
   while (end_ - begin_ >= wire::kDeviceReportBytes) {
-    if (decode_report({buffer_.data() + begin_, wire::kDeviceReportBytes}, frame)) {
+    const std::span report{buffer_.data() + begin_, wire::kDeviceReportBytes};
+    const bool is_frame = decode_report(report, frame);
+    if (is_frame || tells_settings(report.first(wire::kDeviceFrameBytes))) {
       begin_ += wire::kDeviceReportBytes;
       searching_ = false;
-      return true;
+      if (is_frame) return true;
+      continue;
     }
     if (!searching_) ++counters.bad;
     if (packing_ == Packing::report_message) {

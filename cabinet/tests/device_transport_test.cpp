@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <memory>
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "cabinet/device_source.h"
 #include "simulated_device.h"
+#include "wire/device_settings.h"
 
 using namespace cabinet;
 using namespace cabinet_test;
@@ -122,6 +124,33 @@ TEST(HidReports, ShortAndLongOnesAreCountedAndTheNextIsTaken) {
     EXPECT_EQ(s.counters().bad, ++bad) << size;
     s.send(report(s.device.frame()));
     EXPECT_EQ(s.counters().frames, bad);
+  }
+}
+
+// The controller's page asks for them; a server or doctor beside it hears the answer.
+TEST(SettingsTold, AreNoFaultOfTheLine) {
+  Bytes told(wire::kDeviceFrameBytes);
+  wire::encode_settings_report({}, wire::kHasSensors, told.data());
+  Bytes coded(wire::kDeviceCobsBytes);
+  wire::cobs_encode(told.data(), told.size(), coded.data());
+  Bytes padded = told;
+  padded.resize(wire::kDeviceReportBytes);
+  for (const auto& [kind, framing, bytes] : {std::tuple{SOCK_STREAM, DeviceFraming::cobs, coded},
+                                             {SOCK_SEQPACKET, DeviceFraming::report, padded},
+                                             {SOCK_STREAM, DeviceFraming::report, padded}}) {
+    Socket s(kind, framing);
+    const auto frame = [&] {
+      return framing == DeviceFraming::cobs ? cobs(s.device.frame()) : report(s.device.frame());
+    };
+    s.send(frame());
+    s.send(bytes);
+    s.send(frame());
+    EXPECT_EQ(s.counters().frames, 2u);
+    EXPECT_EQ(s.counters().bad, 0u);
+    Bytes broken = bytes;
+    broken[4] ^= 1;
+    s.send(broken);
+    EXPECT_EQ(s.counters().bad, 1u);
   }
 }
 

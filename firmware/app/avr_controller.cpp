@@ -99,11 +99,21 @@ void AvrController::obey(const wire::DeviceCommand& command) {
     case wire::kStickCommand:
       if (take_stick(command, settings_)) store_.save(settings_);
       break;
+    case wire::kTellSettingsCommand:
+      asked_ = true;
+      break;
   }
 }
 
 void AvrController::count_error() {
   errors_ = add_saturating(errors_, 1);
+}
+
+bool AvrController::take_question() {
+  if (!asked_) return false;
+  asked_ = false;
+  frame_made_ = true;  // it takes as long
+  return true;
 }
 
 void AvrController::make_frame(uint32_t now_us, wire::DeviceFrame& frame) {

@@ -32,10 +32,12 @@ class AvrController {
   // An error of the line of commands, told in the next frame.
   void count_error();
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
+  // The PC has asked for the settings: they go out in the place of the next frame. True once.
+  bool take_question();
 
   Ps2Lines& lines() { return mice_.lines(); }
   const MouseHost& mice() const { return mice_; }
-  const Settings& settings() const { return settings_; }
+  const wire::DeviceSettings& settings() const { return settings_; }
   MotorsBus& bus() { return bus_; }
   bool bus_busy() const { return bus_.busy(); }               // motors and marks
   uint16_t ms() const { return static_cast<uint16_t>(ms_); }  // since start(), wraps
@@ -55,12 +57,13 @@ class AvrController {
   Haptics haptics_{bus_};
   IndexMarks marks_{bus_, kMarksMs};
   bool marks_due_ = false;
-  Settings settings_;
+  wire::DeviceSettings settings_;
   SettingsStore<Eeprom> store_;
   uint32_t ms_ = 0;
   uint32_t ms_began_us_ = 0;
   uint8_t errors_ = 0;  // counted in the next frame
   uint8_t present_ = 0;
+  bool asked_ = false;
   bool frame_made_ = false, after_frame_ = false;
   bool host_ = false;
   bool watchdog_has_reset_ = false;

@@ -49,10 +49,14 @@ void take_commands() {
 // A frame that finds no room is left out before it is made: what it would count is in the next.
 void report(uint32_t now_us) {
   if (!g_uart.has_room(wire::kDeviceCobsBytes)) return;
-  wire::DeviceFrame frame;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
-  g_controller.make_frame(now_us, frame);
-  wire::encode_device_frame(frame, bytes);
+  if (g_controller.take_question()) {
+    wire::encode_settings_report(g_controller.settings(), 0, bytes);
+  } else {
+    wire::DeviceFrame frame;
+    g_controller.make_frame(now_us, frame);
+    wire::encode_device_frame(frame, bytes);
+  }
   g_uart.send(coded, static_cast<uint8_t>(wire::cobs_encode(bytes, sizeof bytes, coded)));
 }
 

@@ -30,7 +30,7 @@ bool gamepads_on() {
 }
 
 void apply_settings() {
-  const firmware::Settings& settings = g_controller.settings();
+  const wire::DeviceSettings& settings = g_controller.settings();
   for (uint8_t rod = 0; rod < wire::kDeviceRods; ++rod) {
     g_pads.scale(rod, settings, kMouseCountsPerCm);
   }
@@ -45,7 +45,8 @@ bool take_command() {
   if (size >= wire::kDeviceCommandBytes &&
       wire::decode_device_command(bytes, wire::kDeviceCommandBytes, command)) {
     g_controller.obey(command);
-    if (command.kind >= wire::kSettingsCommand) apply_settings();
+    if (command.kind == wire::kSettingsCommand || command.kind == wire::kStickCommand)
+      apply_settings();
   } else {
     g_controller.count_error();
   }
@@ -85,9 +86,13 @@ void serve_gamepads() {
 }
 
 void report(uint32_t now_us) {
-  wire::DeviceFrame frame;
-  g_controller.make_frame(now_us, frame);
-  wire::encode_device_frame(frame, g_report);
+  if (g_controller.take_question()) {
+    wire::encode_settings_report(g_controller.settings(), wire::kCanBeGamepads, g_report);
+  } else {
+    wire::DeviceFrame frame;
+    g_controller.make_frame(now_us, frame);
+    wire::encode_device_frame(frame, g_report);
+  }
   g_usb.send_report(g_report);
 }
 

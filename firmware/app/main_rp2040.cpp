@@ -36,7 +36,8 @@ firmware::IndexMarks g_marks(g_i2c);
 firmware::Gamepads g_pads;
 uint8_t g_pads_moved = 0;  // bit i: gamepad i, since its last report was made
 firmware::ReportClock g_clock;
-firmware::Settings g_settings;
+wire::DeviceSettings g_settings;
+bool g_asked = false;  // by the PC for the settings, in the place of the next frame
 alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
 firmware::SerialString<rp2040::kUniqueIdBytes> g_serial;
 
@@ -119,6 +120,12 @@ void report_gamepads() {
 
 void report() {
   if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
+  if (g_asked) {
+    g_asked = false;
+    wire::encode_settings_report(g_settings, wire::kHasSensors | wire::kCanBeGamepads, g_report);
+    g_usb.send_report(g_report);
+    return;
+  }
   if (g_settings.ps2 != 0) {
     g_mice.make_frame(rp2040::micros(), g_frame);
   } else {
@@ -210,6 +217,9 @@ void obey(const wire::DeviceCommand& command) {
       if (!firmware::take_stick(command, g_settings)) break;
       keep_settings();
       scale_sticks();
+      break;
+    case wire::kTellSettingsCommand:
+      g_asked = true;
       break;
   }
 }

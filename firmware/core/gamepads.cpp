@@ -52,8 +52,8 @@ void Gamepads::middle(Stick& stick) {
   stick.windows_held = 0;
 }
 
-void Gamepads::scale(uint8_t rod, const Settings& settings, uint16_t counts_per_cm) {
-  const StickScale& wanted = settings.sticks[rod];
+void Gamepads::scale(uint8_t rod, const wire::DeviceSettings& settings, uint16_t counts_per_cm) {
+  const wire::StickScale& wanted = settings.sticks[rod];
   Stick& stick = sticks_[rod];
   stick.slide_reversed = (settings.slide_reversed >> rod & 1) != 0;
   stick.spin_reversed = (settings.spin_reversed >> rod & 1) != 0;

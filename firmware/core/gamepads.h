@@ -27,7 +27,7 @@ class Gamepads {
 
   // What a rod's counts mean: as the settings say, else by the table's dimensions and the counts
   // that its sensor makes on a centimetre. If that is something else the stick goes to its middle.
-  void scale(uint8_t rod, const Settings& settings, uint16_t counts_per_cm);
+  void scale(uint8_t rod, const wire::DeviceSettings& settings, uint16_t counts_per_cm);
 
   // The rod's counts now, which wrap; at least every 32767 of them. The first only begin. now_ms
   // wraps: at least every 65 s.

@@ -15,14 +15,14 @@ template <typename Memory>
 class SettingsStore {
  public:
   // False, and settings untouched, if there are none that hold.
-  static bool load(Settings& settings) {
-    uint8_t bytes[kSettingsBytes];
-    for (uint8_t at = 0; at < kSettingsBytes; ++at) bytes[at] = Memory::read(at);
-    return decode_settings(bytes, settings);
+  static bool load(wire::DeviceSettings& settings) {
+    uint8_t bytes[kKeptBytes];
+    for (uint8_t at = 0; at < kKeptBytes; ++at) bytes[at] = Memory::read(at);
+    return decode_kept(bytes, settings);
   }
   // Those of a save under way are given up.
-  void save(const Settings& settings) {
-    encode_settings(settings, bytes_);
+  void save(const wire::DeviceSettings& settings) {
+    encode_kept(settings, bytes_);
     at_ = kErase;
   }
   bool saving() const { return at_ != kDone; }
@@ -32,7 +32,7 @@ class SettingsStore {
     if (at_ == kErase) {
       at_ = 1;
       put(0, 0xFF);
-    } else if (at_ < kSettingsBytes) {
+    } else if (at_ < kKeptBytes) {
       put(at_, bytes_[at_]);
       ++at_;
     } else {
@@ -48,7 +48,7 @@ class SettingsStore {
     if (Memory::read(at) != value) Memory::write(at, value);
   }
 
-  uint8_t bytes_[kSettingsBytes] = {};
+  uint8_t bytes_[kKeptBytes] = {};
   uint8_t at_ = kDone;
 };
 

@@ -61,15 +61,15 @@ void read_unique_id(uint8_t* out) {
   leave_commands();
 }
 
-bool load_settings(firmware::Settings& settings) {
-  return firmware::decode_settings(
+bool load_settings(wire::DeviceSettings& settings) {
+  return firmware::decode_kept(
       reinterpret_cast<const uint8_t*>(kFlash + kUncached + kSettingsOffset), settings);
 }
 
-void save_settings(const firmware::Settings& settings) {
+void save_settings(const wire::DeviceSettings& settings) {
   uint8_t page[kPageBytes];
   for (uint8_t& byte : page) byte = 0xFF;
-  firmware::encode_settings(settings, page);
+  firmware::encode_kept(settings, page);
   const Erase erase = reinterpret_cast<Erase>(rom_function('R', 'E'));
   const Program program = reinterpret_cast<Program>(rom_function('R', 'P'));
   feed_watchdog(2'000'000);

@@ -15,9 +15,9 @@ static constexpr uint8_t kUniqueIdBytes = 8;
 void read_unique_id(uint8_t* out);
 
 // Those that were saved; false, and settings untouched, if there are none that hold.
-bool load_settings(firmware::Settings& settings);
+bool load_settings(wire::DeviceSettings& settings);
 // Up to half a second without interrupts.
-void save_settings(const firmware::Settings& settings);
+void save_settings(const wire::DeviceSettings& settings);
 
 }  // namespace rp2040
 

@@ -17,12 +17,12 @@ struct Sticks {
 // travel of 1000 and a turn of 400, unless a test says otherwise.
 struct GamepadsTest : testing::Test {
   Gamepads pads;
-  Settings settings;
+  wire::DeviceSettings settings;
   std::array<std::uint16_t, 8> slide{}, spin{};
   std::uint16_t now_ms = 65'000;  // wraps soon
 
   void SetUp() override {
-    for (StickScale& stick : settings.sticks) {
+    for (wire::StickScale& stick : settings.sticks) {
       stick.travel = 1000;
       stick.turn = 400;
     }
@@ -219,7 +219,7 @@ TEST_F(GamepadsTest, NoCountsLeadOutOfRange) {
 }
 
 TEST_F(GamepadsTest, WithoutMeasuredScalesTheTravelIsThatOfTheTable) {
-  settings = Settings();
+  settings = wire::DeviceSettings();
   begin();
   move(0, 540 * 8 / 4, 0);  // a goalie's quarter of 540 mm, at 8 counts/mm
   EXPECT_NEAR(read(0).y, -16384, 100);

@@ -9,10 +9,10 @@
 namespace firmware {
 namespace {
 
-bool same(const StickScale& a, const StickScale& b) {
+bool same(const wire::StickScale& a, const wire::StickScale& b) {
   return a.travel == b.travel && a.turn == b.turn;
 }
-bool same(const Settings& a, const Settings& b) {
+bool same(const wire::DeviceSettings& a, const wire::DeviceSettings& b) {
   for (int rod = 0; rod < wire::kDeviceRods; ++rod) {
     if (!same(a.sticks[rod], b.sticks[rod])) return false;
   }
@@ -22,7 +22,7 @@ bool same(const Settings& a, const Settings& b) {
 }
 
 TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
-  Settings settings;
+  wire::DeviceSettings settings;
   settings.resolution = 60;
   settings.brightness = 200;
   settings.ps2 = 0x0F;
@@ -30,10 +30,10 @@ TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
   settings.sticks[7] = {2016, 402};
   settings.slide_reversed = 0x81;
   settings.spin_reversed = 0x42;
-  std::uint8_t bytes[kSettingsBytes];
-  encode_settings(settings, bytes);
-  Settings read;
-  ASSERT_TRUE(decode_settings(bytes, read));
+  std::uint8_t bytes[kKeptBytes];
+  encode_kept(settings, bytes);
+  wire::DeviceSettings read;
+  ASSERT_TRUE(decode_kept(bytes, read));
   EXPECT_EQ(read.resolution, 60);
   EXPECT_EQ(read.brightness, 200);
   EXPECT_EQ(read.ps2, 0x0F);
@@ -45,38 +45,39 @@ TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
   EXPECT_EQ(read.spin_reversed, 0x42);
   for (unsigned bit = 0; bit < 8 * sizeof bytes; ++bit) {
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1u << bit % 8);
-    EXPECT_FALSE(decode_settings(bytes, read)) << bit;
+    EXPECT_FALSE(decode_kept(bytes, read)) << bit;
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1u << bit % 8);
   }
 }
 
 // As controllers of before kept them: bytes of theirs, with their own CRC.
 TEST(Settings, ThoseOfVersion1AreReadAndHaveNoSticks) {
-  std::uint8_t bytes[kSettingsBytes];
+  std::uint8_t bytes[kKeptBytes];
   for (auto& byte : bytes) byte = 0xFF;
   const std::uint8_t before[] = {1, 60, 200, 0x0F, 1, 0, 0, 0};
   for (std::size_t i = 0; i < sizeof before; ++i) bytes[i] = before[i];
   wire::device_put16(bytes + 6, wire::device_crc16(bytes, 6));
-  Settings settings;
-  ASSERT_TRUE(decode_settings(bytes, settings));
+  wire::DeviceSettings settings;
+  ASSERT_TRUE(decode_kept(bytes, settings));
   EXPECT_EQ(settings.resolution, 60);
   EXPECT_EQ(settings.brightness, 200);
   EXPECT_EQ(settings.ps2, 0x0F);
   EXPECT_EQ(settings.switches, wire::kPulsesOff);
-  for (const StickScale& stick : settings.sticks) EXPECT_TRUE(same(stick, StickScale()));
+  for (const wire::StickScale& stick : settings.sticks)
+    EXPECT_TRUE(same(stick, wire::StickScale()));
   bytes[4] = 2;  // a switch that version 1 had not
   wire::device_put16(bytes + 6, wire::device_crc16(bytes, 6));
-  EXPECT_FALSE(decode_settings(bytes, settings));
+  EXPECT_FALSE(decode_kept(bytes, settings));
 }
 
 TEST(Settings, AScaleThatIsNoTravelIsRefusedUnderARightCrcToo) {
-  Settings settings;
-  std::uint8_t bytes[kSettingsBytes];
+  wire::DeviceSettings settings;
+  std::uint8_t bytes[kKeptBytes];
   for (const int at : {6, 8, 34, 36}) {
-    encode_settings(settings, bytes);
+    encode_kept(settings, bytes);
     bytes[at] = 63;
     wire::device_put16(bytes + 40, wire::device_crc16(bytes, 40));
-    EXPECT_FALSE(decode_settings(bytes, settings)) << at;
+    EXPECT_FALSE(decode_kept(bytes, settings)) << at;
   }
 }
 
@@ -92,12 +93,12 @@ wire::DeviceCommand stick_command(std::uint8_t rod, std::uint16_t travel, std::u
 }
 
 TEST(Settings, ACommandForAStickChangesThatRodAloneAndSaysWhetherItDid) {
-  Settings settings;
+  wire::DeviceSettings settings;
   settings.slide_reversed = 0x08;
   EXPECT_TRUE(take_stick(stick_command(5, 2016, 402, wire::kSpinReversed), settings));
   EXPECT_FALSE(take_stick(stick_command(5, 2016, 402, wire::kSpinReversed), settings));
-  EXPECT_TRUE(same(settings.sticks[5], StickScale{2016, 402}));
-  EXPECT_TRUE(same(settings.sticks[4], StickScale{}));
+  EXPECT_TRUE(same(settings.sticks[5], wire::StickScale{2016, 402}));
+  EXPECT_TRUE(same(settings.sticks[4], wire::StickScale{}));
   EXPECT_EQ(settings.slide_reversed, 0x08);
   EXPECT_EQ(settings.spin_reversed, 0x20);
   EXPECT_TRUE(take_stick(stick_command(5, 0, 0, 0), settings));
@@ -115,21 +116,22 @@ TEST(Settings, ACommandForAStickChangesThatRodAloneAndSaysWhetherItDid) {
   EXPECT_TRUE(take_stick(stick_command(5, 900, 300, 0), settings));
   command.resolution = static_cast<std::uint8_t>(settings.resolution + 1);
   EXPECT_TRUE(take_settings(command, settings));
-  for (const StickScale& stick : settings.sticks) EXPECT_TRUE(same(stick, StickScale{}));
+  for (const wire::StickScale& stick : settings.sticks)
+    EXPECT_TRUE(same(stick, wire::StickScale{}));
   EXPECT_EQ(settings.slide_reversed, 0);
 }
 
 TEST(Settings, AnErasedSectorHasNone) {
-  std::uint8_t bytes[kSettingsBytes];
+  std::uint8_t bytes[kKeptBytes];
   for (auto& byte : bytes) byte = 0xFF;
-  Settings settings;
-  EXPECT_FALSE(decode_settings(bytes, settings));
+  wire::DeviceSettings settings;
+  EXPECT_FALSE(decode_kept(bytes, settings));
   EXPECT_EQ(settings.resolution, 20);
 }
 
 // A memory that takes some polls for each byte, and loses its supply after so many.
 struct Memory {
-  static inline std::array<std::uint8_t, kSettingsBytes> bytes;
+  static inline std::array<std::uint8_t, kKeptBytes> bytes;
   static inline int busy, writes, supplied_writes;
 
   static void erase() {
@@ -152,9 +154,9 @@ struct Memory {
 };
 using Store = SettingsStore<Memory>;
 
-Settings settings_with(std::uint8_t resolution, std::uint8_t brightness, std::uint8_t ps2,
-                       std::uint8_t switches) {
-  Settings settings;
+wire::DeviceSettings settings_with(std::uint8_t resolution, std::uint8_t brightness,
+                                   std::uint8_t ps2, std::uint8_t switches) {
+  wire::DeviceSettings settings;
   settings.resolution = resolution;
   settings.brightness = brightness;
   settings.ps2 = ps2;
@@ -162,7 +164,7 @@ Settings settings_with(std::uint8_t resolution, std::uint8_t brightness, std::ui
   return settings;
 }
 
-void save(const Settings& settings) {
+void save(const wire::DeviceSettings& settings) {
   Store store;
   store.save(settings);
   for (int step = 0; store.saving() && step < 1000; ++step) store.step();
@@ -172,9 +174,9 @@ void save(const Settings& settings) {
 
 TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
   Memory::erase();
-  Settings settings;
+  wire::DeviceSettings settings;
   EXPECT_FALSE(Store::load(settings));
-  const Settings wanted = settings_with(60, 200, 0x0F, wire::kPulsesOff);
+  const wire::DeviceSettings wanted = settings_with(60, 200, 0x0F, wire::kPulsesOff);
   save(wanted);
   ASSERT_TRUE(Store::load(settings));
   EXPECT_TRUE(same(settings, wanted));
@@ -182,21 +184,21 @@ TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
 
 // All pairs out of a few settings, power lost after each number of bytes: never a mixture.
 TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
-  const Settings some[] = {settings_with(20, 64, 0, 0), settings_with(20, 65, 0, 0),
-                           settings_with(60, 200, 0xFF, wire::kPulsesOff),
-                           settings_with(1, 0, 1, 0)};
-  for (const Settings& before : some) {
-    for (const Settings& after : some) {
-      for (int bytes = 0; bytes <= kSettingsBytes + 1; ++bytes) {
+  const wire::DeviceSettings some[] = {settings_with(20, 64, 0, 0), settings_with(20, 65, 0, 0),
+                                       settings_with(60, 200, 0xFF, wire::kPulsesOff),
+                                       settings_with(1, 0, 1, 0)};
+  for (const wire::DeviceSettings& before : some) {
+    for (const wire::DeviceSettings& after : some) {
+      for (int bytes = 0; bytes <= kKeptBytes + 1; ++bytes) {
         Memory::erase();
         save(before);
         Memory::supplied_writes = Memory::writes + bytes;
         save(after);
-        Settings read;
+        wire::DeviceSettings read;
         if (!Store::load(read)) continue;
         EXPECT_TRUE(same(read, before) || same(read, after)) << bytes;
       }
-      Settings read;
+      wire::DeviceSettings read;
       ASSERT_TRUE(Store::load(read));
       EXPECT_TRUE(same(read, after));
     }
@@ -204,7 +206,8 @@ TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
 }
 
 TEST(SettingsStore, ASaveThatOvertakesAnotherWins) {
-  const Settings first = settings_with(20, 10, 0, 0), second = settings_with(30, 20, 3, 1);
+  const wire::DeviceSettings first = settings_with(20, 10, 0, 0),
+                             second = settings_with(30, 20, 3, 1);
   for (int steps = 0; steps < 200; ++steps) {
     Memory::erase();
     Store store;
@@ -213,7 +216,7 @@ TEST(SettingsStore, ASaveThatOvertakesAnotherWins) {
     store.save(second);
     for (int i = 0; i < 300; ++i) store.step();
     Memory::busy = 0;
-    Settings read;
+    wire::DeviceSettings read;
     ASSERT_TRUE(Store::load(read)) << steps;
     EXPECT_TRUE(same(read, second)) << steps;
   }

@@ -139,7 +139,9 @@ class Terminal {
       tell();
       read_keys();
     }
-    return run_.session().all_fitted() && run_.view().problem.empty() ? kOk : kFailed;
+    if (run_.session().all_fitted() && run_.view().problem.empty()) return kOk;
+    if (!closed_) return kFailed;
+    return fail(kFailed, "its input has ended before all rods fit: run it on a terminal.");
   }
 
  private:
@@ -163,13 +165,11 @@ class Terminal {
   }
   void read_keys() {
     pollfd input{STDIN_FILENO, POLLIN, 0};
-    if (closed_ || ::poll(&input, 1, 20) <= 0) {
-      if (closed_) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      return;
-    }
+    if (::poll(&input, 1, 20) <= 0) return;
     char bytes[64];
     const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
-    closed_ = got <= 0;
+    closed_ = got <= 0;  // nobody is there to go on
+    done_ = done_ || closed_;
     for (ssize_t i = 0; i < got; ++i) {
       if (bytes[i] != '\n') {
         line_ += bytes[i];

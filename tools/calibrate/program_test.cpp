@@ -46,8 +46,12 @@ class Program {
       kill(pid_, SIGKILL);
       waitpid(pid_, nullptr, 0);
     }
-    close(keys_);
+    end_input();
     close(words_);
+  }
+  void end_input() {
+    if (keys_ >= 0) close(keys_);
+    keys_ = -1;
   }
   void type(const char* line) {
     const std::string text = std::string(line) + "\n";
@@ -149,6 +153,16 @@ TEST(CalibrateProgram, GuidesOverASerialLineAndKeepsTheCalibration) {
   EXPECT_NEAR(std::atan2(m[0][1], m[0][0]), -0.05, 0.003);
   EXPECT_EQ(calibration->made.size(), 20u) << calibration->made;
   unlink(path.c_str());
+}
+
+TEST(CalibrateProgram, EndsWhenItsInputDoes) {
+  SerialLine line;
+  line.plug();
+  Program program({"--device", "serial:" + line.path, "--text", "--out", temp_path("ended.json")});
+  ASSERT_TRUE(program.says("Enter: mark")) << program.said();
+  program.end_input();
+  EXPECT_EQ(program.wait(), 1) << program.said();
+  EXPECT_NE(program.said().find("its input has ended"), std::string::npos) << program.said();
 }
 
 TEST(CalibrateProgram, SaysWhatItCannotDoInOneSentence) {

@@ -290,6 +290,7 @@ std::string protocol_document() {
   text += "\n## Journal\n" + journal();
   text += "\n## Device frame\n" + opening_comment(WIRE_DEVICE_FRAME_H);
   text += "\n## Device command\n" + opening_comment(WIRE_DEVICE_COMMAND_H);
+  text += "\n## Device settings\n" + opening_comment(WIRE_DEVICE_SETTINGS_H);
   return text;
 }
 

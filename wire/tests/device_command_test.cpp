@@ -85,7 +85,7 @@ TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
     std::uint8_t value;
   };
   // Version, no kind, rod, durations of 0 and 256 ms, a setting in a pulse, the reserved bytes.
-  for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 5}, Case{4, 8}, Case{6, 0}, Case{7, 1},
+  for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 6}, Case{4, 8}, Case{6, 0}, Case{7, 1},
                         Case{8, 1}, Case{12, 1}, Case{13, 1}}) {
     Octets bytes = encoded(pulse(2, 90, 100));
     ASSERT_TRUE(accepted(bytes));

@@ -330,7 +330,7 @@ DeviceFrame device_frame() {
 }
 
 std::vector<std::pair<std::string, DeviceCommand>> device_commands() {
-  DeviceCommand pulse{}, off{}, settings{}, stick{};
+  DeviceCommand pulse{}, off{}, settings{}, stick{}, tell{};
   pulse.kind = kPulseCommand;
   pulse.sequence = off.sequence = settings.sequence = 0x0102;
   pulse.rod = 5;
@@ -347,7 +347,20 @@ std::vector<std::pair<std::string, DeviceCommand>> device_commands() {
   stick.travel = 1216;
   stick.turn = 402;
   stick.reversed = kSpinReversed;
-  return {{"pulse", pulse}, {"off", off}, {"settings", settings}, {"stick", stick}};
+  tell.kind = kTellSettingsCommand;
+  return {{"pulse", pulse}, {"off", off}, {"settings", settings}, {"stick", stick}, {"tell", tell}};
+}
+
+DeviceSettings device_settings() {
+  DeviceSettings settings;
+  settings.resolution = 60;
+  settings.brightness = 200;
+  settings.ps2 = 0x81;
+  settings.switches = kPulsesOff | kGamepads;
+  settings.sticks[3] = {1216, 402};
+  settings.slide_reversed = 0x08;
+  settings.spin_reversed = 0x42;
+  return settings;
 }
 
 Snapshot random_snapshot(std::mt19937_64& random, bool full) {
@@ -502,6 +515,12 @@ Bytes encoded_version_1(DeviceFrame frame) {
 Bytes encoded(const DeviceCommand& command) {
   Bytes bytes(kDeviceCommandBytes);
   encode_device_command(command, reinterpret_cast<std::uint8_t*>(bytes.data()));
+  return bytes;
+}
+
+Bytes encoded(const DeviceSettings& settings) {
+  Bytes bytes(kDeviceFrameBytes);
+  encode_settings_report(settings, kHasSensors, reinterpret_cast<std::uint8_t*>(bytes.data()));
   return bytes;
 }
 

@@ -11,6 +11,7 @@
 #include "wire/control.h"
 #include "wire/device_command.h"
 #include "wire/device_frame.h"
+#include "wire/device_settings.h"
 #include "wire/input_datagram.h"
 #include "wire/journal.h"
 #include "wire/phone_message.h"
@@ -28,7 +29,8 @@ std::vector<JournalEntry> journal();
 std::vector<CharacterRecord> characters();
 DeviceFrame device_frame();
 std::vector<std::pair<std::string, DeviceCommand>> device_commands();  // one of each kind, named
-std::vector<std::pair<std::string, PhoneRequest>> phone_requests();    // one of each kind, named
+DeviceSettings device_settings();
+std::vector<std::pair<std::string, PhoneRequest>> phone_requests();  // one of each kind, named
 std::vector<std::pair<std::string, PhoneReply>> phone_replies();
 
 // Random within the ranges. full: every man and every event.
@@ -58,6 +60,7 @@ Bytes encoded(const DeviceFrame& frame);       // the plain frame
 Bytes encoded_cobs(const DeviceFrame& frame);  // as on a serial line
 Bytes encoded_version_1(DeviceFrame frame);    // the plain frame as it was, without index marks
 Bytes encoded(const DeviceCommand& command);
+Bytes encoded(const DeviceSettings& settings);  // as a report
 
 // Puts the right CRC-32 at the end of a datagram, so that what lies under it is tested.
 void reseal(Bytes& datagram);

@@ -30,6 +30,7 @@ std::vector<Seed> seeds() {
       {"fuzz_device_frame", "cobs", encoded_cobs(device_frame())},
       {"fuzz_device_frame", "version_1", encoded_version_1(device_frame())},
   };
+  all.push_back({"fuzz_device_settings", "golden", encoded(device_settings())});
   for (const auto& [name, command] : device_commands())
     all.push_back({"fuzz_device_command", name, encoded(command)});
   for (const auto& [name, message] : phone_requests())

@@ -8,8 +8,8 @@ import { Rig, kRods } from './rig.mjs';
 
 const html = readFileSync(process.env.CONTROLLER_PAGE, 'utf8');
 const script = html.match(/<script id="packets">([^]*?)<\/script>/)[1];
-const page = new Function(`${script}; return { decodeFrame, increment, pulseReport,
-  settingsReport, stickReport, measuredStick, withFrames, crc16 };`)();
+const page = new Function(`${script}; return { decodeFrame, decodeSettings, increment, pulseReport,
+  settingsReport, tellReport, stickReport, measuredStick, withFrames, crc16 };`)();
 const view = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
 
 test('what the firmware reports is what the page shows', () => {
@@ -78,6 +78,34 @@ test('the switch of gamepads and what was measured of a rod are what the firmwar
   rig.host.polling = false;
   rig.host.enumerate();
   assert.equal(rig.host.interfaces.length, 5);
+});
+
+test('the settings that the firmware tells are those that it was sent, and no frame is lost for them', () => {
+  const rig = new Rig().start();
+  rig.frames();
+  const told = () => {
+    assert.ok(rig.board.runUntil(() => rig.host.sendReport(page.tellReport().subarray(0, 16)), 500));
+    rig.board.runMs(5);
+    const reports = rig.host.take().map(({ bytes }) => bytes);
+    const frames = reports.flatMap((bytes) => decodeFrame(bytes) ?? []);
+    assert.equal(frames.length, reports.length - 1);
+    frames.slice(1).forEach((frame, i) => assert.equal(frame.sequence, frames[i].sequence + 1 & 0xffff));
+    return reports.map((bytes) => page.decodeSettings(view(bytes))).find((settings) => settings);
+  };
+  const fresh = told();
+  assert.deepEqual({ ...fresh, sticks: 0 }, { hasSensors: true, canBeGamepads: true, resolution: 20, brightness: 64,
+    ps2: 0, silent: false, gamepads: false, sticks: 0 });
+  assert.ok(fresh.sticks.every(({ travel, turn }) => travel === 0 && turn === 0));
+  const wanted = { resolution: 60, brightness: 200, ps2: 0x80, silent: true, gamepads: false };
+  for (const report of [page.settingsReport(wanted), page.stickReport(6, { travel: -9876, turn: 4021 }),
+    page.stickReport(0, { travel: 64, turn: -65 })]) {
+    assert.ok(rig.board.runUntil(() => rig.host.sendReport(report.subarray(0, 16)), 500));
+    rig.board.runMs(100);
+  }
+  rig.host.take();
+  const { sticks, ...settings } = told();
+  assert.deepEqual(settings, { hasSensors: true, canBeGamepads: true, ...wanted });
+  assert.deepEqual([sticks[6], sticks[0], sticks[1]], [{ travel: -9876, turn: 4021 }, { travel: 64, turn: -65 }, { travel: 0, turn: 0 }]);
 });
 
 // A hand that is not exact: a rod turns a little as it is pushed, and slides a little as it is turned.

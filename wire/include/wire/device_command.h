@@ -3,7 +3,8 @@
 //
 // Layout (little endian), kDeviceCommandBytes in all:
 //   0  u8   version            kDeviceCommandVersion
-//   1  u8   kind               1 pulse, 2 all off, 3 settings, 4 stick
+//   1  u8   kind               1 pulse, 2 all off, 3 settings, 4 stick, 5 tell the settings
+//                              (wire/device_settings.h)
 //   2  u16  sequence           of the sender, wraps; not checked
 //   4  u8   rod                pulse, stick: 0..7
 //   5  u8   amplitude          pulse: 0..255, of what the motor can do
@@ -42,6 +43,7 @@ enum DeviceCommandKind : uint8_t {
   kAllOffCommand = 2,
   kSettingsCommand = 3,
   kStickCommand = 4,
+  kTellSettingsCommand = 5,
 };
 
 struct DeviceCommand {
@@ -67,6 +69,7 @@ inline bool valid_device_command(const DeviceCommand& c) {
       return no_settings && no_stick && c.rod < kDeviceRods && c.duration_ms >= 1 &&
              c.duration_ms <= kMaxPulseMs;
     case kAllOffCommand:
+    case kTellSettingsCommand:
       return no_pulse && no_settings && no_stick && c.rod == 0;
     case kSettingsCommand:
       return no_pulse && no_stick && c.rod == 0 && c.resolution >= 1 &&

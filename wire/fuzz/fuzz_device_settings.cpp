@@ -1,0 +1,32 @@
+// Any bytes as a controller's report of its settings, as they are and under a right CRC. What is
+// accepted comes back to the bit.
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "wire/device_settings.h"
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+void read(const Octets& bytes) {
+  wire::DeviceSettings settings;
+  std::uint8_t abilities = 0;
+  if (!wire::decode_settings_report(bytes.data(), bytes.size(), settings, abilities)) return;
+  Octets again(wire::kDeviceFrameBytes);
+  wire::encode_settings_report(settings, abilities, again.data());
+  if (again != bytes) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Octets bytes(data, data + size);
+  read(bytes);
+  if (size == wire::kDeviceFrameBytes) {
+    wire::device_put16(bytes.data() + 44, wire::device_crc16(bytes.data(), 44));
+    read(bytes);
+  }
+  return 0;
+}
