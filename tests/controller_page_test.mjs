@@ -34,7 +34,10 @@ class Element {
     Object.assign(this, { textContent: '', className: '', disabled: false, checked: false, value: '20', children: [] });
   }
   append(...parts) { this.children.push(...parts.filter((part) => part instanceof Element)); }
-  insertAdjacentHTML() {}
+  insertAdjacentHTML(_where, markup) {
+    const value = markup.match(/<input type="checkbox" value="(\d)">/)?.[1];
+    if (value) this.children.push(Object.assign(new Element(), { value }));
+  }
   insertRow() {
     const row = new Element();
     row.cells = [1, 2, 3, 4, 5].map(() => new Element());
@@ -72,7 +75,7 @@ class Port extends EventTarget {
 class Device extends EventTarget {
   constructor() {
     super();
-    Object.assign(this, { productName: 'Space Foosball rods', collections: [{ usagePage: 0xff00, outputReports: [{}] }], opened: false, written: [] });
+    Object.assign(this, { productName: 'Space Foosball rods', productId: 1, collections: [{ usagePage: 0xff00, outputReports: [{}] }], opened: false, written: [] });
   }
   async open() { this.opened = true; }
   async close() { this.opened = false; }
@@ -96,7 +99,9 @@ class Page {
     const part = (id) => this.id(id);
     const document = {
       getElementById: part, createElement: () => new Element(),
-      querySelectorAll: (what) => (what.includes('button') ? [part('send'), ...part('motors').children] : []),
+      querySelectorAll: (what) => ({ '#motors button': part('motors').children, '#mice input': part('mice').children,
+        '#mice input:checked': part('mice').children.filter(({ checked }) => checked) }[what] ?? [part('send'), part('measure'),
+        ...part('motors').children]),
     };
     const names = ['document', 'window', 'navigator', 'performance', 'setInterval'];
     new Function(...names, scripts.join('\n'))(document, { isSecureContext: secure }, { hid, serial },
@@ -190,11 +195,12 @@ test('a controller that starts again goes on from where its counts were', async 
   assert.match(page.id('faults').textContent, /^lost 0, not a frame 0,/);
 });
 
-const kTell = [1, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+// A question with its sequence.
+const tell = (sequence) => sealed([1, 5, sequence, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
 // As wire/device_settings.h has it; sticks: [rod, travel, turn].
-function settingsReport({ abilities = 0, resolution = 20, brightness = 64, ps2 = 0, switches = 0, stick }) {
+function settingsReport(sequence, { version = 2, abilities = 0, resolution = 20, brightness = 64, ps2 = 0, switches = 0, stick } = {}) {
   const body = new Array(44).fill(0);
-  [0x81, abilities, 2, resolution, brightness, ps2, switches].forEach((value, at) => { body[at] = value; });
+  [0x81, abilities, version, resolution, brightness, ps2, switches].forEach((value, at) => { body[at] = value; });
   if (stick) {
     const [rod, travel, turn] = stick;
     [Math.abs(travel) & 255, Math.abs(travel) >> 8, Math.abs(turn) & 255, Math.abs(turn) >> 8]
@@ -202,6 +208,7 @@ function settingsReport({ abilities = 0, resolution = 20, brightness = 64, ps2 =
     body[40] = travel < 0 ? 1 << rod : 0;
     body[41] = turn < 0 ? 1 << rod : 0;
   }
+  body[42] = sequence;
   return sealed(body);
 }
 function stuffed(plain) {
@@ -214,16 +221,41 @@ function stuffed(plain) {
   }
 }
 
-test('settings and pulses go out as COBS of the bytes that the firmware takes', async () => {
-  const { port, page } = await connected();
+// A Mega whose first frame has been heard.
+async function heard() {
+  const { port, serial, page } = await connected();
   await hear(port, bytes('00' + kGolden));
   page.later(50);
-  assert.deepEqual(unstuffed(port.written[0]), sealed(kTell));
-  assert.equal(page.id('send').disabled, true, 'what it has is not known yet');
-  await hear(port, stuffed(settingsReport({ resolution: 20, brightness: 9 })));
+  await settled();
+  return { port, serial, page };
+}
+const answer = (port, ...rest) => hear(port, stuffed(settingsReport(...rest)));
+// A Pico whose settings have been read.
+async function pico(device = new Device(), settings = { abilities: 3 }) {
+  const hid = hidApi(device), page = new Page({ hid, serial: serialApi(null) });
+  await page.id('hid').onclick();
+  device.report(unstuffed([...bytes(kGolden)]));
   page.later(50);
-  assert.deepEqual([page.id('resolution').disabled, page.id('mice').disabled, page.id('gamepads').disabled,
-    page.id('brightness').value, page.id('send').disabled], [true, true, true, 9, false]);
+  await settled();
+  device.report(settingsReport(1, settings));
+  page.later(50);
+  return { device, hid, page };
+}
+const frameAfter = (frame, changes) => {
+  const next = frame.slice(0, 44);
+  for (const [at, by] of changes) next[at] = next[at] + by & 255;
+  return sealed(next);
+};
+
+test('settings and pulses go out as COBS of the bytes that the firmware takes', async () => {
+  const { port, page } = await heard();
+  assert.deepEqual(unstuffed(port.written[0]), tell(1));
+  assert.deepEqual([page.id('send').disabled, page.id('brightness').disabled], [true, true], 'what it has is not known yet');
+  await answer(port, 1, { brightness: 9 });
+  page.later(50);
+  assert.deepEqual(['resolution', 'mice', 'gamepads', 'measure', 'brightness', 'send'].map((id) => page.id(id).disabled),
+    [true, true, true, true, false, false]);
+  assert.deepEqual([page.id('brightness').value, page.id('brightnessText').textContent, page.id('scales').textContent], [9, '4 %', '']);
   Object.assign(page.id('brightness'), { value: '64' });
   page.id('silent').checked = true;
   await page.id('send').onclick();
@@ -231,43 +263,45 @@ test('settings and pulses go out as COBS of the bytes that the firmware takes', 
   // Resolution 20, brightness 64, no PS/2 rods, switches 1; a pulse of rod 6 at 128 for 60 ms.
   const settings = [1, 3, 0, 0, 0, 0, 0, 0, 20, 64, 0, 1, 0, 0], pulse = [1, 1, 0, 0, 5, 128, 60, 0, 0, 0, 0, 0, 0, 0];
   assert.deepEqual(unstuffed(port.written[1]), sealed(settings));
-  page.later(50);
-  assert.deepEqual(unstuffed(port.written[2]), sealed(kTell), 'whether it has kept them');
-  await hear(port, stuffed(settingsReport({ brightness: 64, switches: 1 })));
-  assert.match(page.id('sent').textContent, /^Kept/);
+  assert.deepEqual(unstuffed(port.written[2]), tell(2), 'whether it has kept them');
+  assert.equal(page.id('silent').disabled, true, 'about to be filled');
+  await answer(port, 2, { brightness: 64, switches: 1 });
+  assert.equal(page.id('sent').textContent, 'Kept.');
+  page.id('motors').children[5].onclick();
   page.id('motors').children[5].onclick();
   await settled();
-  assert.deepEqual(unstuffed(port.written[3]), sealed(pulse));
+  assert.deepEqual(port.written.slice(3).map(unstuffed), [sealed(pulse), sealed(pulse)], 'one after the other');
   assert.match(page.id('faults').textContent, /not a frame 0,/);
 });
 
 test('settings that were not taken are said, and the form shows what the controller has', async () => {
-  const { port, page } = await connected();
-  await hear(port, bytes('00' + kGolden));
-  page.later(50);
-  await hear(port, stuffed(settingsReport({ brightness: 9, stick: [2, -1200, 402] })));
-  assert.equal(page.id('scales').textContent, 'Measured are rod 3: 1200 along, 402 around.');
-  page.id('brightness').value = '200';
-  await page.id('send').onclick();
-  page.later(50);
-  await hear(port, stuffed(settingsReport({ brightness: 9 })));
-  assert.match(page.id('sent').textContent, /^It has not taken them/);
-  assert.deepEqual([page.id('brightness').value, page.id('scales').textContent], [9, 'No rod is measured.']);
+  const kept = { brightness: 200, switches: 1 };
+  for (const [is, other] of [[true, {}], [false, { brightness: 9 }], [false, { switches: 0 }], [false, { resolution: 21 }],
+    [false, { ps2: 1 }], [false, { switches: 3 }]]) {
+    const { port, page } = await heard();
+    await answer(port, 1, { brightness: 9 });
+    page.id('brightness').value = '200';
+    page.id('silent').checked = true;
+    await page.id('send').onclick();
+    await answer(port, 2, { ...kept, ...other });
+    assert.match(page.id('sent').textContent, is ? /^Kept/ : /^It has not taken them/, JSON.stringify(other));
+    assert.equal(page.id('brightness').value, other.brightness ?? 200);
+  }
 });
 
 test('a question that is lost is put again; firmware of before, which has no answer, can be set all the same', async () => {
-  const { port, page } = await connected();
-  await hear(port, bytes('00' + kGolden));
-  page.later(50);
+  const { port, serial, page } = await heard();
   page.later(500);
   await settled();
   assert.equal(port.written.length, 1);
   page.later(600);
   await settled();
   assert.equal(port.written.length, 2);
-  const broken = stuffed(settingsReport({ brightness: 9 }));
-  broken[3] ^= 1;
-  await hear(port, broken);
+  const broken = settingsReport(1, { brightness: 9 });
+  broken[4] ^= 1;
+  await hear(port, stuffed(broken));
+  page.later(50);
+  assert.match(page.id('faults').textContent, /not a frame 1,/);
   assert.equal(page.id('send').disabled, true);
   page.later(1001);
   page.later(1001);
@@ -275,13 +309,113 @@ test('a question that is lost is put again; firmware of before, which has no ans
   await settled();
   assert.equal(port.written.length, 3);
   assert.match(page.id('told').textContent, /^It does not tell its settings/);
-  assert.equal(page.id('send').disabled, false);
+  assert.deepEqual(['send', 'brightness', 'resolution', 'gamepads', 'measure'].map((id) => page.id(id).disabled),
+    [false, false, true, true, true]);
   await page.id('send').onclick();
   page.later(50);
-  await hear(port, stuffed(settingsReport({ brightness: 9 })));
-  assert.equal(page.id('brightness').value, 9, 'flashed meanwhile');
-  await hear(port, stuffed(settingsReport({ brightness: 77 })));
-  assert.equal(page.id('brightness').value, 9, 'an answer that nobody asked for');
+  await settled();
+  assert.equal(port.written.length, 4, 'not asked again');
+  assert.equal(page.id('send').disabled, false);
+  // Flashed and connected again.
+  const other = new Port();
+  serial.requestPort = async () => other;
+  await page.id('serial').onclick();
+  await hear(other, bytes('00' + kGolden));
+  page.later(50);
+  await answer(other, 2, { brightness: 9 });
+  assert.equal(page.id('brightness').value, 9);
+});
+
+test('an answer that is not to the last question changes nothing', async () => {
+  const { port, page } = await heard();
+  page.later(1001);
+  await answer(port, 1, { brightness: 9 });
+  page.id('brightness').value = '200';
+  await page.id('send').onclick();
+  await answer(port, 1, { brightness: 9 });  // the question was put twice
+  assert.deepEqual([page.id('brightness').value, page.id('sent').textContent], ['200', 'Sent.']);
+  await answer(port, 2, { brightness: 200 });
+  await answer(port, 2, { brightness: 77 });
+  assert.deepEqual([page.id('brightness').value, page.id('sent').textContent], [200, 'Kept.']);
+  page.later(50);
+  assert.match(page.id('faults').textContent, /not a frame 0,/);
+});
+
+test('settings of another version, or out of range, are not shown', async () => {
+  for (const wrong of [{ version: 3 }, { resolution: 0 }, { resolution: 121 }, { switches: 4 }, { abilities: 4 },
+    { stick: [1, 5, 400] }]) {
+    const { port, page } = await heard();
+    await answer(port, 1, { brightness: 9, ...wrong });
+    page.later(50);
+    assert.match(page.id('told').textContent, /^Its settings are of another version/);
+    assert.deepEqual([page.id('brightness').value, page.id('send').disabled], ['20', false]);
+    assert.match(page.id('faults').textContent, /not a frame 0,/);
+  }
+});
+
+test('of a Pico all is filled, sent and compared, and measuring leaves the form alone', async () => {
+  const { device, page } = await pico(new Device(), { abilities: 3, resolution: 60, ps2: 0x81, switches: 1, stick: [2, -1200, 402] });
+  assert.deepEqual(['resolution', 'mice', 'gamepads', 'measure'].map((id) => page.id(id).disabled), [false, false, false, false]);
+  assert.deepEqual([page.id('resolution').value, page.id('silent').checked, page.id('gamepads').checked], [60, true, false]);
+  assert.deepEqual(page.id('mice').children.map(({ checked }) => checked), [true, false, false, false, false, false, false, true]);
+  assert.equal(page.id('scales').textContent, 'Measured, in counts: rod 3 1200 along, 402 around.');
+  page.id('mice').children[1].checked = true;
+  page.id('mice').children[7].checked = false;
+  await page.id('send').onclick();
+  assert.deepEqual(device.written[1].slice(1, 17), sealed([1, 3, 0, 0, 0, 0, 0, 0, 60, 64, 0x03, 1, 0, 0]));
+  const kept = { abilities: 3, resolution: 60, ps2: 3, switches: 1 };
+  device.report(settingsReport(2, kept));
+  assert.match(page.id('sent').textContent, /^Kept\. Sensors/);
+  page.id('brightness').value = '200';  // not kept yet
+  await page.id('measure').onclick();
+  let frame = unstuffed([...bytes(kGolden)]);
+  // Rod 6 is pulled by 300 counts, and turned by 100: bytes 28 to 31.
+  for (const changes of [[[2, 1], [29, 1]], [[2, 1], [28, 44]], [[2, 1], [30, 100]]]) device.report(frame = frameAfter(frame, changes));
+  await page.id('measure').onclick();
+  await settled();
+  assert.deepEqual(device.written[3].slice(1, 17), sealed([1, 4, 0, 0, 5, 1, 0, 0, 44, 1, 100, 0, 0, 0]));
+  assert.match(page.id('measured').textContent, /^Sent: rods 6/);
+  device.report(settingsReport(3, { ...kept, stick: [5, -300, 100] }));
+  assert.deepEqual([page.id('measured').textContent, page.id('brightness').value], ['Kept.', '200']);
+  assert.match(page.id('scales').textContent, /rod 6 300 along, 100 around/);
+});
+
+test('a controller that becomes gamepads is said to come back, before its answer and after; else it is unplugged', async () => {
+  for (const [gamepads, answers, said] of [[true, true, /another device/], [true, false, /another device/], [false, true, /unplugged/]]) {
+    const { device, hid, page } = await pico();
+    page.id('gamepads').checked = gamepads;
+    await page.id('send').onclick();
+    if (answers) device.report(settingsReport(2, { abilities: 3, switches: gamepads ? 2 : 0 }));
+    hid.dispatchEvent(Object.assign(new Event('disconnect'), { device }));
+    await settled();
+    assert.match(page.id('state').textContent, said);
+  }
+});
+
+test('what one controller cannot do is its own affair: the next may, also if its firmware tells nothing', async () => {
+  const port = new Port(), device = new Device();
+  const page = new Page({ serial: serialApi(port), hid: hidApi(device) });
+  await page.id('serial').onclick();
+  await hear(port, bytes('00' + kGolden));
+  page.later(50);
+  await answer(port, 1, { brightness: 9 });
+  const able = () => ['resolution', 'mice', 'gamepads'].map((id) => !page.id(id).disabled);
+  assert.deepEqual(able(), [false, false, false]);
+  await page.id('hid').onclick();
+  device.report(unstuffed([...bytes(kGolden)]));
+  for (let i = 0; i < 5; ++i) page.later(1001);
+  assert.deepEqual(able(), [true, true, true]);
+});
+
+test('a controller that takes no commands is not asked', async () => {
+  const device = Object.assign(new Device(), { collections: [{ usagePage: 0xff00, outputReports: [] }] });
+  const page = new Page({ hid: hidApi(device), serial: serialApi(null) });
+  await page.id('hid').onclick();
+  device.report(unstuffed([...bytes(kGolden)]));
+  page.later(50);
+  await settled();
+  assert.deepEqual([device.written.length, page.id('told').textContent, page.id('send').disabled],
+    [0, 'This controller takes no settings.', true]);
 });
 
 // CRC-16/CCITT-FALSE as in wire/tests: of "123456789" 29B1h.
@@ -378,11 +512,10 @@ test('over HID the page shows and sends the same, also when it is connected twic
   device.report(later);
   page.later(50);
   assert.equal(page.id('state').textContent, 'Space Foosball rods is connected.');
-  assert.deepEqual(device.written[0].slice(0, 17), [0, ...sealed(kTell)]);
-  device.report(settingsReport({ abilities: 3, resolution: 60, ps2: 0x81, switches: 1 }));
-  page.later(50);
-  assert.deepEqual(['resolution', 'mice', 'gamepads', 'measure'].map((id) => page.id(id).disabled), [false, false, false, false]);
-  assert.deepEqual([page.id('resolution').value, page.id('silent').checked, page.id('gamepads').checked], [60, true, false]);
+  await settled();
+  const [, ...asked] = device.written[0];
+  assert.deepEqual(asked.slice(0, 16), tell(asked[2]));
+  device.report(settingsReport(asked[2], { abilities: 3 }));
   assert.deepEqual(page.rods[5].slice(2, 4), [5, 0]);
   assert.match(page.id('faults').textContent, /^lost 1, not a frame 0,/);
   page.id('motors').children[0].onclick();

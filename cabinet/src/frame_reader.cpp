@@ -9,19 +9,20 @@ namespace cabinet {
 
 namespace {
 
+bool is_padded(std::span<const std::uint8_t> report) {
+  const auto padding = report.subspan(wire::kDeviceFrameBytes);
+  return std::all_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
 // The controller's page has asked for the settings, and every reader hears the answer.
-bool tells_settings(std::span<const std::uint8_t> bytes) {
-  wire::DeviceSettings settings;
-  std::uint8_t abilities = 0;
-  return wire::decode_settings_report(bytes.data(), bytes.size(), settings, abilities);
+bool tells_settings(std::span<const std::uint8_t> report) {
+  return is_padded(report) && wire::is_settings_report(report.data(), wire::kDeviceFrameBytes);
 }
 
 }  // namespace
 
 bool decode_report(std::span<const std::uint8_t> report, wire::DeviceFrame& frame) {
-  if (report.size() != wire::kDeviceReportBytes) return false;
-  const auto padding = report.subspan(wire::kDeviceFrameBytes);
-  return std::all_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte == 0; }) &&
+  return report.size() == wire::kDeviceReportBytes && is_padded(report) &&
          wire::decode_device_frame(report.data(), wire::kDeviceFrameBytes, frame);
 }
 
@@ -70,7 +71,7 @@ bool FrameReader::next_cobs(wire::DeviceFrame& frame, SourceCounters& counters) 
     std::uint8_t decoded[wire::kDeviceFrameBytes];
     const std::size_t got = wire::cobs_decode(first, size, decoded, sizeof decoded);
     if (wire::decode_device_frame(decoded, got, frame)) return true;
-    if (!tells_settings({decoded, got})) ++counters.bad;
+    if (!wire::is_settings_report(decoded, got)) ++counters.bad;
   }
   return false;
 }
@@ -79,7 +80,7 @@ bool FrameReader::next_report(wire::DeviceFrame& frame, SourceCounters& counters
   while (end_ - begin_ >= wire::kDeviceReportBytes) {
     const std::span report{buffer_.data() + begin_, wire::kDeviceReportBytes};
     const bool is_frame = decode_report(report, frame);
-    if (is_frame || tells_settings(report.first(wire::kDeviceFrameBytes))) {
+    if (is_frame || tells_settings(report)) {
       begin_ += wire::kDeviceReportBytes;
       searching_ = false;
       if (is_frame) return true;

@@ -130,7 +130,7 @@ TEST(HidReports, ShortAndLongOnesAreCountedAndTheNextIsTaken) {
 // The controller's page asks for them; a server or doctor beside it hears the answer.
 TEST(SettingsTold, AreNoFaultOfTheLine) {
   Bytes told(wire::kDeviceFrameBytes);
-  wire::encode_settings_report({}, wire::kHasSensors, told.data());
+  wire::encode_settings_report({}, wire::kHasSensors, 1, told.data());
   Bytes coded(wire::kDeviceCobsBytes);
   wire::cobs_encode(told.data(), told.size(), coded.data());
   Bytes padded = told;

@@ -101,6 +101,7 @@ void AvrController::obey(const wire::DeviceCommand& command) {
       break;
     case wire::kTellSettingsCommand:
       asked_ = true;
+      question_ = command.sequence;
       break;
   }
 }
@@ -109,8 +110,9 @@ void AvrController::count_error() {
   errors_ = add_saturating(errors_, 1);
 }
 
-bool AvrController::take_question() {
-  if (!asked_) return false;
+bool AvrController::take_question(uint16_t& sequence) {
+  if (!asked_ || store_.saving()) return false;
+  sequence = question_;
   asked_ = false;
   frame_made_ = true;  // it takes as long
   return true;

@@ -32,8 +32,9 @@ class AvrController {
   // An error of the line of commands, told in the next frame.
   void count_error();
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
-  // The PC has asked for the settings: they go out in the place of the next frame. True once.
-  bool take_question();
+  // The PC has asked for the settings, and they are kept: they go out in the place of the next
+  // frame. True once; sequence: of the question.
+  bool take_question(uint16_t& sequence);
 
   Ps2Lines& lines() { return mice_.lines(); }
   const MouseHost& mice() const { return mice_; }
@@ -64,6 +65,7 @@ class AvrController {
   uint8_t errors_ = 0;  // counted in the next frame
   uint8_t present_ = 0;
   bool asked_ = false;
+  uint16_t question_ = 0;
   bool frame_made_ = false, after_frame_ = false;
   bool host_ = false;
   bool watchdog_has_reset_ = false;

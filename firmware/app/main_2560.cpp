@@ -50,8 +50,9 @@ void take_commands() {
 void report(uint32_t now_us) {
   if (!g_uart.has_room(wire::kDeviceCobsBytes)) return;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
-  if (g_controller.take_question()) {
-    wire::encode_settings_report(g_controller.settings(), 0, bytes);
+  uint16_t question;
+  if (g_controller.take_question(question)) {
+    wire::encode_settings_report(g_controller.settings(), 0, question, bytes);
   } else {
     wire::DeviceFrame frame;
     g_controller.make_frame(now_us, frame);

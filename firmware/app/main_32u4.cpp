@@ -86,8 +86,9 @@ void serve_gamepads() {
 }
 
 void report(uint32_t now_us) {
-  if (g_controller.take_question()) {
-    wire::encode_settings_report(g_controller.settings(), wire::kCanBeGamepads, g_report);
+  uint16_t question;
+  if (g_controller.take_question(question)) {
+    wire::encode_settings_report(g_controller.settings(), wire::kCanBeGamepads, question, g_report);
   } else {
     wire::DeviceFrame frame;
     g_controller.make_frame(now_us, frame);

@@ -37,7 +37,8 @@ firmware::Gamepads g_pads;
 uint8_t g_pads_moved = 0;  // bit i: gamepad i, since its last report was made
 firmware::ReportClock g_clock;
 wire::DeviceSettings g_settings;
-bool g_asked = false;  // by the PC for the settings, in the place of the next frame
+bool g_asked = false;     // by the PC for the settings, in the place of the next frame
+uint16_t g_question = 0;  // its sequence
 alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
 firmware::SerialString<rp2040::kUniqueIdBytes> g_serial;
 
@@ -122,7 +123,10 @@ void report() {
   if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
   if (g_asked) {
     g_asked = false;
-    wire::encode_settings_report(g_settings, wire::kHasSensors | wire::kCanBeGamepads, g_report);
+    wire::DeviceSettings kept = g_settings;  // as they are, if there are none in flash
+    rp2040::load_settings(kept);
+    wire::encode_settings_report(kept, wire::kHasSensors | wire::kCanBeGamepads, g_question,
+                                 g_report);
     g_usb.send_report(g_report);
     return;
   }
@@ -220,6 +224,7 @@ void obey(const wire::DeviceCommand& command) {
       break;
     case wire::kTellSettingsCommand:
       g_asked = true;
+      g_question = command.sequence;
       break;
   }
 }

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "firmware_sim/cabinet_sim.h"
@@ -19,7 +18,7 @@ namespace firmware_sim {
 
 struct Frames {
   std::vector<wire::DeviceFrame> good;
-  std::vector<std::pair<wire::DeviceSettings, std::uint8_t>> settings;  // with the abilities
+  std::vector<wire::SettingsReport> settings;
   int bad = 0;
 
   const wire::DeviceFrame& last() const { return good.back(); }
@@ -101,12 +100,11 @@ class Cabinet {
  private:
   static void add(const std::uint8_t* bytes, std::size_t size, Frames& frames) {
     wire::DeviceFrame frame{};
-    wire::DeviceSettings settings;
-    std::uint8_t abilities = 0;
+    wire::SettingsReport settings;
     if (wire::decode_device_frame(bytes, size, frame)) {
       frames.good.push_back(frame);
-    } else if (wire::decode_settings_report(bytes, size, settings, abilities)) {
-      frames.settings.emplace_back(settings, abilities);
+    } else if (wire::decode_settings_report(bytes, size, settings)) {
+      frames.settings.push_back(settings);
     } else {
       ++frames.bad;
     }

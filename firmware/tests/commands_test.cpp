@@ -277,16 +277,19 @@ TEST_P(Commands, TheSettingsAreToldInThePlaceOfOneFrameAndNoCountIsLost) {
   };
   for (const int brightness : {64, 200, 0}) {
     if (brightness != 64) cabinet.send(settings_command(brightness, brightness == 200));
-    shake(20);
+    shake(300);  // they are kept by then
+    cabinet.take();
     cabinet.send(tell);
+    ++tell.sequence;
     shake(20);
     const Frames frames = cabinet.take();
     ASSERT_EQ(frames.settings.size(), 1u) << brightness;
-    const auto& [told, abilities] = frames.settings[0];
-    EXPECT_EQ(told.brightness, brightness);
-    EXPECT_EQ(told.resolution, 20);
-    EXPECT_EQ(told.switches, brightness == 0 ? wire::kPulsesOff : 0);
-    EXPECT_EQ(abilities, GetParam() == Board::mega32u4 ? wire::kCanBeGamepads : 0);
+    const wire::SettingsReport& told = frames.settings[0];
+    EXPECT_EQ(told.settings.brightness, brightness);
+    EXPECT_EQ(told.settings.resolution, 20);
+    EXPECT_EQ(told.settings.switches, brightness == 0 ? wire::kPulsesOff : 0);
+    EXPECT_EQ(told.abilities, GetParam() == Board::mega32u4 ? wire::kCanBeGamepads : 0);
+    EXPECT_EQ(told.sequence, tell.sequence - 1);
     EXPECT_EQ(frames.bad, 0);
     EXPECT_EQ(frames.errors(), 0u);
     for (std::size_t i = 1; i < frames.good.size(); ++i) {
@@ -297,6 +300,33 @@ TEST_P(Commands, TheSettingsAreToldInThePlaceOfOneFrameAndNoCountIsLost) {
   ASSERT_TRUE(cabinet.settle());
   cabinet.take();
   expect_counts(cabinet.last(), shaker.moved);
+}
+
+// What is told is what the board starts with when its power fails in that moment.
+TEST_P(Commands, SettingsAreToldOnceTheyAreKept) {
+  MotorCabinet cabinet(GetParam());
+  ASSERT_TRUE(cabinet.start());
+  wire::DeviceCommand tell{};
+  tell.kind = wire::kTellSettingsCommand;
+  cabinet.send(settings_command(200));
+  cabinet.send(tell);
+  Frames frames;
+  ASSERT_TRUE(cabinet.advance_until(
+      [&] {
+        frames = cabinet.take();
+        return !frames.settings.empty();
+      },
+      400));
+  EXPECT_EQ(frames.settings[0].settings.brightness, 200);
+  CabinetOptions options;
+  options.eeprom = cabinet.sim.eeprom();
+  MotorCabinet after(GetParam(), options);
+  ASSERT_TRUE(after.start());
+  after.send(tell);
+  after.sim.advance_us(20'000);
+  const Frames then = after.take();
+  ASSERT_EQ(then.settings.size(), 1u);
+  EXPECT_EQ(then.settings[0].settings.brightness, 200);
 }
 
 TEST(UsbCommands, ComeByAControlTransferToo) {

@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLES3/gl3.h>
 #include <GLFW/glfw3.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -139,7 +140,7 @@ class Terminal {
       tell();
       read_keys();
     }
-    if (run_.session().all_fitted() && run_.view().problem.empty()) return kOk;
+    if (run_.session().all_fitted()) return run_.view().problem.empty() ? kOk : kFailed;
     if (!closed_) return kFailed;
     return fail(kFailed, "its input has ended before all rods fit: run it on a terminal.");
   }
@@ -236,6 +237,7 @@ int show(const Options& options, Run& run) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (::fcntl(STDIN_FILENO, F_GETFD) < 0) (void)::open("/dev/null", O_RDONLY);  // takes its place
   Options options;
   std::string size = "1280x720";
   CLI::App cli{

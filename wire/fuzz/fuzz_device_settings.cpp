@@ -11,11 +11,10 @@ namespace {
 using Octets = std::vector<std::uint8_t>;
 
 void read(const Octets& bytes) {
-  wire::DeviceSettings settings;
-  std::uint8_t abilities = 0;
-  if (!wire::decode_settings_report(bytes.data(), bytes.size(), settings, abilities)) return;
+  wire::SettingsReport report;
+  if (!wire::decode_settings_report(bytes.data(), bytes.size(), report)) return;
   Octets again(wire::kDeviceFrameBytes);
-  wire::encode_settings_report(settings, abilities, again.data());
+  wire::encode_settings_report(report.settings, report.abilities, report.sequence, again.data());
   if (again != bytes) std::abort();
 }
 

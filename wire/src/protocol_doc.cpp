@@ -25,12 +25,12 @@ namespace {
 constexpr const char* kHead = R"(# The protocol
 
 <!-- Made by wire_protocol_doc from wire/include/wire/*_description.h, wire/control.fbs and
-     wire/include/wire/device_frame.h and device_command.h. Do not edit: change those, then run
+     wire/include/wire/device_frame.h, device_command.h and device_settings.h. Do not edit: change those, then run
      `ninja -C build/release wire_protocol_doc && build/release/bin/wire_protocol_doc docs/protocol.md`. -->
 
 Six kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
-over TCP, what phones say over a WebSocket, the journal in a file, and the cabinet's frames and its
-commands over USB. Everything is little endian.
+over TCP, what phones say over a WebSocket, the journal in a file, and the cabinet's frames, its commands
+and its settings over USB. Everything is little endian.
 )";
 
 constexpr const char* kVocabulary = R"(

@@ -13,14 +13,14 @@ using Report = std::vector<std::uint8_t>;
 
 Report settings_report() {
   Report bytes(kDeviceFrameBytes);
-  encode_settings_report(samples::device_settings(), kHasSensors | kCanBeGamepads, bytes.data());
+  encode_settings_report(samples::device_settings(), kHasSensors | kCanBeGamepads, 0x1234,
+                         bytes.data());
   return bytes;
 }
 
 bool reads(const Report& bytes) {
-  DeviceSettings settings;
-  std::uint8_t abilities = 0;
-  return decode_settings_report(bytes.data(), bytes.size(), settings, abilities);
+  SettingsReport report;
+  return decode_settings_report(bytes.data(), bytes.size(), report);
 }
 
 TEST(DeviceSettings, TheBytesAreThese) {
@@ -33,16 +33,19 @@ TEST(DeviceSettings, TheBytesAreThese) {
   expected[23] = 0x01;
   expected[40] = 0x08;
   expected[41] = 0x42;
+  expected[42] = 0x34;
+  expected[43] = 0x12;
   device_put16(expected.data() + 44, device_crc16(expected.data(), 44));
   EXPECT_EQ(settings_report(), expected);
 }
 
 TEST(DeviceSettings, AReportComesBackAndIsNoFrame) {
   const Report bytes = settings_report();
-  DeviceSettings read;
-  std::uint8_t abilities = 0;
-  ASSERT_TRUE(decode_settings_report(bytes.data(), bytes.size(), read, abilities));
-  EXPECT_EQ(abilities, kHasSensors | kCanBeGamepads);
+  SettingsReport report;
+  ASSERT_TRUE(decode_settings_report(bytes.data(), bytes.size(), report));
+  const DeviceSettings& read = report.settings;
+  EXPECT_EQ(report.abilities, kHasSensors | kCanBeGamepads);
+  EXPECT_EQ(report.sequence, 0x1234);
   EXPECT_EQ(read.resolution, 60);
   EXPECT_EQ(read.sticks[3].travel, 1216);
   EXPECT_EQ(read.sticks[3].turn, 402);
@@ -73,13 +76,14 @@ TEST(DeviceSettings, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
     std::size_t at;
     std::uint8_t value;
   };
-  // Kind, abilities, version, resolution 0 and 121, switches, the reserved bytes, a travel of 63.
+  // Kind, abilities, version, resolution 0 and 121, switches, the reserved byte, a travel of 63.
   for (const Case& c : {Case{0, 0x82}, Case{1, 4}, Case{2, 1}, Case{2, 3}, Case{3, 0}, Case{3, 121},
-                        Case{6, 4}, Case{7, 1}, Case{42, 1}, Case{43, 1}, Case{8, 63}}) {
+                        Case{6, 4}, Case{7, 1}, Case{8, 63}}) {
     Report bytes = settings_report();
     bytes[c.at] = c.value;
     device_put16(bytes.data() + 44, device_crc16(bytes.data(), 44));
     EXPECT_FALSE(reads(bytes)) << c.at;
+    EXPECT_EQ(is_settings_report(bytes.data(), bytes.size()), c.at != 0) << "of another version";
   }
 }
 

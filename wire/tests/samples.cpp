@@ -520,7 +520,8 @@ Bytes encoded(const DeviceCommand& command) {
 
 Bytes encoded(const DeviceSettings& settings) {
   Bytes bytes(kDeviceFrameBytes);
-  encode_settings_report(settings, kHasSensors, reinterpret_cast<std::uint8_t*>(bytes.data()));
+  encode_settings_report(settings, kHasSensors, 0x1234,
+                         reinterpret_cast<std::uint8_t*>(bytes.data()));
   return bytes;
 }
 

@@ -84,7 +84,7 @@ test('the settings that the firmware tells are those that it was sent, and no fr
   const rig = new Rig().start();
   rig.frames();
   const told = () => {
-    assert.ok(rig.board.runUntil(() => rig.host.sendReport(page.tellReport().subarray(0, 16)), 500));
+    assert.ok(rig.board.runUntil(() => rig.host.sendReport(page.tellReport(0x1234).subarray(0, 16)), 500));
     rig.board.runMs(5);
     const reports = rig.host.take().map(({ bytes }) => bytes);
     const frames = reports.flatMap((bytes) => decodeFrame(bytes) ?? []);
@@ -93,7 +93,7 @@ test('the settings that the firmware tells are those that it was sent, and no fr
     return reports.map((bytes) => page.decodeSettings(view(bytes))).find((settings) => settings);
   };
   const fresh = told();
-  assert.deepEqual({ ...fresh, sticks: 0 }, { hasSensors: true, canBeGamepads: true, resolution: 20, brightness: 64,
+  assert.deepEqual({ ...fresh, sticks: 0 }, { version: 2, sequence: 0x1234, hasSensors: true, canBeGamepads: true, resolution: 20, brightness: 64,
     ps2: 0, silent: false, gamepads: false, sticks: 0 });
   assert.ok(fresh.sticks.every(({ travel, turn }) => travel === 0 && turn === 0));
   const wanted = { resolution: 60, brightness: 200, ps2: 0x80, silent: true, gamepads: false };
@@ -104,7 +104,7 @@ test('the settings that the firmware tells are those that it was sent, and no fr
   }
   rig.host.take();
   const { sticks, ...settings } = told();
-  assert.deepEqual(settings, { hasSensors: true, canBeGamepads: true, ...wanted });
+  assert.deepEqual(settings, { version: 2, sequence: 0x1234, hasSensors: true, canBeGamepads: true, ...wanted });
   assert.deepEqual([sticks[6], sticks[0], sticks[1]], [{ travel: -9876, turn: 4021 }, { travel: 64, turn: -65 }, { travel: 0, turn: 0 }]);
 });
 

@@ -18,7 +18,7 @@
 //   1  u8   abilities          of the board: bit 0: it has sensors, for which resolution and ps2
 //                              are; bit 1: it can be gamepads
 //   2  40 x u8                 the settings
-//  42  u16  reserved           0
+//  42  u16  sequence           of the question
 //  44  u16  crc                CRC-16/CCITT-FALSE over bytes 0..43
 #ifndef WIRE_DEVICE_SETTINGS_H
 #define WIRE_DEVICE_SETTINGS_H
@@ -82,24 +82,34 @@ inline bool decode_device_settings(const uint8_t* in, DeviceSettings& settings) 
   return true;
 }
 
+struct SettingsReport {
+  DeviceSettings settings;
+  uint8_t abilities = 0;
+  uint16_t sequence = 0;
+};
+
 // out: kDeviceFrameBytes.
 inline void encode_settings_report(const DeviceSettings& settings, uint8_t abilities,
-                                   uint8_t* out) {
+                                   uint16_t sequence, uint8_t* out) {
   out[0] = kDeviceSettingsReport;
   out[1] = abilities;
   encode_device_settings(settings, out + 2);
-  device_put16(out + 42, 0);
+  device_put16(out + 42, sequence);
   device_put16(out + 44, device_crc16(out, 44));
 }
 
-// False, and both untouched, unless size, kind, CRC and all ranges hold.
-inline bool decode_settings_report(const uint8_t* in, size_t size, DeviceSettings& settings,
-                                   uint8_t& abilities) {
-  if (size != kDeviceFrameBytes || in[0] != kDeviceSettingsReport) return false;
-  if (in[1] > (kHasSensors | kCanBeGamepads) || device_get16(in + 42) != 0) return false;
-  if (device_get16(in + 44) != device_crc16(in, 44)) return false;
-  if (!decode_device_settings(in + 2, settings)) return false;
-  abilities = in[1];
+// It is one, of this version or of another.
+inline bool is_settings_report(const uint8_t* in, size_t size) {
+  return size == kDeviceFrameBytes && in[0] == kDeviceSettingsReport &&
+         device_get16(in + 44) == device_crc16(in, 44);
+}
+
+// False, and out untouched, unless size, kind, version, CRC and all ranges hold.
+inline bool decode_settings_report(const uint8_t* in, size_t size, SettingsReport& out) {
+  if (!is_settings_report(in, size) || in[1] > (kHasSensors | kCanBeGamepads)) return false;
+  if (!decode_device_settings(in + 2, out.settings)) return false;
+  out.abilities = in[1];
+  out.sequence = device_get16(in + 42);
   return true;
 }
 
