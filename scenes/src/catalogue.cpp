@@ -28,6 +28,8 @@ constexpr Builder kBuilders[] = {
     {{"chain200", "200 links swing a weight of 1000 links' mass"},
      [] { return chain(200, kTilted); }},
     {{"bridge", "100 hinged planks, crates falling on them"}, [] { return bridge(100, 20); }},
+    {{"joint_grid", "a curtain of 100 x 100 balls on 19,701 ball joints"},
+     [] { return joint_grid(100); }},
     {{"tower10", "one tower of 10 boxes"}, [] { return towers(1, 1, 10); }},
     {{"pyramid10", "a wall pyramid of 55 boxes"}, [] { return pyramid(10); }},
     {{"cards", "a house of cards of three storeys"}, [] { return card_house(3); }},

@@ -148,6 +148,27 @@ Scene chain(int links, double tilt) {
   return scene;
 }
 
+Scene joint_grid(int side) {
+  constexpr double kPitch = 1.0, kRadius = 0.4;  // [m]: they do not meet while it swings
+  Scene scene;
+  std::vector<int> column_before, column;
+  for (int k = 0; k < side; ++k) {
+    column.clear();
+    for (int i = 0; i < side; ++i) {
+      const Vec3 at{kPitch * k, 0.0, -kPitch * i};
+      const Shape ball = Sphere{kRadius};
+      column.push_back(add(scene, i == 0 ? fixed_body(ball, SE3(at)) : body_of(ball, SE3(at))));
+      if (i == 0) continue;
+      join(scene, Joint::Kind::ball, column[i - 1], column[i], at + Vec3{0, 0, 0.5 * kPitch});
+      if (k == 0) continue;
+      join(scene, Joint::Kind::ball, column_before[i], column[i], at - Vec3{0.5 * kPitch, 0, 0});
+    }
+    column_before = column;
+  }
+  scene.in_place.lower.z = -1e9;
+  return scene;
+}
+
 Scene bridge(int planks, int crates) {
   constexpr double kPitch = 0.5, kSteepest = 0.46, kHeight = 15.0;  // [m], tangent, [m]
   const BarSpec bars{planks, kPitch, kSteepest / (0.5 * planks), Box{{0.24, 1.0, 0.05}}};

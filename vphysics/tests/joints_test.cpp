@@ -496,5 +496,27 @@ TEST(UserConstraint, OneSidedRowsPushAndDoNotPull) {
   EXPECT_NEAR(world.velocity(ball).v.z, 2 - 0.1 * kG, 1e-3);
 }
 
+// More joints than there are colours.
+TEST(Joints, AHubHoldsAHundredBalls) {
+  World world;
+  const BodyId hub = add_anchor(world);
+  BodyDesc desc;
+  desc.inertia = Inertia(10.0, Vec3{1, 1, 1});
+  const BodyId wheel = must(world.create_body(desc));
+  join(world, hub, wheel, Weld{}, SE3{});
+  std::vector<BodyId> balls;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 at = Exp(Vec3{0.0, 0.0, 0.02 * kPi * i}) * Vec3{1, 0, 0};
+    balls.push_back(add_mass(world, Inertia(0.1, 1e-3 * Vec3{1, 1, 1}), SE3(at)));
+    join(world, wheel, balls.back(), i % 2 == 0 ? JointKind(BallSocket{}) : JointKind(Weld{}),
+         SE3(at));
+  }
+  run(world, 1.0);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 at = Exp(Vec3{0.0, 0.0, 0.02 * kPi * i}) * Vec3{1, 0, 0};
+    EXPECT_LT(norm(world.pose(balls[static_cast<std::size_t>(i)]).position() - at), 2e-3) << i;
+  }
+}
+
 }  // namespace
 }  // namespace vp::test

@@ -42,6 +42,9 @@ Scene ragdolls(int along_x, int along_y, int layers);
 // Capsules of 0.2 m hang by ball joints from a fixed block, turned from the plumb line by tilt
 // [rad]; at the end a sphere of about 1000 times a link's mass.
 Scene chain(int links, double tilt);
+// Balls in a square, hung by the fixed ones of the uppermost row and joined by ball joints half way
+// to their neighbours: after Box3D's benchmark of joints. There no ball meets another.
+Scene joint_grid(int side);
 // Planks joined by hinges between two fixed blocks, in the shape in which they are in equilibrium;
 // crates are let fall on them.
 Scene bridge(int planks, int crates);

@@ -16,24 +16,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "solve/field.h"
+
 namespace vphysics_solver {
 
-inline constexpr int kLanes = 16;
-
-struct alignas(64) Field {
-  float lane[kLanes];
-};
-struct alignas(64) IndexField {
-  std::uint32_t lane[kLanes];
-};
-struct Field3 {
-  Field x, y, z;
-};
 struct FieldTangent {
   Field t, b;  // along the tangents t and b = n x t
-};
-struct FieldSym3 {
-  Field xx, yy, zz, xy, yz, zx;
 };
 
 // The place of K_ij, i != j, among `off_diagonal`.

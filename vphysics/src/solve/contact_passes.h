@@ -18,143 +18,14 @@
 // friction. Bounces: docs/decisions/0019.
 #pragma once
 
-#include "solve/body_row.h"
+#include "solve/block_lanes.h"
 #include "solve/contact_block.h"
-#include "solve/lanes.h"
 #include "solve/passes.h"
 
 namespace vp::solve {
 
-// W lanes of a block from `at` on, with the velocities of their bodies.
 template <int W, int P>
-class LanesOf {
- public:
-  using F = Lanes<W>;
-  using V = Vec3T<F>;
-  using S = Sym3T<F>;
-  using Block = ContactBlock<P>;
-
-  LanesOf(Block& block, int at, BodyRow* rows) : block_(block), at_(at), rows_(rows) {}
-
-  F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
-  V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
-  S get(const FieldSym3& f) const {
-    return {get(f.xx), get(f.yy), get(f.zz), get(f.xy), get(f.yz), get(f.zx)};
-  }
-  void put(Field& f, const F& x) const { lanes::store<W>(f.lane + at_, x.lanes); }
-  void put(Field3& f, const V& x) const {
-    put(f.x, x.x);
-    put(f.y, x.y);
-    put(f.z, x.z);
-  }
-  Block& block() const { return block_; }
-
-  void load_inertias() const {
-    load_inertias([this](int i) { return row_a(i).inertia; }, block_.inertia_a);
-    load_inertias([this](int i) { return row_b(i).inertia; }, block_.inertia_b);
-  }
-  void gather_velocities() {
-    F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).velocity; }, r);
-    take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    lanes::gather8<W>([this](int i) { return row_b(i).velocity; }, r);
-    take_velocity(r, v_b, w_b, mass_b_, falls_b);
-  }
-  void gather_velocities_and_ways() {
-    F r[16];
-    lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
-    take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    take_way(r + 8, x_a, turn_a);
-    lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
-    take_velocity(r, v_b, w_b, mass_b_, falls_b);
-    take_way(r + 8, x_b, turn_b);
-  }
-  void scatter_velocities() const {
-    const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
-    const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
-    scatter([this](int i) { return row_a(i).velocity; }, a, pushes_a());
-    scatter([this](int i) { return row_b(i).velocity; }, b, pushes_b());
-  }
-  void scatter_ways() const {
-    const F zero(0.0f);
-    const F a[8] = {x_a.x, x_a.y, x_a.z, turn_a.x, turn_a.y, turn_a.z, zero, zero};
-    const F b[8] = {x_b.x, x_b.y, x_b.z, turn_b.x, turn_b.y, turn_b.z, zero, zero};
-    scatter([this](int i) { return row_a(i).way; }, a, pushes_a());
-    scatter([this](int i) { return row_b(i).way; }, b, pushes_b());
-  }
-  // Accelerations by the forces matter to bounces alone.
-  void gather_accelerations(V& a, V& b) const {
-    F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).rate; }, r);
-    a = {r[0], r[1], r[2]};
-    lanes::gather8<W>([this](int i) { return row_b(i).rate; }, r);
-    b = {r[0], r[1], r[2]};
-  }
-
-  void push_linear(const V& p) {
-    v_a -= mass_a_ * p;
-    v_b += mass_b_ * p;
-  }
-  void push_angular(const V& on_a, const V& on_b) {
-    w_a -= get(block_.inertia_a) * on_a;
-    w_b += get(block_.inertia_b) * on_b;
-  }
-
-  // Lanes whose a, or b, impulses move.
-  LaneMask<W> pushes_a() const { return mass_a_ > F(0.0f); }
-  LaneMask<W> pushes_b() const { return mass_b_ > F(0.0f); }
-
-  // Of bodies that can be carried: those that cannot may be of several lanes.
-  void mark_carried(int i) const {
-    for (BodyRow* row : {&row_a(i), &row_b(i)}) {
-      if (row->velocity[kInverseMass] > 0.0f) row->way[kCarried] = 1.0f;
-    }
-  }
-
-  V v_a, w_a, v_b, w_b, x_a, turn_a, x_b, turn_b;
-  F falls_a, falls_b;
-
- private:
-  BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
-  BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
-  template <class Place>
-  void load_inertias(const Place& place, FieldSym3& inertia) const {
-    F r[8];
-    lanes::gather8<W>(place, r);
-    Field* const to[6] = {&inertia.xx, &inertia.yy, &inertia.zz,
-                          &inertia.xy, &inertia.yz, &inertia.zx};
-    for (int f = 0; f < 6; ++f) put(*to[f], r[f]);
-  }
-  // What nothing pushes keeps its row, which several lanes, and workers, may read. Empty lanes are
-  // of the world's.
-  template <class Place>
-  static void scatter(const Place& place, const F* values, const LaneMask<W>& pushed) {
-    const unsigned bits = lanes::bits_of(pushed);
-    if (bits == lanes::kAllBits<W>) {
-      lanes::scatter8<W>(place, values, [](int) { return true; });
-    } else {
-      lanes::scatter8<W>(place, values, [bits](int i) { return (bits >> i & 1u) != 0; });
-    }
-  }
-  static const float* first_line(const BodyRow& row) {
-    return reinterpret_cast<const float*>(&row);
-  }
-  static void take_velocity(const F* r, V& v, V& w, F& mass, F& falls) {
-    v = {r[0], r[1], r[2]};
-    w = {r[3], r[4], r[5]};
-    mass = r[kInverseMass];
-    falls = r[kFalls];
-  }
-  static void take_way(const F* r, V& x, V& turn) {
-    x = {r[0], r[1], r[2]};
-    turn = {r[3], r[4], r[5]};
-  }
-
-  Block& block_;
-  int at_;
-  BodyRow* rows_;
-  F mass_a_, mass_b_;
-};
+using LanesOf = BlockLanes<W, ContactBlock<P>>;
 
 // What is common to the normal rows of a contact.
 template <int W, int P>

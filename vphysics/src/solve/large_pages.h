@@ -30,7 +30,7 @@ struct LargePages {
     const std::size_t whole = (bytes + kPage - 1) / kPage * kPage;
     void* memory = ::operator new (whole, std::align_val_t{kPage});
 #ifdef __linux__
-    (void)madvise(memory, whole, MADV_HUGEPAGE);  // a wish
+    (void)madvise(memory, whole, MADV_HUGEPAGE);  // may be refused
 #endif
     return static_cast<T*>(memory);
   }

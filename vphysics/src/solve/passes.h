@@ -1,14 +1,17 @@
 // What a solver's stage may be asked to do, whatever the width of the machine's registers.
 //
-// passes.cpp is compiled once for each instruction set, with `vp` defined as another name, so that
-// no function of one set can be taken for another's. All that the sets share has addresses and
-// layouts in a namespace that keeps its name.
+// passes.cpp and joint_passes.cpp are compiled once for each instruction set, with `vp` defined as
+// another name, so that no function of one set can be taken for another's. All that the sets share
+// has addresses and layouts in a namespace that keeps its name.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "solve/body_row.h"
 #include "solve/contact_block.h"
+#include "solve/joint_block.h"
 #include "solve/near_list.h"
 
 namespace vphysics_solver {
@@ -72,10 +75,39 @@ struct Passes {
   ContactPasses<4> four;
 };
 
+// The passes over the blocks of one form and colour.
+template <class BLOCK>
+struct JointPasses {
+  struct Run {
+    BLOCK* blocks;
+    std::size_t count;  // of blocks
+    const JointForm* form;
+    BodyRow* rows;
+    const Gone* gone;  // by row
+  };
+  void (*load_inertias)(const Run& run);  // before the sub-steps of a step
+  void (*prepare)(const Run& run);
+  void (*warm_start)(const Run& run);
+  // Rounds of pushing: the first of a sub-step h, and those after it.
+  void (*push_first)(const Run& run, float h);
+  void (*push_again)(const Run& run, float h);
+  void (*relax)(const Run& run, float h);
+};
+struct AllJointPasses {
+  // Of bodies: how they have gone since their rows' ways were start.
+  void (*find_gone)(const BodyRow* rows, const std::array<float, 6>* start,
+                    const std::uint32_t* bodies, std::size_t count, Gone* gone);
+  JointPasses<BallBlock> ball;
+  JointPasses<AxesBlock> axes;
+  JointPasses<FrameBlock> frames;
+  JointPasses<RowsBlock> rows;
+};
+
 extern const Passes kBaseline;
+extern const AllJointPasses kBaselineJoints;
 // Only in libraries built with VP_INSTRUCTION_SETS.
-extern const Passes kAvx2;
-extern const Passes kAvx512;
+extern const Passes kAvx2, kAvx512;
+extern const AllJointPasses kAvx2Joints, kAvx512Joints;
 
 }  // namespace vphysics_solver
 
@@ -84,5 +116,6 @@ using namespace vphysics_solver;  // NOLINT(google-build-using-namespace): see p
 
 // Those for this machine. All give the same bits.
 const Passes& passes();
+const AllJointPasses& joint_passes();
 
 }  // namespace vp::solve

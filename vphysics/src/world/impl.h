@@ -22,6 +22,7 @@
 #include "world/articulation.h"
 #include "world/contact.h"
 #include "world/joint.h"
+#include "world/joint_runs.h"
 
 namespace vp {
 
@@ -309,8 +310,9 @@ struct World::Impl {
   std::vector<std::uint32_t> to_pose;
   std::vector<Velocity> drift;  // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
-  std::vector<BodyPlace> joint_places;
-  std::vector<std::uint32_t> active_joints;
+  JointRuns joint_runs;
+  std::vector<std::uint32_t> active_joints, joined_bodies;
+  solve::LargeVector<solve::Gone> joint_ways;  // by row: of what is joined
   StepStatus status;
   collide::BroadPhase broad_phase;
   std::vector<collide::Bounds> bounds, discrete_bounds;
@@ -423,16 +425,22 @@ struct World::Impl {
   BodyPlace place_of(std::uint32_t body) const;
   BodyPlace place_within_step(std::uint32_t body) const;
   bool keeps_apart(std::uint32_t a, std::uint32_t b) const;
-  bool is_active(const BodyJoint& joint) const;
   void link_joint(std::uint32_t joint);
   void remove_joint(std::uint32_t joint);
+  void forget_joints(std::uint32_t body);
+
+  // joint_steps.cpp
+  bool is_active(const BodyJoint& joint) const;
+  template <class F>
+  void for_joint_runs(const F& f);
   void begin_joints(double h);
-  void refresh_joints(double h);
+  void fill_joint(std::uint32_t joint);
+  void prepare_joints();
+  void evaluate_joints(solve::RowsBlock& block);
   void warm_start_joints();
   void solve_joints(double h, int round);
   void relax_joints(double h);
   void end_joints(double dt);
-  void forget_joints(std::uint32_t body);
 
   // find_contacts.cpp
   bool has_contacts_to_find() const;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "solve/joint_block.h"
+#include "vphysics/lie.h"
 #include "vphysics/world_joints.h"
 
 namespace vp {
@@ -31,6 +32,32 @@ struct JointLaw {
 };
 JointLaw law_of(const JointKind& kind);
 
+// A row of a joint: its law for sub-steps of one length, and its impulses, which are state. See
+// solve/joint_block.h for what each is.
+struct BodyJointRow {
+  std::uint8_t slot = 0;  // which of the joint's coordinates it is of
+  double impulse = 0.0, stop = 0.0;
+  double rate = 0.0, loss = 0.0;
+  bool relaxes = true;
+  bool bounded_hold = false;
+  double least = 0.0, most = 0.0;
+  double stiffness = 0.0, damping = 0.0, position = 0.0, speed = 0.0;
+  double lower = -kNowhere, upper = kNowhere;
+
+  static constexpr double kNowhere = static_cast<double>(solve::kNowhere);
+};
+
+// The derivative of a residual by velocities of the centres of mass and angular velocities, world
+// axes.
+struct Twelve {
+  Vec3 linear_a, angular_a, linear_b, angular_b;
+};
+// What rows are, where the bodies are.
+struct JointMeasure {
+  Twelve jacobian[solve::kJointRows];
+  double residual[solve::kJointRows] = {};
+};
+
 struct BodyJoint {
   std::uint32_t generation = 0;
   bool alive = false;
@@ -44,16 +71,26 @@ struct BodyJoint {
   int main = -1;  // slot of its one coordinate
   // Angles counted on beyond whole turns: of the twist; of a gear's two bodies.
   double turned[2] = {};
-  SE3 start[2];               // of a gear: the bodies' poses at its creation
-  solve::JointBlock block;    // its impulses are state
-  double laid_out_for = 0.0;  // the sub-step of the block's rows; 0: lay them out anew
-  Vec3 force, torque;         // of the last step's sub-steps, added up
+  SE3 start[2];  // of a gear: the bodies' poses at its creation
+  // The first `held` are held; a point's impulse is that of the slots 0 to 2, along the world's
+  // axes.
+  BodyJointRow rows[solve::kJointRows];
+  int count = 0, held = 0;
+  double laid_out_for = 0.0;  // the sub-step of the rows; 0: they must be laid out
+  Vec3 force, torque;         // of the last step
+
+  bool holds_point() const {
+    return law.form == JointLaw::Form::axes && held >= 3 && rows[2].slot == 2;
+  }
 };
 
 // The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
 void lay_out(BodyJoint& joint, double h);
-// Jacobians and residuals where the bodies are.
-void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b);
+// Jacobians and residuals of all rows where the bodies are, but of the form axes; a gear's turns
+// are counted on.
+void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out);
+// Counts a twist on to what it is there.
+void count_turns(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b);
 // One coordinate; nothing if the joint has none such.
 std::optional<double> coordinate(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
                                  int slot);

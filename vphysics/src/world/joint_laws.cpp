@@ -8,8 +8,6 @@
 namespace vp {
 namespace {
 
-using solve::JointRow6;
-
 // Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
 constexpr double kJointPush = 0.2;
 constexpr double kJointLoss = 0.05;
@@ -73,7 +71,7 @@ void fill(JointLaw& law, const UserConstraint& user) {
 }
 
 // Rate and loss of a spring of frequency f against K alone, integrated implicitly.
-void soften(JointRow6& row, double frequency, double damping_ratio, double h) {
+void soften(BodyJointRow& row, double frequency, double damping_ratio, double h) {
   if (frequency == 0.0) {
     row.rate = kJointPush / h;
     row.loss = kJointLoss;
@@ -86,13 +84,13 @@ void soften(JointRow6& row, double frequency, double damping_ratio, double h) {
   row.relaxes = false;
 }
 
-JointRow6 held_row(int slot) {
-  JointRow6 row;
+BodyJointRow held_row(int slot) {
+  BodyJointRow row;
   row.slot = static_cast<std::uint8_t>(slot);
   return row;
 }
-void set_drive(JointRow6& row, const JointDrive& drive, double h) {
-  row.most = std::min(h * drive.max_force, solve::kNowhere);
+void set_drive(BodyJointRow& row, const JointDrive& drive, double h) {
+  row.most = std::min(h * drive.max_force, BodyJointRow::kNowhere);
   row.least = -row.most;
   row.stiffness = drive.stiffness;
   row.damping = drive.damping;
@@ -101,9 +99,9 @@ void set_drive(JointRow6& row, const JointDrive& drive, double h) {
 }
 
 struct Rows {
-  JointRow6 rows[solve::kJointRows];
+  BodyJointRow rows[solve::kJointRows];
   int count = 0, held = 0;
-  void add(const JointRow6& row, bool is_held) {
+  void add(const BodyJointRow& row, bool is_held) {
     if (is_held) {
       for (int i = count; i > held; --i) rows[i] = rows[i - 1];
       rows[held++] = row;
@@ -125,15 +123,15 @@ Rows rows_of_axes(const JointLaw& law, double h) {
     const AxisDesc& desc = law.axes[i];
     const bool of_cone = law.cone && i == static_cast<int>(JointAxis::turn_x);
     if (desc.motion == AxisMotion::free && !has_drive(desc) && !of_cone) continue;
-    JointRow6 row = held_row(i);
+    BodyJointRow row = held_row(i);
     const bool held = desc.motion == AxisMotion::locked;
     if (held) {
       row.position = desc.lower;  // of a rod
     } else {
       set_drive(row, desc.drive, h);
       if (desc.motion == AxisMotion::limited) {
-        row.lower = std::max(desc.lower, -solve::kNowhere);
-        row.upper = std::min(desc.upper, solve::kNowhere);
+        row.lower = std::max(desc.lower, -BodyJointRow::kNowhere);
+        row.upper = std::min(desc.upper, BodyJointRow::kNowhere);
       }
       if (of_cone) row.lower = 0.0;
     }
@@ -146,11 +144,11 @@ Rows rows_of_user(const JointLaw& law, double h) {
   Rows out;
   for (int i = 0; i < law.user_rows; ++i) {
     const PairRowLaw& own = law.user_laws[i];
-    JointRow6 row = held_row(i);
+    BodyJointRow row = held_row(i);
     const bool held = own.least_force == -kNoLimit && own.most_force == kNoLimit;
     row.bounded_hold = !held;
-    row.least = std::max(h * own.least_force, -solve::kNowhere);
-    row.most = std::min(h * own.most_force, solve::kNowhere);
+    row.least = std::max(h * own.least_force, -BodyJointRow::kNowhere);
+    row.most = std::min(h * own.most_force, BodyJointRow::kNowhere);
     out.add(row, held);
   }
   return out;
@@ -275,24 +273,23 @@ int main_slot(const JointKind& kind) {
 void lay_out(BodyJoint& joint, double h) {
   const bool user = joint.law.form == JointLaw::Form::user;
   Rows laid = user ? rows_of_user(joint.law, h) : rows_of_axes(joint.law, h);
-  solve::JointBlock& block = joint.block;
   for (int i = 0; i < laid.count; ++i) {
-    JointRow6& row = laid.rows[i];
+    BodyJointRow& row = laid.rows[i];
     if (user) {
       const PairRowLaw& own = joint.law.user_laws[row.slot];
       soften(row, own.frequency, own.damping_ratio, h);
     } else {
       soften(row, joint.frequency, joint.damping_ratio, h);
     }
-    for (int k = 0; k < block.count; ++k) {
-      if (block.rows[k].slot != row.slot) continue;
-      row.impulse = block.rows[k].impulse;
-      row.stop = block.rows[k].stop;
+    for (int k = 0; k < joint.count; ++k) {
+      if (joint.rows[k].slot != row.slot) continue;
+      row.impulse = joint.rows[k].impulse;
+      row.stop = joint.rows[k].stop;
     }
   }
-  std::copy_n(laid.rows, laid.count, block.rows);
-  block.count = laid.count;
-  block.held = laid.held;
+  std::copy_n(laid.rows, laid.count, joint.rows);
+  joint.count = laid.count;
+  joint.held = laid.held;
 }
 
 std::optional<std::string> problem_with(const JointDesc& desc) {

@@ -1,7 +1,4 @@
 // Joints between bodies: who is joined, and their part of a step.
-#include <algorithm>
-
-#include "solve/row_vector.h"
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/parallel.h"
@@ -12,12 +9,6 @@
 #include "world/validate.h"
 
 namespace vp {
-namespace {
-
-constexpr std::size_t kJointGrain = 16;  // some microseconds
-
-}  // namespace
-
 const BodyJoint* World::Impl::find(JointId id) const {
   if (id.index == 0 || id.index > joints.size()) return nullptr;
   const BodyJoint& joint = joints[id.index - 1];
@@ -216,89 +207,9 @@ JointForce World::joint_force(JointId id) const {
   return {joint->force, joint->torque};
 }
 
-// --- within a step ---------------------------------------------------------------------------
-
-// What is asleep keeps its impulses.
-bool World::Impl::is_active(const BodyJoint& joint) const {
-  return joint.alive && !(is_still(bodies[joint.a]) && is_still(bodies[joint.b]));
-}
-
-void World::Impl::begin_joints(double h) {
-  active_joints.clear();
-  for (std::uint32_t i = 0; i < joints.size(); ++i) {
-    BodyJoint& joint = joints[i];
-    if (!is_active(joint)) continue;
-    active_joints.push_back(i);
-    joint.force = joint.torque = {};
-    if (joint.laid_out_for == h) continue;
-    lay_out(joint, h);
-    joint.block.a = end_of(joint.a).row;
-    joint.block.b = end_of(joint.b).row;
-    joint.laid_out_for = h;
-  }
-  refresh_joints(h);
-}
-
-// Bodies that joints hold where their rows' ways have taken them since the step began.
-BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
-  const Body& body = bodies[index];
-  if (body.motion == Motion::fixed) return place_of(index);
-  const float *way = body_rows[index + 1].way, *start = start_ways[index].data();
-  const auto gone = [&](int i) { return vector_of(way + i) - vector_of(start + i); };
-  const Vec3 centre = reference_point(body) + gone(0);
-  const Mat3 R = turned(body.T.rotation(), gone(3));
-  const bool at_centre = body.motion == Motion::dynamic;
-  return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
-}
-
-void World::Impl::refresh_joints(double) {
-  if (active_joints.empty()) return;
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].first_joint != kNone) joint_places[i] = place_within_step(i);
-  }
-  in_parallel(active_joints.size(), kJointGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      BodyJoint& joint = joints[active_joints[k]];
-      evaluate(joint, joint_places[joint.a], joint_places[joint.b]);
-      solve::prepare(joint.block, body_rows.data());
-    }
-  });
-}
-
-void World::Impl::warm_start_joints() {
-  for (const std::uint32_t i : active_joints) solve::warm_start(joints[i].block, body_rows.data());
-}
-void World::Impl::solve_joints(double h, int round) {
-  for (const std::uint32_t i : active_joints) {
-    solve::JointBlock& block = joints[i].block;
-    if (round == 0 || !block.settled) solve::solve(block, body_rows.data(), h);
-  }
-}
-void World::Impl::relax_joints(double h) {
-  for (const std::uint32_t i : active_joints) {
-    BodyJoint& joint = joints[i];
-    solve::relax(joint.block, body_rows.data(), h);
-    const BodyPlace& b = joint_places[joint.b];
-    const bool user = joint.law.form == JointLaw::Form::user;
-    const Vec3 arm = user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre;
-    for (int k = 0; k < joint.block.count; ++k) {
-      const solve::JointRow6& row = joint.block.rows[k];
-      const double p = row.impulse + row.stop;
-      joint.force += p * row.jacobian.linear_b;
-      joint.torque += p * (row.jacobian.angular_b - cross(arm, row.jacobian.linear_b));
-    }
-  }
-}
-void World::Impl::end_joints(double dt) {
-  for (const std::uint32_t i : active_joints) {
-    joints[i].force *= 1.0 / dt;
-    joints[i].torque *= 1.0 / dt;
-  }
-}
-
 void World::Impl::forget_joints(std::uint32_t body) {
   for (std::uint32_t e = bodies[body].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
-    for (solve::JointRow6& row : joints[e / 2].block.rows) row.impulse = row.stop = 0.0;
+    for (BodyJointRow& row : joints[e / 2].rows) row.impulse = row.stop = 0.0;
   }
 }
 

@@ -126,14 +126,15 @@ JointState read(Reader& in, const BodyJoint& joint) {
 }
 void adopt(BodyJoint& joint, const JointState& state) {
   std::copy_n(state.turned, 2, joint.turned);
-  joint.block = {};
+  joint.count = joint.held = 0;
   joint.laid_out_for = 0.0;
   joint.force = joint.torque = {};
   const bool axes = joint.law.form == JointLaw::Form::axes;
   if (joint.law.form == JointLaw::Form::gear) std::copy_n(state.start, 2, joint.start);
   for (int i = 0; i < 6; ++i) {
     if (axes) joint.law.axes[i].drive = state.drives[i];
-    solve::JointRow6& row = joint.block.rows[joint.block.count++];
+    BodyJointRow& row = joint.rows[joint.count++];
+    row = {};
     row.slot = static_cast<std::uint8_t>(i);
     row.impulse = state.impulse[i];
     row.stop = state.stop[i];

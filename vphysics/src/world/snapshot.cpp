@@ -85,8 +85,8 @@ void put(Sink& sink, const BodyJoint& joint) {
     put(sink, joint.start[1]);
   }
   double impulse[6] = {}, stop[6] = {};
-  for (int i = 0; i < joint.block.count; ++i) {
-    const solve::JointRow6& row = joint.block.rows[i];
+  for (int i = 0; i < joint.count; ++i) {
+    const BodyJointRow& row = joint.rows[i];
     impulse[row.slot] = row.impulse;
     stop[row.slot] = row.stop;
   }

@@ -67,7 +67,6 @@ void World::Impl::begin_step(double dt) {
   start_ways.resize(n);
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
-  if (!joints.empty()) joint_places.resize(n);
   active_joints.reserve(joints.size());
   report_ends_of_destroyed();
   finds_contacts = has_contacts_to_find();

@@ -53,7 +53,6 @@ void World::Impl::run_sub_steps(double dt) {
   if (!some_are_not) return;
   take_sub_steps(dt, n);
   const auto stage = in(Stage::report);
-  end_joints(dt);
   report_news();
 }
 
@@ -73,7 +72,7 @@ void World::Impl::rescale_impulses(double h) {
     }
   }
   for (BodyJoint& joint : joints) {
-    for (solve::JointRow6& row : joint.block.rows) {
+    for (BodyJointRow& row : joint.rows) {
       row.impulse *= h / before;
       row.stop *= h / before;
     }
@@ -215,13 +214,14 @@ void World::Impl::take_sub_steps(double dt, int n) {
       }
       if (links) move_links(h);
       everywhere([&](std::size_t region) { steps.move(region); });
-      refresh_joints(h);
+      prepare_joints();
       relax_joints(h);
       everywhere([&](std::size_t region) { steps.relax(region, last); });
       if (links) relax_links(h);
     }
     steps.go_on();
   }
+  end_joints(dt);
 }
 
 // Until nothing bounces any more.

@@ -1,0 +1,85 @@
+// The passes over joints for one instruction set; compiled once for each, with VP_JOINT_PASSES the
+// table's name and VP_LANES the width (CMakeLists.txt).
+#include "solve/joint_passes.h"
+
+#include <algorithm>
+
+#include "solve/passes.h"
+
+namespace vp::solve {
+namespace {
+
+constexpr int W = VP_LANES;
+
+void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std::uint32_t* bodies,
+               std::size_t count, Gone* gone) {
+  using F = Lanes<W>;
+  for (std::size_t first = 0; first < count; first += W) {
+    const int some = static_cast<int>(std::min<std::size_t>(W, count - first));
+    Vec3T<F> way, theta, q;
+    F w;
+    for (int i = 0; i < some; ++i) {
+      const std::uint32_t body = bodies[first + static_cast<std::size_t>(i)];
+      const float* to = rows[body + 1].way;
+      const auto& from = start[body];
+      way.x.set(i, to[0] - from[0]);
+      way.y.set(i, to[1] - from[1]);
+      way.z.set(i, to[2] - from[2]);
+      theta.x.set(i, to[3] - from[3]);
+      theta.y.set(i, to[4] - from[4]);
+      theta.z.set(i, to[5] - from[5]);
+    }
+    quaternion_of<W>(theta, q, w);
+    for (int i = 0; i < some; ++i) {
+      gone[bodies[first + static_cast<std::size_t>(i)] + 1] = {
+          {q.x[i], q.y[i], q.z[i], w[i]}, {way.x[i], way.y[i], way.z[i]}, 0.0f};
+    }
+  }
+}
+
+// Runs f(lanes, at) on all lanes, W at a time.
+template <class B, class F>
+void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
+  for (std::size_t i = 0; i < run.count; ++i) {
+    for (int at = 0; at < kLanes; at += W) {
+      if (run.blocks[i].a.lane[at] + run.blocks[i].b.lane[at] == 2 * kWorldRow) break;  // empty
+      JointLanes<W, B> lanes(run.blocks[i], at, run.rows, *run.form);
+      f(lanes, at);
+    }
+  }
+}
+
+template <class B>
+void load_inertias(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](JointLanes<W, B>& c, int) { c.load_inertias(); });
+}
+template <class B>
+[[gnu::flatten]] void prepare(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [&](JointLanes<W, B>& c, int at) { prepare_lanes(c, run.gone, at); });
+}
+template <class B>
+[[gnu::flatten]] void warm_start(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](JointLanes<W, B>& c, int) { warm_start_lanes(c); });
+}
+template <class B, bool kFirst>
+[[gnu::flatten]] void push(const typename JointPasses<B>::Run& run, float h) {
+  for_joints<B>(run, [&](JointLanes<W, B>& c, int) { push_lanes(c, h, kFirst); });
+}
+template <class B>
+[[gnu::flatten]] void relax(const typename JointPasses<B>::Run& run, float h) {
+  for_joints<B>(run, [&](JointLanes<W, B>& c, int) { relax_lanes(c, h); });
+}
+
+template <class B>
+constexpr JointPasses<B> passes_of() {
+  return {load_inertias<B>, prepare<B>, warm_start<B>, push<B, true>, push<B, false>, relax<B>};
+}
+
+}  // namespace
+}  // namespace vp::solve
+
+const vphysics_solver::AllJointPasses vphysics_solver::VP_JOINT_PASSES = {
+    vp::solve::find_gone, vp::solve::passes_of<vphysics_solver::BallBlock>(),
+    vp::solve::passes_of<vphysics_solver::AxesBlock>(),
+    vp::solve::passes_of<vphysics_solver::FrameBlock>(),
+    vp::solve::passes_of<vphysics_solver::RowsBlock>()};

@@ -1,0 +1,647 @@
+// The passes over blocks of joints, W lanes at a time: see joint_block.h for what is solved.
+//
+// A sub-step prepares (where the bodies are now, K and its factor), warm starts, pushes in rounds,
+// and, once bodies have moved, prepares once more and relaxes.
+//
+// Coordinates of a joint, with a's frame at p_a, axes R_a, b's at p_b, R_b, arms r from the centres
+// of mass, d = p_b - p_a:
+//
+//   c_i = e_i . d,  e_i a's axis                        along e_i
+//   c_i' = e_i . (v_b + w_b x r_b - v_a) - ((r_a + d) x e_i) . w_a
+//
+// Turning, in a's frame, with R = R_a^T R_b, whose third column is (sin s k_y, -sin s k_x, cos s),
+// s the swing about the unit vector k across z, r = s k, w = R_a^T (w_b - w_a):
+//
+//   r'     = [k k^T + s cot(s) g g^T - g r_g z^T] w,  g = (k_y, -k_x),  r_g = s
+//   twist  = atan2(R_10 - R_01, R_00 + R_11),  twist' = (z_a + z_b) . w / (1 + cos s)
+//
+// Source: for swing and twist, Shoemake, Fiber Bundle Twist Reduction, Graphics Gems IV, 1994.
+#pragma once
+
+#include <algorithm>
+
+#include "solve/block_lanes.h"
+#include "solve/joint_block.h"
+
+namespace vp::solve {
+
+// Bounded rows are few; their sweeps are on the Schur complement and need no bodies.
+inline constexpr int kBoundedSweeps = 4;
+// A drive whose spring is softer than this, in (sub-steps times natural frequency)^2, is integrated
+// so that it neither loses nor gains energy; a stiffer one ever more implicitly. Sixteen such
+// springs on one body are still stable: 4 is the limit.
+inline constexpr float kExplicit = 0.25f;
+// A pivot below this share of its row's own K is of a row that others hold already.
+inline constexpr float kDependent = 1e-6f;
+inline constexpr float kSettledJoint = 1e-4f;  // of the load: the change of a round that is enough
+inline constexpr float kFastestStop = 3.0f;    // out of a limit [m/s or rad/s]
+
+constexpr int factor_index(int i, int j) {
+  return i * (i + 1) / 2 + j;  // j <= i
+}
+
+// --- turning -------------------------------------------------------------------------------------
+
+// In [-pi, pi]; 0 of (0, 0).
+template <int W>
+Lanes<W> angle_of(const Lanes<W>& y, const Lanes<W>& x) {
+  using F = Lanes<W>;
+  constexpr float kPiF = static_cast<float>(kPi);
+  const F ay = abs(y), ax = abs(x);
+  const F large = larger(ax, ay), small = smaller(ax, ay);
+  // atan(t) = pi / 4 + atan((t - 1) / (t + 1)): what is left is below tan(pi / 8), where the series
+  // has ended after seven terms.
+  const LaneMask<W> far = small > F(0.41421356f) * large;
+  const F top = select(far, small - large, small), bottom = select(far, small + large, large);
+  const F t = select(bottom > F(0.0f), top / bottom, F(0.0f)), s = t * t;
+  F sum = F(1.0f / 13.0f);
+  for (const int n : {11, 9, 7, 5, 3, 1}) sum = F(1.0f / static_cast<float>(n)) - s * sum;
+  F angle = t * sum + select(far, F(0.25f * kPiF), F(0.0f));
+  angle = select(ay > ax, F(0.5f * kPiF) - angle, angle);
+  angle = select(x < F(0.0f), F(kPiF) - angle, angle);
+  return select(y < F(0.0f), -angle, angle);
+}
+
+// By a unit quaternion, less u itself.
+template <class F>
+Vec3T<F> turned_less(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
+  const Vec3T<F> t = F(2.0f) * cross(q, u);
+  return w * t + cross(q, t);
+}
+
+// The quaternion of a turn by the vector theta; its sign does not matter.
+template <int W>
+void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w) {
+  using F = Lanes<W>;
+  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves no place for a fraction
+  const F size = sqrt(dot(theta, theta)), half = F(0.5f) * size;
+  const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kRound)) - F(kRound);
+  // pi as the sum of a short number and the rest, so that few turns lose nothing.
+  const F r = (half - turns * F(3.140625f)) - turns * F(9.67653589793e-4f), s = r * r;
+  const auto series = [&](float first) {  // of x^k / k!, every other k from first + 10 down
+    F sum(1.0f);
+    for (float k = first + 10.0f; k > first; k -= 2.0f) sum = F(1.0f) - s * sum / F(k * (k - 1.0f));
+    return sum;
+  };
+  const F sine = series(1.0f);  // over r
+  w = series(0.0f);
+  q = select(turns == F(0.0f), F(0.5f) * sine, r * sine / larger(size, F(1e-20f))) * theta;
+}
+
+template <int W>
+struct Place {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  V q, way;
+  F w;
+  template <class Row>
+  static Place of(const Row& row) {
+    F r[8];
+    lanes::gather8<W>(row, r);
+    return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[3]};
+  }
+  V less(const V& u) const { return turned_less(q, w, u); }
+  V turned(const V& u) const { return u + less(u); }
+};
+
+// Axes of both frames where the bodies are now, and what is measured between them.
+template <int W>
+struct Frames {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  V ax, ay, az, bx, by, bz;
+
+  template <class C>
+  Frames(const C& c, const AxesPart& axes, const Place<W>& a, const Place<W>& b)
+      : ax(a.turned(c.get(axes.a_x))),
+        ay(a.turned(c.get(axes.a_y))),
+        az(cross(ax, ay)),
+        bx(b.turned(c.get(axes.b_x))),
+        by(),
+        bz(b.turned(c.get(axes.b_z))) {
+    by = cross(bz, bx);
+  }
+  V world(const V& u) const { return u.x * ax + u.y * ay + u.z * az; }
+  F twist() const { return angle_of<W>(dot(ay, bx) - dot(ax, by), dot(ax, bx) + dot(ay, by)); }
+  V twist_axis() const { return (F(1.0f) / larger(F(1.0f) + dot(az, bz), F(1e-3f))) * (az + bz); }
+};
+
+// The swing's vector and its derivatives, in a's frame.
+template <int W>
+struct Swing {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  F x, y;
+  V by_x, by_y;
+
+  explicit Swing(const Frames<W>& f) {
+    const F bx = dot(f.ax, f.bz), by = dot(f.ay, f.bz), cosine = dot(f.az, f.bz);
+    const F sine = sqrt(bx * bx + by * by), angle = angle_of<W>(sine, cosine), s = angle * angle;
+    // s / sin(s) and (1 - s cot(s)) / s^2
+    const LaneMask<W> near = angle < F(0.3f);
+    const F ratio = select(near, F(1.0f) + s * (F(1.0f / 6.0f) + s * F(7.0f / 360.0f)),
+                           angle / larger(sine, F(1e-6f)));
+    const F curve = select(near, F(1.0f / 3.0f) + s * (F(1.0f / 45.0f) + s * F(2.0f / 945.0f)),
+                           (F(1.0f) - ratio * cosine) / larger(s, F(1e-6f)));
+    x = -(ratio * by);
+    y = ratio * bx;
+    const V g{y, -x, F(0.0f)};
+    by_x = V{F(1.0f), F(0.0f), -y} - (curve * y) * g;
+    by_y = V{F(0.0f), F(1.0f), x} + (curve * x) * g;
+  }
+};
+
+// --- a joint's lanes -----------------------------------------------------------------------------
+
+template <int W, class BLOCK>
+class JointLanes : public BlockLanes<W, BLOCK> {
+ public:
+  using Base = BlockLanes<W, BLOCK>;
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  static constexpr int kPoint = BLOCK::kPointRows, kOthers = BLOCK::kOtherRows, kAll = BLOCK::kAll;
+
+  JointLanes(BLOCK& joints, int at, BodyRow* rows, const JointForm& form)
+      : Base(joints, at, rows), form_(form) {}
+  using Base::block;
+  using Base::get;
+  using Base::put;
+
+  // That it is no more than there is room for is said to the compiler.
+  int others() const { return std::min<int>(form_.rows, kOthers); }
+  int count() const { return kPoint + others(); }
+  int held() const { return kPoint + std::min<int>(form_.held, kOthers); }
+  const JointForm& form() const { return form_; }
+  // A way, and no turn.
+  bool is_along(int i) const { return BLOCK::kAxes && kPoint == 0 && form_.slot[i] < kSwingX; }
+  V speed_of_point() const {
+    const PointPart& point = block().point;
+    return Base::v_b + cross(Base::w_b, get(point.arm_b)) - Base::v_a -
+           cross(Base::w_a, get(point.arm_a));
+  }
+
+  // What the rows change by.
+  void speeds(F* u) const {
+    if constexpr (kPoint > 0) {
+      const V v = speed_of_point();
+      u[0] = v.x;
+      u[1] = v.y;
+      u[2] = v.z;
+    }
+    const V turning = Base::w_b - Base::w_a;
+    for (int i = 0; i < others(); ++i) {
+      if constexpr (BLOCK::kAxes) {
+        const V axis = get(block().jacobian[i]);
+        u[kPoint + i] = is_along(i) ? dot(axis, speed_of_point()) : dot(axis, turning);
+      } else {
+        const TwelvePart& J = block().jacobian[i];
+        u[kPoint + i] = dot(get(J.linear_a), Base::v_a) + dot(get(J.angular_a), Base::w_a) +
+                        dot(get(J.linear_b), Base::v_b) + dot(get(J.angular_b), Base::w_b);
+      }
+    }
+  }
+  // Gives the bodies impulses of all rows.
+  void push(const F* p) {
+    V linear_a, angular_a, linear_b, angular_b;
+    if constexpr (kPoint > 0) {
+      const PointPart& point = block().point;
+      linear_b = {p[0], p[1], p[2]};
+      linear_a = -linear_b;
+      angular_a = -cross(get(point.arm_a), linear_b);
+      angular_b = cross(get(point.arm_b), linear_b);
+    }
+    for (int i = 0; i < others(); ++i) {
+      const F& x = p[kPoint + i];
+      if constexpr (BLOCK::kAxes) {
+        const V p_axis = x * get(block().jacobian[i]);
+        if (is_along(i)) {
+          linear_a -= p_axis;
+          linear_b += p_axis;
+          angular_a -= cross(get(block().point.arm_a), p_axis);
+          angular_b += cross(get(block().point.arm_b), p_axis);
+        } else {
+          angular_a -= p_axis;
+          angular_b += p_axis;
+        }
+      } else {
+        const TwelvePart& J = block().jacobian[i];
+        linear_a += x * get(J.linear_a);
+        angular_a += x * get(J.angular_a);
+        linear_b += x * get(J.linear_b);
+        angular_b += x * get(J.angular_b);
+      }
+    }
+    Base::push(linear_a, angular_a, linear_b, angular_b);
+  }
+  F impulse(int i) const {
+    if constexpr (kPoint > 0) {
+      const Field3& p = block().point.impulse;
+      if (i < kPoint) return get(i == 0 ? p.x : i == 1 ? p.y : p.z);
+    }
+    return get(block().rows[i - kPoint].impulse);
+  }
+  void set_impulse(int i, const F& x) {
+    if constexpr (kPoint > 0) {
+      Field3& p = block().point.impulse;
+      if (i < kPoint) return put(i == 0 ? p.x : i == 1 ? p.y : p.z, x);
+    }
+    put(block().rows[i - kPoint].impulse, x);
+  }
+  // With that of the limits.
+  F all_impulse(int i) const {
+    const F p = impulse(i);
+    return i < held() ? p : p + get(block().bounds[i - kPoint].stop);
+  }
+  F rate(int i) const {
+    if constexpr (kPoint > 0) {
+      if (i < kPoint) return get(block().point.rate);
+    }
+    return get(block().rows[i - kPoint].rate);
+  }
+  F loss(int i) const {
+    if constexpr (kPoint > 0) {
+      if (i < kPoint) return get(block().point.loss);
+    }
+    return get(block().rows[i - kPoint].loss);
+  }
+  F relaxes(int i) const {
+    if constexpr (kPoint > 0) {
+      if (i < kPoint) return get(block().point.relaxes);
+    }
+    return get(block().rows[i - kPoint].relaxes);
+  }
+
+ private:
+  const JointForm& form_;
+};
+
+// --- preparing -----------------------------------------------------------------------------------
+
+// Arms and gap of the point, axes and coordinates of the rows, where the bodies are now. Residuals
+// of the point go to gap.
+template <int W, class B>
+void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W>>& gap) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  const auto a = Place<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].turn; });
+  const auto b = Place<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].turn; });
+  if constexpr (B::kAxes) {
+    PointPart& point = c.block().point;
+    const V start_a = c.get(point.start_arm_a), start_b = c.get(point.start_arm_b);
+    const V less_a = a.less(start_a), less_b = b.less(start_b);
+    gap = c.get(point.start_gap) + (b.way - a.way) + (less_b - less_a);
+    c.put(point.arm_a, start_a + less_a + gap);
+    c.put(point.arm_b, start_b + less_b);
+  }
+  if constexpr (B::kAxes && B::kOtherRows > 0) {
+    AxesPart& axes = c.block().axes;
+    const Frames<W> frames(c, axes, a, b);
+    const Swing<W> swing(frames);
+    for (int i = 0; i < c.others(); ++i) {
+      RowPart& row = c.block().rows[i];
+      Field3& axis = c.block().jacobian[i];
+      switch (c.form().slot[i]) {
+        case 0:
+        case 1:
+        case 2: {
+          const V n = c.form().slot[i] == 0   ? frames.ax
+                      : c.form().slot[i] == 1 ? frames.ay
+                                              : frames.az;
+          c.put(row.residual, dot(n, gap));
+          c.put(axis, n);
+          break;
+        }
+        case kSwingX:
+          c.put(row.residual, swing.x);
+          c.put(axis, frames.world(swing.by_x));
+          break;
+        case kSwingY:
+          c.put(row.residual, swing.y);
+          c.put(axis, frames.world(swing.by_y));
+          break;
+        case kTwist: {
+          F twist = frames.twist();
+          if (i >= c.form().held) {  // counted on beyond whole turns
+            constexpr float kTurn = static_cast<float>(2.0 * kPi), kRound = 12582912.0f;
+            const F turns = (c.get(axes.twist) - twist) * F(1.0f / kTurn);
+            twist += F(kTurn) * ((turns + F(kRound)) - F(kRound));
+            c.put(axes.twist, twist);
+          }
+          c.put(row.residual, twist);
+          c.put(axis, frames.twist_axis());
+          break;
+        }
+        case kCone: {
+          // The way to the cone: (1 - f) / |grad f| with f^2 = (x / cone_x)^2 + (y / cone_y)^2.
+          const F ix = F(1.0f) / c.get(axes.cone_x), iy = F(1.0f) / c.get(axes.cone_y);
+          const F sx = swing.x * ix, sy = swing.y * iy;
+          const F f = sqrt(sx * sx + sy * sy);
+          F gx = sx * ix, gy = sy * iy;
+          const F g = sqrt(gx * gx + gy * gy);
+          const LaneMask<W> swung = g > F(1e-9f);
+          const F inverse = F(1.0f) / select(swung, g, F(1.0f));
+          gx = select(swung, gx * inverse, F(1.0f));
+          gy = select(swung, gy * inverse, F(0.0f));
+          c.put(row.residual, select(swung, (F(1.0f) - f) * f * inverse,
+                                     smaller(c.get(axes.cone_x), c.get(axes.cone_y))));
+          c.put(axis, frames.world((-gx) * swing.by_x - gy * swing.by_y));
+          break;
+        }
+      }
+    }
+  }
+}
+
+// K without G, below and on the diagonal.
+template <int W, class B>
+void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  const auto I_a = c.get(c.block().inertia_a), I_b = c.get(c.block().inertia_b);
+  const F m_a = c.inverse_mass_a(), m_b = c.inverse_mass_b();
+  constexpr int kPoint = B::kPointRows;
+  V arm_a, arm_b;
+  if constexpr (B::kAxes) {
+    arm_a = c.get(c.block().point.arm_a);
+    arm_b = c.get(c.block().point.arm_b);
+  }
+  if constexpr (kPoint > 0) {
+    const F m = m_a + m_b, zero(0.0f), one(1.0f);
+    for (int k = 0; k < 3; ++k) {
+      const V e{k == 0 ? one : zero, k == 1 ? one : zero, k == 2 ? one : zero};
+      const V u = m * e + cross(I_a * cross(arm_a, e), arm_a) + cross(I_b * cross(arm_b, e), arm_b);
+      const F by[3] = {u.x, u.y, u.z};
+      for (int i = k; i < 3; ++i) K[i][k] = by[i];
+    }
+  }
+  for (int j = 0; j < c.others(); ++j) {
+    if constexpr (B::kAxes && kPoint == 0) {
+      const V n = c.get(c.block().jacobian[j]);
+      const bool along = c.is_along(j);
+      const V by_a = I_a * (along ? cross(arm_a, n) : n),
+              by_b = I_b * (along ? cross(arm_b, n) : n);
+      for (int i = j; i < c.others(); ++i) {
+        const V of = c.get(c.block().jacobian[i]);
+        F k = c.is_along(i) ? dot(cross(arm_a, of), by_a) + dot(cross(arm_b, of), by_b)
+                            : dot(of, by_a + by_b);
+        if (along && c.is_along(i)) k += (m_a + m_b) * dot(of, n);
+        K[i][j] = k;
+      }
+    } else if constexpr (B::kAxes) {
+      const V m = c.get(c.block().jacobian[j]), by_a = I_a * m, by_b = I_b * m;
+      if constexpr (kPoint > 0) {
+        const V u = cross(by_a, arm_a) + cross(by_b, arm_b);
+        K[kPoint + j][0] = u.x;
+        K[kPoint + j][1] = u.y;
+        K[kPoint + j][2] = u.z;
+      }
+      const V turning = by_a + by_b;
+      for (int i = j; i < c.others(); ++i) {
+        K[kPoint + i][kPoint + j] = dot(c.get(c.block().jacobian[i]), turning);
+      }
+    } else {
+      const TwelvePart& J = c.block().jacobian[j];
+      const V v_a = m_a * c.get(J.linear_a), w_a = I_a * c.get(J.angular_a);
+      const V v_b = m_b * c.get(J.linear_b), w_b = I_b * c.get(J.angular_b);
+      for (int i = j; i < c.others(); ++i) {
+        const TwelvePart& of = c.block().jacobian[i];
+        K[kPoint + i][kPoint + j] = dot(c.get(of.linear_a), v_a) + dot(c.get(of.angular_a), w_a) +
+                                    dot(c.get(of.linear_b), v_b) + dot(c.get(of.angular_b), w_b);
+      }
+    }
+  }
+}
+
+template <int W, class B>
+void prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at) {
+  using F = Lanes<W>;
+  constexpr int kAll = B::kAll;
+  c.gather_velocities();
+  Vec3T<F> gap;
+  evaluate_lanes(c, gone, at, gap);
+  F K[kAll][kAll];
+  find_response(c, K);
+  B& block = c.block();
+  const int n = c.count(), held = c.held();
+  F own[kAll];
+  const F gaps[3] = {gap.x, gap.y, gap.z};
+  for (int i = 0; i < kAll && i < n; ++i) {
+    own[i] = K[i][i];
+    c.put(block.own[i], own[i]);
+    if (i >= held) continue;
+    const F leak = c.loss(i) * own[i];
+    const F residual =
+        i < B::kPointRows ? gaps[i < 3 ? i : 0] : c.get(block.rows[i - B::kPointRows].residual);
+    c.put(block.bias[i], c.rate(i) * residual);
+    c.put(block.leak[i], leak);
+    K[i][i] += leak;
+  }
+  // Below the diagonal L of the held columns; the rest becomes the Schur complement.
+  for (int j = 0; j < kAll && j < held; ++j) {
+    const LaneMask<W> independent = K[j][j] > F(kDependent) * own[j];
+    const F inverse = select(independent, F(1.0f) / K[j][j], F(0.0f));
+    for (int i = j + 1; i < n; ++i) {
+      const F l = K[i][j] * inverse;
+      for (int k = j + 1; k <= i; ++k) K[i][k] -= l * K[k][j];
+    }
+    for (int i = j + 1; i < n; ++i) K[i][j] *= inverse;
+    K[j][j] = inverse;
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) c.put(block.factor[factor_index(i, j)], K[i][j]);
+  }
+}
+
+// --- laws of bounded rows ------------------------------------------------------------------------
+
+template <class F>
+F clamped(const F& x, const F& least, const F& most) {
+  return smaller(larger(x, least), most);
+}
+
+// The change of a drive's impulse at the speed u, with K what an impulse does to that speed.
+template <int W, class B>
+Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
+                      float h) {
+  using F = Lanes<W>;
+  const BoundPart& bound = c.block().bounds[i];
+  const F least = c.get(bound.least), most = c.get(bound.most);
+  const F impulse = c.get(c.block().rows[i].impulse);
+  const F stiffness = c.get(bound.stiffness), damping = c.get(bound.damping);
+  const F s = F(h * h) * stiffness * K;
+  const LaneMask<W> stiff = s > F(kExplicit);
+  const F implicit = select(stiff, F(1.0f) - F(kExplicit) / select(stiff, s, F(1.0f)), F(0.0f));
+  const F g = F(h) * damping + implicit * F(h * h) * stiffness;
+  const F error = c.get(c.block().rows[i].residual) - c.get(bound.position);
+  const F wanted =
+      impulse - (F(h) * stiffness * error + g * u - F(h) * damping * c.get(bound.speed) + impulse) /
+                    (F(1.0f) + g * K);
+  return select(most > least, clamped(wanted, least, most) - impulse, F(0.0f));
+}
+
+// The same of what holds within bounds. Where these let it go one way only, a gap may close.
+template <int W, class B>
+Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
+                     float h, bool pushes) {
+  using F = Lanes<W>;
+  const F zero(0.0f);
+  const BoundPart& bound = c.block().bounds[i];
+  const RowPart& row = c.block().rows[i];
+  const F least = c.get(bound.least), most = c.get(bound.most), residual = c.get(row.residual);
+  const F impulse = c.get(row.impulse), loss = c.get(row.loss);
+  const LaneMask<W> open =
+      either(both(least >= zero, residual > zero), both(most <= zero, residual < zero));
+  const LaneMask<W> gives = K > zero;
+  const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
+  const F closes = impulse - mass * (u + residual * F(1.0f / h));
+  const F held = pushes ? impulse - (mass * (u + c.get(row.rate) * residual) + loss * impulse) /
+                                        (F(1.0f) + loss)
+                        : impulse - c.get(row.relaxes) * mass * u;
+  const F wanted = select(open, closes, held);
+  return select(gives, clamped(wanted, least, most) - impulse, zero);
+}
+
+// The same of the limits. An open one lets the gap close; one that is passed is pushed out.
+template <int W, class B>
+Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
+                     float h, bool pushes) {
+  using F = Lanes<W>;
+  const F zero(0.0f);
+  const BoundPart& bound = c.block().bounds[i];
+  const RowPart& row = c.block().rows[i];
+  const F stop = c.get(bound.stop), residual = c.get(row.residual), loss = c.get(row.loss);
+  const F below = residual - c.get(bound.lower), above = c.get(bound.upper) - residual;
+  const LaneMask<W> at_lower = below <= above;
+  const F gap = select(at_lower, below, above), side = select(at_lower, F(1.0f), F(-1.0f));
+  const F p = side * stop, speed = side * u;
+  const LaneMask<W> gives = K > zero;
+  const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
+  F apart = p - mass * (speed + gap * F(1.0f / h));
+  if (!pushes) apart = smaller(apart, p);  // what closes next is the next sub-step's affair
+  const F push = larger(c.get(row.rate) * gap, F(-kFastestStop));
+  const F passed = pushes ? p - (mass * (speed + push) + loss * p) / (F(1.0f) + loss)
+                          : p - c.get(row.relaxes) * mass * speed;
+  const F next = larger(select(gap > zero, apart, passed), zero);
+  // Of the other limit, or of one that is not there.
+  const LaneMask<W> lets_go = either(p < zero, !(gap < F(0.5f * kNowhere)));
+  return select(lets_go, -stop, side * (next - p));
+}
+
+// --- rounds --------------------------------------------------------------------------------------
+
+// On entry u: of held rows what is to become zero, of bounded ones their speeds. Returns in change
+// the changes of impulses; none in lanes that do not go on.
+template <int W, class B>
+void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, Lanes<W>* change,
+                float h, bool pushes) {
+  using F = Lanes<W>;
+  B& block = c.block();
+  const F zero(0.0f);
+  const int n = c.count(), held = c.held();
+  const auto L = [&](int i, int j) { return c.get(block.factor[factor_index(i, j)]); };
+  for (int j = 0; j < held; ++j) {
+    for (int i = j + 1; i < n; ++i) u[i] -= L(i, j) * u[j];
+  }
+  if constexpr (B::kOtherRows > 0) {
+    for (int i = held; i < n; ++i) change[i] = zero;
+    const int sweeps = n > held + 1 ? kBoundedSweeps : n > held ? 1 : 0;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      for (int i = held; i < n; ++i) {
+        const int k = i - B::kPointRows;
+        const F K = L(i, i);
+        const auto give = [&](Field& of, const F& wanted) {
+          const F p = select(goes_on, wanted, zero);
+          c.put(of, c.get(of) + p);
+          change[i] += p;
+          for (int j = held; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
+        };
+        const LaneMask<W> holds = c.get(block.bounds[k].holds) > zero;
+        F by_drive = drive_change(c, k, u[i], K, h);
+        // Springs are as implicit as they are: relaxing them would count them twice.
+        if (!pushes) {
+          by_drive = select(c.get(block.bounds[k].stiffness) > zero, zero, by_drive);
+        }
+        if (!none(holds)) by_drive = select(holds, hold_change(c, k, u[i], K, h, pushes), by_drive);
+        give(block.rows[k].impulse, by_drive);
+        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, pushes));
+      }
+    }
+  }
+  for (int i = held - 1; i >= 0; --i) {
+    F x = -(L(i, i) * u[i]);
+    for (int k = i + 1; k < n; ++k) x -= L(k, i) * change[k];
+    change[i] = x;
+  }
+  for (int i = 0; i < held; ++i) {
+    change[i] = select(goes_on, change[i], zero);
+    c.set_impulse(i, c.impulse(i) + change[i]);
+  }
+}
+
+template <int W, class B>
+void warm_start_lanes(JointLanes<W, B>& c) {
+  Lanes<W> p[B::kAll];
+  for (int i = 0; i < c.count(); ++i) p[i] = c.all_impulse(i);
+  c.gather_velocities();
+  c.push(p);
+  c.scatter_velocities();
+}
+
+// A round of pushing. Those after the first of a sub-step pass by what has settled.
+template <int W, class B>
+void push_lanes(JointLanes<W, B>& c, float h, bool first) {
+  using F = Lanes<W>;
+  const F zero(0.0f), one(1.0f);
+  B& block = c.block();
+  const LaneMask<W> goes_on = first ? zero < one : c.get(block.active) > zero;
+  if (!first && none(goes_on)) return;
+  F u[B::kAll], change[B::kAll];
+  c.gather_velocities();
+  c.speeds(u);
+  for (int i = 0; i < c.held(); ++i) {
+    u[i] += c.get(block.bias[i]) + c.get(block.leak[i]) * c.impulse(i);
+  }
+  solve_rows(c, goes_on, u, change, h, true);
+  c.push(change);
+  c.scatter_velocities(goes_on);
+  F moved = zero, load = zero;  // by what they do: rows are of forces and of moments
+  for (int i = 0; i < c.count(); ++i) {
+    const F p = c.all_impulse(i), own = c.get(block.own[i]);
+    moved += (change[i] * own) * change[i];  // squares of impulses may be below what floats hold
+    load += (p * own) * p;
+  }
+  const LaneMask<W> settled = moved <= F(kSettledJoint * kSettledJoint) * load;
+  c.put(block.active, select(both(goes_on, !settled), one, zero));
+}
+
+// Takes from velocities what the push has added, and adds up what the sub-step's force was.
+template <int W, class B>
+void relax_lanes(JointLanes<W, B>& c, float h) {
+  using F = Lanes<W>;
+  using V = Vec3T<F>;
+  F u[B::kAll], change[B::kAll];
+  B& block = c.block();
+  c.gather_velocities();
+  c.speeds(u);
+  for (int i = 0; i < c.held(); ++i) u[i] *= c.relaxes(i);
+  solve_rows(c, F(0.0f) < F(1.0f), u, change, h, false);
+  c.push(change);
+  c.scatter_velocities();
+  V force = c.get(block.force), torque = c.get(block.torque);
+  if constexpr (B::kPointRows > 0) force += c.get(block.point.impulse);
+  const V anchor = c.get(block.anchor);
+  for (int i = 0; i < c.others(); ++i) {
+    const F p = c.all_impulse(B::kPointRows + i);
+    if constexpr (B::kAxes) {
+      (c.is_along(i) ? force : torque) += p * c.get(block.jacobian[i]);
+    } else {
+      const V linear = c.get(block.jacobian[i].linear_b);
+      force += p * linear;
+      torque += p * (c.get(block.jacobian[i].angular_b) - cross(anchor, linear));
+    }
+  }
+  c.put(block.force, force);
+  c.put(block.torque, torque);
+}
+
+}  // namespace vp::solve

@@ -1,0 +1,74 @@
+// The joints of a step in blocks of lanes: sorted by colour, so that no two of a colour share a
+// body that moves, and within a colour by form. Which joints take part and in what order they come
+// decides all, so the order of solving follows from the state alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "solve/joint_block.h"
+#include "solve/large_pages.h"
+
+namespace vp {
+
+template <class BLOCK>
+struct JointRun {
+  solve::JointForm form;
+  std::uint32_t lanes = 0;           // used
+  bool alone = false;                // each lane has a block to itself: of the last colour
+  solve::LargeVector<BLOCK> blocks;  // its capacity outlasts steps
+};
+
+// Of one kind of block, whatever the colour.
+template <class BLOCK>
+struct JointRunsOf {
+  std::vector<JointRun<BLOCK>> runs;
+  std::size_t used = 0;
+};
+
+class JointRuns {
+ public:
+  static constexpr int kColours = 64, kLastColour = kColours - 1;
+  template <class BLOCK>
+  struct Lane {
+    BLOCK& block;
+    int at;
+  };
+
+  // No joints; of so many rows of bodies.
+  void clear(std::size_t rows);
+  // An empty lane for a joint of two rows, of which those that move are in no other lane of the
+  // block. Precondition: one of them moves.
+  template <class BLOCK>
+  Lane<BLOCK> add(const solve::JointForm& form, std::uint32_t joint, std::uint32_t row_a,
+                  bool moves_a, std::uint32_t row_b, bool moves_b);
+  // f(run) of all, in the order of solving.
+  template <class F>
+  void for_each(const F& f) {
+    for (const auto& colour : by_colour_) {
+      for (const Ref& ref : colour) {
+        if (ref.kind == 0) f(std::get<0>(kinds_).runs[ref.index]);
+        if (ref.kind == 1) f(std::get<1>(kinds_).runs[ref.index]);
+        if (ref.kind == 2) f(std::get<2>(kinds_).runs[ref.index]);
+        if (ref.kind == 3) f(std::get<3>(kinds_).runs[ref.index]);
+      }
+    }
+  }
+
+ private:
+  struct Ref {
+    std::uint8_t kind;
+    std::uint32_t index;
+  };
+  int colour_for(std::uint32_t row_a, bool moves_a, std::uint32_t row_b, bool moves_b);
+
+  std::tuple<JointRunsOf<solve::BallBlock>, JointRunsOf<solve::AxesBlock>,
+             JointRunsOf<solve::FrameBlock>, JointRunsOf<solve::RowsBlock>>
+      kinds_;
+  std::array<std::vector<Ref>, kColours> by_colour_;
+  std::vector<std::uint64_t> taken_;  // by a row's joints: a bit for each colour
+};
+
+}  // namespace vp

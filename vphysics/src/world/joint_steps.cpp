@@ -1,0 +1,296 @@
+// Joints between bodies: their part of a step. Impulses go into lanes when its sub-steps begin, and
+// come back when they have ended.
+#include <algorithm>
+#include <cmath>
+
+#include "solve/row_vector.h"
+#include "world/impl.h"
+#include "world/parallel.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+using solve::kLanes;
+
+constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
+
+void put(solve::Field3& field, int lane, const Vec3& v) {
+  field.x.lane[lane] = static_cast<float>(v.x);
+  field.y.lane[lane] = static_cast<float>(v.y);
+  field.z.lane[lane] = static_cast<float>(v.z);
+}
+void put(solve::Field& field, int lane, double x) {
+  field.lane[lane] = static_cast<float>(x);
+}
+double get(const solve::Field& field, int lane) {
+  return static_cast<double>(field.lane[lane]);
+}
+Vec3 get(const solve::Field3& field, int lane) {
+  return {get(field.x, lane), get(field.y, lane), get(field.z, lane)};
+}
+
+// Whole turns of the angle, nearest.
+double turns_of(double angle) {
+  return 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
+}
+
+solve::JointForm form_of(const BodyJoint& joint) {
+  solve::JointForm form;
+  const int point = joint.holds_point() ? 3 : 0;
+  form.rows = static_cast<std::uint8_t>(joint.count - point);
+  form.held = static_cast<std::uint8_t>(joint.held - point);
+  if (joint.law.form != JointLaw::Form::axes) return form;
+  for (int i = 0; i < form.rows; ++i) {
+    const BodyJointRow& row = joint.rows[point + i];
+    const bool of_cone = joint.law.cone && row.slot == solve::kSwingX;
+    form.slot[i] = of_cone ? solve::kCone : row.slot;
+  }
+  return form;
+}
+
+// turned: whole turns that a coordinate of a twist is counted from.
+template <class BLOCK>
+void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double turned) {
+  constexpr int kPoint = BLOCK::kPointRows;
+  for (int i = kPoint; i < joint.count; ++i) {
+    const BodyJointRow& from = joint.rows[i];
+    solve::RowPart& row = block.rows[i - kPoint];
+    put(row.impulse, lane, from.impulse);
+    put(row.rate, lane, from.rate);
+    put(row.loss, lane, from.loss);
+    put(row.relaxes, lane, from.relaxes ? 1.0 : 0.0);
+    if (i < joint.held) continue;
+    solve::BoundPart& bound = block.bounds[i - kPoint];
+    const double from_turn = from.slot == solve::kTwist ? turned : 0.0;
+    put(bound.stop, lane, from.stop);
+    put(bound.holds, lane, from.bounded_hold ? 1.0 : 0.0);
+    put(bound.least, lane, from.least);
+    put(bound.most, lane, from.most);
+    put(bound.stiffness, lane, from.stiffness);
+    put(bound.damping, lane, from.damping);
+    put(bound.position, lane, from.position - from_turn);
+    put(bound.speed, lane, from.speed);
+    put(bound.lower, lane, from.lower - from_turn);
+    put(bound.upper, lane, from.upper - from_turn);
+  }
+}
+
+void fill_point(solve::PointPart& point, int lane, const BodyJoint& joint, const BodyPlace& a,
+                const BodyPlace& b) {
+  const Vec3 p_a = a.T * joint.T_a_joint.position(), p_b = b.T * joint.T_b_joint.position();
+  put(point.start_arm_a, lane, p_a - a.centre);
+  put(point.start_arm_b, lane, p_b - b.centre);
+  put(point.start_gap, lane, p_b - p_a);
+  put(point.impulse, lane, {joint.rows[0].impulse, joint.rows[1].impulse, joint.rows[2].impulse});
+  put(point.rate, lane, joint.rows[0].rate);
+  put(point.loss, lane, joint.rows[0].loss);
+  put(point.relaxes, lane, joint.rows[0].relaxes ? 1.0 : 0.0);
+}
+
+void fill_axes(solve::AxesPart& axes, int lane, const BodyJoint& joint, const BodyPlace& a,
+               const BodyPlace& b, double turned) {
+  const Mat3 R_a = a.T.rotation() * joint.T_a_joint.rotation();
+  const Mat3 R_b = b.T.rotation() * joint.T_b_joint.rotation();
+  put(axes.a_x, lane, R_a.cx);
+  put(axes.a_y, lane, R_a.cy);
+  put(axes.b_x, lane, R_b.cx);
+  put(axes.b_z, lane, R_b.cz);
+  put(axes.twist, lane, joint.turned[0] - turned);
+  put(axes.cone_x, lane, joint.law.swing_x);
+  put(axes.cone_y, lane, joint.law.swing_y);
+}
+
+template <class BLOCK>
+void take_rows(const BLOCK& block, int lane, BodyJoint& joint) {
+  constexpr int kPoint = BLOCK::kPointRows;
+  if constexpr (kPoint > 0) {
+    const Vec3 p = get(block.point.impulse, lane);
+    joint.rows[0].impulse = p.x;
+    joint.rows[1].impulse = p.y;
+    joint.rows[2].impulse = p.z;
+  }
+  for (int i = kPoint; i < joint.count; ++i) {
+    joint.rows[i].impulse = get(block.rows[i - kPoint].impulse, lane);
+    if (i >= joint.held) joint.rows[i].stop = get(block.bounds[i - kPoint].stop, lane);
+  }
+  joint.force = get(block.force, lane);
+  joint.torque = get(block.torque, lane);
+}
+
+// The passes for a run.
+const auto& passes_for(const JointRun<solve::BallBlock>&) {
+  return solve::joint_passes().ball;
+}
+const auto& passes_for(const JointRun<solve::AxesBlock>&) {
+  return solve::joint_passes().axes;
+}
+const auto& passes_for(const JointRun<solve::FrameBlock>&) {
+  return solve::joint_passes().frames;
+}
+const auto& passes_for(const JointRun<solve::RowsBlock>&) {
+  return solve::joint_passes().rows;
+}
+
+}  // namespace
+
+// What is asleep keeps its impulses.
+bool World::Impl::is_active(const BodyJoint& joint) const {
+  return joint.alive && !(is_still(bodies[joint.a]) && is_still(bodies[joint.b]));
+}
+
+// f(passes, run of blocks): of a colour side by side, but for blocks that share bodies.
+template <class F>
+void World::Impl::for_joint_runs(const F& f) {
+  joint_runs.for_each([&](auto& run) {
+    const auto& passes = passes_for(run);
+    const auto part = [&](std::size_t begin, std::size_t end) {
+      using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
+      f(passes, Run{run.blocks.data() + begin, end - begin, &run.form, body_rows.data(),
+                    joint_ways.data()});
+    };
+    if (run.alone) {
+      part(0, run.blocks.size());
+    } else {
+      in_parallel(run.blocks.size(), kBlockGrain, part);
+    }
+  });
+}
+
+void World::Impl::fill_joint(std::uint32_t index) {
+  BodyJoint& joint = joints[index];
+  const solve::JointForm form = form_of(joint);
+  const auto a = end_of(joint.a), b = end_of(joint.b);
+  const auto add = [&]<class BLOCK>() {
+    return joint_runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
+  };
+  if (joint.law.form != JointLaw::Form::axes) {
+    const auto [block, lane] = add.operator()<solve::RowsBlock>();
+    return fill_rows(block, lane, joint, 0.0);
+  }
+  const BodyPlace at_a = place_of(joint.a), at_b = place_of(joint.b);
+  if (joint.holds_point() && form.rows == 0) {
+    const auto [block, lane] = add.operator()<solve::BallBlock>();
+    return fill_point(block.point, lane, joint, at_a, at_b);
+  }
+  count_turns(joint, at_a, at_b);
+  const double turned = turns_of(joint.turned[0]);
+  const auto fill = [&](auto& block, int lane) {
+    fill_point(block.point, lane, joint, at_a, at_b);
+    fill_axes(block.axes, lane, joint, at_a, at_b, turned);
+    fill_rows(block, lane, joint, turned);
+  };
+  if (joint.holds_point()) {
+    const auto [block, lane] = add.operator()<solve::AxesBlock>();
+    fill(block, lane);
+  } else {
+    const auto [block, lane] = add.operator()<solve::FrameBlock>();
+    fill(block, lane);
+  }
+}
+
+void World::Impl::begin_joints(double h) {
+  active_joints.clear();
+  joined_bodies.clear();
+  if (joints.empty()) return;
+  joint_runs.clear(body_rows.size());
+  for (std::uint32_t i = 0; i < joints.size(); ++i) {
+    BodyJoint& joint = joints[i];
+    if (!is_active(joint)) continue;
+    active_joints.push_back(i);
+    if (joint.laid_out_for != h) lay_out(joint, h);
+    joint.laid_out_for = h;
+    fill_joint(i);
+  }
+  if (active_joints.empty()) return;
+  joint_ways.resize(body_rows.size(), solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].first_joint != kNone && bodies[i].motion != Motion::fixed)
+      joined_bodies.push_back(i);
+  }
+  for_joint_runs([](const auto& passes, const auto& run) { passes.load_inertias(run); });
+  prepare_joints();
+}
+
+// Bodies that joints hold where their rows' ways have taken them since the step began.
+BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
+  const Body& body = bodies[index];
+  if (body.motion == Motion::fixed) return place_of(index);
+  const float *way = body_rows[index + 1].way, *start = start_ways[index].data();
+  const auto since = [&](int i) { return vector_of(way + i) - vector_of(start + i); };
+  const Vec3 centre = reference_point(body) + since(0);
+  const Mat3 R = turned(body.T.rotation(), since(3));
+  const bool at_centre = body.motion == Motion::dynamic;
+  return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
+}
+
+// Of rows that are not found in lanes.
+void World::Impl::evaluate_joints(solve::RowsBlock& block) {
+  JointMeasure found;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldRow) return;  // empty
+    BodyJoint& joint = joints[block.joint.lane[lane]];
+    const BodyPlace b = place_within_step(joint.b);
+    evaluate(joint, place_within_step(joint.a), b, found);
+    for (int i = 0; i < joint.count; ++i) {
+      const Twelve& J = found.jacobian[i];
+      put(block.rows[i].residual, lane, found.residual[i]);
+      put(block.jacobian[i].linear_a, lane, J.linear_a);
+      put(block.jacobian[i].angular_a, lane, J.angular_a);
+      put(block.jacobian[i].linear_b, lane, J.linear_b);
+      put(block.jacobian[i].angular_b, lane, J.angular_b);
+    }
+    const bool user = joint.law.form == JointLaw::Form::user;
+    put(block.anchor, lane, user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre);
+  }
+}
+
+void World::Impl::prepare_joints() {
+  if (active_joints.empty()) return;
+  in_parallel(joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    solve::joint_passes().find_gone(body_rows.data(), start_ways.data(),
+                                    joined_bodies.data() + begin, end - begin, joint_ways.data());
+  });
+  for_joint_runs([&](const auto& passes, const auto& run) {
+    if constexpr (std::is_same_v<decltype(run.blocks), solve::RowsBlock*>) {
+      for (std::size_t i = 0; i < run.count; ++i) evaluate_joints(run.blocks[i]);
+    }
+    passes.prepare(run);
+  });
+}
+void World::Impl::warm_start_joints() {
+  if (active_joints.empty()) return;
+  for_joint_runs([](const auto& passes, const auto& run) { passes.warm_start(run); });
+}
+void World::Impl::solve_joints(double h, int round) {
+  if (active_joints.empty()) return;
+  for_joint_runs([&](const auto& passes, const auto& run) {
+    (round == 0 ? passes.push_first : passes.push_again)(run, static_cast<float>(h));
+  });
+}
+void World::Impl::relax_joints(double h) {
+  if (active_joints.empty()) return;
+  for_joint_runs(
+      [&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h)); });
+}
+
+void World::Impl::end_joints(double dt) {
+  if (active_joints.empty()) return;
+  joint_runs.for_each([&](const auto& run) {
+    const std::uint32_t each = run.alone ? 1 : std::uint32_t{kLanes};
+    for (std::uint32_t i = 0; i < run.lanes; ++i) {
+      const auto& block = run.blocks[i / each];
+      const int lane = static_cast<int>(i % each);
+      BodyJoint& joint = joints[block.joint.lane[lane]];
+      take_rows(block, lane, joint);
+      joint.force *= 1.0 / dt;
+      joint.torque *= 1.0 / dt;
+      if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
+        const double turned = turns_of(joint.turned[0]) + get(block.axes.twist, lane);
+        if (in_range(turned)) joint.turned[0] = turned;  // else the bodies are put back
+      }
+    }
+  });
+}
+
+}  // namespace vp
