@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kDt = 0.001;
 constexpr double kUnusable[] = {kNotANumber, kEndless, -kEndless, 1e10, -1e10, 1e300};
 
 struct Small {
@@ -227,6 +228,73 @@ TEST(EveryCall, RefusesMassesAndSizesThatAreTooSmall) {
     const Vec3 corners[] = {{0, 0, 0}, {x, 0, 0}, {0, x, 0}, {0, 0, x}};
     EXPECT_TRUE(refused(ConvexHull::of(corners), "micrometre")) << x;
   }
+}
+
+TEST(EveryCall, RefusesMomentsThatNoMassHas) {
+  Small s;
+  const auto made = [&](const Sym3& about_centre) {
+    BodyDesc desc;
+    desc.inertia = Inertia(2.0, {}, about_centre);
+    return s.world.create_body(desc);
+  };
+  const Mat3 R = Exp(Vec3{0.3, -1.1, 0.7}).matrix();
+  const auto turned = [&](double x, double y, double z) {
+    return rotated(R, Sym3{x, y, z, 0, 0, 0});
+  };
+  for (const Sym3& J : {Sym3{1, 1, 2.2, 0, 0, 0}, Sym3{1, 9, 1, 0, 0, 0}, turned(3, 1, 1)}) {
+    const auto body = made(J);
+    ASSERT_FALSE(body);
+    EXPECT_EQ(body.error().code, Errc::invalid_argument);
+    EXPECT_NE(body.error().message.find("solid_inertia"), std::string::npos);
+  }
+  // A disc, a rod, a disc by numbers of two digits, and one that is turned.
+  for (const Sym3& J : {Sym3{1, 1, 2, 0, 0, 0}, Sym3{1, 1, 1e-9, 0, 0, 0},
+                        Sym3{0.083, 0.083, 0.17, 0, 0, 0}, turned(2, 1, 1)}) {
+    EXPECT_TRUE(made(J)) << J.zz;
+  }
+}
+
+TEST(EveryCall, TakesASteelCubeOf20Metres) {
+  World world;
+  add_ground(world, {});
+  BodyDesc desc;
+  const Shape cube = Box{{10, 10, 10}};
+  desc.inertia = solid_inertia(cube, 7800.0);
+  desc.T_world_body = SE3(Vec3{0, 0, 10.0});
+  const BodyId body = must(world.create_body(desc));
+  ColliderDesc collider;
+  collider.shape = cube;
+  must(world.add_collider(body, collider));
+  for (int i = 0; i < 500; ++i) must(world.step(kDt));
+  EXPECT_NEAR(world.pose(body).position().z, 10.0, 1e-2);
+  must(world.apply_impulse(body, {0, 0, desc.inertia.mass() * 100.0}, {0, 0, 10}));
+  EXPECT_NEAR(world.velocity(body).v.z, 100.0, 1e-6);
+}
+
+// It went on for ever, or from a state that was half a step's.
+TEST(EveryCall, AStepWithinAStepIsRefused) {
+  class Restless : public StageObserver {
+   public:
+    explicit Restless(World& world) : world_(world) {}
+    void begin(Stage) override {
+      const auto stepped = world_.step(kDt);
+      refused += !stepped && stepped.error().code == Errc::unsupported ? 1 : 0;
+    }
+    void end(Stage) override {}
+    int refused = 0;
+
+   private:
+    World& world_;
+  };
+  Small s, undisturbed;
+  const auto observer = std::make_shared<Restless>(s.world);
+  s.world.observe_stages(observer);
+  for (int i = 0; i < 10; ++i) {
+    must(s.world.step(kDt));
+    must(undisturbed.world.step(kDt));
+  }
+  EXPECT_GE(observer->refused, 10);
+  EXPECT_EQ(s.world.state_hash(), undisturbed.world.state_hash());
 }
 
 // Of a feather's mass down to none, by its colliders.

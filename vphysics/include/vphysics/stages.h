@@ -28,7 +28,8 @@ const char* name_of(Stage stage);  // "broad phase"
 
 // Told of each stage on the thread that calls step(), outside of all jobs. Stages do not overlap,
 // and come once a step, in order; but narrow_phase and lanes follow one another once more for each
-// round of sleepers that what they have found wakes. Must not call the world, nor throw.
+// round of sleepers that what they have found wakes. Must not change the world (a step within
+// the step is refused), nor throw.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

@@ -22,9 +22,16 @@ namespace vp {
 Expected<StepStatus> World::step(double dt) {
   if (!(dt >= kShortestStep && dt <= kLongestStep))
     return refuse("step: dt must be from 1e-7 to 0.1 seconds");
+  if (impl_->dt_now > 0.0)
+    return refuse(
+        Errc::unsupported,
+        "step: a step of this world is going on; call it when that has returned, not from an "
+        "observer or a job");
+  impl_->dt_now = dt;
   impl_->begin_step(dt);
   impl_->run(dt);
   impl_->finish_step();
+  impl_->dt_now = 0.0;
   if (impl_->recorder) impl_->recorder->add_step(*this, dt);
   return impl_->status;
 }
@@ -32,7 +39,6 @@ Expected<StepStatus> World::step(double dt) {
 void World::Impl::begin_step(double dt) {
   const auto stage = in(Stage::prepare);
   ready_for_queries = false;
-  dt_now = dt;
   const std::size_t n = bodies.size();
   status = {};
   counters = {};
@@ -442,7 +448,6 @@ void World::Impl::finish_step() {
     for (const std::uint32_t i : movers) watch(i, dt_now);
     send_to_sleep();
   }
-  dt_now = 0.0;
   std::erase_if(next_records, [](const PairRecord& r) {
     bool loaded = r.touching;
     for (std::uint32_t i = 0; i < r.count; ++i) loaded |= r.points[i].normal_impulse > 0.0;

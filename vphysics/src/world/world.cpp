@@ -310,7 +310,8 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   Body* body = impl_->find(id);
   if (!body) return stale("apply_impulse", "the body");
   if (body->motion != Motion::dynamic) return refuse("apply_impulse: the body is not dynamic");
-  if (!in_range(impulse) || !in_range(point)) {
+  const double bears = body->is_link ? 1.0 : std::max(1.0, body->mass);  // for 1e9 m/s
+  if (!in_range((1.0 / bears) * impulse) || !in_range(point)) {
     return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
   }
   constexpr const char* kTooMuch =
