@@ -147,5 +147,47 @@ TEST(Collider, SpinningAndRollingFrictionAreLeverArmsOnAnyGround) {
   }
 }
 
+Vec3 velocity_of(const World& world, BodyId body) {
+  return world.pose(body).rotate(world.velocity(body).v);
+}
+
+// A lever arm rho slows what rolls on a radius r by rho g / r / (1 + k^2 / r^2), k the radius of
+// gyration about its axis, whatever its shape and by whichever way it is solved.
+TEST(Collider, RollingFrictionSlowsAllThatRolls) {
+  const double r = 0.5, arm = 0.02, v0 = 2.0;
+  const CompoundPart wheels[] = {{Sphere{r}, SE3(Vec3{0, 0, -0.6})},
+                                 {Sphere{r}, SE3(Vec3{0, 0, 0.6})}};
+  const struct {
+    const char* name;
+    Shape shape;
+    double within;  // of the slowing
+  } rollers[] = {{"sphere", Sphere{r}, 0.02},
+                 {"capsule", Capsule{r, 0.4}, 0.02},
+                 {"cylinder", Cylinder{r, 0.4}, 0.02},
+                 {"two balls", must(Compound::of(wheels)), 0.02}};
+  const SE3 lying(Exp(Vec3{-0.5 * kPi, 0, 0}), Vec3{0, 0, r});  // z along the world's y
+  for (const auto& roller : rollers) {
+    for (const bool continuous : {false, true}) {
+      World world;
+      Material material{0.8, 0.0, 0.0};
+      material.rolling_friction = arm;
+      add_ground(world, material);
+      Part part{.shape = roller.shape, .material = material, .pose = lying};
+      // In its own frame: along x, about the world's y.
+      part.velocity = {{0, 0, v0 / r}, {v0, 0, 0}};
+      part.continuous = continuous;
+      const BodyId body = add_dynamic(world, part);
+      const Inertia J = world.inertia(body);
+      const double k2 = J.central().zz / J.mass();
+      const double slowing = arm * kEarth / r / (1.0 + k2 / (r * r));
+      for (int i = 0; i < 1000; ++i) must(world.step(0.001));
+      EXPECT_NEAR(v0 - velocity_of(world, body).x, slowing, roller.within * slowing)
+          << roller.name << ' ' << continuous;
+      for (int i = 0; i < 8000; ++i) must(world.step(0.001));
+      EXPECT_LT(norm(velocity_of(world, body)), 2e-3) << roller.name << ' ' << continuous;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vp::test

@@ -209,7 +209,9 @@ void solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
   const Vec3 turning =
       b.w - a.w + Vec3{through_links(c, r), through_links(c, r + 1), through_links(c, r + 2)};
   Vec3 next = c.rolling_impulse - c.rolling_mass * turning;
-  const double most = c.rolling * c.points[0].normal_impulse;
+  double load = 0.0;
+  for (int i = 0; i < c.count; ++i) load += c.points[i].normal_impulse;
+  const double most = c.rolling * load;
   const double size = norm(next);
   if (size > most) next *= most / size;
   apply_moment(a, b, c, next - c.rolling_impulse);

@@ -9,13 +9,13 @@
 namespace vp::solve {
 namespace {
 
-constexpr int W = VP_LANES;
+constexpr int kWidth = VP_LANES;
 
 void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std::uint32_t* bodies,
                std::size_t count, Gone* gone) {
-  using F = Lanes<W>;
-  for (std::size_t first = 0; first < count; first += W) {
-    const int some = static_cast<int>(std::min<std::size_t>(W, count - first));
+  using F = Lanes<kWidth>;
+  for (std::size_t first = 0; first < count; first += kWidth) {
+    const int some = static_cast<int>(std::min<std::size_t>(kWidth, count - first));
     Vec3T<F> way, theta, q;
     F w;
     for (int i = 0; i < some; ++i) {
@@ -29,7 +29,7 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
       theta.y.set(i, to[4] - from[4]);
       theta.z.set(i, to[5] - from[5]);
     }
-    quaternion_of<W>(theta, q, w);
+    quaternion_of<kWidth>(theta, q, w);
     for (int i = 0; i < some; ++i) {
       gone[bodies[first + static_cast<std::size_t>(i)] + 1] = {
           {q.x[i], q.y[i], q.z[i], w[i]}, {way.x[i], way.y[i], way.z[i]}, 0.0f};
@@ -37,42 +37,43 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
   }
 }
 
-// Runs f(lanes, at) on all lanes, W at a time.
+// Runs f(lanes, at) on all lanes, kWidth at a time.
 template <class B, class F>
 void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
   for (std::size_t i = 0; i < run.count; ++i) {
-    for (int at = 0; at < kLanes; at += W) {
+    for (int at = 0; at < kLanes; at += kWidth) {
       if (run.blocks[i].a.lane[at] + run.blocks[i].b.lane[at] == 2 * kWorldRow) break;  // empty
-      JointLanes<W, B> lanes(run.blocks[i], at, run.rows, *run.form);
+      JointLanes<kWidth, B> lanes(run.blocks[i], at, run.rows, *run.form);
       f(lanes, at);
     }
   }
 }
 
 template <class B>
-void load_inertias(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [](JointLanes<W, B>& c, int) { c.load_inertias(); });
+void load_joint_inertias(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { c.load_inertias(); });
 }
 template <class B>
-[[gnu::flatten]] void prepare(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [&](JointLanes<W, B>& c, int at) { prepare_lanes(c, run.gone, at); });
+[[gnu::flatten]] void prepare_joints(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int at) { prepare_lanes(c, run.gone, at); });
 }
 template <class B>
-[[gnu::flatten]] void warm_start(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [](JointLanes<W, B>& c, int) { warm_start_lanes(c); });
+[[gnu::flatten]] void warm_start_joints(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { warm_start_lanes(c); });
 }
 template <class B, bool kFirst>
-[[gnu::flatten]] void push(const typename JointPasses<B>::Run& run, float h) {
-  for_joints<B>(run, [&](JointLanes<W, B>& c, int) { push_lanes(c, h, kFirst); });
+[[gnu::flatten]] void push_joints(const typename JointPasses<B>::Run& run, float h) {
+  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) { push_lanes(c, h, kFirst); });
 }
 template <class B>
-[[gnu::flatten]] void relax(const typename JointPasses<B>::Run& run, float h) {
-  for_joints<B>(run, [&](JointLanes<W, B>& c, int) { relax_lanes(c, h); });
+[[gnu::flatten]] void relax_joints(const typename JointPasses<B>::Run& run, float h) {
+  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) { relax_lanes(c, h); });
 }
 
 template <class B>
 constexpr JointPasses<B> passes_of() {
-  return {load_inertias<B>, prepare<B>, warm_start<B>, push<B, true>, push<B, false>, relax<B>};
+  return {load_joint_inertias<B>, prepare_joints<B>,     warm_start_joints<B>,
+          push_joints<B, true>,   push_joints<B, false>, relax_joints<B>};
 }
 
 }  // namespace

@@ -89,13 +89,13 @@ void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w
 }
 
 template <int W>
-struct Place {
+struct GoneLanes {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   V q, way;
   F w;
   template <class Row>
-  static Place of(const Row& row) {
+  static GoneLanes of(const Row& row) {
     F r[8];
     lanes::gather8<W>(row, r);
     return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[3]};
@@ -112,7 +112,7 @@ struct Frames {
   V ax, ay, az, bx, by, bz;
 
   template <class C>
-  Frames(const C& c, const AxesPart& axes, const Place<W>& a, const Place<W>& b)
+  Frames(const C& c, const AxesPart& axes, const GoneLanes<W>& a, const GoneLanes<W>& b)
       : ax(a.turned(c.get(axes.a_x))),
         ay(a.turned(c.get(axes.a_y))),
         az(cross(ax, ay)),
@@ -283,8 +283,8 @@ template <int W, class B>
 void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W>>& gap) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  const auto a = Place<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].turn; });
-  const auto b = Place<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].turn; });
+  const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].turn; });
+  const auto b = GoneLanes<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].turn; });
   if constexpr (B::kAxes) {
     PointPart& point = c.block().point;
     const V start_a = c.get(point.start_arm_a), start_b = c.get(point.start_arm_b);

@@ -101,9 +101,7 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
   c.collider_b = pair.b;
   c.friction = std::sqrt(a.material.friction * b.material.friction);
   c.restitution = std::max(a.material.restitution, b.material.restitution);
-  const bool rolls =
-      a.geometry.kind == collide::Kind::sphere || b.geometry.kind == collide::Kind::sphere;
-  c.rolling = rolls ? std::max(a.material.rolling_friction, b.material.rolling_friction) : 0.0;
+  c.rolling = std::max(a.material.rolling_friction, b.material.rolling_friction);
   c.swept = swept;
   c.count = m.count;
   set_normal(c, m.normal);

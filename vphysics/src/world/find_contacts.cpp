@@ -418,8 +418,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   }
   n.friction = std::sqrt(a.material.friction * b.material.friction);
   n.restitution = std::max(a.material.restitution, b.material.restitution);
-  const bool ball = c.place.points == 1;
-  n.rolling = ball ? std::max(a.material.rolling_friction, b.material.rolling_friction) : 0.0;
+  n.rolling = std::max(a.material.rolling_friction, b.material.rolling_friction);
   n.spinning = std::max(a.material.spinning_friction, b.material.spinning_friction);
   n.surface_velocity = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
   n.old_friction = impulses.friction;
@@ -432,7 +431,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
     c.position[i] = m.points[i].position;
   }
   const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
-  if (ball) {
+  if (c.place.points == 1) {
     write_lane(graph.block<1>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
     graph.block<1>(c.place).touches.lane[solve::ContactGraph::lane(c.place)] = c.touching ? 1 : 0;
   } else {
