@@ -60,7 +60,7 @@ void transpose8(const uint8_t* rows, uint8_t* out) {
 void SensorHost::begin(uint8_t used, uint8_t resolution) {
   used_ = used;
   live_ = 0;
-  suspect_ = 0;
+  suspect_ = observed_ = 0;
   resolution_ = resolution;
   step_ = kIdle;
   setting_up_ = 0;
@@ -81,7 +81,11 @@ void SensorHost::sample(uint8_t elapsed_ms) {
   for (uint8_t i = 0; i < kSensors; ++i) {
     const uint8_t mask = static_cast<uint8_t>(1u << i);
     if ((live_ & mask) == 0) continue;
-    if (answers[0][i] == 0xFF && answers[1][i] == 0xFF) {  // nobody drives the line
+    // Nobody drives the line; or it is held low, which looks like no motion but for the observation.
+    const bool ones = answers[0][i] == 0xFF && answers[1][i] == 0xFF;
+    const bool zeros = answers[1][i] == 0 && (observed_ & mask) != 0;
+    if (answers[1][i] != 0) observed_ = static_cast<uint8_t>(observed_ | mask);
+    if (ones || zeros) {
       suspect_ = static_cast<uint8_t>(suspect_ | mask);
     } else if ((answers[0][i] & kSeen) != 0) {
       const int16_t x = signed16(answers[2][i], answers[3][i]);
@@ -97,13 +101,8 @@ void SensorHost::sample(uint8_t elapsed_ms) {
 
 void SensorHost::service(uint32_t now_ms) {
   if (suspect_ != 0) {
-    alignas(4) uint8_t answers[kSensors];
-    bus_.read(live_, kProductId, answers);
-    bus_.write(live_, kMotionBurst, 0);
-    const uint8_t gone = static_cast<uint8_t>(suspect_ & ~equal(answers, kProduct));
-    count_errors(1);
     suspect_ = 0;
-    lose(gone);
+    ask(true);
     return;
   }
   const bool all = (used_ & ~live_) == 0;
@@ -111,11 +110,11 @@ void SensorHost::service(uint32_t now_ms) {
     set_up(now_ms);
   } else if (live_ != 0 && passed(now_ms, check_ms_)) {
     check_ms_ = now_ms + kCheckMs;
-    ask();
+    ask(false);
   }
 }
 
-void SensorHost::ask() {
+void SensorHost::ask(bool suspicious) {
   const uint8_t address[kQuestions] = {kProductId, kInverseProductId, kConfig1};
   const uint8_t wanted[kQuestions] = {kProduct, static_cast<uint8_t>(~kProduct),
                                       static_cast<uint8_t>(resolution_ - 1)};
@@ -124,12 +123,13 @@ void SensorHost::ask() {
   bus_.write(live_, kMotionBurst, 0);  // a register that is read ends the burst mode
   const uint8_t wrong = static_cast<uint8_t>(live_ & ~equal(answers, wanted[question_]));
   question_ = static_cast<uint8_t>((question_ + 1) % kQuestions);
-  if (wrong != 0) count_errors(1);
+  if (suspicious || wrong != 0) count_errors(1);
   lose(wrong);
 }
 
 void SensorHost::lose(uint8_t sensors) {
   live_ = static_cast<uint8_t>(live_ & ~sensors);
+  observed_ = static_cast<uint8_t>(observed_ & ~sensors);
 }
 
 void SensorHost::set_up(uint32_t now_ms) {

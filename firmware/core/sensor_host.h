@@ -49,7 +49,8 @@ class SensorHost {
   enum Step : uint8_t { kIdle, kReset, kWake, kFlush, kRest, kResolution, kIdentity, kBurst };
 
   void set_up(uint32_t now_ms);
-  void ask();
+  // The next question; suspicious: an answer was no motion, which is an error by itself.
+  void ask(bool suspicious);
   void lose(uint8_t sensors);
   void count_errors(uint8_t errors);
 
@@ -57,7 +58,9 @@ class SensorHost {
   uint8_t used_ = 0;
   uint8_t live_ = 0;
   uint8_t resolution_ = 20;
-  uint8_t suspect_ = 0;  // answered all ones, which no motion is: asked for its product at once
+  // Answered what no motion is, all ones or that none of its processes runs: asked at once.
+  uint8_t suspect_ = 0;
+  uint8_t observed_ = 0;  // has said that its processes run
 
   Step step_ = kIdle;
   uint8_t setting_up_ = 0;  // those that step_ is about

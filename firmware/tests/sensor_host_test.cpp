@@ -28,7 +28,8 @@ struct Bus final : SensorBus {
     bool there = true;
     std::array<std::uint8_t, 128> registers{};
     int x = 0, y = 0;
-    bool bursts = false;
+    std::uint8_t observation = 0x3F;
+    bool bursts = false, held_low = false;
   };
   std::array<Sensor, kSensors> sensors{};
   int accesses = 0;
@@ -52,10 +53,11 @@ struct Bus final : SensorBus {
         bytes[i].fill(0xFF);
         continue;
       }
-      if (!sensor.bursts) continue;
+      if (sensor.bursts && sensor.held_low) sensor.x = sensor.y = 0;  // told, and not heard
+      if (!sensor.bursts || sensor.held_low) continue;
       const auto x = static_cast<std::uint16_t>(sensor.x), y = static_cast<std::uint16_t>(sensor.y);
       bytes[i] = {static_cast<std::uint8_t>(sensor.x != 0 || sensor.y != 0 ? 0x80 : 0),
-                  0,
+                  sensor.observation,
                   static_cast<std::uint8_t>(x),
                   static_cast<std::uint8_t>(x >> 8),
                   static_cast<std::uint8_t>(y),
@@ -166,6 +168,35 @@ TEST(SensorHost, AllOnesAreNoMotion) {
   EXPECT_EQ(frame.present, 0xFF);
   EXPECT_EQ(frame.flags, 1);
   EXPECT_EQ(frame.quality, 0);
+}
+
+// All zeros are a sensor that has not moved, but for the processes that it says to run.
+TEST(SensorHost, CountsThatALineHeldLowSwallowsAreAnError) {
+  Rig rig;
+  rig.run(100);
+  rig.frame();
+  for (const int ms : {1, 3}) {
+    rig.bus.sensors[2].held_low = true;
+    rig.bus.sensors[2].x = 40;
+    rig.run(ms);
+    rig.bus.sensors[2].held_low = false;
+    rig.run(2);
+    EXPECT_GE(rig.frame().quality, 1) << ms;
+    EXPECT_EQ(rig.frame().present, 0xFF) << ms;
+  }
+}
+
+// If ever there is one.
+TEST(SensorHost, ASensorThatNeverSaysThatItsProcessesRunIsBelieved) {
+  Rig rig;
+  for (Bus::Sensor& sensor : rig.bus.sensors) sensor.observation = 0;
+  rig.run(1000);
+  rig.bus.sensors[2].x = 40;
+  rig.run(10);
+  const wire::DeviceFrame frame = rig.frame();
+  EXPECT_EQ(frame.present, 0xFF);
+  EXPECT_EQ(frame.quality, 0);
+  EXPECT_EQ(frame.slide[2], 40);
 }
 
 TEST(SensorHost, ASensorThatForgotItsSetUpIsFoundOutWithinAllQuestions) {

@@ -80,6 +80,25 @@ for (const level of [false, true]) {
   });
 }
 
+// Between two questions, and each time counts are swallowed.
+test('counts that a data line held low for a moment swallows are an error that is counted', () => {
+  const rig = new Rig().start();
+  rig.framesOfMs(50);
+  for (let i = 0; i < 12; ++i) {
+    const [sensor] = rig.sensors.sensors;
+    rig.frames();
+    sensor.stuck = false;
+    rig.sensors.drive();
+    rig.move(0, 30, 40);
+    rig.board.runMs(1.2);
+    sensor.stuck = undefined;
+    rig.sensors.drive();
+    rig.board.runMs(7.3);
+    assert.ok(sum(rig.frames(), 'quality') >= 1, `${i}`);
+    assert.ok(rig.waitForPresent(0xff, 250));
+  }
+});
+
 test('without any sensor it reports a thousand times a second that there is none', () => {
   const rig = new Rig({ plugged: 0 }).start(0);
   const frames = rig.framesOfMs(500);

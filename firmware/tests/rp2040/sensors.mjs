@@ -25,6 +25,7 @@ export class Sensor {
     this.index = index;
     this.plugged = true;
     this.stuck = undefined; // true or false: what holds the data line
+    this.observation = 0x3f; // a bit of each process that runs
     this.power();
   }
   // As it is when it gets its supply.
@@ -126,7 +127,7 @@ export class Sensor {
         return;
       }
       const [x, y] = this.latch();
-      this.answer = Uint8Array.of(x || y ? 0x80 : 0, 0, x & 0xff, (x >> 8) & 0xff, y & 0xff, (y >> 8) & 0xff);
+      this.answer = Uint8Array.of(x || y ? 0x80 : 0, this.observation, x & 0xff, (x >> 8) & 0xff, y & 0xff, (y >> 8) & 0xff);
       return;
     }
     this.burstMode = false;
