@@ -81,7 +81,8 @@ void SensorHost::sample(uint8_t elapsed_ms) {
   for (uint8_t i = 0; i < kSensors; ++i) {
     const uint8_t mask = static_cast<uint8_t>(1u << i);
     if ((live_ & mask) == 0) continue;
-    // Nobody drives the line; or it is held low, which looks like no motion but for the observation.
+    // Nobody drives the line; or it is held low, which looks like no motion but for the
+    // observation.
     const bool ones = answers[0][i] == 0xFF && answers[1][i] == 0xFF;
     const bool zeros = answers[1][i] == 0 && (observed_ & mask) != 0;
     if (answers[1][i] != 0) observed_ = static_cast<uint8_t>(observed_ | mask);
