@@ -496,6 +496,39 @@ TEST(UserConstraint, OneSidedRowsPushAndDoNotPull) {
   EXPECT_NEAR(world.velocity(ball).v.z, 2 - 0.1 * kG, 1e-3);
 }
 
+// Of a hinge and a cone that twists without limits: more than half a turn in each step.
+TEST(Joints, TurnsAreCountedHoweverFastATwistIs) {
+  ConeTwist cone;
+  for (const JointKind& kind : {JointKind(Hinge{}), JointKind(cone)}) {
+    for (const double rate : {200.0, 400.0}) {
+      World world(weightless());
+      const BodyId anchor = add_anchor(world);
+      const BodyId wheel = add_mass(world, Inertia(1.0, Vec3{1, 1, 2}), {}, {{0, 0, rate}, {}});
+      const JointId joint = join(world, anchor, wheel, kind, SE3{});
+      run(world, 2.0, 1.0 / 60);
+      EXPECT_NEAR(world.joint_coordinate(joint), 2.0 * rate, 0.01 * rate);
+    }
+  }
+}
+
+// So soft that nothing is left of it, and a user's row of next to nothing.
+TEST(Joints, WhatHoldsNothingLeavesABodyToFall) {
+  for (const double frequency : {1e-40, 1e-18, 1e-6}) {
+    for (const double damping_ratio : {0.0, 1.0}) {
+      World world;
+      const BodyId anchor = add_anchor(world);
+      const BodyId ball = add_mass(world, Inertia(1.0, Vec3{1, 1, 1}), {});
+      JointDesc desc;
+      desc.kind = Weld{};
+      desc.frequency = frequency;
+      desc.damping_ratio = damping_ratio;
+      must(world.create_joint(anchor, ball, desc));
+      for (int i = 0; i < 500; ++i) EXPECT_FALSE(must(world.step(0.001)).non_finite);
+      EXPECT_NEAR(world.pose(ball).position().z, -0.5 * kG * 0.25, 0.01) << frequency;
+    }
+  }
+}
+
 // More joints than there are colours.
 TEST(Joints, AHubHoldsAHundredBalls) {
   World world;

@@ -65,7 +65,8 @@ struct BodyDesc {
   se3 velocity;  // body frame [rad/s, m/s]
   // About the body's origin. Of dynamic bodies: mass from 1e-15 to 1e9 kg, moments about the centre
   // of mass from 1e-30 kg m^2, a water drop of a micrometre, to 1e15, and those of a mass: none of
-  // the three principal ones above the sum of the others, but by 1 % of their sum.
+  // the three principal ones above the sum of the others, but by the 4 % of
+  // rounded numbers.
   Inertia inertia;
   double linear_damping = 0.0;   // [1/s]
   double angular_damping = 0.0;  // [1/s]

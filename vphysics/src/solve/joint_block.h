@@ -35,6 +35,12 @@ struct JointForm {
   std::uint8_t held = 0;  // of these; they come first
   std::uint8_t slot[kJointRows] = {};
   bool operator==(const JointForm&) const = default;
+  bool has(std::uint8_t wanted) const {
+    for (int i = 0; i < rows; ++i) {
+      if (slot[i] == wanted) return true;
+    }
+    return false;
+  }
 };
 
 // A point of b as one of a sees it, and what holds it there.

@@ -33,6 +33,7 @@ inline constexpr int kBoundedSweeps = 4;
 inline constexpr float kExplicit = 0.25f;
 // A pivot below this share of its row's own K is of a row that others hold already.
 inline constexpr float kDependent = 1e-6f;
+inline constexpr float kLeastResponse = 1e-30f;  // of a pivot whose inverse is a number
 inline constexpr float kSettledJoint = 1e-4f;  // of the load: the change of a round that is enough
 inline constexpr float kFastestStop = 3.0f;    // out of a limit [m/s or rad/s]
 
@@ -297,6 +298,16 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W
     AxesPart& axes = c.block().axes;
     const Frames<W> frames(c, axes, a, b);
     const Swing<W> swing(frames);
+    // Beyond whole turns, though no row be about it: who reads it later has only half a turn a
+    // step to go by.
+    const auto counted_twist = [&] {
+      constexpr float kTurn = static_cast<float>(2.0 * kPi), kRound = 12582912.0f;
+      const F twist = frames.twist(), turns = (c.get(axes.twist) - twist) * F(1.0f / kTurn);
+      const F counted = twist + F(kTurn) * ((turns + F(kRound)) - F(kRound));
+      c.put(axes.twist, counted);
+      return counted;
+    };
+    if (!c.form().has(kTwist)) counted_twist();
     for (int i = 0; i < c.others(); ++i) {
       RowPart& row = c.block().rows[i];
       Field3& axis = c.block().jacobian[i];
@@ -319,18 +330,10 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W
           c.put(row.residual, swing.y);
           c.put(axis, frames.world(swing.by_y));
           break;
-        case kTwist: {
-          F twist = frames.twist();
-          if (i >= c.form().held) {  // counted on beyond whole turns
-            constexpr float kTurn = static_cast<float>(2.0 * kPi), kRound = 12582912.0f;
-            const F turns = (c.get(axes.twist) - twist) * F(1.0f / kTurn);
-            twist += F(kTurn) * ((turns + F(kRound)) - F(kRound));
-            c.put(axes.twist, twist);
-          }
-          c.put(row.residual, twist);
+        case kTwist:
+          c.put(row.residual, i < c.form().held ? frames.twist() : counted_twist());
           c.put(axis, frames.twist_axis());
           break;
-        }
         case kCone: {
           // The way to the cone: (1 - f) / |grad f| with f^2 = (x / cone_x)^2 + (y / cone_y)^2.
           const F ix = F(1.0f) / c.get(axes.cone_x), iy = F(1.0f) / c.get(axes.cone_y);
@@ -438,7 +441,8 @@ void prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at) {
   }
   // Below the diagonal L of the held columns; the rest becomes the Schur complement.
   for (int j = 0; j < kAll && j < held; ++j) {
-    const LaneMask<W> independent = K[j][j] > F(kDependent) * own[j];
+    const LaneMask<W> independent =
+        both(K[j][j] > F(kDependent) * own[j], K[j][j] > F(kLeastResponse));
     const F inverse = select(independent, F(1.0f) / K[j][j], F(0.0f));
     for (int i = j + 1; i < n; ++i) {
       const F l = K[i][j] * inverse;

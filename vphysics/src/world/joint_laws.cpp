@@ -11,6 +11,8 @@ namespace {
 // Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
 constexpr double kJointPush = 0.2;
 constexpr double kJointLoss = 0.05;
+// Of what is as good as free; times K it is a number in single precision.
+constexpr double kMostLoss = 1e9;
 
 AxisDesc axis(AxisMotion motion, double lower = 0.0, double upper = 0.0, JointDrive drive = {}) {
   return {motion, lower, upper, drive};
@@ -80,7 +82,7 @@ void soften(BodyJointRow& row, double frequency, double damping_ratio, double h)
   }
   const double turn = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * turn;
   row.rate = turn / both;
-  row.loss = 1.0 / (h * turn * both);
+  row.loss = std::min(1.0 / (h * turn * both), kMostLoss);
   row.relaxes = false;
 }
 

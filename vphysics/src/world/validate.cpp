@@ -130,9 +130,8 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
 // A gyration radius of a kilometre of the largest mass.
 bool is_moment(const Sym3& J) {
   constexpr double kMost = 1e15;
-  const double sum = std::fabs(J.xx) + std::fabs(J.yy) + std::fabs(J.zz) + std::fabs(J.xy) +
-                     std::fabs(J.yz) + std::fabs(J.zx);
-  return sum <= kMost;
+  return in_range((kLargest / kMost) * Vec3{J.xx, J.yy, J.zz}) &&
+         in_range((kLargest / kMost) * Vec3{J.xy, J.yz, J.zx});
 }
 // Second moments of a mass, (tr J) 1 / 2 - J, are no less than zero; but by what numbers of two
 // digits are rounded by.
@@ -146,8 +145,9 @@ std::optional<std::string> problem_with(const Inertia& J) {
   if (!in_range(J.mass()) || !(J.mass() >= kLeastMass)) {
     return "inertia: the mass must be from 1e-15 to 1e9 kg; set a mass or use solid_inertia";
   }
-  if (!in_range(J.centre_of_mass()) || !is_moment(J.rotational())) {
-    return "inertia: the centre of mass must be within 1e9 m, every moment within 1e15 kg m^2";
+  if (!in_range(J.centre_of_mass()) || !is_moment(J.central())) {
+    return "inertia: the centre of mass must be within 1e9 m, every moment about it within "
+           "1e15 kg m^2";
   }
   if (!positive_definite(J.central())) {
     return "inertia: the rotational part about the centre of mass must be positive definite; is it "
@@ -156,7 +156,7 @@ std::optional<std::string> problem_with(const Inertia& J) {
   if (!is_of_mass(J.central())) {
     return "inertia: no mass has such moments about its centre: the largest principal moment may "
            "not "
-           "exceed the sum of the other two; use solid_inertia";
+           "exceed the sum of the other two by more than 4 %; use solid_inertia";
   }
   const Sym3 inverse_central = inverse(J.central());
   const double largest = std::max({inverse_central.xx, inverse_central.yy, inverse_central.zz});
