@@ -29,9 +29,9 @@ struct Expected {
 Expected expected(Board board) {
   return board == Board::rp2040 ? Expected{0.15, 0.15, 0.999} : Expected{2, 2, 0.85};
 }
-// Measured: 1.5 mm, 1.5 degrees, 0.70; 1.4, 1.2, 0.80 before the controller told its settings: what is
-// played in some seconds follows from each microsecond. A person sees the feet to 1.5 degrees, so that a mouse's
-// mark is known to one.
+// Measured: 1.5 mm, 1.5 degrees, 0.70; 1.4, 1.2, 0.80 before the controller told its settings: what
+// is played in some seconds follows from each microsecond. A person sees the feet to 1.5 degrees,
+// so that a mouse's mark is known to one.
 constexpr Expected kCalibrated{2, 2, 0.65};
 
 void expect_played(Board board, const MatchResult& match, const Expected& limits) {
