@@ -139,7 +139,7 @@ TEST(SettingsTold, AreNoFaultOfTheLine) {
                                              {SOCK_SEQPACKET, DeviceFraming::report, padded},
                                              {SOCK_STREAM, DeviceFraming::report, padded}}) {
     Socket s(kind, framing);
-    const auto frame = [&] {
+    const auto frame = [&s, framing = framing] {
       return framing == DeviceFraming::cobs ? cobs(s.device.frame()) : report(s.device.frame());
     };
     s.send(frame());
