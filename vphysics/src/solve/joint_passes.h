@@ -79,13 +79,13 @@ void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w
   const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kRound)) - F(kRound);
   // pi as the sum of a short number and the rest, so that few turns lose nothing.
   const F r = (half - turns * F(3.140625f)) - turns * F(9.67653589793e-4f), s = r * r;
-  const auto series = [&](float first) {  // of x^k / k!, every other k from first + 10 down
+  const auto series = [&](int first) {  // of x^k / k!, every other k from first + 10 down
     F sum(1.0f);
-    for (float k = first + 10.0f; k > first; k -= 2.0f) sum = F(1.0f) - s * sum / F(k * (k - 1.0f));
+    for (int k = first + 10; k > first; k -= 2) sum = F(1.0f) - s * sum / F(k * (k - 1));
     return sum;
   };
-  const F sine = series(1.0f);  // over r
-  w = series(0.0f);
+  const F sine = series(1);  // over r
+  w = series(0);
   q = select(turns == F(0.0f), F(0.5f) * sine, r * sine / larger(size, F(1e-20f))) * theta;
 }
 
