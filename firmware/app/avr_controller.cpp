@@ -36,7 +36,8 @@ bool AvrController::due() {
 void AvrController::step_bus() {
   bus_.step(mice_.lines().tick());
   if (bus_.busy()) return;
-  marks_.poll(ms_);  // first: a pulse that waited for its reading begins at once
+  // First: a pulse that waited for its reading begins at once. But none begins before a pulse.
+  if (marks_.reading() || !haptics_.waits()) marks_.poll(ms_);
   haptics_.poll(ms_);
 }
 

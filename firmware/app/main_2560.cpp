@@ -11,6 +11,8 @@ namespace {
 
 // A mouse reports every 5 ms; a frame every 4 ms delays none and leaves the line free.
 const uint16_t kFrameUs = 4000;
+// For motors' pulses on their bus: a hit is felt the sooner.
+const int32_t kFrameWaitsUs = 1000;
 
 firmware::AvrController g_controller;
 firmware::Uart g_uart;
@@ -86,7 +88,9 @@ int main() {
       continue;
     }
     const uint32_t now_us = g_controller.turn(true);
-    if (static_cast<int32_t>(now_us - next_us) >= 0 && !g_controller.after_frame()) {
+    const int32_t late_us = static_cast<int32_t>(now_us - next_us);
+    const bool waits = g_controller.bus_busy() && late_us < kFrameWaitsUs;
+    if (late_us >= 0 && !waits && !g_controller.after_frame()) {
       next_us += kFrameUs;
       report(now_us);
     }

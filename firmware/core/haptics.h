@@ -64,6 +64,9 @@ class Haptics {
   // At least once a millisecond.
   void poll(uint32_t now_ms);
 
+  // A motor has yet to be told something.
+  bool waits() const { return (due_ & present_) != 0; }
+
   uint8_t present() const { return present_; }
   // False after a driver whose motor runs could not be told to stop: the line that enables the
   // drivers must go low, for which all are set up anew.

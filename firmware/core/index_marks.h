@@ -19,6 +19,7 @@ class IndexMarks {
   // Once a millisecond, and until then if a reading may have ended.
   void poll(uint32_t now_ms);
 
+  bool reading() const { return reading_; }
   // Bit i: the mark of rod i is under its switch, as of the last reading.
   uint8_t under() const { return under_; }
 

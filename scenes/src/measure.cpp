@@ -87,6 +87,40 @@ double ground_penetration(const SE3& ground, const Core& core) {
   return core.radius + extent(core, up) - dot(up, core.pose.position() - ground.position());
 }
 
+// From a point to a triangle: to its plane where the foot lies inside, else to the nearest edge.
+double distance_to(const Vec3 (&corners)[3], const Vec3& p) {
+  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  bool inside = true;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &from = corners[i], edge = corners[(i + 1) % 3] - from;
+    inside = inside && dot(cross(edge, p - from), normal) >= 0.0;
+    const double along = std::clamp(dot(p - from, edge) / dot(edge, edge), 0.0, 1.0);
+    nearest = std::min(nearest, norm(p - from - along * edge));
+  }
+  return inside ? std::fabs(dot(normal, p - corners[0])) / norm(normal) : nearest;
+}
+
+// From a point above the ground, as far as reach; beyond it more.
+double distance_to(const Terrain& terrain, const Vec3& p, double reach) {
+  const auto corner = [&](int i, int j) {
+    const double height = (*terrain.heights)[static_cast<std::size_t>(j * terrain.columns + i)];
+    return Vec3{i * terrain.spacing, j * terrain.spacing, height};
+  };
+  const auto cell = [&](double x, int samples) {
+    return std::clamp(static_cast<int>(std::floor(x / terrain.spacing)), 0, samples - 2);
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int j = cell(p.y - reach, terrain.rows); j <= cell(p.y + reach, terrain.rows); ++j) {
+    for (int i = cell(p.x - reach, terrain.columns); i <= cell(p.x + reach, terrain.columns); ++i) {
+      const Vec3 a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1),
+                 d = corner(i, j + 1);
+      nearest = std::min({nearest, distance_to({a, b, c}, p), distance_to({a, c, d}, p)});
+    }
+  }
+  return nearest;
+}
+
 double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& core) {
   double deepest = -std::numeric_limits<double>::infinity();
   for (int corner = 0; corner < 8; ++corner) {
@@ -95,7 +129,10 @@ double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& cor
         inverse_times(T, core.pose * Vec3{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y,
                                           corner & 4 ? h.z : -h.z});
     const Terrain::Below below = terrain.below(p.x, p.y);
-    deepest = std::max(deepest, core.radius - below.normal.z * (p.z - below.height));
+    const double above = below.normal.z * (p.z - below.height);  // its triangle's plane
+    const bool apart = core.round() && above > 0.0;
+    deepest =
+        std::max(deepest, core.radius - (apart ? distance_to(terrain, p, core.radius) : above));
   }
   return deepest;
 }

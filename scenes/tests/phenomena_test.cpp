@@ -141,17 +141,15 @@ TEST(Phenomena, WhatIsToStandStands) {
 }
 
 // What is let loose on hills and poured as compounds stays on them and in the pit. Balls roll on
-// for longer than the scene lasts; furniture comes to rest. Measured: 0.39 and 0.003 m/s. On hills
-// the penetration is that into the plane of the triangle under a centre, which at an edge with
-// another is deeper than that into the ground: 5.0 mm of a ball at one moment, 4.95 of a capsule
-// that rests.
+// for longer than the scene lasts; furniture comes to rest. Measured: 0.39 and 0.003 m/s; 0.006 and
+// 0.013 mm.
 TEST(Phenomena, HillsAndPitsHoldWhatIsLetLooseInThem) {
   for (const auto& [name, slow] : {std::pair{"hills", 1.0}, std::pair{"furniture", 0.05}}) {
     SceneWorld world = world_of(name);
     run(world, world.scene().seconds);
     const Standing standing = measure(world.scene(), world.poses());
     EXPECT_EQ(standing.in_place, standing.of) << name;
-    EXPECT_LT(standing.penetration, 0.006) << name;
+    EXPECT_LT(standing.penetration, 0.005) << name;
     double fastest = 0.0;
     for (const vp::BodyId body : world.bodies()) {
       fastest = std::max(fastest, norm(world.world().velocity(body).v));

@@ -29,10 +29,9 @@ struct Expected {
 Expected expected(Board board) {
   return board == Board::rp2040 ? Expected{0.15, 0.15, 0.999} : Expected{2, 2, 0.85};
 }
-// Measured: 1.5 mm, 1.5 degrees, 0.70; 1.4, 1.2, 0.80 before the controller told its settings: what
-// is played in some seconds follows from each microsecond. A person sees the feet to 1.5 degrees,
-// so that a mouse's mark is known to one.
-constexpr Expected kCalibrated{2, 2, 0.65};
+// Of half a minute: what is played in a few seconds, and with it the share, follows from each
+// microsecond. A person sees the feet to 1.5 degrees, so that a mouse's mark is known to one.
+constexpr Expected kCalibrated{2, 2, 0.7};
 
 void expect_played(Board board, const MatchResult& match, const Expected& limits) {
   const Spread slide = spread(match.input.slide), angle = spread(match.input.angle);
@@ -76,7 +75,7 @@ TEST(CabinetEndToEnd, PersonsCalibrateAskewSensorsAndMarksThroughTheFirmwareAndT
   ASSERT_EQ(made.problem, "");
   EXPECT_LT(made.seconds, 150);
   EXPECT_EQ(made.marks, cabinet::kRods);
-  const MatchResult match = play_match(*controller, table, made.calibration, {.most_seconds = 10});
+  const MatchResult match = play_match(*controller, table, made.calibration, {.most_seconds = 30});
   EXPECT_GE(match.marks.slow, 2u * cabinet::kRods) << "there and back, before the match";
   EXPECT_EQ(match.disagreements, 0u);
   expect_played(Board::mega32u4, match, kCalibrated);

@@ -10,7 +10,8 @@ namespace scenes {
 
 // How deep two shapes are in each other: the shortest way to part them [m]. Negative where they are
 // apart, but then not always their distance. One of them may be Ground or Terrain, not both. Of
-// Terrain: how far corners, ends of axes and centres are in the triangle under them.
+// Terrain: how far corners are in the triangle under them, and balls at centres and ends of axes in
+// the triangles around.
 double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b);
 
 struct Standing {
