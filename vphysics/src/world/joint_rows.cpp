@@ -1,6 +1,6 @@
 // Coordinates of a joint, for who reads them, and rows that are not found in lanes: of distances,
 // gears and users' constraints. What swing and twist are, and how fast all coordinates change, is
-// in solve/joint_passes.h.
+// in solve/joint_angles.h.
 #include <algorithm>
 #include <cmath>
 
