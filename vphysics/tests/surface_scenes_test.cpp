@@ -117,5 +117,111 @@ TEST(SurfaceWorld, APileOfFiftyMixedBodiesStaysAboveAHeightField) {
   EXPECT_LT(fastest, 3.0);
 }
 
+// After Box3D's trees: logs of hexagonal prisms, each thinner than the one before, fall over on
+// waves of 10 and 20 m.
+double wave(double x, double y) {
+  return 0.4 * std::sin(0.2 * kPi * x) * std::sin(0.1 * kPi * y);
+}
+TriangleMesh wavy_mesh(double cell, double along_x, double along_y) {
+  MeshPoints m;
+  const auto nx = static_cast<std::uint32_t>(along_x / cell),
+             ny = static_cast<std::uint32_t>(along_y / cell);
+  for (std::uint32_t j = 0; j <= ny; ++j) {
+    for (std::uint32_t i = 0; i <= nx; ++i) {
+      const double x = cell * i - 0.5 * along_x, y = cell * j - 0.5 * along_y;
+      m.vertices.push_back({x, y, wave(x, y)});
+      if (i == nx || j == ny) continue;
+      const std::uint32_t a = j * (nx + 1) + i, d = a + nx + 1;
+      m.triangles.push_back({a, a + 1, d + 1});
+      m.triangles.push_back({a, d + 1, d});
+    }
+  }
+  return m.made();
+}
+HeightField wavy_field(double cell, double along_x, double along_y) {
+  const auto nx = static_cast<std::uint32_t>(along_x / cell) + 1,
+             ny = static_cast<std::uint32_t>(along_y / cell) + 1;
+  std::vector<double> heights;
+  for (std::uint32_t j = 0; j < ny; ++j) {
+    for (std::uint32_t i = 0; i < nx; ++i)
+      heights.push_back(wave(cell * i - 0.5 * along_x, cell * j - 0.5 * along_y));
+  }
+  return HeightField::of({nx, ny, cell, cell, heights, {}}).value();
+}
+std::vector<Shape> log_of_prisms(int count) {
+  std::vector<Shape> prisms;
+  double bottom = 0.25, radius = 0.75;
+  for (int k = 0; k < count; ++k) {
+    const double length = 1.5 + 2.0 * radius;
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 6; ++i) {
+      const auto [s, c] = sin_cos(kPi / 3.0 * i);
+      corners.push_back({radius * c, radius * s, bottom});
+      corners.push_back({radius * c, radius * s, bottom + length});
+    }
+    prisms.emplace_back(ConvexHull::of(corners).value());
+    bottom += radius + 1.5 + 0.95 * radius;
+    radius *= 0.95;
+  }
+  return prisms;
+}
+
+struct Logs {
+  const char* name;
+  double cell;
+  bool field, compound;
+  int prisms;
+};
+
+TEST(SurfaceWorld, LogsOfPrismsComeToRestOnWaves) {
+  for (const Logs& logs :
+       {Logs{"a mesh", 1.0, false, false, 6}, Logs{"fine", 0.5, false, false, 6},
+        Logs{"long", 0.5, false, false, 10}, Logs{"compounds", 1.0, false, true, 6},
+        Logs{"a height field", 1.0, true, false, 6}}) {
+    SCOPED_TRACE(logs.name);
+    World world;
+    const Material material{0.9, 0.0, 0.05};
+    constexpr double kAlongX = 150.0, kAlongY = 100.0;
+    const SE3 corner(Vec3{-0.5 * kAlongX, -0.5 * kAlongY, 0.0});
+    if (logs.field) {
+      add_fixed(world, wavy_field(logs.cell, kAlongX, kAlongY), material, corner);
+    } else {
+      add_fixed(world, wavy_mesh(logs.cell, kAlongX, kAlongY), material);
+    }
+    std::vector<BodyId> bodies;
+    std::vector<CompoundPart> parts;
+    for (const Shape& prism : log_of_prisms(logs.prisms)) parts.push_back({prism, SE3()});
+    for (int b = 0; b < 30; ++b) {
+      BodyDesc desc;
+      desc.T_world_body = SE3(Vec3{0.0, 3.0 * b - 45.0, 0.0});
+      desc.velocity.w = {0.0, (b % 2 == 0 ? -0.5 : 0.5) * (0.5 + b / 60.0), 0.0};
+      desc.inertia = Inertia(1.0, Vec3{1.0, 1.0, 1.0});
+      bodies.push_back(must(world.create_body(desc)));
+      ColliderDesc collider;
+      collider.material = material;
+      if (logs.compound) {
+        collider.shape = Compound::of(parts).value();
+        must(world.add_collider(bodies.back(), collider));
+      }
+      for (std::size_t k = 0; k < parts.size() && !logs.compound; ++k) {
+        collider.shape = parts[k].shape;
+        must(world.add_collider(bodies.back(), collider));
+      }
+      must(world.set_mass_from_colliders(bodies.back()));
+      must(world.set_velocity(bodies.back(), desc.velocity));
+    }
+    for (int i = 0; i < 20 * 60; ++i) must(world.step(1.0 / 60));
+    double fastest = 0.0, lowest = 1.0;
+    for (const BodyId body : bodies) {
+      const SE3 T = world.pose(body);
+      const Vec3 centre = T * world.inertia(body).centre_of_mass();
+      fastest = std::max(fastest, norm(world.velocity(body).w));
+      lowest = std::min(lowest, centre.z - wave(centre.x, centre.y));
+    }
+    EXPECT_LT(fastest, 0.01);
+    EXPECT_GT(lowest, 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace vp::test

@@ -25,7 +25,7 @@ struct KnownPart {
 
 // Memory of find_manifolds, kept by whoever calls it. Between calls there is nothing in it.
 struct ManifoldScratch {
-  std::vector<std::uint32_t> triangles, parts;
+  std::vector<std::uint32_t> triangles, near_triangles, parts;
   // Of a surface: what touches each triangle, and the number of the manifold that it becomes part
   // of.
   struct Contact {
@@ -35,6 +35,8 @@ struct ManifoldScratch {
   static constexpr std::uint32_t kNoTriangle = ~0u;
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
+  std::vector<std::uint8_t>
+      settled;  // of each point: a manifold has it, or points that stand for it
   // For whoever wants to know: triangles, counted up; set, that there were more normals than
   // kMostClusters, and that of a triangle CorePair::rough was set.
   std::uint32_t looked_at = 0;
@@ -44,8 +46,10 @@ struct ManifoldScratch {
   // a step with more of it than any before takes nothing from the heap.
   void make_room() {
     triangles.reserve(512);
+    near_triangles.reserve(512);
     contacts.reserve(128);
     points.reserve(256);
+    settled.reserve(256);
   }
 };
 

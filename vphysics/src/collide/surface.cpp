@@ -62,6 +62,20 @@ SurfaceTriangle Surface::triangle(std::uint32_t id) const {
   return mesh_ != nullptr ? of_mesh(id) : of_field(id);
 }
 
+void Surface::corners(std::uint32_t id, Vec3 p[3]) const {
+  if (mesh_ != nullptr) {
+    for (std::size_t i = 0; i < 3; ++i) p[i] = scaled(mesh_->vertices[mesh_->triangles[id][i]]);
+    return;
+  }
+  const std::uint32_t cell = id / 2, i = cell % (field_->columns - 1),
+                      j = cell / (field_->columns - 1);
+  const CellTriangle& shape = id % 2 == 0 ? kLowerCell : kUpperCell;
+  for (int k = 0; k < 3; ++k) {
+    p[k] = scaled(field_->sample(i + static_cast<std::uint32_t>(shape.corner[k][0]),
+                                 j + static_cast<std::uint32_t>(shape.corner[k][1])));
+  }
+}
+
 SurfaceTriangle Surface::of_mesh(std::uint32_t id) const {
   SurfaceTriangle t;
   t.id = id;

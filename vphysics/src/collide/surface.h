@@ -30,6 +30,7 @@ class Surface {
   bool two_sided() const { return mesh_ != nullptr && mesh_->two_sided; }
   Bounds bounds() const;
   SurfaceTriangle triangle(std::uint32_t id) const;
+  void corners(std::uint32_t id, Vec3 p[3]) const;  // of the triangle
   // Appends the triangles whose bounds overlap the box, ascending.
   void append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const;
   // found(triangle) for the same, in an order that depends on surface and box alone.

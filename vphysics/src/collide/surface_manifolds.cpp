@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "collide/bounds.h"
 #include "collide/support.h"
+#include "collide/triangle_cull.h"
 
 namespace vp::collide {
 namespace {
@@ -21,6 +23,10 @@ constexpr double kSamePoint = 1e-6;
 constexpr double kNear = 4.0;
 // How much farther a point must lie out [share] to be taken for another.
 constexpr double kClearly = 1.0 + 1e-6;
+// Less than this [share of the shape's size] below the others, a point is level with them.
+constexpr double kLevel = 5e-4;
+// Of one cluster: four points each.
+constexpr int kMaxManifoldsOfCluster = 4;
 
 // An edge or a corner that is felt is found by each triangle that has it: the one that needs less
 // counts.
@@ -38,12 +44,21 @@ void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
 void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, double margin,
                    ManifoldScratch& scratch) {
   scratch.triangles.clear();
+  scratch.near_triangles.clear();
   scratch.contacts.clear();
   scratch.points.clear();
-  surface.append_overlapping(grown(bounds_of(shape, T), margin), scratch.triangles);
+  scratch.settled.clear();
+  const TriangleCull cull(shape, T, margin);
+  surface.overlapping(grown(bounds_of(shape, T), margin), [&](std::uint32_t id) {
+    scratch.triangles.push_back(id);
+    Vec3 p[3];
+    surface.corners(id, p);
+    if (cull.may_meet(p)) scratch.near_triangles.push_back(id);
+  });
+  std::sort(scratch.near_triangles.begin(), scratch.near_triangles.end());
   scratch.looked_at += static_cast<std::uint32_t>(scratch.triangles.size());
   const Vec3 middle = T * core_middle(shape);
-  for (const std::uint32_t id : scratch.triangles) {
+  for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);
     if (!face_towards(t, middle, surface.two_sided())) continue;
     const TriangleContact found = collide_triangle(surface, t, shape, T, margin, scratch.points);
@@ -129,33 +144,129 @@ std::uint32_t find_clusters(std::vector<Contact>& contacts, bool& crowded) {
   return count;
 }
 
-// The points of a cluster.
+// The points of a cluster. A few of them stand for all: those between them that are no deeper come
+// no nearer than they do, however the shape tilts. On a crest, whose facets are of one cluster, the
+// points of the crest are deeper than those on its sides: a second manifold has them.
 class Cluster {
  public:
-  Cluster(const ManifoldScratch& scratch, std::uint32_t cluster, double size)
-      : scratch_(scratch), cluster_(cluster), same_(kSamePoint * size) {}
+  Cluster(ManifoldScratch& scratch, std::uint32_t cluster, double size)
+      : scratch_(scratch), cluster_(cluster), same_(kSamePoint * size), level_(kLevel * size) {
+    scratch_.settled.resize(scratch_.points.size());
+  }
 
-  // Four that span the most, and the deepest.
-  SubManifold reduced() const;
+  // Appends one manifold after the other, until all points are there or stood for.
+  void reduce(std::vector<SubManifold>& manifolds);
 
  private:
+  // Of the points that are left.
   template <class F>
   void for_each(const F& f) const {
     for (const Contact& c : scratch_.contacts) {
       if (c.cluster != cluster_) continue;
       for (std::size_t i = 0; i < c.contact.count; ++i) {
-        f(scratch_.points[c.contact.first_point + i], c);
+        const std::size_t index = c.contact.first_point + i;
+        if (scratch_.settled[index] == 0) f(scratch_.points[index], c);
       }
     }
   }
+  // Four that span the most, and the deepest.
+  SubManifold reduced() const;
+  // Returns whether any point is left.
+  bool settle(const Manifold& manifold);
   const ManifoldPoint* farthest_from(const Vec3& from) const;
   void span_most(const ManifoldPoint& deepest, const Vec3& normal,
                  const ManifoldPoint* (&chosen)[4]) const;
 
-  const ManifoldScratch& scratch_;
+  ManifoldScratch& scratch_;
   std::uint32_t cluster_;
-  double same_;
+  double same_, level_;
 };
+
+void Cluster::reduce(std::vector<SubManifold>& manifolds) {
+  bool left = true;
+  for (int k = 0; k < kMaxManifoldsOfCluster && left; ++k) {
+    manifolds.push_back(reduced());
+    left = settle(manifolds.back().manifold);
+  }
+}
+
+// The plane of a manifold's points, seen along the normal.
+Vec3 across(const Manifold& m, const Vec3& v) {
+  return v - dot(v, m.normal) * m.normal;
+}
+
+// The separation at a place in the plane of three of a manifold's points.
+struct InPlane {
+  bool between;  // the place is between them
+  double separation;
+};
+std::optional<InPlane> in_plane_of(const Manifold& m, const int (&corner)[3], const Vec3& at,
+                                   double same) {
+  double area[3], sum = 0.0;  // of the triangles that the place makes with two of them
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 a = m.points[corner[(k + 1) % 3]].position - at;
+    const Vec3 b = m.points[corner[(k + 2) % 3]].position - at;
+    area[k] = dot(m.normal, cross(a, b));
+    sum += area[k];
+  }
+  if (std::fabs(sum) <= same * same) return std::nullopt;
+  InPlane found{true, 0.0};
+  for (int k = 0; k < 3; ++k) {
+    const double weight = area[k] / sum;
+    found.between = found.between && weight >= 0.0;
+    found.separation += weight * m.points[corner[k]].separation;
+  }
+  return found;
+}
+
+// The separation at the place nearest to it on the lines between a manifold's points.
+double beside_all(const Manifold& m, const Vec3& at) {
+  double separation = m.points[0].separation, least = kFar;
+  for (int i = 0; i < m.count; ++i) {
+    for (int j = i; j < m.count; ++j) {
+      const Vec3 along = across(m, m.points[j].position - m.points[i].position);
+      const Vec3 way = across(m, at - m.points[i].position);
+      const double length = dot(along, along);
+      const double t = length > 0.0 ? std::clamp(dot(along, way) / length, 0.0, 1.0) : 0.0;
+      const Vec3 beside = way - t * along;
+      if (dot(beside, beside) >= least) continue;
+      least = dot(beside, beside);
+      separation = (1.0 - t) * m.points[i].separation + t * m.points[j].separation;
+    }
+  }
+  return separation;
+}
+
+// The separation that a manifold's points stand for at a place: between them the lowest, since it
+// is held up there; beside them that of the highest plane through three of them.
+double stood_for_at(const Manifold& m, const Vec3& at, double same) {
+  constexpr int kTriangles[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  std::optional<double> between, beside;
+  for (int k = 0; k < (m.count == 4 ? 4 : m.count == 3 ? 1 : 0); ++k) {
+    const std::optional<InPlane> found = in_plane_of(m, kTriangles[k], at, same);
+    if (!found) continue;
+    if (found->between) between = std::min(found->separation, between.value_or(kFar));
+    if (!found->between) beside = std::max(found->separation, beside.value_or(-kFar));
+  }
+  if (between) return *between;
+  return beside ? *beside : beside_all(m, at);
+}
+
+bool Cluster::settle(const Manifold& manifold) {
+  bool left = false;
+  for (const Contact& c : scratch_.contacts) {
+    if (c.cluster != cluster_) continue;
+    for (std::size_t i = 0; i < c.contact.count; ++i) {
+      const std::size_t index = c.contact.first_point + i;
+      if (scratch_.settled[index] != 0) continue;
+      const ManifoldPoint& p = scratch_.points[index];
+      const bool deeper = p.separation < stood_for_at(manifold, p.position, same_) - level_;
+      scratch_.settled[index] = deeper ? 0 : 1;
+      left |= deeper;
+    }
+  }
+  return left;
+}
 
 const ManifoldPoint* Cluster::farthest_from(const Vec3& from) const {
   const ManifoldPoint* best = nullptr;
@@ -230,7 +341,7 @@ void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T
   }
   const std::uint32_t clusters = find_clusters(scratch.contacts, scratch.crowded);
   for (std::uint32_t c = 0; c < clusters; ++c) {
-    manifolds.push_back(Cluster(scratch, c, size).reduced());
+    Cluster(scratch, c, size).reduce(manifolds);
   }
 }
 

@@ -1,7 +1,6 @@
 #include "solve/contact_graph.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "solve/body_row.h"
@@ -9,8 +8,6 @@
 
 namespace vp::solve {
 namespace {
-
-constexpr std::uint64_t kOfFixed = ~std::uint64_t{0} << kFirstFixedColour;
 
 // What nothing pushes may go its way all the same, as others of its region do: it counts, but for
 // the world itself.
@@ -75,20 +72,17 @@ void ContactGraph::clear() {
   for (std::size_t region = 0; region < regions_in_use_; ++region) {
     empty(regions_[region].ones);
     empty(regions_[region].fours);
-    regions_[region].in_use = 0;
+    regions_[region].in_use = {};
   }
   regions_in_use_ = 1;
-  std::fill(taken_.begin(), taken_.end(), 0);
+  std::fill(taken_.begin(), taken_.end(), ColourSet{});
 }
 
 int ContactGraph::free_colour(const End& a, const End& b) const {
-  std::uint64_t taken = 0;
-  if (a.moves) taken |= taken_[a.row];
-  if (b.moves) taken |= taken_[b.row];
-  const bool fixed = !a.moves || !b.moves;
-  const std::uint64_t open = ~taken & (fixed ? kOfFixed : ~kOfFixed | (1ull << kLastColour));
-  // The last colour is open to all.
-  return open != 0 ? std::min(std::countr_zero(open), kLastColour) : kLastColour;
+  ColourSet taken;
+  if (a.moves) taken.insert(taken_[a.row]);
+  if (b.moves) taken.insert(taken_[b.row]);
+  return taken.lowest_free(!a.moves || !b.moves);
 }
 
 Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
@@ -101,12 +95,11 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
                           Place& place) {
   if ((!a.moves || !b.moves) && colour < kFirstFixedColour) return false;
   if (colour < kLastColour) {
-    const std::uint64_t bit = 1ull << colour;
-    if ((a.moves && (taken_[a.row] & bit) != 0) || (b.moves && (taken_[b.row] & bit) != 0)) {
+    if ((a.moves && taken_[a.row].has(colour)) || (b.moves && taken_[b.row].has(colour))) {
       return false;
     }
-    if (a.moves) taken_[a.row] |= bit;
-    if (b.moves) taken_[b.row] |= bit;
+    if (a.moves) taken_[a.row].insert(colour);
+    if (b.moves) taken_[b.row].insert(colour);
   }
   place.points = static_cast<std::uint8_t>(points);
   place.colour = static_cast<std::uint8_t>(colour);
@@ -117,9 +110,8 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
 
 std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& b) {
   if (place.colour < kLastColour) {
-    const std::uint64_t bit = 1ull << place.colour;
-    if (a.moves) taken_[a.row] &= ~bit;
-    if (b.moves) taken_[b.row] &= ~bit;
+    if (a.moves) taken_[a.row].erase(place.colour);
+    if (b.moves) taken_[b.row].erase(place.colour);
   }
   return place.points == 1 ? remove_lane<1>(place) : remove_lane<4>(place);
 }
@@ -139,7 +131,7 @@ void ContactGraph::make_room(const Place& place) {
 template <int P>
 void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
   ColourBlocks<P>& colour = of<P>(place.region, place.colour);
-  if (place.colour < kColours) regions_[place.region].in_use |= 1ull << place.colour;
+  if (place.colour < kColours) regions_[place.region].in_use.insert(place.colour);
   place.index = colour.lanes++;
   const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
   const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
@@ -171,7 +163,7 @@ std::uint32_t ContactGraph::remove_lane(const Place& place) {
   Region& region = regions_[place.region];
   if (place.colour < kColours &&
       region.ones[place.colour].lanes + region.fours[place.colour].lanes == 0) {
-    region.in_use &= ~(1ull << place.colour);
+    region.in_use.erase(place.colour);
   }
   return moved;
 }

@@ -16,7 +16,9 @@
 // Colours are those of the whole world: a contact that goes to another region keeps its own.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,10 +27,40 @@
 
 namespace vp::solve {
 
-inline constexpr int kColours = 64;
-inline constexpr int kFirstFixedColour = 40;  // of contacts with what nothing pushes
+inline constexpr int kColours = 128;
+inline constexpr int kFirstFixedColour = 64;  // of contacts with what nothing pushes
 inline constexpr int kLastColour = kColours - 1;
 inline constexpr int kParked = kColours;  // no colour: lanes put aside, of what is asleep
+
+// Some of the colours: a bit for each of those between bodies that move, then of the others.
+class ColourSet {
+ public:
+  bool has(int colour) const { return (bits_[colour / 64] >> (colour % 64) & 1u) != 0; }
+  void insert(int colour) { bits_[colour / 64] |= 1ull << (colour % 64); }
+  void erase(int colour) { bits_[colour / 64] &= ~(1ull << (colour % 64)); }
+  void insert(const ColourSet& other) {
+    for (int half = 0; half < 2; ++half) bits_[half] |= other.bits_[half];
+  }
+  // Ascending.
+  template <class F>
+  void for_each(const F& f) const {
+    for (int half = 0; half < 2; ++half) {
+      for (std::uint64_t left = bits_[half]; left != 0; left &= left - 1)
+        f(64 * half + std::countr_zero(left));
+    }
+  }
+  int size() const { return std::popcount(bits_[0]) + std::popcount(bits_[1]); }
+  // The lowest that is not in it, of those of contacts with what nothing pushes or of the others;
+  // the last colour if all are.
+  int lowest_free(bool fixed) const {
+    const int free = std::countr_one(bits_[fixed ? 1 : 0]);
+    return std::min(fixed ? kFirstFixedColour + free : free < 64 ? free : kLastColour, kLastColour);
+  }
+
+ private:
+  std::uint64_t bits_[2] = {0, 0};
+};
+static_assert(kColours == 128 && kFirstFixedColour == 64);
 
 // Of contacts of several regions, of bodies that are in none, and of all that is put aside.
 inline constexpr std::uint16_t kBetween = 0;
@@ -108,8 +140,8 @@ class ContactGraph {
   static int lane(const Place& place) {
     return ColourBlocks<1>::lane_of(place.index, place.colour);
   }
-  // A bit for each colour of which the region has lanes of either kind.
-  std::uint64_t colours_in_use(std::size_t region) const { return regions_[region].in_use; }
+  // Of which the region has lanes of either kind.
+  const ColourSet& colours_in_use(std::size_t region) const { return regions_[region].in_use; }
   template <int P>
   ColourBlocks<P>& of(std::size_t region, int colour) {
     if constexpr (P == 1)
@@ -149,12 +181,12 @@ class ContactGraph {
   struct Region {
     std::array<ColourBlocks<1>, kColours + 1> ones;
     std::array<ColourBlocks<4>, kColours + 1> fours;
-    std::uint64_t in_use = 0;
+    ColourSet in_use;
   };
   std::vector<Region> regions_{1};
   std::size_t regions_in_use_ = 1;
   std::size_t reserved_bodies_ = 0, reserved_regions_ = 0;  // by reserve()
-  std::vector<std::uint64_t> taken_;  // by a row's contacts: a bit for each colour
+  std::vector<ColourSet> taken_;                            // by a row's contacts
 };
 
 }  // namespace vp::solve

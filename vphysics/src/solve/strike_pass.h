@@ -197,10 +197,19 @@ std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, f
   V x_a, turn_a, x_b, turn_b;
   gather(block.a, x_a, turn_a);
   gather(block.b, x_b, turn_b);
+  turn_a -= get3(block.turn_a);
+  turn_b -= get3(block.turn_b);
+  const V arm_a = get3(block.arm_a), arm_b = get3(block.arm_b);
+  const V by_a = x_a - get3(block.x_a) + cross(turn_a, arm_a);
+  const V by_b = x_b - get3(block.x_b) + cross(turn_b, arm_b);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
-  const F gone = size((x_b - get3(block.x_b)) - (x_a - get3(block.x_a))) +
-                 get(block.reach_a) * size(turn_a - get3(block.turn_a)) +
-                 get(block.reach_b) * size(turn_b - get3(block.turn_b));
+  // An arm that turns leaves its tangent by half of the square.
+  const auto bow = [&](const V& turn, const V& arm) {
+    return F(0.5f) * dot(turn, turn) * size(arm);
+  };
+  const F gone = size(by_b - by_a) +
+                 size(get(block.radius_b) * turn_b - get(block.radius_a) * turn_a) +
+                 bow(turn_a, arm_a) + bow(turn_b, arm_b);
   const auto stays = gone <= get(block.clearance);
   return lanes::bits_of(!stays);
 }

@@ -203,11 +203,16 @@ void World::Impl::update_bounds_of_links(double dt) {
 void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
   pose_colliders(index);
-  const Vec3 way = dt * body.v;
-  const double turns = dt * norm(body.w) * body.reach + desc.contact_slop;
+  const double turn = dt * norm(body.w);
+  const Vec3 reference = reference_point(body);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     const Collider& collider = colliders[c];
-    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, turns),
+    // Its centre goes along an arc, which leaves its tangent by half of the square of the turn.
+    const Vec3 arm = body.T * collider.centre - reference;
+    const Vec3 way = dt * (body.v + cross(body.w, arm));
+    const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
+    const double more = turn * own + 0.5 * turn * turn * norm(arm) + desc.contact_slop;
+    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, more),
                       kMargin * collider.size, 2.0 * way);
   }
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);

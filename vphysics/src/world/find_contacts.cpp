@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "solve/row_vector.h"
 #include "world/impl.h"
 #include "world/runs.h"
 
@@ -110,20 +111,31 @@ void World::Impl::find_new_contacts() {
   }
 }
 
+// A body's contacts are gone through once, however many of its colliders have moved.
 void World::Impl::drop_parted_contacts() {
+  rebounded_bodies.clear();
   for (const std::uint32_t proxy : finder.moved()) {
     if (!finder.exists(proxy)) continue;
-    const std::uint32_t collider = finder.user(proxy);
+    Collider& collider = colliders[finder.user(proxy)];
+    collider.rebounded = true;
+    if (std::exchange(bodies[collider.body].rebounded, true)) continue;
+    rebounded_bodies.push_back(collider.body);
+  }
+  for (const std::uint32_t body : rebounded_bodies) {
     std::uint32_t next = kNone;
-    for (std::uint32_t e = bodies[colliders[collider].body].first_edge; e != kNone; e = next) {
+    for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = next) {
       const Contact& c = contact_pool[e / 2];
       next = c.next[e % 2];  // behind a whole come no parts of it
-      if (c.is_part() || (c.a != collider && c.b != collider)) continue;
-      const std::uint32_t pa = colliders[c.a].proxy, pb = colliders[c.b].proxy;
-      if (finder.should_pair(pa, pb)) continue;
-      finder.remove_pair(pa, pb);
+      const Collider &a = colliders[c.a], &b = colliders[c.b];
+      if (c.is_part() || !(a.rebounded || b.rebounded)) continue;
+      if (finder.should_pair(a.proxy, b.proxy)) continue;
+      finder.remove_pair(a.proxy, b.proxy);
       remove_contact(e / 2);
     }
+  }
+  for (const std::uint32_t body : rebounded_bodies) bodies[body].rebounded = false;
+  for (const std::uint32_t proxy : finder.moved()) {
+    if (finder.exists(proxy)) colliders[finder.user(proxy)].rebounded = false;
   }
 }
 
@@ -200,22 +212,51 @@ void World::Impl::set_near(std::uint32_t index, double clearance) {
 void World::Impl::set_clearance(const Contact& c, double clearance) {
   solve::NearBlock& block = near_list.block(c.near_index);
   const int lane = solve::NearList::lane(c.near_index);
-  const auto put = [&](std::uint32_t row, solve::Field3& x, solve::Field3& turn) {
-    const float* way = body_rows[row].way;
-    x.x.lane[lane] = way[0], x.y.lane[lane] = way[1], x.z.lane[lane] = way[2];
-    turn.x.lane[lane] = way[3], turn.y.lane[lane] = way[4], turn.z.lane[lane] = way[5];
+  const auto store = [&](solve::Field3& to, const Vec3& v) {
+    to.x.lane[lane] = static_cast<float>(v.x);
+    to.y.lane[lane] = static_cast<float>(v.y);
+    to.z.lane[lane] = static_cast<float>(v.z);
   };
-  put(block.a.lane[lane], block.x_a, block.turn_a);
-  put(block.b.lane[lane], block.x_b, block.turn_b);
+  const Collider &a = colliders[c.a], &b = colliders[c.b];
+  const Vicinity at = vicinity_of(a, b);
+  const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
+                           solve::Field3& turn, solve::Field3& arm) {
+    const float* way = body_rows[row].way;
+    store(x, vector_of(way));
+    store(turn, vector_of(way + 3));
+    store(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
+  };
+  put_end(block.a.lane[lane], bodies[a.body], block.x_a, block.turn_a, block.arm_a);
+  put_end(block.b.lane[lane], bodies[b.body], block.x_b, block.turn_b, block.arm_b);
   block.clearance.lane[lane] = static_cast<float>(clearance);
-  block.reach_a.lane[lane] = static_cast<float>(bodies[colliders[c.a].body].reach);
-  block.reach_b.lane[lane] = static_cast<float>(bodies[colliders[c.b].body].reach);
+  block.radius_a.lane[lane] = static_cast<float>(at.radius_a);
+  block.radius_b.lane[lane] = static_cast<float>(at.radius_b);
 }
 
 void World::Impl::unset_near(std::uint32_t index) {
   const std::uint32_t place = contact_pool[index].near_index;
   const std::uint32_t moved = (contact_pool[index].parked ? parked_near : near_list).remove(place);
   if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
+}
+
+Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
+  const auto is_ball = [](const Collider& c) { return c.geometry.kind == collide::Kind::sphere; };
+  const Collider& smaller = a.radius <= b.radius ? a : b;
+  const double radius = smaller.radius < kEndless ? smaller.radius : 0.0;
+  const bool ball = is_ball(smaller);  // the other meets it along the line through its centre
+  return {bodies[smaller.body].T * smaller.centre, ball || is_ball(a) ? 0.0 : radius,
+          ball || is_ball(b) ? 0.0 : radius};
+}
+
+// No two points near one another of the two close in faster [m/s].
+double World::Impl::approach_speed(const Collider& a, const Collider& b) const {
+  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+  const Vicinity at = vicinity_of(a, b);
+  const auto velocity = [&](const Body& body) {
+    return body.v + cross(body.w, at.centre - reference_point(body));
+  };
+  return norm(velocity(body_b) - velocity(body_a)) +
+         norm(at.radius_b * body_b.w - at.radius_a * body_a.w);
 }
 
 // Of a part, the whole.
@@ -323,12 +364,8 @@ void World::Impl::note_limits_of_surfaces() {
 void World::Impl::look_at(Looked& found, double dt) {
   Contact& c = contact_pool[found.contact];
   const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const double leeway = kSlide * smaller_size(a, b);
-  const double speed =
-      norm(body_b.v - body_a.v) + norm(body_a.w) * body_a.reach + norm(body_b.w) * body_b.reach;
-  // The ball at the centre of its body feels no turning.
-  found.margin = c.sensor ? 0.0 : desc.contact_slop + leeway + speed * dt;
+  found.margin = c.sensor ? 0.0 : desc.contact_slop + leeway + approach_speed(a, b) * dt;
   found.clearance = found.margin - desc.contact_slop;
   found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {

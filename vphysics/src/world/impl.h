@@ -41,6 +41,7 @@ struct alignas(64) Body {
   // colliders; else ask its articulation.
   bool asleep = false;
   bool wanted = false;     // its colliders' poses are about to be computed
+  bool rebounded = false;  // listed among rebounded_bodies
   bool posed = false;      // the colliders' poses and bounds are those of T
   bool bounded = false;    // so are `bounds`
   bool untouched = false;  // by what its row met in this step, so it has turned freely
@@ -92,6 +93,8 @@ struct alignas(64) Body {
   }
 };
 
+inline constexpr double kEndless = 1e30;  // a radius [m]
+
 struct Collider {
   std::uint32_t generation = 0;
   bool alive = false;
@@ -108,9 +111,13 @@ struct Collider {
   std::uint64_t user_data = 0;
   std::uint32_t proxy = kNone;  // in the broad phase
   bool stray = false;           // out of its proxy's bounds: find_strays()
+  bool rebounded = false;       // its proxy has new enlarged bounds
   // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
   // half-spaces, meshes and height fields.
   double size = 0.0;
+  // A ball around it, body frame; of a half-space without end.
+  Vec3 centre;
+  double radius = kEndless;
   double density = 0.0;  // [kg/m^3]
   // Follows from the body's pose, the one of that number; refreshed by the step (Body::posed).
   std::uint64_t posed_for = 0;
@@ -163,6 +170,14 @@ struct PartNews {
   std::uint32_t whole, part;
   double closing, impulse;
   Vec3 point, normal;
+};
+
+// The ball around the smaller of two colliders, where they meet if they do. World frame.
+struct Vicinity {
+  Vec3 centre;
+  // Of the ball, as far as the rotation of a and of b can bring them together: that of a collider
+  // that is a ball itself cannot.
+  double radius_a, radius_b;
 };
 
 struct Velocity {
@@ -295,6 +310,7 @@ struct World::Impl {
   std::vector<collide::ProxyPair> new_pairs;
   std::vector<std::uint64_t> stale_bits;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
+  std::vector<std::uint32_t> rebounded_bodies;  // some of their colliders have new enlarged bounds
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
   std::uint64_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
@@ -460,6 +476,8 @@ struct World::Impl {
   void unset_near(std::uint32_t contact);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   void want_posed(std::uint32_t body);
+  Vicinity vicinity_of(const Collider& a, const Collider& b) const;
+  double approach_speed(const Collider& a, const Collider& b) const;
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);

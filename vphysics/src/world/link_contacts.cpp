@@ -68,10 +68,9 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
   link_contacts.clear();
   for (const ColliderPair& pair : discrete_pairs) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
-    const Body &a = bodies[i], &b = bodies[j];
     pose_colliders(i);
     pose_colliders(j);
-    const double speed = norm(b.v - a.v) + norm(a.w) * a.reach + norm(b.w) * b.reach;
+    const double speed = approach_speed(colliders[pair.a], colliders[pair.b]);
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + speed * dt)) {
       add_contact(pair, found.manifold, part++, false, true, link_contacts);

@@ -91,8 +91,8 @@ void World::Impl::find_parts(std::uint32_t index, double margin) {
     part_news.push_back({index, kNone, 0.0, 0.0, {}, {}});
 }
 
-// Of the old parts that are left: that of the same compound's parts with the same triangle, else
-// that with the normal most alike; or none.
+// Of the old parts that are left and have nearly the normal: that of the same triangle, or else
+// with the most features of it, or else the normal most alike; or none.
 std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
   std::uint32_t* best = nullptr;
   double most = kSameNormal;
@@ -107,7 +107,11 @@ std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
     const int lane = solve::ContactGraph::lane(part.place);
     const Vec3 normal = part.place.points == 1 ? normal_in(graph.block<1>(part.place), lane)
                                                : normal_in(graph.block<4>(part.place), lane);
-    const double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
+    double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
+    for (int i = 0; i < found.manifold.count; ++i) {
+      const std::uint32_t* end = part.feature + part.count;
+      if (std::find(part.feature, end, found.manifold.points[i].feature) != end) alike += 0.4;
+    }
     if (alike <= most) continue;
     most = alike;
     best = &p;

@@ -1,8 +1,6 @@
 // The contacts of all regions and colours: region after region, then what is between them.
 #pragma once
 
-#include <bit>
-
 #include "world/impl.h"
 #include "world/parallel.h"
 
@@ -21,11 +19,10 @@ void World::Impl::for_runs_of(std::size_t region, const F& f) {
           body_rows.data()},
       colour.blocks);
   };
-  for (std::uint64_t left = graph.colours_in_use(region); left != 0; left &= left - 1) {
-    const int c = std::countr_zero(left);
+  graph.colours_in_use(region).for_each([&](int c) {
     one_run(pass.one, graph.of<1>(region, c), c);
     one_run(pass.four, graph.of<4>(region, c), c);
-  }
+  });
 }
 
 template <class F>

@@ -7,7 +7,6 @@
 //
 // See docs/decisions/0002-impacts-and-contacts.md.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "vphysics/recording.h"
@@ -425,17 +424,16 @@ void World::Impl::run_impacts(double dt) {
 void World::Impl::count_contacts() {
   note_limits_of_surfaces();
   counters.triangles = manifold_scratch.looked_at;
-  std::uint64_t colours = 0;
+  solve::ColourSet colours;
   for (std::size_t region = 0; region < graph.regions(); ++region) {
-    colours |= graph.colours_in_use(region);
-    for (std::uint64_t left = graph.colours_in_use(region); left != 0; left &= left - 1) {
-      const int c = std::countr_zero(left);
+    colours.insert(graph.colours_in_use(region));
+    graph.colours_in_use(region).for_each([&](int c) {
       counters.manifolds += graph.of<1>(region, c).lanes + graph.of<4>(region, c).lanes;
-    }
+    });
   }
-  counters.colours = static_cast<std::uint32_t>(std::popcount(colours));
+  counters.colours = static_cast<std::uint32_t>(colours.size());
   counters.regions = region_count;
-  if ((colours >> solve::kLastColour) != 0) status.colour_limit = true;
+  if (colours.has(solve::kLastColour)) status.colour_limit = true;
   counters.pairs += counters.manifolds + near_list.size();
   counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
   counters.events = static_cast<std::uint32_t>(events.size());

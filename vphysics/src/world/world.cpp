@@ -215,6 +215,9 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     body->unbounded = true;
   } else {
     const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
+    c.centre = 0.5 * (local.lower + local.upper);
+    c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
+                                                        : 0.5 * norm(local.upper - local.lower);
     body->local = merged(body->local, local);
     c.size = size_of(c.geometry);
     body->reach = reach_of(*body);
@@ -228,7 +231,6 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   }
   impl_->lists_are_stale = true;
   impl_->wake(c.body);
-  impl_->mark_contacts_stale(c.body);  // its reach may have grown
   impl_->add_proxy(index);
   Structure structure(impl_->structure);
   structure.add(0x300u + index);
