@@ -1,5 +1,6 @@
 // rigid-stages HZ SCENE...: how long each stage of a step of Virtual Physics takes on the scenes,
-// and what it had to do: means over each scene, by the clock.
+// and what it had to do: means over each scene, by the clock; and how the scene stands at its end.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "load.h"
+#include "scenes/measure.h"
 #include "scenes/scene_world.h"
 #include "table_scene.h"
 
@@ -30,6 +32,16 @@ struct Sum {
 int fail(const std::string& sentence) {
   std::fprintf(stderr, "rigid-stages: %s\n", sentence.c_str());
   return 1;
+}
+
+void print_standing(const scenes::SceneWorld& world) {
+  double fastest = 0.0;
+  for (const vp::BodyId body : world.bodies()) {
+    if (body) fastest = std::max(fastest, norm(world.world().velocity(body).v));
+  }
+  const scenes::Standing s = scenes::measure(world.scene(), world.poses(), world.time());
+  std::printf("  %d of %d in place, penetration %.3f mm, fastest %.3f m/s\n", s.in_place, s.of,
+              1e3 * s.penetration, fastest);
 }
 
 int run(const std::string& name, double rate) {
@@ -72,6 +84,7 @@ int run(const std::string& name, double rate) {
   for (const Sum& sum : sums) {
     if (sum.sum > 0.0) std::printf("  %-14s%10.1f\n", sum.name, each * sum.sum);
   }
+  print_standing(*world);
   for (const vp::Limit limit : vp::kLimits) {
     if (reached(status, limit)) std::printf("  %s\n", sentence(limit));
   }

@@ -65,19 +65,6 @@ const LimbJoint kLimbJoints[] = {
     {Joint::Kind::hinge, thigh_l, shin_l, {0, 0.10, 0.485}, -kStretch, kFlex},
     {Joint::Kind::hinge, thigh_r, shin_r, {0, -0.10, 0.485}, -kStretch, kFlex}};
 
-void add_ragdoll(Scene& scene, const SE3& T_world_ground) {
-  const int first = static_cast<int>(scene.bodies.size());
-  for (const LimbSpec& limb : kLimbs) {
-    add(scene, body_of(limb.shape, T_world_ground * SE3(limb.centre)));
-  }
-  for (const LimbJoint& j : kLimbJoints) {
-    const bool hinge = j.kind == Joint::Kind::hinge;
-    join(scene, j.kind, first + j.a, first + j.b, T_world_ground * j.point,
-         T_world_ground.rotation() * kAlongY, hinge ? j.lower : -Joint::kNever,
-         hinge ? j.upper : Joint::kNever);
-  }
-}
-
 // Bars of one weight between two hinges hang still if the tangents of their slopes grow by the same
 // step from each to the next: the horizontal pull is the same everywhere, the vertical one grows by
 // a bar's weight. The first end is at start; the other is returned.
@@ -104,6 +91,19 @@ Vec3 add_hanging_bars(Scene& scene, const BarSpec& bars, const Vec3& start, int 
 }
 
 }  // namespace
+
+void add_ragdoll(Scene& scene, const SE3& T_world_ground) {
+  const int first = static_cast<int>(scene.bodies.size());
+  for (const LimbSpec& limb : kLimbs) {
+    add(scene, body_of(limb.shape, T_world_ground * SE3(limb.centre)));
+  }
+  for (const LimbJoint& j : kLimbJoints) {
+    const bool hinge = j.kind == Joint::Kind::hinge;
+    join(scene, j.kind, first + j.a, first + j.b, T_world_ground * j.point,
+         T_world_ground.rotation() * kAlongY, hinge ? j.lower : -Joint::kNever,
+         hinge ? j.upper : Joint::kNever);
+  }
+}
 
 Scene ragdolls(int along_x, int along_y, int layers) {
   constexpr double kPitch = 1.2, kLayer = 2.0, kLowest = 0.5, kMiddle = 0.9;  // [m]

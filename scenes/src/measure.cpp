@@ -3,12 +3,16 @@
 // A sphere, a capsule and a box are a core (a point, a segment, a box) and a radius around it.
 // While the cores are apart, the depth is the sum of the radii less the cores' distance; once they
 // meet, it is the least overlap along the axes that can part two boxes (faces and pairs of edges:
-// Gottschalk, Lin, Manocha, OBBTree, 1996), which for boxes is exact, and the radii.
+// Gottschalk, Lin, Manocha, OBBTree, 1996), which for boxes is exact, and the radii. Hulls and
+// meshes: measure_hull.h.
 #include "scenes/measure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
+
+#include "measure_hull.h"
 
 namespace scenes {
 namespace {
@@ -66,11 +70,11 @@ double distance_to(const Core& core, const Vec3& point) {
   return norm(Vec3{beyond(p.x, core.half.x), beyond(p.y, core.half.y), beyond(p.z, core.half.z)});
 }
 
-// Of a point or a segment from another core. Along a segment the distance from a convex set is
-// convex, so that a search by thirds finds the least: 100 of them take its length below rounding.
-double core_distance(const Core& thin, const Core& other) {
-  const auto at = [&](double z) { return distance_to(other, thin.pose * Vec3{0.0, 0.0, z}); };
-  double lower = -thin.half.z, upper = thin.half.z;
+// Along a segment the distance from a convex set is convex, so that a search by thirds finds the
+// least: 100 of them take its length below rounding.
+template <class DistanceAt>
+double least_along(double half_length, const DistanceAt& at) {
+  double lower = -half_length, upper = half_length;
   for (int i = 0; i < 100 && upper > lower; ++i) {
     const double third = (upper - lower) / 3.0;
     if (at(lower + third) <= at(upper - third)) {
@@ -82,23 +86,16 @@ double core_distance(const Core& thin, const Core& other) {
   return at(0.5 * (lower + upper));
 }
 
+// Of a point or a segment from another core.
+double core_distance(const Core& thin, const Core& other) {
+  return least_along(thin.half.z, [&](double z) {
+    return distance_to(other, thin.pose * Vec3{0.0, 0.0, z});
+  });
+}
+
 double ground_penetration(const SE3& ground, const Core& core) {
   const Vec3& up = ground.rotation().cz;
   return core.radius + extent(core, up) - dot(up, core.pose.position() - ground.position());
-}
-
-// From a point to a triangle: to its plane where the foot lies inside, else to the nearest edge.
-double distance_to(const Vec3 (&corners)[3], const Vec3& p) {
-  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  bool inside = true;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 &from = corners[i], edge = corners[(i + 1) % 3] - from;
-    inside = inside && dot(cross(edge, p - from), normal) >= 0.0;
-    const double along = std::clamp(dot(p - from, edge) / dot(edge, edge), 0.0, 1.0);
-    nearest = std::min(nearest, norm(p - from - along * edge));
-  }
-  return inside ? std::fabs(dot(normal, p - corners[0])) / norm(normal) : nearest;
 }
 
 // From a point above the ground, as far as reach; beyond it more.
@@ -115,7 +112,8 @@ double distance_to(const Terrain& terrain, const Vec3& p, double reach) {
     for (int i = cell(p.x - reach, terrain.columns); i <= cell(p.x + reach, terrain.columns); ++i) {
       const Vec3 a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1),
                  d = corner(i, j + 1);
-      nearest = std::min({nearest, distance_to({a, b, c}, p), distance_to({a, c, d}, p)});
+      nearest =
+          std::min({nearest, triangle_distance({a, b, c}, p), triangle_distance({a, c, d}, p)});
     }
   }
   return nearest;
@@ -137,6 +135,58 @@ double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& cor
   return deepest;
 }
 
+double ground_penetration(const SE3& ground, const Polyhedron& hull, const SE3& T_world_hull) {
+  const Vec3& up = ground.rotation().cz;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : hull.points) {
+    lowest = std::min(lowest, dot(up, T_world_hull * p - ground.position()));
+  }
+  return -lowest;
+}
+
+double terrain_penetration(const Terrain& terrain, const SE3& T, const Polyhedron& hull,
+                           const SE3& T_world_hull) {
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (const Vec3& corner : hull.points) {
+    const Vec3 p = inverse_times(T, T_world_hull * corner);
+    const Terrain::Below below = terrain.below(p.x, p.y);
+    deepest = std::max(deepest, below.normal.z * (below.height - p.z));
+  }
+  return deepest;
+}
+
+// A hull and what is no hull: a core with a radius, or a box.
+double hull_penetration(const Polyhedron& hull, const SE3& T, const Core& core) {
+  if (!core.round()) return hulls_penetration(hull, T, box_polyhedron(core.half), core.pose);
+  const auto in_hull = [&](double z) { return inverse_times(T, core.pose * Vec3{0.0, 0.0, z}); };
+  const double distance =
+      least_along(core.half.z, [&](double z) { return hull_distance(hull, in_hull(z)); });
+  if (distance > 0.0) return core.radius - distance;
+  return core.radius +
+         std::max(depth_in(hull, in_hull(core.half.z)), depth_in(hull, in_hull(-core.half.z)));
+}
+
+double mesh_penetration(const MeshGrid& grid, const SE3& T_mesh_shape, const Shape& shape) {
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    Probe probe{hull->data->points, 0.0, 0.0};
+    for (const Vec3& p : probe.points) probe.reach = std::max(probe.reach, norm(p));
+    return grid.penetration(probe, T_mesh_shape,
+                            [&](const Vec3& v) { return depth_in(*hull->data, v); });
+  }
+  const Core core = core_of(shape, SE3{});
+  Probe probe{{}, core.radius, norm(core.half) + core.radius};
+  if (!core.round()) {
+    probe.points = box_polyhedron(core.half).points;
+  } else {
+    probe.points = {Vec3{0.0, 0.0, -core.half.z}, Vec3{0.0, 0.0, core.half.z}};
+  }
+  return grid.penetration(probe, T_mesh_shape, [&](const Vec3& v) {
+    if (core.round()) return core.radius - distance_to(core, v);
+    return std::min(
+        {core.half.x - std::fabs(v.x), core.half.y - std::fabs(v.y), core.half.z - std::fabs(v.z)});
+  });
+}
+
 bool is_ground(const Shape& shape) {
   return std::holds_alternative<Ground>(shape) || std::holds_alternative<Terrain>(shape);
 }
@@ -155,6 +205,20 @@ Placed place(const Scene& scene, std::span<const SE3> poses, int body, const Par
              body,        scene.bodies[body].motion == Motion::dynamic,
              {},          {}};
   if (is_ground(part.shape)) return out;
+  const auto* hull = std::get_if<Hull>(&part.shape);
+  const auto* mesh = std::get_if<Mesh>(&part.shape);
+  if (hull || mesh) {
+    const std::vector<Vec3>& points = hull ? hull->data->points : mesh->data->vertices;
+    out.lower = out.upper = out.pose * points[0];
+    for (const Vec3& point : points) {
+      const Vec3 p = out.pose * point;
+      for (int i = 0; i < 3; ++i) {
+        out.lower[i] = std::min(out.lower[i], p[i]);
+        out.upper[i] = std::max(out.upper[i], p[i]);
+      }
+    }
+    return out;
+  }
   const Core core = core_of(part.shape, out.pose);
   const Vec3 reach = {core.radius + extent(core, {1, 0, 0}), core.radius + extent(core, {0, 1, 0}),
                       core.radius + extent(core, {0, 0, 1})};
@@ -169,16 +233,58 @@ bool bounds_meet(const Placed& a, const Placed& b) {
          b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
 
+// The meshes' grids, each made once.
+class Grids {
+ public:
+  const MeshGrid& of(const Mesh& mesh) {
+    return grids_.try_emplace(mesh.data.get(), *mesh.data).first->second;
+  }
+
+ private:
+  std::map<const Triangles*, MeshGrid> grids_;
+};
+
+// A moving shape and any other one.
+double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b,
+                   Grids& grids) {
+  if (is_ground(a) || std::holds_alternative<Mesh>(a))
+    return penetration(b, T_world_b, a, T_world_a, grids);
+  const auto* hull = std::get_if<Hull>(&a);
+  if (const auto* mesh = std::get_if<Mesh>(&b))
+    return mesh_penetration(grids.of(*mesh), Inv(T_world_b) * T_world_a, a);
+  if (std::holds_alternative<Ground>(b)) {
+    return hull ? ground_penetration(T_world_b, *hull->data, T_world_a)
+                : ground_penetration(T_world_b, core_of(a, T_world_a));
+  }
+  if (const auto* terrain = std::get_if<Terrain>(&b)) {
+    return hull ? terrain_penetration(*terrain, T_world_b, *hull->data, T_world_a)
+                : terrain_penetration(*terrain, T_world_b, core_of(a, T_world_a));
+  }
+  const auto* other = std::get_if<Hull>(&b);
+  if (hull && other) return hulls_penetration(*hull->data, T_world_a, *other->data, T_world_b);
+  if (hull) return hull_penetration(*hull->data, T_world_a, core_of(b, T_world_b));
+  if (other) return hull_penetration(*other->data, T_world_b, core_of(a, T_world_a));
+  const Core ca = core_of(a, T_world_a), cb = core_of(b, T_world_b);
+  const double radii = ca.radius + cb.radius;
+  if (ca.round() || cb.round()) {
+    const double distance = ca.round() ? core_distance(ca, cb) : core_distance(cb, ca);
+    if (distance > 0.0) return radii - distance;
+  }
+  return radii + core_overlap(ca, cb);
+}
+
 class Depth {
  public:
-  explicit Depth(const Scene& scene) {
-    for (const Joint& j : scene.joints) joined_.push_back(key(j.a, j.b));
+  Depth(const Scene& scene, double time) {
+    for (const Joint& j : scene.joints) {
+      if (exists(scene, j, time)) joined_.push_back(key(j.a, j.b));
+    }
     std::sort(joined_.begin(), joined_.end());
   }
   void look_at(const Placed& a, const Placed& b) {
     if (a.body == b.body || !bounds_meet(a, b)) return;
     if (std::binary_search(joined_.begin(), joined_.end(), key(a.body, b.body))) return;
-    deepest = std::max(deepest, scenes::penetration(*a.shape, a.pose, *b.shape, b.pose));
+    deepest = std::max(deepest, penetration(*a.shape, a.pose, *b.shape, b.pose, grids_));
   }
   double deepest = 0.0;
 
@@ -188,6 +294,7 @@ class Depth {
            static_cast<std::uint64_t>(std::max(a, b));
   }
   std::vector<std::uint64_t> joined_;
+  Grids grids_;
 };
 
 bool is_finite_pose(const SE3& T) {
@@ -197,10 +304,10 @@ bool is_finite_pose(const SE3& T) {
 
 // What moves is swept along x against what moves; against what stands, which is little but wide,
 // each is looked at.
-double deepest_penetration(const Scene& scene, std::span<const SE3> poses) {
+double deepest_penetration(const Scene& scene, std::span<const SE3> poses, double time) {
   std::vector<Placed> moving, standing;
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
-    if (!is_finite_pose(poses[i])) continue;
+    if (!exists(scene.bodies[i], time) || !is_finite_pose(poses[i])) continue;
     for (const Part& part : scene.bodies[i].parts) {
       Placed placed = place(scene, poses, i, part);
       (placed.moves ? moving : standing).push_back(placed);
@@ -208,7 +315,7 @@ double deepest_penetration(const Scene& scene, std::span<const SE3> poses) {
   }
   std::stable_sort(moving.begin(), moving.end(),
                    [](const Placed& a, const Placed& b) { return a.lower.x < b.lower.x; });
-  Depth depth(scene);
+  Depth depth(scene, time);
   for (std::size_t i = 0; i < moving.size(); ++i) {
     for (const Placed& s : standing) depth.look_at(moving[i], s);
     for (std::size_t j = i + 1; j < moving.size() && moving[j].lower.x <= moving[i].upper.x; ++j) {
@@ -224,10 +331,11 @@ bool is_in_place(const InPlace& rule, const Vec3& start, const Vec3& now) {
          now.x <= rule.upper.x && now.y <= rule.upper.y && now.z <= rule.upper.z;
 }
 
-double widest_gap(const Scene& scene, std::span<const SE3> poses) {
+double widest_gap(const Scene& scene, std::span<const SE3> poses, double time) {
   double widest = 0.0;
   for (const Joint& j : scene.joints) {
-    if (!is_finite_pose(poses[j.a]) || !is_finite_pose(poses[j.b])) continue;
+    if (!exists(scene, j, time) || !is_finite_pose(poses[j.a]) || !is_finite_pose(poses[j.b]))
+      continue;
     const Vec3 a = poses[j.a] * j.T_a_joint.position(), b = poses[j.b] * j.T_b_joint.position();
     widest = std::max(widest, norm(b - a));
   }
@@ -237,21 +345,8 @@ double widest_gap(const Scene& scene, std::span<const SE3> poses) {
 }  // namespace
 
 double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b) {
-  if (std::holds_alternative<Ground>(a))
-    return ground_penetration(T_world_a, core_of(b, T_world_b));
-  if (std::holds_alternative<Ground>(b))
-    return ground_penetration(T_world_b, core_of(a, T_world_a));
-  if (const auto* terrain = std::get_if<Terrain>(&a))
-    return terrain_penetration(*terrain, T_world_a, core_of(b, T_world_b));
-  if (const auto* terrain = std::get_if<Terrain>(&b))
-    return terrain_penetration(*terrain, T_world_b, core_of(a, T_world_a));
-  const Core ca = core_of(a, T_world_a), cb = core_of(b, T_world_b);
-  const double radii = ca.radius + cb.radius;
-  if (ca.round() || cb.round()) {
-    const double distance = ca.round() ? core_distance(ca, cb) : core_distance(cb, ca);
-    if (distance > 0.0) return radii - distance;
-  }
-  return radii + core_overlap(ca, cb);
+  Grids grids;
+  return penetration(a, T_world_a, b, T_world_b, grids);
 }
 
 std::vector<SE3> start_poses(const Scene& scene) {
@@ -260,10 +355,10 @@ std::vector<SE3> start_poses(const Scene& scene) {
   return poses;
 }
 
-Standing measure(const Scene& scene, std::span<const SE3> poses) {
+Standing measure(const Scene& scene, std::span<const SE3> poses, double time) {
   Standing out;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (scene.bodies[i].motion != Motion::dynamic) continue;
+    if (scene.bodies[i].motion != Motion::dynamic || !exists(scene.bodies[i], time)) continue;
     ++out.of;
     if (!is_finite_pose(poses[i])) {
       ++out.lost;
@@ -275,8 +370,8 @@ Standing measure(const Scene& scene, std::span<const SE3> poses) {
     out.drift = std::max(out.drift, norm(Vec3{moved.x, moved.y, 0.0}));
     out.sink = std::max(out.sink, std::fabs(moved.z));
   }
-  out.penetration = deepest_penetration(scene, poses);
-  out.gap = widest_gap(scene, poses);
+  out.penetration = deepest_penetration(scene, poses, time);
+  out.gap = widest_gap(scene, poses, time);
   return out;
 }
 

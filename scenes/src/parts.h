@@ -31,6 +31,25 @@ inline int add_floor(Scene& scene, const Material& material = {}) {
 // place" means.
 void add_pit(Scene& scene, double side, double height);
 
+// A figure of kRagdollBodies bodies that stands on the frame's origin, z up, and looks along x.
+void add_ragdoll(Scene& scene, const SE3& T_world_ground);
+
+// Of regular polygons about z, the first corner on the side of x.
+Hull prism(double radius, double bottom, double height, int sides);
+
+// Gives the body at each time k / kKnots the velocity that takes it to where it is to be at the
+// next: at those times it is on the path, between them on chords.
+inline constexpr double kKnots = 60.0;  // [1/s]: at 60 Hz a chord is a step
+template <class Path>
+void follow(Scene& scene, int body, const Path& path) {
+  const int knots = static_cast<int>(scene.seconds * kKnots + 0.5);
+  for (int k = 0; k < knots; ++k) {
+    const Vec3 velocity = kKnots * (path((k + 1) / kKnots) - path(k / kKnots));
+    if (k == 0) scene.bodies[static_cast<std::size_t>(body)].velocity = velocity;
+    scene.launches.push_back({k / kKnots, body, velocity, {}});
+  }
+}
+
 // A right-handed turn about the axis [rad].
 inline SE3 turned(const Vec3& rotation_vector, const Vec3& position) {
   return SE3(vp::Exp(rotation_vector), position);

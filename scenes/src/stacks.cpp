@@ -38,6 +38,25 @@ Body poured(int kind, Random& random, const Vec3& position) {
   return body_of(kCrate, turned(kTilt * turn, position));
 }
 
+// Rows of boxes, each one shorter than the row below it, in the x-z plane.
+void add_pyramid(Scene& scene, int base, double pitch, const Body& box) {
+  const double side = 2.0 * std::get<Box>(box.parts[0].shape).half_extents.z;
+  for (int row = 0; row < base; ++row) {
+    const int boxes = base - row;
+    for (int i = 0; i < boxes; ++i) {
+      Body body = box;
+      body.T_world_body = SE3(Vec3{pitch * (i - 0.5 * (boxes - 1)), 0.0, side * (row + 0.5)});
+      add(scene, std::move(body));
+    }
+  }
+}
+
+Body kinematic_box(const Vec3& half_extents, const Vec3& position) {
+  Body body = body_of(Box{half_extents}, SE3(position));
+  body.motion = Motion::kinematic;
+  return body;
+}
+
 }  // namespace
 
 void add_pit(Scene& scene, double side, double height) {
@@ -72,13 +91,30 @@ Scene pyramid(int base) {
   Scene scene;
   scene.in_place = near_start();
   add_floor(scene);
-  for (int row = 0; row < base; ++row) {
-    const int boxes = base - row;
-    for (int i = 0; i < boxes; ++i) {
-      add(scene,
-          body_of(kCrate, SE3(Vec3{kPyramidPitch * (i - 0.5 * (boxes - 1)), 0.0, row + 0.5})));
-    }
-  }
+  add_pyramid(scene, base, kPyramidPitch, body_of(kCrate, SE3{}));
+  return scene;
+}
+
+Scene large_pyramid(int base) {
+  constexpr double kDensity = 100.0;
+  Scene scene;
+  scene.seconds = 200.0 / 60.0;
+  scene.in_place = near_start();
+  add_floor(scene);
+  add_pyramid(scene, base, 1.0, body_of(kCrate, SE3{}, {}, kDensity));
+  return scene;
+}
+
+Scene shaken_pyramid(int base) {
+  constexpr double kAmplitude = 0.005, kFrequency = 3.0;  // [m], [Hz]
+  Scene scene;
+  scene.in_place = near_start();
+  const double half = 0.5 * kPyramidPitch * base + 2.0;
+  const int table = add(scene, kinematic_box({half, 5.0, 0.5}, {0.0, 0.0, -0.5}));
+  add_pyramid(scene, base, kPyramidPitch, body_of(kCrate, SE3{}));
+  follow(scene, table, [&](double t) {
+    return Vec3{kAmplitude * vp::sin_cos(2.0 * vp::kPi * kFrequency * t).sin, 0.0, 0.0};
+  });
   return scene;
 }
 
@@ -97,23 +133,44 @@ double pit_side(int count) {
   return kPitCell * cells_of(count);
 }
 
-Scene pile(int count, Pour what) {
+namespace {
+
+// The lowest layer's centre is at that height [m].
+Scene poured_pile(int count, Pour what, double height) {
   Scene scene;
   if (what == Pour::boxes) scene.seconds = 4.0;  // the last layer is down after 3
   const int cells = cells_of(count);
   const int layers = (count + cells * cells - 1) / (cells * cells);
   const double side = pit_side(count);
-  add_pit(scene, side, kPourHeight + kPourPitch * (layers + 1));
+  add_pit(scene, side, height + kPourPitch * (layers + 1));
   const double shift = std::min(kMaxShift, 0.5 * (side - kPourPitch * cells));
   Random random(1120);
   for (int n = 0; n < count; ++n) {
     const int layer = n / (cells * cells), i = n % cells, j = n / cells % cells;
     const double sx = (layer & 1) != 0 ? shift : -shift, sy = (layer & 2) != 0 ? shift : -shift;
     const Vec3 position{kPourPitch * (i - 0.5 * (cells - 1)) + sx,
-                        kPourPitch * (j - 0.5 * (cells - 1)) + sy,
-                        kPourHeight + kPourPitch * layer};
+                        kPourPitch * (j - 0.5 * (cells - 1)) + sy, height + kPourPitch * layer};
     add(scene, poured(what == Pour::mixed ? n % 3 : 0, random, position));
   }
+  return scene;
+}
+
+}  // namespace
+
+Scene pile(int count, Pour what) {
+  return poured_pile(count, what, kPourHeight);
+}
+
+// A body of 1 m fits between the paddle's ends and the walls, and below the lowest layer the
+// paddle.
+Scene stirred_pile(int count) {
+  constexpr double kHalfHeight = 1.0, kClear = 0.05, kHalfWidth = 0.2, kToWall = 2.0;  // [m]
+  constexpr double kSpin = 1.0;                                                        // [rad/s]
+  Scene scene = poured_pile(count, Pour::mixed, 2.0 * kHalfHeight + kClear + kPourHeight);
+  Body paddle = kinematic_box({0.5 * pit_side(count) - kToWall, kHalfWidth, kHalfHeight},
+                              {0.0, 0.0, kHalfHeight + kClear});
+  paddle.spin = {0.0, 0.0, kSpin};
+  add(scene, std::move(paddle));
   return scene;
 }
 

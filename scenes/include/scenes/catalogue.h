@@ -68,4 +68,26 @@ Scene hills(int count);
 // Tables, jacks and dumbbells, each one compound, poured into a pit.
 Scene furniture(int along, int layers);
 
+// --- after Box3D's benchmark ---------------------------------------------------------------------
+// Groups of ragdolls fall on a square of along x along fields with a ring of triangles in each. A
+// column of groups appears every 0.8 s; once all are there, the oldest is destroyed and made again.
+Scene rain(int along, int group);
+// Trees, each one compound of 22 prisms, fall to both sides on waves of triangles, 150 x 200 m.
+Scene trees(int count, int cells_per_metre);
+// along^3 cubes in a drum of hulls that turns.
+Scene washer(int along);
+// Stones of one form, hulls of 32 points, stacked along x along in many layers, collapse.
+Scene convex_pile(int along, int layers);
+// Stones, hulls of 10 points, are poured into a yard with walls, where a column on a circle pushes
+// them.
+Scene junkyard(int along, int layers);
+// As pyramid(), of boxes of density 100 that touch their neighbours.
+Scene large_pyramid(int base);
+
+// --- moved from outside --------------------------------------------------------------------------
+// pyramid() on a table that is shaken along x, by 5 mm at 3 Hz.
+Scene shaken_pyramid(int base);
+// pile() with a paddle that turns on the pit's floor.
+Scene stirred_pile(int count);
+
 }  // namespace scenes

@@ -5,6 +5,7 @@
 // engines that know nothing else can take it as it is.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -46,7 +47,34 @@ struct Terrain {
   Below below(double x, double y) const;
 };
 
-using Shape = std::variant<Sphere, Box, Capsule, Ground, Terrain>;
+// A convex polyhedron. Bodies may share its data.
+struct Polyhedron {
+  struct Face {
+    Vec3 normal;               // unit, outward
+    double offset;             // of its plane along the normal [m]
+    std::vector<int> corners;  // counter-clockwise seen from outside
+  };
+  std::vector<Vec3> points;  // corners only
+  std::vector<Face> faces;
+};
+struct Hull {
+  std::shared_ptr<const Polyhedron> data;
+};
+// The convex hull of points. Those that are within 1e-9 of the extent of a face's plane are on the
+// face; those that are no corners are left out. Precondition: at most 256, not all in one plane.
+Hull hull_of(std::vector<Vec3> points);
+
+// Triangles, solid behind: the corners run counter-clockwise seen from outside; of fixed bodies
+// only. Bodies may share its data.
+struct Triangles {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> corners;  // indices of vertices
+};
+struct Mesh {
+  std::shared_ptr<const Triangles> data;
+};
+
+using Shape = std::variant<Sphere, Box, Capsule, Ground, Terrain, Hull, Mesh>;
 
 struct Material {
   double friction = 0.6;          // of a pair of two such surfaces
@@ -71,6 +99,8 @@ struct Body {
   bool fast = false;  // small and fast: an engine that can sweep bodies sweeps it
   // An engine that has compounds takes the parts, which are of one material, as one shape.
   bool as_one = false;
+  // It exists from one time until another, and its joints while both of their bodies do [s].
+  double from = 0.0, until = std::numeric_limits<double>::infinity();
 };
 
 // Holds two bodies together; these two do not meet. Its frame is given in both bodies.
@@ -86,7 +116,7 @@ struct Joint {
   double lower = -kNever, upper = kNever;  // of a hinge's angle, from a to b [rad]
 };
 
-// A body is given another velocity.
+// A body that exists is given another velocity.
 struct Launch {
   double time;  // [s]
   int body;
@@ -114,6 +144,21 @@ struct Scene {
   InPlace in_place;
 };
 
+// What happens while a scene runs, beside its motion: what exists at time 0 is no event.
+struct Event {
+  enum class Kind : std::uint8_t { remove_joint, remove_body, add_body, add_joint, launch };
+  double time;  // [s]
+  Kind kind;
+  int index;  // of joints, bodies or launches
+};
+// In the order in which they happen: by time, then by kind, then by index. An event happens before
+// the first step whose middle is not before its time.
+std::vector<Event> events_of(const Scene& scene);
+inline bool exists(const Body& body, double time) {
+  return body.from <= time && time < body.until;
+}
+bool exists(const Scene& scene, const Joint& joint, double time);
+
 // Whether any body has such a shape; what knows no height fields cannot have the scene.
 bool has_terrain(const Scene& scene);
 
@@ -123,7 +168,11 @@ struct Mass {
   Vec3 moments;  // about the origin, along the body's axes [kg m^2]
 };
 Mass mass_of(const Body& body);
-// About its own centre; of Ground and Terrain: zero.
+// About its own centre of mass, along the axes of its frame; of what only fixed bodies have: zero.
 Mass mass_of(const Shape& shape, double density);
+// Turns a body whose parts lie anywhere into one that keeps the rule above: moves its origin to the
+// centre of mass and its axes to principal ones. In the world the parts stay where they are; the
+// hulls among them get new points where their frame is the body's.
+void make_principal(Body& body);
 
 }  // namespace scenes
