@@ -257,13 +257,12 @@ class Mujoco final : public Engine {
 }  // namespace
 
 MadeEngine make_engine(const scenes::Scene& scene, double dt) {
-  if (scenes::has_terrain(scene)) return tl::make_unexpected("this comparison gives it no terrain");
+  if (const std::string why = beyond_simple(scene); !why.empty()) return tl::make_unexpected(why);
   if (scene.bodies.size() > kMostBodies) {
     return tl::make_unexpected("a step of so many bodies takes it minutes");
   }
   for (const scenes::Body& body : scene.bodies) {
-    const bool joined = !scene.joints.empty() && !begins_at_rest(body);
-    if (body.motion == scenes::Motion::kinematic || joined) {
+    if (!scene.joints.empty() && !begins_at_rest(body)) {
       return tl::make_unexpected("this comparison gives it joined bodies that begin at rest");
     }
   }

@@ -179,12 +179,10 @@ class Ode final : public Engine {
 }  // namespace
 
 MadeEngine make_engine(const scenes::Scene& scene, double dt) {
-  if (scenes::has_terrain(scene)) return tl::make_unexpected("this comparison gives it no terrain");
+  if (const std::string why = beyond_simple(scene); !why.empty()) return tl::make_unexpected(why);
   for (const scenes::Body& body : scene.bodies) {
-    if (body.parts.size() != 1 || body.motion == scenes::Motion::kinematic) {
-      return tl::make_unexpected(
-          "this comparison gives it bodies of one shape that it moves itself");
-    }
+    if (body.parts.size() != 1)
+      return tl::make_unexpected("this comparison gives it bodies of one shape");
   }
   return std::make_unique<Ode>(scene, dt);
 }

@@ -24,7 +24,7 @@ class Ours final : public Engine {
     const auto status = world_.step(dt_);
     return status && !status->non_finite;
   }
-  void launch(const scenes::Launch&) override {}  // SceneWorld does it
+  void launch(const scenes::Launch&) override {}  // SceneWorld does it, and the rest, in its step
   std::vector<vp::SE3> poses() const override { return world_.poses(); }
 
  private:

@@ -67,7 +67,7 @@ double quantile(std::vector<double> x, double share) {
 
 // What a program left behind (runner.cpp); nothing if it is not whole.
 struct Left {
-  double simulated = 0.0, rss_mb = 0.0;
+  double simulated = 0.0, rss_mb = 0.0, fastest = -1.0;
   std::vector<double> steps;
   std::vector<vp::SE3> poses;
 };
@@ -80,10 +80,14 @@ double read_number(std::istream& in) {
 std::optional<Left> read_left(const std::string& file, std::size_t bodies) {
   std::ifstream in(file);
   Left left;
-  std::string simulated, rss, steps, poses, whole;
+  std::string simulated, rss, fastest, steps, poses, whole;
   std::size_t count = 0;
-  in >> simulated >> left.simulated >> rss >> left.rss_mb >> steps >> count;
-  if (!in || simulated != "simulated" || rss != "rss_mb" || steps != "steps") return {};
+  in >> simulated >> left.simulated >> rss >> left.rss_mb >> fastest;
+  left.fastest = read_number(in);
+  in >> steps >> count;
+  if (!in || simulated != "simulated" || rss != "rss_mb" || fastest != "fastest" ||
+      steps != "steps")
+    return {};
   for (std::size_t i = 0; i < count && in; ++i) left.steps.push_back(read_number(in));
   in >> poses >> count;
   if (!in || poses != "poses" || count != bodies) return {};
@@ -238,7 +242,8 @@ class Race {
     }
     figure.simulated = left->simulated;
     figure.rss_mb = left->rss_mb;
-    figure.standing = scenes::measure(scene_, left->poses);
+    figure.fastest = left->fastest;
+    figure.standing = scenes::measure(scene_, left->poses, left->simulated);
     figure.steps_us = left->steps;
     figure.poses = left->poses;
     summarize(figure);
@@ -321,6 +326,7 @@ std::vector<Figure> measure(const Plan& plan, const std::function<void(const std
   for (const std::string& scene : plan.scenes) {
     for (const int rate : plan.rates) {
       if (is_table(scene) && rate != 1000) continue;  // the game has one rate
+      if (rate > 60 && plan.at_60_alone.contains(scene)) continue;
       said(fmt::format("{} at {} Hz", scene, rate));
       for (Figure& figure : measure_one(plan, scene, rate)) figures.push_back(std::move(figure));
     }

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -49,10 +50,11 @@ struct Plan {
   double repeated_within = 60.0;
   // By the clock: how long the programs may take to answer, beyond ten times that. Others run too.
   double patience = 120.0;
-  std::string programs{};         // folder of the native engines' programs
-  std::string scripts{};          // folder of run.mjs and wasi.mjs; node's packages are in it
-  std::string wasm{};             // folder of rigid-ours.wasm
-  std::string log = "/dev/null";  // what the programs complain of
+  std::string programs{};               // folder of the native engines' programs
+  std::string scripts{};                // folder of run.mjs and wasi.mjs; node's packages are in it
+  std::string wasm{};                   // folder of rigid-ours.wasm
+  std::string log = "/dev/null";        // what the programs complain of
+  std::set<std::string> at_60_alone{};  // scenes that are not run at higher rates
   // By an engine's name: why it is not run, at all or on scenes with joints.
   std::map<std::string, std::string> left_out{}, left_out_of_joints{};
 };
@@ -69,6 +71,7 @@ struct Figure {
   double p99_us = 0.0;      // of the first run
   double settled_us = 0.0;  // as median_us, of the last quarter of a finished run; else 0
   double rss_mb = 0.0;
+  double fastest = -1.0;  // body's displacement in the last step by its time [m/s]; < 0: not known
   bool bits_as_native = false;  // its poses are those of the native program
   scenes::Standing standing{};  // where it ended
   int runs = 1;

@@ -82,8 +82,9 @@ TEST_F(Race, PassesOverWhatIsNoAnswer) {
 }
 
 TEST_F(Race, TellsWhatIsLeftBehindBroken) {
-  for (const char* left : {"", "simulated 10", "simulated 10\\nrss_mb 1\\nsteps 2\\n1\\n",
-                           "simulated 10\\nrss_mb 1\\nsteps 0\\nposes 3\\n"}) {
+  for (const char* left :
+       {"", "simulated 10", "simulated 10\\nrss_mb 1\\nfastest 0\\nsteps 2\\n1\\n",
+        "simulated 10\\nrss_mb 1\\nfastest 0\\nsteps 0\\nposes 3\\n"}) {
     script("rigid-bullet",
            std::string("echo ready; read turn; printf '") + left + "' >$4; echo end finished\n");
     EXPECT_EQ(missing(), "what it left behind cannot be read") << left;
@@ -94,9 +95,10 @@ TEST_F(Race, LeavesOutWhoStopsEarlyAndCountsLostBodies) {
   const std::string poses =
       " for i in 1 2 3 4 5 6 7 8 9 10 11; do echo nan 0 0 0 1 0 0 0 1 0 0 0; done;";
   const auto leaving = [&](const std::string& seconds) {
-    script("rigid-bullet", "echo ready; read turn; (echo simulated " + seconds +
-                               "; echo rss_mb 1; echo steps 2; echo 5; echo 7; echo poses 11;" +
-                               poses + " echo whole) >$4; echo end stopped: diverged\n");
+    script("rigid-bullet",
+           "echo ready; read turn; (echo simulated " + seconds +
+               "; echo rss_mb 1; echo fastest 0; echo steps 2; echo 5; echo 7; echo poses 11;" +
+               poses + " echo whole) >$4; echo end stopped: diverged\n");
   };
   leaving("0.5");
   EXPECT_EQ(missing(), "stopped: diverged, after 0.5 s");
@@ -118,14 +120,13 @@ class Repeated : public Race {
   void play(const std::string& program, const std::string& end, const std::string& steps) {
     const std::string count = folder_ + "/" + program + ".count";
     std::ofstream(count) << "0\n";
-    script(
-        program,
-        "read n <" + count + "; n=$((n + 1)); echo $n >" + count +
-            "; echo ready; read turn; (echo simulated 10; echo rss_mb 1; echo steps 3; for us in " +
-            steps +
-            "; do echo $us; done; echo poses 11; for i in 1 2 3 4 5 6 7 8 9 10 11; do "
-            "echo 1 0 0 0 1 0 0 0 1 " +
-            end + " 0 0; done; echo whole) >$4; echo end finished\n");
+    script(program, "read n <" + count + "; n=$((n + 1)); echo $n >" + count +
+                        "; echo ready; read turn; (echo simulated 10; echo rss_mb 1; echo fastest "
+                        "0.5; echo steps 3; for us in " +
+                        steps +
+                        "; do echo $us; done; echo poses 11; for i in 1 2 3 4 5 6 7 8 9 10 11; do "
+                        "echo 1 0 0 0 1 0 0 0 1 " +
+                        end + " 0 0; done; echo whole) >$4; echo end finished\n");
   }
 };
 

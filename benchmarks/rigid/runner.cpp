@@ -8,8 +8,9 @@
 //              end WHY                  FILE is written, it ends: finished, budget, or stopped and
 //              why
 //
-// FILE: "simulated S", "rss_mb M", "steps K" and K lines [us], "poses B" and B lines, each the
-// three columns of the rotation and the position. It ends with "whole".
+// FILE: "simulated S", "rss_mb M", "fastest V" [m/s] or -1, "steps K" and K lines [us], "poses B"
+// and B lines, each the three columns of the rotation and the position. It ends with "whole".
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +42,7 @@ class Run {
       : scene_(scene),
         engine_(engine),
         order_(order),
+        events_(scenes::events_of(scene)),
         steps_(std::lround(scene.seconds * order.rate)) {
     times_.reserve(static_cast<std::size_t>(steps_));
   }
@@ -59,10 +61,11 @@ class Run {
   bool write() const {
     std::ofstream out(order_.file);
     out.precision(17);
-    out << "simulated " << static_cast<double>(done_) / order_.rate << "\nrss_mb "
-        << rigid::peak_mb() << "\nsteps " << times_.size() << '\n';
-    for (const double t : times_) out << t << '\n';
     const auto poses = engine_.poses();
+    out << "simulated " << static_cast<double>(done_) / order_.rate << "\nrss_mb "
+        << rigid::peak_mb() << "\nfastest " << fastest(poses) << "\nsteps " << times_.size()
+        << '\n';
+    for (const double t : times_) out << t << '\n';
     out << "poses " << poses.size() << '\n';
     for (const vp::SE3& T : poses) {
       for (int k = 0; k < 9; ++k) out << T.rotation()(k % 3, k / 3) << ' ';
@@ -74,12 +77,39 @@ class Run {
   }
 
  private:
+  void handle(const scenes::Event& event) {
+    using Kind = scenes::Event::Kind;
+    switch (event.kind) {
+      case Kind::remove_joint:
+        return engine_.remove_joint(event.index);
+      case Kind::remove_body:
+        return engine_.remove_body(event.index);
+      case Kind::add_body:
+        return engine_.add_body(event.index);
+      case Kind::add_joint:
+        return engine_.add_joint(event.index);
+      case Kind::launch:
+        return engine_.launch(scene_.launches[event.index]);
+    }
+  }
+
+  // The fastest body's displacement in the last step, by its time; of a run that came to its end.
+  double fastest(const std::vector<vp::SE3>& poses) const {
+    if (done_ < steps_) return -1.0;
+    double longest = 0.0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (scene_.bodies[i].motion != scenes::Motion::dynamic) continue;
+      longest = std::max(longest, norm(poses[i].position() - before_last_[i].position()));
+    }
+    return longest * order_.rate;
+  }
+
   bool step(bool keep) {
     const double dt = 1.0 / order_.rate, now = static_cast<double>(done_) * dt;
-    while (launched_ < scene_.launches.size() &&
-           scene_.launches[launched_].time <= now + 0.5 * dt) {
-      engine_.launch(scene_.launches[launched_++]);
+    while (happened_ < events_.size() && events_[happened_].time <= now + 0.5 * dt) {
+      handle(events_[happened_++]);
     }
+    if (done_ + 1 == steps_) before_last_ = engine_.poses();
     const double begun = cpu_us();
     const bool went = engine_.step();
     const double took = cpu_us() - begun;
@@ -93,9 +123,11 @@ class Run {
   const scenes::Scene& scene_;
   rigid::Engine& engine_;
   const Order& order_;
+  std::vector<scenes::Event> events_;
   long steps_, done_ = 0;
   double spent_us_ = 0.0;
-  std::size_t launched_ = 0;
+  std::size_t happened_ = 0;
+  std::vector<vp::SE3> before_last_;  // step
   std::vector<double> times_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace rigid {
@@ -20,7 +21,49 @@ json limit(double angle) {
   return std::isfinite(angle) ? json(angle) : json(nullptr);
 }
 
-json shape(const scenes::Shape& shape) {
+// Data of hulls and meshes, each once; a shape names it by its index.
+class Data {
+ public:
+  int index_of(const scenes::Hull& hull) {
+    return index_of(hull.data.get(), [&] { return json{{"points", numbers(hull.data->points)}}; });
+  }
+  int index_of(const scenes::Mesh& mesh) {
+    return index_of(mesh.data.get(), [&] {
+      json indices = json::array();
+      for (const auto& corners : mesh.data->corners) {
+        for (const std::uint32_t corner : corners) indices.push_back(corner);
+      }
+      return json{{"vertices", numbers(mesh.data->vertices)}, {"indices", std::move(indices)}};
+    });
+  }
+  json all() && { return std::move(all_); }
+
+ private:
+  static json numbers(const std::vector<vp::Vec3>& points) {
+    json out = json::array();
+    for (const vp::Vec3& p : points) {
+      for (int i = 0; i < 3; ++i) out.push_back(p[i]);
+    }
+    return out;
+  }
+  template <class Make>
+  int index_of(const void* data, const Make& make) {
+    const auto [found, added] = indices_.try_emplace(data, static_cast<int>(all_.size()));
+    if (added) all_.push_back(make());
+    return found->second;
+  }
+
+  json all_ = json::array();
+  std::map<const void*, int> indices_;
+};
+
+json shape(const scenes::Shape& shape, Data& data) {
+  if (const auto* h = std::get_if<scenes::Hull>(&shape)) {
+    return {{"kind", "hull"}, {"data", data.index_of(*h)}};
+  }
+  if (const auto* m = std::get_if<scenes::Mesh>(&shape)) {
+    return {{"kind", "mesh"}, {"data", data.index_of(*m)}};
+  }
   if (const auto* s = std::get_if<scenes::Sphere>(&shape)) {
     return {{"kind", "sphere"}, {"radius", s->radius}};
   }
@@ -34,11 +77,12 @@ json shape(const scenes::Shape& shape) {
   return {{"kind", "ground"}};
 }
 
-json body(const scenes::Body& body) {
+json body(const scenes::Body& body, Data& data) {
   json out = {{"pose", pose(body.T_world_body)},
               {"velocity", vector(body.velocity)},
               {"spin", vector(body.spin)},
               {"parts", json::array()}};
+  out["from_start"] = exists(body, 0.0);
   out["motion"] = body.motion == scenes::Motion::dynamic ? "dynamic"
                   : body.motion == scenes::Motion::fixed ? "fixed"
                                                          : "kinematic";
@@ -48,7 +92,7 @@ json body(const scenes::Body& body) {
     out["moments"] = vector(mass.moments);
   }
   for (const scenes::Part& part : body.parts) {
-    out["parts"].push_back({{"shape", shape(part.shape)},
+    out["parts"].push_back({{"shape", shape(part.shape, data)},
                             {"pose", pose(part.T_body_shape)},
                             {"friction", part.material.friction},
                             {"restitution", part.material.restitution}});
@@ -56,7 +100,24 @@ json body(const scenes::Body& body) {
   return out;
 }
 
-json joint(const scenes::Joint& joint) {
+const char* name_of(scenes::Event::Kind kind) {
+  using Kind = scenes::Event::Kind;
+  switch (kind) {
+    case Kind::remove_joint:
+      return "removeJoint";
+    case Kind::remove_body:
+      return "removeBody";
+    case Kind::add_body:
+      return "addBody";
+    case Kind::add_joint:
+      return "addJoint";
+    case Kind::launch:
+      return "launch";
+  }
+  return "";
+}
+
+json joint(const scenes::Scene& scene, const scenes::Joint& joint) {
   return {{"kind", joint.kind == scenes::Joint::Kind::ball ? "ball" : "hinge"},
           {"a", joint.a},
           {"b", joint.b},
@@ -67,6 +128,7 @@ json joint(const scenes::Joint& joint) {
           {"z_a", vector(joint.T_a_joint.rotation().cz)},
           {"x_b", vector(joint.T_b_joint.rotation().cx)},
           {"z_b", vector(joint.T_b_joint.rotation().cz)},
+          {"from_start", exists(scene, joint, 0.0)},
           {"lower", limit(joint.lower)},
           {"upper", limit(joint.upper)}};
 }
@@ -76,9 +138,15 @@ json joint(const scenes::Joint& joint) {
 bool write_json(const scenes::Scene& scene, const std::string& file) {
   json out = {
       {"name", scene.name},      {"seconds", scene.seconds}, {"gravity", vector(scene.gravity)},
-      {"bodies", json::array()}, {"joints", json::array()},  {"launches", json::array()}};
-  for (const scenes::Body& b : scene.bodies) out["bodies"].push_back(body(b));
-  for (const scenes::Joint& j : scene.joints) out["joints"].push_back(joint(j));
+      {"bodies", json::array()}, {"joints", json::array()},  {"launches", json::array()},
+      {"events", json::array()}};
+  Data data;
+  for (const scenes::Body& b : scene.bodies) out["bodies"].push_back(body(b, data));
+  out["data"] = std::move(data).all();
+  for (const scenes::Joint& j : scene.joints) out["joints"].push_back(joint(scene, j));
+  for (const scenes::Event& e : scenes::events_of(scene)) {
+    out["events"].push_back({{"time", e.time}, {"kind", name_of(e.kind)}, {"index", e.index}});
+  }
   for (const scenes::Launch& l : scene.launches) {
     out["launches"].push_back({{"time", l.time},
                                {"body", l.body},

@@ -52,7 +52,7 @@ TEST(SandboxSimulation, EverySceneOpensAndSteps) {
     vp::Vec3 low, high;
     simulation.bounds(low, high);
     for (const Piece& piece : simulation.pieces()) {
-      if (piece.motion != scenes::Motion::dynamic) continue;
+      if (!piece.body || piece.motion != scenes::Motion::dynamic) continue;
       const vp::Vec3 p = simulation.world().pose(piece.body).position();
       EXPECT_TRUE(low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y && low.z < p.z &&
                   p.z < high.z)

@@ -98,8 +98,9 @@ Scene convex_pile(int along, int layers) {
   return scene;
 }
 
+// The stones begin half a metre higher than the original's, of which some begin in the column.
 Scene junkyard(int along, int layers) {
-  constexpr double kRadius = 1.5, kPitch = 4.0, kLowest = 25.0;             // of the stones [m]
+  constexpr double kRadius = 1.5, kPitch = 4.0, kLowest = 25.5;             // of the stones [m]
   constexpr double kHalf = 50.0, kThick = 1.0, kHigh = 8.0, kMiddle = 7.0;  // of the walls [m]
   constexpr double kPusher = 4.0, kPusherHeight = 24.0, kCircle = 35.0;     // [m]
   constexpr double kTurning = 6.0 * vp::kPi / 180.0;                        // [rad/s]

@@ -205,5 +205,100 @@ TEST(Standing, FindsTheDeepestOfAllPairs) {
   }
 }
 
+Hull cube_hull(double half) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.push_back({i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
+  }
+  return hull_of(points);
+}
+
+// Four squares of 1 m about the origin, up is +z.
+Mesh square_mesh() {
+  Triangles out;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) out.vertices.push_back({i - 1.0, j - 1.0, 0.0});
+  }
+  for (const std::uint32_t low : {0u, 1u, 3u, 4u}) {
+    out.corners.push_back({low, low + 1, low + 4});
+    out.corners.push_back({low, low + 4, low + 3});
+  }
+  return {std::make_shared<const Triangles>(out)};
+}
+
+TEST(HullPenetration, IsThatOfTheBoxWhereCornersAreInFaces) {
+  const SE3 up(Vec3{0.1, 0.2, 0.9}), turned(vp::Exp(Vec3{0.3, 0.5, 0.2}), {0.1, 0.2, 1.15});
+  const Shape hull = cube_hull(0.5), box = Box{{0.5, 0.5, 0.5}};
+  for (const Shape& a : {hull, box}) {
+    EXPECT_NEAR(penetration(a, SE3{}, hull, up), 0.1, 1e-12);
+    EXPECT_NEAR(penetration(hull, up, a, SE3{}), 0.1, 1e-12);
+    EXPECT_NEAR(penetration(a, SE3{}, hull, turned), penetration(box, SE3{}, box, turned), 1e-12);
+  }
+  EXPECT_NEAR(penetration(Ground{}, SE3{}, hull, SE3(Vec3{0, 0, 0.4})), 0.1, 1e-12);
+  EXPECT_NEAR(penetration(Ground{}, SE3{}, hull, turned), penetration(Ground{}, SE3{}, box, turned),
+              1e-12);
+  EXPECT_LT(penetration(hull, SE3{}, hull, SE3(Vec3{0, 0, 1.5})), 0.0);
+}
+
+TEST(HullPenetration, OfBallsAndCapsulesIsThatOfTheBox) {
+  const Shape hull = cube_hull(0.5), box = Box{{0.5, 0.5, 0.5}};
+  const Shape ball = Sphere{0.3}, capsule = Capsule{0.2, 0.4};
+  for (int i = 0; i < 20; ++i) {
+    const auto [s, c] = vp::sin_cos(1.3 * i);
+    const SE3 T(vp::Exp(Vec3{s, 0.3 * i, c}), {0.7 * s, 0.7 * c, 0.07 * i - 0.7});
+    for (const Shape& other : {ball, capsule}) {
+      const double by_box = penetration(box, SE3{}, other, T);
+      const double radius = other.index() == ball.index() ? 0.3 : 0.2;
+      if (by_box >= radius) continue;  // the cores meet: another measure
+      EXPECT_NEAR(penetration(hull, SE3{}, other, T), by_box, 1e-9) << i;
+    }
+  }
+}
+
+TEST(MeshPenetration, IsHowFarSomethingIsBehindIt) {
+  const Shape mesh = square_mesh();
+  const SE3 tilted(vp::Exp(Vec3{0.4, 0.0, 0.0}), {});
+  const auto at = [&](double height) { return tilted * SE3(Vec3{0.2, 0.1, height}); };
+  for (const Shape& cube : {Shape(cube_hull(0.25)), Shape(Box{{0.25, 0.25, 0.25}})}) {
+    EXPECT_NEAR(penetration(mesh, tilted, cube, at(0.24)), 0.01, 1e-12);
+    EXPECT_NEAR(penetration(cube, at(0.3), mesh, tilted), -0.05, 1e-12);
+    // Wholly behind it, and no longer in it.
+    EXPECT_LT(penetration(mesh, tilted, cube, at(-1.0)), 0.0);
+  }
+  EXPECT_NEAR(penetration(mesh, tilted, Sphere{0.25}, at(0.24)), 0.01, 1e-12);
+  EXPECT_NEAR(penetration(mesh, tilted, Sphere{0.25}, at(-0.01)), 0.26, 1e-12);
+  EXPECT_NEAR(penetration(mesh, tilted, Capsule{0.05, 0.2}, at(0.24)), 0.01, 1e-12);
+}
+
+// A vertex that sticks up into a face between its corners.
+TEST(MeshPenetration, SeesAPeakInAFace) {
+  Triangles out;
+  out.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0.5}};
+  out.corners = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  const Shape peak = Mesh{std::make_shared<const Triangles>(out)};
+  for (const Shape& cube : {Shape(cube_hull(0.1)), Shape(Box{{0.1, 0.1, 0.1}})}) {
+    EXPECT_NEAR(penetration(peak, SE3{}, cube, SE3(Vec3{0, 0, 0.58})), 0.02, 1e-12);
+  }
+}
+
+TEST(Measure, LeavesOutWhatDoesNotExist) {
+  Scene scene;
+  for (const double x : {0.0, 0.5}) {
+    Body ball;
+    ball.T_world_body = SE3(Vec3{x, 0, 0});
+    ball.parts.push_back({Sphere{0.3}, SE3{}, 1000.0, {}});
+    scene.bodies.push_back(ball);
+  }
+  scene.bodies[1].from = 1.0;
+  scene.bodies[1].until = 2.0;
+  const auto poses = start_poses(scene);
+  for (const double time : {0.0, 2.0}) {
+    EXPECT_EQ(measure(scene, poses, time).of, 1);
+    EXPECT_EQ(measure(scene, poses, time).penetration, 0.0);
+  }
+  EXPECT_EQ(measure(scene, poses, 1.0).of, 2);
+  EXPECT_NEAR(measure(scene, poses, 1.0).penetration, 0.1, 1e-12);
+}
+
 }  // namespace
 }  // namespace scenes

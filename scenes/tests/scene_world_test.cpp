@@ -23,6 +23,7 @@ TEST(SceneWorld, BeginsAsTheSceneSays) {
     const auto poses = world.poses();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const vp::SE3& expected = scene.bodies[i].T_world_body;
+      if (!exists(scene.bodies[i], 0.0)) continue;
       // A world may hold a rotation otherwise than as it was given it.
       ASSERT_LT(norm(poses[i].position() - expected.position()), 1e-15) << entry.name;
       ASSERT_LT(norm(poses[i].rotation().cx - expected.rotation().cx), 1e-14) << entry.name;
@@ -55,6 +56,57 @@ TEST(SceneWorld, LaunchesWhenItIsTime) {
     }
     EXPECT_NEAR(launched, 0.05, 0.5 * dt + 1e-9) << dt;
   }
+}
+
+Body ball_from(double from, double until, double x) {
+  Body ball;
+  ball.T_world_body = SE3(Vec3{x, 0.0, 5.0});
+  ball.parts.push_back({Sphere{0.1}, SE3{}, 1000.0, {}});
+  ball.from = from;
+  ball.until = until;
+  return ball;
+}
+
+TEST(SceneWorld, HasBodiesAndTheirJointsWhileTheyExist) {
+  Scene scene;
+  scene.bodies = {ball_from(0.0, Joint::kNever, 0.0), ball_from(0.1, 0.3, 1.0),
+                  ball_from(0.2, Joint::kNever, 2.0), ball_from(0.0, 0.25, 3.0)};
+  const auto joint = [](int a, int b) {
+    return Joint{Joint::Kind::ball, a, b, SE3(Vec3{0.5, 0.0, 0.0}), SE3(Vec3{-0.5, 0.0, 0.0})};
+  };
+  scene.joints = {joint(0, 1), joint(1, 2)};
+  scene.launches = {{0.05, 1, {9.0, 9.0, 9.0}, {}}};  // of a body that is not there yet
+  SceneWorld world = world_of(scene);
+  const double dt = 0.01;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = world.time() + 0.5 * dt;
+    ASSERT_TRUE(world.step(dt).has_value());
+    const auto poses = world.poses();
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      ASSERT_EQ(static_cast<bool>(world.bodies()[b]), exists(scene.bodies[b], middle)) << i;
+      if (world.bodies()[b]) continue;
+      EXPECT_EQ(poses[b].position(), scene.bodies[b].T_world_body.position());
+    }
+  }
+  EXPECT_EQ(world.happened(), 9u);
+  // What was made at 0.2 s has fallen from there, held by nothing since 0.3 s.
+  EXPECT_EQ(measure(scene, world.poses(), world.time()).of, 2);
+}
+
+TEST(SceneWorld, TakesAKinematicBodyAlongAPath) {
+  Scene scene = make_scene("shaken_pyramid").value();
+  const auto table = static_cast<std::size_t>(scene.launches[0].body);
+  const SE3 start = scene.bodies[table].T_world_body;
+  scene.bodies.resize(table + 1);
+  SceneWorld world = world_of(scene);
+  double farthest = 0.0;
+  for (int i = 1; i <= 120; ++i) {
+    ASSERT_TRUE(world.step(1.0 / 60.0).has_value());
+    const Vec3 moved = world.poses()[table].position() - start.position();
+    EXPECT_NEAR(moved.x, 0.005 * vp::sin_cos(2.0 * vp::kPi * 3.0 * i / 60.0).sin, 1e-9) << i;
+    farthest = std::max(farthest, moved.x);
+  }
+  EXPECT_NEAR(farthest, 0.005, 1e-6);
 }
 
 // Joints hold: the frames' origins stay together at every step.

@@ -20,9 +20,20 @@ function layers(Jolt, settings) {
   settings.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(broad, 2, pairs, 2);
 }
 
+// The most dynamic bodies that are there at once.
+function mostAtOnce(scene) {
+  let there = scene.bodies.filter((b) => b.from_start && b.motion === 'dynamic').length, most = there;
+  for (const { kind, index } of scene.events) {
+    if (kind === 'addBody' && scene.bodies[index].motion === 'dynamic') most = Math.max(most, ++there);
+    if (kind === 'removeBody' && scene.bodies[index].motion === 'dynamic') --there;
+  }
+  return most;
+}
+
 export async function make(scene, dt) {
-  const count = scene.bodies.length;
-  if (3.5 * count > MOST_CONTACTS) throw new Error(`its build has room for ${MOST_CONTACTS} contacts`);
+  const moving = mostAtOnce(scene);
+  const count = moving + scene.bodies.filter((b) => b.motion !== 'dynamic').length;
+  if (3.5 * moving > MOST_CONTACTS) throw new Error(`its build has room for ${MOST_CONTACTS} contacts`);
   const Jolt = await load();
   const settings = new Jolt.JoltSettings();
   settings.mMaxBodies = count + 16;
@@ -33,20 +44,75 @@ export async function make(scene, dt) {
   const jolt = new Jolt.JoltInterface(settings);
   const system = jolt.GetPhysicsSystem();
   const bodies = system.GetBodyInterface();
-  const vec = ([x, y, z]) => new Jolt.Vec3(x, y, z);
-  const rvec = ([x, y, z]) => new Jolt.RVec3(x, y, z);
-  system.SetGravity(vec(scene.gravity));
+  // Theirs is not collected: each is to be destroyed.
+  const freed = (thing, use) => {
+    const result = use(thing);
+    Jolt.destroy(thing);
+    return result;
+  };
+  const withVec = ([x, y, z], use) => freed(new Jolt.Vec3(x, y, z), use);
+  const withRVec = ([x, y, z], use) => freed(new Jolt.RVec3(x, y, z), use);
+  const withQuat = ([x, y, z, w], use) => freed(new Jolt.Quat(x, y, z, w), use);
+  withVec(scene.gravity, (g) => system.SetGravity(g));
 
+  const created = (shapeSettings) => {
+    const result = shapeSettings.Create();
+    if (result.HasError()) throw new Error(result.GetError().c_str());
+    return result.Get();
+  };
+  const hullOf = ({ points }) => {
+    const hull = new Jolt.ConvexHullShapeSettings();
+    for (let k = 0; k < points.length; k += 3) {
+      withVec(points.slice(k, k + 3), (p) => hull.mPoints.push_back(p));
+    }
+    return created(hull);
+  };
+  const meshOf = ({ vertices, indices }) => {
+    const mesh = new Jolt.MeshShapeSettings();
+    mesh.mTriangleVertices.reserve(vertices.length / 3);
+    for (let k = 0; k < vertices.length; k += 3) {
+      freed(new Jolt.Float3(vertices[k], vertices[k + 1], vertices[k + 2]),
+        (p) => mesh.mTriangleVertices.push_back(p));
+    }
+    mesh.mIndexedTriangles.reserve(indices.length / 3);
+    for (let k = 0; k < indices.length; k += 3) {
+      freed(new Jolt.IndexedTriangle(indices[k], indices[k + 1], indices[k + 2], 0),
+        (t) => mesh.mIndexedTriangles.push_back(t));
+    }
+    mesh.Sanitize();
+    return created(mesh);
+  };
   // Turns a capsule of ours, along z, into one of theirs, along y: a quarter turn about x.
-  const alongZ = new Jolt.Quat(Math.SQRT1_2, 0, 0, Math.SQRT1_2);
+  const alongZ = [Math.SQRT1_2, 0, 0, Math.SQRT1_2];
+  const shared = [];
   const shapeOf = (shape) => {
     if (shape.kind === 'sphere') return new Jolt.SphereShape(shape.radius);
-    if (shape.kind === 'box') return new Jolt.BoxShape(vec(shape.half));
+    if (shape.kind === 'box') return withVec(shape.half, (half) => new Jolt.BoxShape(half));
     if (shape.kind === 'capsule') {
       const own = new Jolt.CapsuleShapeSettings(shape.half_length, shape.radius);
-      return new Jolt.RotatedTranslatedShapeSettings(vec([0, 0, 0]), alongZ, own).Create().Get();
+      return withVec([0, 0, 0], (p) => withQuat(alongZ,
+        (q) => created(new Jolt.RotatedTranslatedShapeSettings(p, q, own))));
     }
-    return new Jolt.PlaneShape(new Jolt.Plane(vec([0, 0, 1]), 0));
+    // Held for ever by one more reference, for all bodies that are still to come.
+    if (shape.kind === 'hull' || shape.kind === 'mesh') {
+      if (!shared[shape.data]) {
+        shared[shape.data] = (shape.kind === 'hull' ? hullOf : meshOf)(scene.data[shape.data]);
+        shared[shape.data].AddRef();
+      }
+      return shared[shape.data];
+    }
+    return new Jolt.PlaneShape(new Jolt.Plane(new Jolt.Vec3(0, 0, 1), 0));
+  };
+  const isIdentity = ({ position, rotation }) =>
+    position.every((x) => x === 0) && rotation[3] === 1;
+  const shapeOfBody = ({ parts }) => {
+    if (parts.length === 1 && isIdentity(parts[0].pose)) return shapeOf(parts[0].shape);
+    const compound = new Jolt.StaticCompoundShapeSettings();
+    for (const { shape, pose } of parts) {
+      withVec(pose.position, (p) => withQuat(pose.rotation,
+        (q) => compound.AddShapeShape(p, q, shapeOf(shape), 0)));
+    }
+    return created(compound);
   };
 
   // Who is joined does not meet: one table of the pairs of all bodies that have joints.
@@ -55,59 +121,86 @@ export async function make(scene, dt) {
   const filter = place.size > 0 ? new Jolt.GroupFilterTable(place.size) : null;
   for (const { a, b } of scene.joints) filter.DisableCollision(place.get(a), place.get(b));
 
-  const made = scene.bodies.map((body, i) => {
-    const moves = body.motion === 'dynamic';
-    const [x, y, z, w] = body.pose.rotation;
-    const creation = new Jolt.BodyCreationSettings(shapeOf(body.parts[0].shape), rvec(body.pose.position),
-      new Jolt.Quat(x, y, z, w), moves ? Jolt.EMotionType_Dynamic : Jolt.EMotionType_Static,
-      moves ? MOVING : STANDING);
+  const MOTIONS = {
+    dynamic: Jolt.EMotionType_Dynamic, kinematic: Jolt.EMotionType_Kinematic, fixed: Jolt.EMotionType_Static,
+  };
+  const made = [], joints = [];
+
+  function addBody(i) {
+    const body = scene.bodies[i];
+    const layer = body.motion === 'fixed' ? STANDING : MOVING;
+    const creation = withRVec(body.pose.position, (p) => withQuat(body.pose.rotation,
+      (q) => new Jolt.BodyCreationSettings(shapeOfBody(body), p, q, MOTIONS[body.motion], layer)));
     creation.mFriction = body.parts[0].friction;
     creation.mRestitution = body.parts[0].restitution;
     creation.mLinearDamping = creation.mAngularDamping = 0;
     creation.mAllowSleeping = false;
     if (place.has(i)) creation.mCollisionGroup = new Jolt.CollisionGroup(filter, 0, place.get(i));
-    if (moves) {
+    if (body.motion !== 'fixed') {
+      withVec(body.velocity, (v) => { creation.mLinearVelocity = v; });
+      withVec(body.spin, (w) => { creation.mAngularVelocity = w; });
+    }
+    if (body.motion === 'dynamic') {
       creation.mOverrideMassProperties = Jolt.EOverrideMassProperties_MassAndInertiaProvided;
       creation.mMassPropertiesOverride.mMass = body.mass;
-      creation.mMassPropertiesOverride.mInertia = Jolt.Mat44.prototype.sScaleVec3(vec(body.moments));
-      creation.mLinearVelocity = vec(body.velocity);
-      creation.mAngularVelocity = vec(body.spin);
+      withVec(body.moments, (m) => {
+        creation.mMassPropertiesOverride.mInertia = Jolt.Mat44.prototype.sScaleVec3(m);
+      });
     }
-    const one = bodies.CreateBody(creation);
-    bodies.AddBody(one.GetID(), Jolt.EActivation_Activate);
+    made[i] = bodies.CreateBody(creation);
+    bodies.AddBody(made[i].GetID(), Jolt.EActivation_Activate);
     Jolt.destroy(creation);
-    return one;
-  });
+  }
 
-  for (const joint of scene.joints) {
+  function addJoint(i) {
+    const joint = scene.joints[i];
     let creation;
     if (joint.kind === 'ball') {
       creation = new Jolt.PointConstraintSettings();
     } else {
       creation = new Jolt.HingeConstraintSettings();
-      creation.mHingeAxis1 = vec(joint.z_a);
-      creation.mHingeAxis2 = vec(joint.z_b);
-      creation.mNormalAxis1 = vec(joint.x_a);
-      creation.mNormalAxis2 = vec(joint.x_b);
+      withVec(joint.z_a, (z) => { creation.mHingeAxis1 = z; });
+      withVec(joint.z_b, (z) => { creation.mHingeAxis2 = z; });
+      withVec(joint.x_a, (x) => { creation.mNormalAxis1 = x; });
+      withVec(joint.x_b, (x) => { creation.mNormalAxis2 = x; });
       if (joint.lower !== null) {
         creation.mLimitsMin = joint.lower;
         creation.mLimitsMax = joint.upper;
       }
     }
     creation.mSpace = Jolt.EConstraintSpace_LocalToBodyCOM;
-    creation.mPoint1 = rvec(joint.in_a.position);
-    creation.mPoint2 = rvec(joint.in_b.position);
-    system.AddConstraint(creation.Create(made[joint.a], made[joint.b]));
+    withRVec(joint.in_a.position, (p) => { creation.mPoint1 = p; });
+    withRVec(joint.in_b.position, (p) => { creation.mPoint2 = p; });
+    joints[i] = creation.Create(made[joint.a], made[joint.b]);
+    system.AddConstraint(joints[i]);
   }
+
+  scene.bodies.forEach((body, i) => { if (body.from_start) addBody(i); });
+  scene.joints.forEach((joint, i) => { if (joint.from_start) addJoint(i); });
   system.OptimizeBroadPhase();
 
   return {
     settings: 'float; 10 velocity, 2 position iterations',
     step() { jolt.Step(dt, 1); },
     launch({ body, velocity, spin }) {
-      bodies.SetLinearAndAngularVelocity(made[body].GetID(), vec(velocity), vec(spin));
+      if (!made[body]) return;
+      withVec(velocity, (v) => withVec(spin,
+        (w) => bodies.SetLinearAndAngularVelocity(made[body].GetID(), v, w)));
+    },
+    addBody,
+    addJoint,
+    removeJoint(i) {
+      system.RemoveConstraint(joints[i]);
+      joints[i] = null;
+    },
+    removeBody(i) {
+      const id = made[i].GetID();
+      bodies.RemoveBody(id);
+      bodies.DestroyBody(id);
+      made[i] = null;
     },
     pose(i) {
+      if (!made[i]) return null;
       const p = made[i].GetPosition(), q = made[i].GetRotation();
       return { p: [p.GetX(), p.GetY(), p.GetZ()], q: [q.GetX(), q.GetY(), q.GetZ(), q.GetW()] };
     },

@@ -22,7 +22,7 @@ Figures figures_of(const Simulation& simulation) {
   f.seconds = simulation.time();
   f.steps = simulation.steps();
   f.step = simulation.times().figures();
-  f.standing = scenes::measure(simulation.scene(), simulation.scene_poses());
+  f.standing = scenes::measure(simulation.scene(), simulation.scene_poses(), f.seconds);
   f.hash = simulation.world().state_hash();
   return f;
 }

@@ -13,14 +13,15 @@ constexpr std::size_t kTimesKept = 100'000;  // 100 s at 1 kHz, in 0.8 MB
 constexpr double kReach = 1e6;               // of a pick [m]
 constexpr double kDensity = 1000.0;          // of what is thrown [kg/m^3]
 
-Piece piece_of(const scenes::Body& body, vp::BodyId id) {
+Piece piece_of(const scenes::Body& body, vp::BodyId id, scenes::EngineShapes& shapes) {
   Piece piece{id, body.motion, {}, {}};
   if (body.motion == scenes::Motion::dynamic) {
     const scenes::Mass mass = scenes::mass_of(body);
     piece.inertia = vp::Inertia(mass.mass, mass.moments);
   }
   for (const scenes::Part& part : body.parts) {
-    piece.parts.push_back({scenes::engine_shape(part.shape), part.T_body_shape});
+    if (auto shape = shapes.of(part.shape))
+      piece.parts.push_back({*std::move(shape), part.T_body_shape});
   }
   return piece;
 }
@@ -50,17 +51,28 @@ void Simulation::watch_stages() {
 void Simulation::collect_pieces() {
   pieces_.clear();
   for (std::size_t i = 0; i < world_.bodies().size(); ++i) {
-    pieces_.push_back(piece_of(scene().bodies[i], world_.bodies()[i]));
+    pieces_.push_back(piece_of(scene().bodies[i], world_.bodies()[i], world_.shapes()));
   }
+  happened_ = world_.happened();
   typical_ = {};
-  if (moving() == 0) return;
-  const double share = 1.0 / static_cast<double>(moving());
+  const auto dynamic = std::count_if(pieces_.begin(), pieces_.end(), [](const Piece& piece) {
+    return piece.motion == scenes::Motion::dynamic;
+  });
+  if (dynamic == 0) return;
+  const double share = 1.0 / static_cast<double>(dynamic);
   typical_ = {0.0, 0.0};
   for (const Piece& piece : pieces_) {
     if (piece.motion != scenes::Motion::dynamic) continue;
     typical_.mass += share * piece.inertia.mass();
     typical_.size += share * radius_of(piece.inertia);
   }
+}
+
+void Simulation::follow_events() {
+  if (happened_ == world_.happened()) return;
+  happened_ = world_.happened();
+  for (std::size_t i = 0; i < world_.bodies().size(); ++i) pieces_[i].body = world_.bodies()[i];
+  if (grip_ && !world().contains(grip_->body)) grip_.reset();
 }
 
 vp::Expected<Simulation> Simulation::open(std::string_view name, int rate, const Clocks& clocks) {
@@ -86,9 +98,9 @@ vp::Expected<void> Simulation::reset() {
 }
 
 std::size_t Simulation::moving() const {
-  return static_cast<std::size_t>(
-      std::count_if(pieces_.begin(), pieces_.end(),
-                    [](const Piece& piece) { return piece.motion == scenes::Motion::dynamic; }));
+  return static_cast<std::size_t>(std::count_if(
+      pieces_.begin(), pieces_.end(),
+      [](const Piece& piece) { return piece.body && piece.motion == scenes::Motion::dynamic; }));
 }
 
 void Simulation::bounds(vp::Vec3& low, vp::Vec3& high) const {
@@ -98,7 +110,7 @@ void Simulation::bounds(vp::Vec3& low, vp::Vec3& high) const {
   high = -low;
   const bool any = moving() > 0;
   for (const Piece& piece : pieces_) {
-    if (any && piece.motion != scenes::Motion::dynamic) continue;
+    if (!piece.body || (any && piece.motion != scenes::Motion::dynamic)) continue;
     const vp::Vec3 p = world().pose(piece.body).position();
     const double around = kAround * (any ? radius_of(piece.inertia) : 1.0);
     for (int i = 0; i < 3; ++i) {
@@ -122,6 +134,7 @@ vp::Expected<void> Simulation::step() {
   if (!status) return tl::make_unexpected(status.error());
   status_ |= *status;
   ++steps_;
+  follow_events();
   average_stages();
   return {};
 }

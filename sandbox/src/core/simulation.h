@@ -23,7 +23,7 @@ struct Piece {
     vp::Shape shape;
     vp::SE3 T_body_part;
   };
-  vp::BodyId body;
+  vp::BodyId body;  // null: it does not exist now
   scenes::Motion motion;
   vp::Inertia inertia;  // of a dynamic one
   std::vector<Part> parts;
@@ -51,7 +51,7 @@ class Simulation {
   std::size_t steps() const { return steps_; }   // since the start
   // By the user data of bodies and their colliders: those of the scene, then those thrown.
   std::span<const Piece> pieces() const { return pieces_; }
-  std::size_t moving() const;  // number of dynamic ones
+  std::size_t moving() const;  // number of dynamic ones that exist
   std::vector<vp::SE3> scene_poses() const { return world_.poses(); }
   // An average moving body of the scene: half its size [m], its mass [kg].
   struct Typical {
@@ -91,6 +91,7 @@ class Simulation {
 
  private:
   void collect_pieces();
+  void follow_events();
   void watch_stages();
   void average_stages();
 
@@ -101,6 +102,7 @@ class Simulation {
   std::array<double, vp::kStages.size()> stage_us_{};
   int stages_averaged_ = 0;
   std::vector<Piece> pieces_;
+  std::size_t happened_ = 0;  // of the scene's events, when the pieces' bodies were last asked for
   Typical typical_;
   StepTimes times_;
   vp::StepStatus status_;

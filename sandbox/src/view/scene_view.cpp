@@ -160,10 +160,11 @@ void SceneView::gather(const Simulation& simulation, const OrbitCamera& camera,
   std::vector<vp::Vec3> watched;
   const std::size_t stride = 1 + pieces.size() / kWatched;
   for (std::size_t i = 0; i < pieces.size(); i += stride) {
-    if (pieces[i].motion == scenes::Motion::dynamic)
+    if (pieces[i].body && pieces[i].motion == scenes::Motion::dynamic)
       watched.push_back(simulation.world().pose(pieces[i].body).position());
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!pieces[i].body) continue;
     const vp::SE3 T = simulation.world().pose(pieces[i].body);
     const glm::vec4 colour = colour_of(pieces[i], i, simulation, options.colouring);
     for (const Piece::Part& part : pieces[i].parts) {
