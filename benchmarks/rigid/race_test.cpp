@@ -184,16 +184,26 @@ TEST_F(Race, GoesOnWithTheOthers) {
   EXPECT_EQ(figures[1].steps_us.size(), 560u);  // 600 less the first of each of 40 turns
   EXPECT_GT(figures[1].p99_us, figures[1].median_us);
   EXPECT_GT(figures[1].rss_mb, 1.0);
+  EXPECT_GE(figures[1].fastest, 0.0);
+  EXPECT_LT(figures[1].fastest, 1e-3);  // [m/s]: the tower stands
   EXPECT_EQ(figures[1].standing.of, 10);
   const std::string rows = csv(figures);
   EXPECT_NE(rows.find("tower10@60,Bullet,missing,crashed: Killed,"), std::string::npos);
   EXPECT_NE(rows.find("tower10@60,Virtual Physics,step_median_us,"), std::string::npos);
 }
 
+TEST_F(Race, LeavesHigherRatesOutWhereItIsTold) {
+  plan_.rates = {60, 240};
+  EXPECT_EQ(run().size(), 2u);
+  plan_.at_60_alone = {"tower10"};
+  EXPECT_EQ(run().size(), 1u);
+}
+
 TEST_F(Race, TimesNobodyWhoHasTheScenesWrong) {
   // Stays where it is.
   script("rigid-bullet",
-         "echo ready; read turn; (echo simulated 1; echo rss_mb 1; echo steps 0; echo poses " +
+         "echo ready; read turn; (echo simulated 1; echo rss_mb 1; echo fastest -1; echo steps 0; "
+         "echo poses " +
              std::to_string(scenes::touchstone().scene.bodies.size()) +
              "; for i in 1 2 3 4 5 6 7 8; do echo 1 0 0 0 1 0 0 0 1 0 0 0; done; echo whole) >$4;"
              " echo end finished\n");

@@ -164,8 +164,8 @@ Scene pile(int count, Pour what) {
 // A body of 1 m fits between the paddle's ends and the walls, and below the lowest layer the
 // paddle.
 Scene stirred_pile(int count) {
-  constexpr double kHalfHeight = 1.0, kClear = 0.05, kHalfWidth = 0.2, kToWall = 2.0;  // [m]
-  constexpr double kSpin = 1.0;                                                        // [rad/s]
+  constexpr double kHalfHeight = 1.0, kClear = 0.05, kHalfWidth = 0.2, kToWall = 2.5;  // [m]
+  constexpr double kSpin = 0.5;                                                        // [rad/s]
   Scene scene = poured_pile(count, Pour::mixed, 2.0 * kHalfHeight + kClear + kPourHeight);
   Body paddle = kinematic_box({0.5 * pit_side(count) - kToWall, kHalfWidth, kHalfHeight},
                               {0.0, 0.0, kHalfHeight + kClear});
