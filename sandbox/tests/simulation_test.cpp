@@ -69,6 +69,41 @@ TEST(SandboxSimulation, AnUnknownSceneIsToldWithAllThereAre) {
     EXPECT_NE(none.error().message.find(entry.name), std::string::npos) << entry.name;
 }
 
+TEST(SandboxSimulation, BodiesThatComeAndGoAreFollowed) {
+  scenes::Scene scene;
+  scene.name = "two balls";
+  scene.gravity = {};
+  for (const double from : {0.0, 0.1}) {
+    scenes::Body ball;
+    ball.T_world_body = scenes::SE3(vp::Vec3{30.0 * from, 0.0, 0.0});
+    ball.parts.push_back({scenes::Sphere{1.0}, {}, 1000.0, {}});
+    ball.from = from;
+    ball.until = from + 0.2;
+    scene.bodies.push_back(ball);
+  }
+  Simulation simulation(must(scenes::SceneWorld::create(scene)), 100, kStopped);
+  const auto there = [&](int i) {
+    return static_cast<bool>(simulation.pieces()[static_cast<std::size_t>(i)].body);
+  };
+  EXPECT_TRUE(there(0) && !there(1));
+  EXPECT_EQ(simulation.moving(), 1u);
+  ASSERT_TRUE(simulation.grab({{0, 0, 9}, {0, 0, -1}}));
+  for (int i = 0; i < 15; ++i) must(simulation.step());
+  EXPECT_TRUE(there(0) && there(1));
+  EXPECT_EQ(simulation.moving(), 2u);
+  EXPECT_TRUE(simulation.grip());
+  for (int i = 0; i < 10; ++i) must(simulation.step());
+  EXPECT_TRUE(!there(0) && there(1));
+  EXPECT_FALSE(simulation.grip());  // what is gone is not held
+  for (int i = 0; i < 10; ++i) must(simulation.step());
+  EXPECT_EQ(simulation.moving(), 0u);
+  vp::Vec3 low, high;
+  simulation.bounds(low, high);
+  EXPECT_LT(low.x, high.x);
+  must(simulation.reset());
+  EXPECT_TRUE(there(0) && !there(1));
+}
+
 TEST(SandboxSimulation, StepsOnceWhenAskedForOne) {
   Simulation simulation = opened("tower10", 240);
   for (std::size_t i = 1; i <= 5; ++i) {
