@@ -168,13 +168,15 @@ double hull_penetration(const Polyhedron& hull, const SE3& T, const Core& core) 
 
 double mesh_penetration(const MeshGrid& grid, const SE3& T_mesh_shape, const Shape& shape) {
   if (const auto* hull = std::get_if<Hull>(&shape)) {
-    Probe probe{hull->data->points, 0.0, 0.0};
-    for (const Vec3& p : probe.points) probe.reach = std::max(probe.reach, norm(p));
+    Probe probe{hull->data->points, 0.0, {}, 0.0};
+    for (const Vec3& p : probe.points) probe.centre += p;
+    probe.centre = (1.0 / static_cast<double>(probe.points.size())) * probe.centre;
+    for (const Vec3& p : probe.points) probe.reach = std::max(probe.reach, norm(p - probe.centre));
     return grid.penetration(probe, T_mesh_shape,
                             [&](const Vec3& v) { return depth_in(*hull->data, v); });
   }
   const Core core = core_of(shape, SE3{});
-  Probe probe{{}, core.radius, norm(core.half) + core.radius};
+  Probe probe{{}, core.radius, {}, norm(core.half) + core.radius};
   if (!core.round()) {
     probe.points = box_polyhedron(core.half).points;
   } else {

@@ -26,7 +26,8 @@ double hulls_penetration(const Polyhedron& a, const SE3& T_world_a, const Polyhe
 struct Probe {
   std::vector<Vec3> points;  // in the shape's frame
   double radius = 0.0;
-  double reach = 0.0;  // of the shape from its origin [m]
+  Vec3 centre;         // of a ball around the shape, in its frame
+  double reach = 0.0;  // that ball's radius [m]
 };
 
 // Triangles by the squares of a grid over x and y in which their bounds are.
@@ -42,7 +43,7 @@ class MeshGrid {
     for (const Vec3& p : probe.points) {
       deepest = std::max(deepest, probe.radius + behind(T_mesh_shape * p, probe.reach));
     }
-    const Vec3 at = T_mesh_shape.position(), around{probe.reach, probe.reach, probe.reach};
+    const Vec3 at = T_mesh_shape * probe.centre, around{probe.reach, probe.reach, probe.reach};
     visit(vertices_, at - around, at + around, [&](std::uint32_t i) {
       deepest = std::max(deepest, depth_of(inverse_times(T_mesh_shape, mesh_->vertices[i])));
     });
@@ -64,7 +65,8 @@ class MeshGrid {
   Cells sorted(std::size_t count, const BoundsOf& bounds_of) const;
   template <class F>
   void visit(const Cells& cells, const Vec3& lower, const Vec3& upper, const F& f) const {
-    if (upper.x < lower_.x || upper.y < lower_.y || lower.x > upper_.x || lower.y > upper_.y)
+    if (upper.x < lower_.x || upper.y < lower_.y || upper.z < lower_.z || lower.x > upper_.x ||
+        lower.y > upper_.y || lower.z > upper_.z)
       return;
     for (int j = row(lower.y); j <= row(upper.y); ++j) {
       for (int i = column(lower.x); i <= column(upper.x); ++i) {

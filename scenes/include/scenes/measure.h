@@ -14,8 +14,8 @@ namespace scenes {
 // the triangles around. Of a Hull and another one or a Box: the deepest corner of the one in the
 // other, by the face that is nearest; where only edges cross, nothing is seen. Of a Mesh: how far
 // corners, or balls at centres and ends of axes, are behind the triangle that is nearest, if that
-// is no farther than the other shape extends from its origin, and the mesh's vertices in the other
-// shape.
+// is no farther than the radius of a ball around the other shape; and how deep the mesh's vertices
+// are in the other shape.
 double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b);
 
 struct Standing {
