@@ -55,19 +55,19 @@ int axis_from_face(int face) {
 }
 
 // Whether what separated them last time still does.
-bool still_apart(const Boxes& boxes, double margin, const CorePair& pair, const PairCache& cache) {
+double gap_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
   switch (cache.feature) {
     case PairCache::face_of_a:
-      return cache.i < 6 && boxes.gap_of_a(axis_from_face(cache.i)) > margin;
+      return cache.i < 6 ? boxes.gap_of_a(axis_from_face(cache.i)) : 0.0;
     case PairCache::face_of_b:
-      return cache.i < 6 && boxes.gap_of_b(axis_from_face(cache.i)) > margin;
+      return cache.i < 6 ? boxes.gap_of_b(axis_from_face(cache.i)) : 0.0;
     case PairCache::edges: {
-      if (cache.i >= 3 || cache.j >= 3) return false;
+      if (cache.i >= 3 || cache.j >= 3) return 0.0;
       const double sine2 = boxes.squared_sine(cache.i, cache.j);
-      return sine2 > kParallel && boxes.edge_gap(cache.i, cache.j) > margin * std::sqrt(sine2);
+      return sine2 > kParallel ? boxes.edge_gap(cache.i, cache.j) / std::sqrt(sine2) : 0.0;
     }
     default:
-      return gap_along(pair, first_direction(pair, cache)) > margin;
+      return gap_along(pair, first_direction(pair, cache));
   }
 }
 
@@ -158,7 +158,8 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
 
 void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
   const Boxes boxes(pair);
-  if (still_apart(boxes, margin, pair, cache)) return;
+  m.apart = gap_along_last(boxes, pair, cache);
+  if (m.apart > margin) return;
   const ContactQuery query(pair, margin);
   FaceAxis face;
   const bool near = find_best_face(query, boxes, face);
@@ -170,6 +171,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
   if (!by_edges) {
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
+    m.apart = face.gap;
     if (!near) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
@@ -181,6 +183,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
     const bool within = place_edges(pair, boxes, edge);
     if (edge.axis.gap > margin || edge.axis.gap <= 0.0 || within) {
       remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
+      m.apart = edge.axis.gap;
       return add_contact_along(query, edge.axis, m);
     }
   }

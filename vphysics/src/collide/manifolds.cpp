@@ -8,6 +8,7 @@
 #include "collide/height_data.h"
 #include "collide/mesh_data.h"
 #include "collide/mixed_name.h"
+#include "collide/support.h"
 #include "collide/surface_manifolds.h"
 
 namespace vp::collide {
@@ -20,9 +21,9 @@ void to_world(const SE3& T, Manifold& m) {
 
 class Finder {
  public:
-  Finder(double margin, std::span<const KnownPart> known, ManifoldScratch& scratch,
+  Finder(const SearchMargin& margin, std::span<const KnownPart> known, ManifoldScratch& scratch,
          std::vector<SubManifold>& out)
-      : margin_(margin), known_(known), scratch_(scratch), out_(out) {}
+      : search_(margin), margin_(margin.largest), known_(known), scratch_(scratch), out_(out) {}
 
   // a has no parts that are compounds; neither has b.
   void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
@@ -55,6 +56,9 @@ class Finder {
       const std::size_t first = out_.size();
       const SE3 T = T_of * compound.parts[i].T_compound_part;
       const Geometry& part = compound.geometries[i];
+      const double margin_of_all = margin_;
+      margin_ = std::min(
+          margin_, search_.within(T * core_middle(part), core_reach(part) + core_radius(part)));
       (swapped ? sub_b_ : sub_a_) = i;
       PairCache cache = known_cache();
       if (other.kind == Kind::compound) {
@@ -64,6 +68,7 @@ class Finder {
       } else {
         find(part, T, other, T_other, cache);
       }
+      margin_ = margin_of_all;
       for (std::size_t m = first; m < out_.size(); ++m) {
         (swapped ? out_[m].sub_b : out_[m].sub_a) = i;
         for (ManifoldPoint& p : std::span(out_[m].manifold.points)
@@ -95,7 +100,8 @@ class Finder {
     }
   }
 
-  double margin_;
+  const SearchMargin& search_;
+  double margin_;  // of the parts that are looked at
   std::span<const KnownPart> known_;
   ManifoldScratch& scratch_;
   std::vector<SubManifold>& out_;
@@ -105,7 +111,7 @@ class Finder {
 }  // namespace
 
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                    double margin, PairCache& cache, std::span<const KnownPart> known,
+                    const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
                     ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
   Finder finder(margin, known, scratch, manifolds);
   if (a.kind == Kind::compound) {
@@ -115,6 +121,30 @@ void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const 
   } else {
     finder.find(a, T_a, b, T_b, cache);
   }
+}
+
+double distance_of_parts(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                         CastScratch& scratch) {
+  const bool of_a = a.kind == Kind::compound || is_surface(a);
+  const Geometry &parts = of_a ? a : b, &other = of_a ? b : a;
+  if (other.kind == Kind::half_space) return 0.0;
+  const Bounds box = bounds_of(other, of_a ? relative_pose(T_a, T_b) : relative_pose(T_b, T_a));
+  double distance = 0.0;
+  const auto first = [&](std::uint32_t, float near) {
+    distance = static_cast<double>(near);
+    return -1.0;
+  };
+  if (parts.kind == Kind::compound) {
+    parts.compound->tree.nearest(box, {1.0, 1.0, 1.0}, kFar, scratch, first);
+  } else if (parts.kind == Kind::mesh) {
+    const Vec3& scale = parts.half;
+    const auto unscaled = [&](const Vec3& p) {
+      return Vec3{p.x / scale.x, p.y / scale.y, p.z / scale.z};
+    };
+    parts.mesh->tree.nearest({unscaled(box.lower), unscaled(box.upper)}, scale, kFar, scratch,
+                             first);
+  }
+  return distance;
 }
 
 Kind kind_of_part(const Geometry& g, std::uint32_t sub) {

@@ -1,6 +1,7 @@
 // Manifolds of any two shapes: one of two convex ones, any number where one is made of parts.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -53,17 +54,46 @@ struct ManifoldScratch {
   }
 };
 
+// How far apart [m] what is looked for may be: so far that what closes in until the next look has
+// been found before.
+struct SearchMargin {
+  // The same wherever they meet.
+  SearchMargin(double everywhere) : largest(everywhere), at_rest(everywhere) {}
+  // b goes against a by displacement + turn x (point - about), world frame [m], [rad].
+  SearchMargin(double largest_of_all, double at_rest_of_all, const Vec3& displacement_of_b,
+               const Vec3& turn_of_b, const Vec3& about_point)
+      : largest(largest_of_all),
+        at_rest(at_rest_of_all),
+        displacement(displacement_of_b),
+        turn(turn_of_b),
+        about(about_point) {}
+
+  // Where they meet within a ball, world frame.
+  double within(const Vec3& centre, double radius) const {
+    const double moved = norm(displacement + cross(turn, centre - about)) + radius * norm(turn);
+    return std::min(largest, at_rest + moved);
+  }
+
+  double largest, at_rest;
+  Vec3 displacement, turn, about;
+};
+
 // More normals than that are never told apart of a surface and one convex shape.
 inline constexpr std::size_t kMostClusters = 12;
 
-// Appends the manifolds with points of a separation of at most margin, in an order that depends on
-// the shapes and poses alone. Those of triangles that lie in one plane, as far as 2 degrees allow,
-// are one. Features have names that no two manifolds of the pair share unless by chance, one in
-// 2^32. cache is used where both are convex, known, in any order, where they have parts. Two
-// surfaces, or a surface and a half-space, have none.
+// Appends the manifolds with points of a separation of at most margin, of a compound's parts each
+// its own, in an order that depends on the shapes and poses alone. Those of triangles that lie in
+// one plane, as far as 2 degrees allow, are one. Features have names that no two manifolds of the
+// pair share unless by chance, one in 2^32. cache is used where both are convex, known, in any
+// order, where they have parts. Two surfaces, or a surface and a half-space, have none.
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                    double margin, PairCache& cache, std::span<const KnownPart> known,
+                    const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
                     ManifoldScratch& scratch, std::vector<SubManifold>& manifolds);
+
+// No more than the distance of two shapes of which at least one has parts: that of the bounds of
+// the nearest part from the bounds of the other shape [m]. 0 where that is not known cheaply.
+double distance_of_parts(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
+                         CastScratch& scratch);
 
 // Whether a pair has a manifold for each part, and not one.
 inline bool has_parts(const Geometry& a, const Geometry& b) {

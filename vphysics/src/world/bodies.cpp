@@ -17,8 +17,9 @@ namespace {
 // An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
 // overlap more neighbours.
 constexpr double kMargin = 0.1;
-// A row's way is started anew beyond this [m or rad], so that single precision tells small steps.
-constexpr float kFarWay = 0.0625f;
+// A row's way is started anew beyond this [m or rad], and its displacement beyond so many more
+// steps of it, so that single precision tells small steps.
+constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f;
 
 // Half a margin of the least collider is surely within all enlarged bounds. Sums of components, no
 // less than the lengths, will do.
@@ -163,14 +164,38 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
     put(row.rate + 3, gyroscopic_acceleration(body, dt));
   }
   std::copy_n(way, 6, start_ways[index].begin());
-  return std::any_of(way, way + 6, [](float x) { return std::fabs(x) > kFarWay; });
+  const float* v = row.velocity;
+  const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+  const float far = kFarWay + kFarSteps * static_cast<float>(dt) * speed;
+  const auto beyond = [](float limit) { return [limit](float x) { return std::fabs(x) > limit; }; };
+  return std::any_of(way, way + 3, beyond(far)) || std::any_of(way + 3, way + 6, beyond(kFarWay));
 }
 
+// Contacts that have points are looked at again; of the others the clearance becomes less by what
+// has been used of it.
 void World::Impl::start_way_anew(std::uint32_t index) {
+  const auto for_near = [&](const auto& f) {
+    for (std::uint32_t e = bodies[index].first_edge; e != kNone;
+         e = contact_pool[e / 2].next[e % 2]) {
+      const Contact& c = contact_pool[e / 2];
+      if (!c.stale && !c.parked && !c.of_link && c.place.points == 0) f(e / 2);
+    }
+  };
+  for_near([&](std::uint32_t contact) { use_clearance(contact_pool[contact]); });
   std::fill_n(body_rows[index + 1].way, 6, 0.0f);
   std::fill_n(start_ways[index].begin(), 6, 0.0f);
   std::fill_n(bodies[index].bounded_at, 6, 1e9f);
-  mark_contacts_stale(index);
+  for_near([&](std::uint32_t contact) {
+    const Contact& c = contact_pool[contact];
+    const float left =
+        near_list.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)];
+    left > 0.0f ? set_clearance(c, static_cast<double>(left)) : mark_stale(contact);
+  });
+  for (std::uint32_t e = bodies[index].first_edge; e != kNone;
+       e = contact_pool[e / 2].next[e % 2]) {
+    const Contact& c = contact_pool[e / 2];
+    if (c.place.points > 0 || c.sensor || c.of_link || c.parked) mark_stale(e / 2);
+  }
 }
 
 void World::Impl::load_rows(double dt) {

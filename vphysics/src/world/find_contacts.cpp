@@ -49,6 +49,13 @@ struct Held {
   Vec3 friction, moment;
 };
 
+// What one of the two has gone by: at the centre of the ball in which they meet, and how far that
+// may be off.
+struct Gone {
+  Vec3 displacement, turn;
+  double bow;
+};
+
 template <int P>
 Held held_in(const solve::ContactBlock<P>& block, int lane) {
   Held impulses;
@@ -239,6 +246,25 @@ void World::Impl::unset_near(std::uint32_t index) {
   if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
 }
 
+// Takes from it how far the two have gone against each other since they were looked at, as
+// find_closer counts it.
+void World::Impl::use_clearance(const Contact& c) {
+  solve::NearBlock& block = near_list.block(c.near_index);
+  const int lane = solve::NearList::lane(c.near_index);
+  const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
+                        const solve::Field3& turn, const solve::Field3& arm) {
+    const float* way = body_rows[rows.lane[lane]].way;
+    const Vec3 r = at(arm, lane), by = vector_of(way + 3) - at(turn, lane);
+    return Gone{vector_of(way) - at(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+  };
+  const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
+  const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
+  const Vec3 turn = static_cast<double>(block.radius_b.lane[lane]) * b.turn -
+                    static_cast<double>(block.radius_a.lane[lane]) * a.turn;
+  block.clearance.lane[lane] -=
+      static_cast<float>(norm(b.displacement - a.displacement) + norm(turn) + a.bow + b.bow);
+}
+
 Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
   const auto is_ball = [](const Collider& c) { return c.geometry.kind == collide::Kind::sphere; };
   const Collider& smaller = a.radius <= b.radius ? a : b;
@@ -341,7 +367,7 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
     const Contact& c = contact_pool[index];
     if (!c.alive || !c.stale || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
-    looked.push_back({index, {}, 0.0, 0.0});
+    looked.push_back({index, {}, 0.0, 0.0, 0.0});
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
   }
   in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
@@ -365,13 +391,19 @@ void World::Impl::look_at(Looked& found, double dt) {
   Contact& c = contact_pool[found.contact];
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const double leeway = kSlide * smaller_size(a, b);
-  found.margin = c.sensor ? 0.0 : desc.contact_slop + leeway + approach_speed(a, b) * dt;
-  found.clearance = found.margin - desc.contact_slop;
+  found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
+  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach_speed(a, b) * dt;
+  // A compound's slower parts are looked for within less.
+  const Collider& smaller = a.radius <= b.radius ? a : b;
+  const bool in_parts = smaller.geometry.kind == collide::Kind::compound;
+  found.clearance = (in_parts ? found.margin_at_rest : found.margin) - desc.contact_slop;
   found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {
     found.clearance = kNeverMeets;
   } else if (!c.has_parts) {
     find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
+    if (found.manifold.count == 0)
+      found.clearance = std::max(found.clearance, found.manifold.apart - desc.contact_slop);
   }
 }
 
@@ -385,7 +417,7 @@ void World::Impl::take_over(const Looked& found) {
     if (apart) {
       remove_parts(index);
     } else {
-      find_parts(index, found.margin);
+      find_parts(found);
     }
   } else if (contact_pool[index].sensor) {
     const bool meets = found.manifold.count > 0;

@@ -189,7 +189,8 @@ struct Velocity {
 struct Looked {
   std::uint32_t contact;
   collide::Manifold manifold;
-  double margin, clearance;  // within which it was looked for; free of contact for so far [m]
+  // Within which it was looked for, and would be if nothing moved; free of contact for so far [m].
+  double margin, margin_at_rest, clearance;
 };
 
 inline constexpr std::size_t kMostRegions = 4096;
@@ -473,6 +474,7 @@ struct World::Impl {
   void take_out_of_lane(std::uint32_t contact);
   void set_near(std::uint32_t contact, double clearance);
   void set_clearance(const Contact& contact, double clearance);
+  void use_clearance(const Contact& contact);
   void unset_near(std::uint32_t contact);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   void want_posed(std::uint32_t body);
@@ -518,7 +520,7 @@ struct World::Impl {
   void note_limits_of_surfaces();
 
   // part_contacts.cpp
-  void find_parts(std::uint32_t whole, double margin);
+  void find_parts(const Looked& look);
   std::uint32_t claim_part(const collide::SubManifold& found);
   void remove_parts(std::uint32_t whole);
   void forget_part(std::uint32_t part);

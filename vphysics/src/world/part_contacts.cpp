@@ -30,8 +30,8 @@ void put_deepest_first(collide::Manifold& m) {
 
 }  // namespace
 
-// Precondition: margin is that within which the narrow phase finds points.
-void World::Impl::find_parts(std::uint32_t index, double margin) {
+void World::Impl::find_parts(const Looked& look) {
+  const std::uint32_t index = look.contact;
   const Collider &a = colliders[contact_pool[index].a], &b = colliders[contact_pool[index].b];
   const std::uint32_t first = contact_pool[index].first_part;
   if (first != kNone && contact_pool[first].parked) {
@@ -46,6 +46,11 @@ void World::Impl::find_parts(std::uint32_t index, double margin) {
     old_parts.push_back(p);
   }
   manifolds.clear();
+  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+  const Vec3 about = reference_point(body_b), arm = about - reference_point(body_a);
+  const collide::SearchMargin margin(look.margin, look.margin_at_rest,
+                                     dt_now * (body_b.v - body_a.v - cross(body_a.w, arm)),
+                                     dt_now * (body_b.w - body_a.w), about);
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, contact_pool[index].cache, known_parts,
                  manifold_scratch, manifolds);
   for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
@@ -54,7 +59,12 @@ void World::Impl::find_parts(std::uint32_t index, double margin) {
     if (touches != contact_pool[index].touching) report_touch(index, touches);
     return;
   }
-  set_clearance(contact_pool[index], margin - desc.contact_slop);
+  double clearance = look.clearance;
+  if (manifolds.empty()) {
+    clearance = std::max(clearance,
+                         distance_of_parts(a.geometry, a.T, b.geometry, b.T, parts_scratch.cast));
+  }
+  set_clearance(contact_pool[index], clearance);
   claimed_parts.clear();
   for (const collide::SubManifold& found : manifolds) claimed_parts.push_back(claim_part(found));
   for (const std::uint32_t p : old_parts) {
