@@ -1,6 +1,7 @@
 // Pieces that several scenes are made of.
 #pragma once
 
+#include <cmath>
 #include <utility>
 
 #include "scenes/scene.h"
@@ -42,7 +43,7 @@ Hull prism(double radius, double bottom, double height, int sides);
 inline constexpr double kKnots = 60.0;  // [1/s]: at 60 Hz a chord is a step
 template <class Path>
 void follow(Scene& scene, int body, const Path& path) {
-  const int knots = static_cast<int>(scene.seconds * kKnots + 0.5);
+  const int knots = static_cast<int>(std::lround(scene.seconds * kKnots));
   for (int k = 0; k < knots; ++k) {
     const Vec3 velocity = kKnots * (path((k + 1) / kKnots) - path(k / kKnots));
     if (k == 0) scene.bodies[static_cast<std::size_t>(body)].velocity = velocity;

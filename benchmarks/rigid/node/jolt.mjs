@@ -6,6 +6,9 @@ import load from 'jolt-physics';
 // about three for each body.
 const MOST_CONTACTS = 21000;
 
+// In its memory of 128 MB a mesh of more cannot be built; it is given as several.
+const MOST_TRIANGLES = 150000;
+
 const STANDING = 0, MOVING = 1;  // object layers, and broad phase layers
 
 function layers(Jolt, settings) {
@@ -67,20 +70,33 @@ export async function make(scene, dt) {
     }
     return created(hull);
   };
-  const meshOf = ({ vertices, indices }) => {
-    const mesh = new Jolt.MeshShapeSettings();
-    mesh.mTriangleVertices.reserve(vertices.length / 3);
-    for (let k = 0; k < vertices.length; k += 3) {
-      freed(new Jolt.Float3(vertices[k], vertices[k + 1], vertices[k + 2]),
-        (p) => mesh.mTriangleVertices.push_back(p));
+  // Corners from..to, with the vertices that they name.
+  const pieceOf = ({ vertices, indices }, from, to) => {
+    const mesh = new Jolt.MeshShapeSettings(), names = new Map();
+    for (let k = from; k < to; ++k) {
+      const v = indices[k];
+      if (names.has(v)) continue;
+      names.set(v, names.size);
+      freed(new Jolt.Float3(...vertices.slice(3 * v, 3 * v + 3)), (p) => mesh.mTriangleVertices.push_back(p));
     }
-    mesh.mIndexedTriangles.reserve(indices.length / 3);
-    for (let k = 0; k < indices.length; k += 3) {
-      freed(new Jolt.IndexedTriangle(indices[k], indices[k + 1], indices[k + 2], 0),
-        (t) => mesh.mIndexedTriangles.push_back(t));
+    for (let k = from; k < to; k += 3) {
+      const [a, b, c] = indices.slice(k, k + 3).map((v) => names.get(v));
+      freed(new Jolt.IndexedTriangle(a, b, c, 0), (t) => mesh.mIndexedTriangles.push_back(t));
     }
-    mesh.Sanitize();
-    return created(mesh);
+    const made = created(mesh);
+    made.AddRef();
+    Jolt.destroy(mesh);
+    return made;
+  };
+  const meshOf = (data) => {
+    const count = data.indices.length;
+    if (count <= 3 * MOST_TRIANGLES) return pieceOf(data, 0, count);
+    const compound = new Jolt.StaticCompoundShapeSettings();
+    for (let from = 0; from < count; from += 3 * MOST_TRIANGLES) {
+      const piece = pieceOf(data, from, Math.min(from + 3 * MOST_TRIANGLES, count));
+      withVec([0, 0, 0], (p) => withQuat([0, 0, 0, 1], (q) => compound.AddShapeShape(p, q, piece, 0)));
+    }
+    return created(compound);
   };
   // Turns a capsule of ours, along z, into one of theirs, along y: a quarter turn about x.
   const alongZ = [Math.SQRT1_2, 0, 0, Math.SQRT1_2];
