@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "agreement.h"
 #include "load.h"
 #include "measure.h"
 #include "report.h"
+#include "scene_json.h"
 #include "scenes/touchstone.h"
 
 namespace rigid {
@@ -255,6 +257,35 @@ TEST(Goals, OfGrowthCountTheHeapThatCameToNoEnd) {
   heaps[2].settled_us = 0.0;
   EXPECT_EQ(csv(heaps).find("heaps@60,Virtual Physics"), std::string::npos);
   EXPECT_NE(csv(heaps).find("heaps@60,goal,growth_exponent,1.11,\n"), std::string::npos);
+}
+
+std::string json_of(const std::string& name) {
+  const auto file = std::filesystem::temp_directory_path() / ("rigid-race-" + name + ".json");
+  EXPECT_TRUE(write_json(load(name).value(), file.string()));
+  std::ifstream in(file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::filesystem::remove(file);
+  return text;
+}
+int count_of(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+TEST(SceneJson, WritesWhatBodiesShareOnce) {
+  const std::string trees = json_of("trees100");
+  EXPECT_EQ(count_of(trees, "\"points\""), 22);
+  EXPECT_EQ(count_of(trees, "\"vertices\""), 1);
+  EXPECT_EQ(count_of(trees, "\"kind\":\"hull\""), 22 * 50);
+}
+
+TEST(SceneJson, TellsWhatComesAndGoes) {
+  const std::string rain = json_of("rain");
+  const int figures = 30;
+  EXPECT_EQ(count_of(rain, "\"from_start\":true"), 100 + figures * (12 + 11));
+  EXPECT_EQ(count_of(rain, "\"addBody\""), 14 * figures * 12);
+  EXPECT_EQ(count_of(rain, "\"removeJoint\""), 15 * figures * 11);
 }
 
 TEST(Load, RefusesTablesThatAreNone) {
