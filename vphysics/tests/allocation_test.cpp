@@ -111,9 +111,10 @@ TEST(Step, AllocatesNothingOnceWarm) {
   }
   const Rod rod = add_rod(world, 0, 0.09, 3, 0.1, m);
   const BodyId ball = add_ball(world, {0.05, 0.02, 0.03}, {8, 5, 0}, m);
+  BodyId box;
   for (int i = 0; i < 3; ++i) {
-    add_dynamic(world,
-                {.shape = Box{{0.02, 0.02, 0.02}}, .pose = SE3(Vec3{-0.1, 0.1, 0.03 + 0.05 * i})});
+    box = add_dynamic(
+        world, {.shape = Box{{0.02, 0.02, 0.02}}, .pose = SE3(Vec3{-0.1, 0.1, 0.03 + 0.05 * i})});
   }
   add_walker(world, {-0.1, -0.1, 0.8}, m);
   Random random(51);
@@ -123,6 +124,11 @@ TEST(Step, AllocatesNothingOnceWarm) {
       must(world.set_drive(rod.articulation, 0, 1, {random.uniform(-2, 2), 0, 100, 0.8, 20}));
     if (i % 500 == 0) must(world.set_velocity(ball, {{}, {8, 5, 0}}));
     const long before = g_allocations;
+    if (i % 3 == 0) {
+      for (const BodyId body : {ball, box, rod.body}) must(world.apply_force(body, {0.1, 0, 0.1}));
+      must(world.apply_torque(box, {1e-3, 0, 0}));
+      must(world.apply_joint_force(rod.articulation, 0, 1, 0.01));
+    }
     const auto status = world.step(0.001);
     if (i >= 1000) {
       during += g_allocations - before;

@@ -62,6 +62,24 @@ TEST(EveryCall, RefusesPosesAndVelocitiesThatAreNone) {
       return s.world.apply_impulse(s.box, {1, 0, 0}, at(x));
     });
   }
+  for (int i = 0; i < 3; ++i) {
+    const auto at = [i](double x) {
+      Vec3 v;
+      v[i] = 1e4 * x;
+      return v;
+    };
+    for (const BodyId body : {s.box, s.rod.body}) {
+      expect_refused(s.world, "apply_force",
+                     [&](double x) { return s.world.apply_force(body, at(1e3 * x), {}); });
+      expect_refused(s.world, "apply_force at", [&](double x) {
+        return s.world.apply_force(body, {1, 0, 0}, at(x));
+      });
+      expect_refused(s.world, "apply_torque",
+                     [&](double x) { return s.world.apply_torque(body, at(x)); });
+    }
+  }
+  expect_refused(s.world, "apply_joint_force",
+                 [&](double x) { return s.world.apply_joint_force(s.rod.articulation, 0, 1, x); });
   expect_refused(s.world, "set_pose, turned", [&](double x) {
     return s.world.set_pose(s.box, SE3(Mat3{{x, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}));
   });
@@ -106,6 +124,10 @@ TEST(EveryCall, RefusesWhatDoesNotExist) {
   EXPECT_FALSE(s.world.destroy_body(s.rod.body));
   EXPECT_FALSE(s.world.set_mass_from_colliders(s.box));
   EXPECT_FALSE(s.world.wake(s.box));
+  EXPECT_FALSE(s.world.apply_force(s.ground, {1, 0, 0}));
+  EXPECT_FALSE(s.world.apply_force(s.ground, {1, 0, 0}, {}));
+  EXPECT_FALSE(s.world.apply_torque(s.ground, {1, 0, 0}));
+  EXPECT_FALSE(s.world.apply_joint_force({}, 0, 0, 1.0));
   EXPECT_FALSE(s.world.destroy_joint({}));
   EXPECT_FALSE(s.world.create_joint(s.box, s.ground, {}));
   for (const int out_of_range : {-1, 2, 1 << 30}) {
@@ -113,6 +135,8 @@ TEST(EveryCall, RefusesWhatDoesNotExist) {
     EXPECT_FALSE(s.world.set_joint_state(id, out_of_range, 0, 0, 0));
     EXPECT_FALSE(s.world.set_drive(id, 0, out_of_range, {}));
     EXPECT_FALSE(s.world.set_drive(id, out_of_range, 0, {}));
+    EXPECT_FALSE(s.world.apply_joint_force(id, 0, out_of_range, 1.0));
+    EXPECT_FALSE(s.world.apply_joint_force(id, out_of_range, 0, 1.0));
     EXPECT_EQ(s.world.link_body(id, out_of_range), BodyId{});
   }
   const JointDrive three[3];
@@ -385,6 +409,9 @@ TEST(EveryCall, SaysWhichArgumentIsStale) {
   EXPECT_TRUE(says(s.world.set_pose(dead, {}), "set_pose: the body"));
   EXPECT_TRUE(says(s.world.set_velocity(dead, {}), "set_velocity: the body"));
   EXPECT_TRUE(says(s.world.apply_impulse(dead, {}, {}), "apply_impulse: the body"));
+  EXPECT_TRUE(says(s.world.apply_force(dead, {}), "apply_force: the body"));
+  EXPECT_TRUE(says(s.world.apply_force(dead, {}, {}), "apply_force: the body"));
+  EXPECT_TRUE(says(s.world.apply_torque(dead, {}), "apply_torque: the body"));
   EXPECT_TRUE(says(s.world.wake(dead), "wake: the body"));
   EXPECT_TRUE(says(s.world.set_mass_from_colliders(dead), "set_mass_from_colliders: the body"));
   EXPECT_TRUE(says(s.world.destroy_joint({}), "destroy_joint: the joint"));

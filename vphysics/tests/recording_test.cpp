@@ -145,6 +145,19 @@ std::vector<Change> changes() {
        [](Yard& y) {
          must(y.world.apply_impulse(y.world.link_body(y.rod, 0), {0, 1, 0}, {2, 0, 0.1}));
        }},
+      {"apply_force",
+       [](Yard& y) {
+         must(y.world.apply_force(y.boxes[2], {100, 0, 900}, {0.5, 0, 0.2}));
+       }},
+      {"apply_force to a link",
+       [](Yard& y) {
+         must(y.world.apply_force(y.world.link_body(y.rod, 0), {0, 100, 0}, {2, 0, 0.1}));
+       }},
+      {"apply_torque",
+       [](Yard& y) {
+         must(y.world.apply_torque(y.boxes[6], {1, 2, 3}));
+       }},
+      {"apply_joint_force", [](Yard& y) { must(y.world.apply_joint_force(y.hanging, 0, 2, 0.5)); }},
       {"set_joint_states",
        [](Yard& y) {
          const std::vector<double> q{0.6, 0, 0, 0.8, 0.3}, v{1, 0, 0, -2};

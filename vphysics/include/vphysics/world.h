@@ -157,6 +157,17 @@ class World {
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
   // Refused: what would make it faster than 1e9 m/s or rad/s.
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
+  // Forces and torques act over the whole of the next step, constant in the world frame, and are
+  // forgotten when it ends: apply them anew before each. What is applied before the same step adds
+  // up. Contacts, friction and joints meet them as they meet gravity, as a load and not as an
+  // impact. Links too. What sleeps is woken. Refused: bodies that are not dynamic, and what would
+  // make one faster than 1e9 m/s or rad/s within 0.1 s; of links, sums beyond 1e9 N or N m.
+  //
+  // The moment about the centre of mass is that of the moment of the call; without a point the
+  // force acts through the centre of mass.
+  Expected<void> apply_force(BodyId body, const Vec3& force_world, const Vec3& point_world);
+  Expected<void> apply_force(BodyId body, const Vec3& force_world);
+  Expected<void> apply_torque(BodyId body, const Vec3& torque_world);
   bool is_asleep(BodyId body) const;  // precondition: contains(body)
   // With all that hangs together with it; nothing if it is awake.
   Expected<void> wake(BodyId body);
@@ -181,6 +192,11 @@ class World {
   // The same of all its degrees of freedom, in the order of velocities(): for many joints cheaper
   // than a call for each. Refused: another number of drives, or one refused; then all stay.
   Expected<void> set_drives(ArticulationId articulation, std::span<const JointDrive> drives);
+
+  // A force [N] or torque [N m] of one degree of freedom, dual to its velocity, over the next step
+  // as apply_force() has it; beside the drive. Of any joint: of a ball or a free one it is in the
+  // link's frame. Refused: sums beyond 1e9.
+  Expected<void> apply_joint_force(ArticulationId articulation, int link, int dof, double force);
 
   bool contains(JointId joint) const;
   // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six

@@ -1,6 +1,7 @@
 // One step of an articulation, in its joints' coordinates:
 //
-//   v += (M + dt D)^-1 dt (-h(q, v) - D v)      h: gravity, Coriolis and centrifugal; D: damping
+//   v += (M + dt D)^-1 dt (f - h(q, v) - D v)   h: gravity, Coriolis and centrifugal; D: damping;
+//                                               f: the user's forces, on joints and through J^T
 //   v += H^T z                                  what the solver has done (impulse_factor.h)
 //   q  = q [+] dt v                             on the group; configuration.h
 //
@@ -39,6 +40,19 @@ bool continues_axis(const detail::Node<double>& node) {
           (along_z(node.T_parent.rotation().cz, 1.0) && along_z(node.T_parent.position(), 1.0)));
 }
 
+// The floating tree that a link is of, or -1.
+int tree_of(const Model& model, const std::vector<FloatingTree>& floating, int link) {
+  int node = model.tree().places[static_cast<std::size_t>(link)].node;
+  if (node == kWorld) return -1;
+  for (int parent = node; parent != kWorld;) {
+    node = parent;
+    parent = model.tree().nodes[static_cast<std::size_t>(node)].parent;
+  }
+  const auto is_root = [node](const FloatingTree& tree) { return tree.root() == node; };
+  const auto found = std::find_if(floating.begin(), floating.end(), is_root);
+  return found == floating.end() ? -1 : static_cast<int>(found - floating.begin());
+}
+
 bool has_coordinate(const Joint& joint) {
   return !std::holds_alternative<BallJoint>(joint) && !std::holds_alternative<FreeJoint>(joint);
 }
@@ -60,6 +74,10 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
     scratch->resize(n);
   }
   whole_.resize(floating_.size());
+  joint_loads_.resize(n);
+  loads_.resize(static_cast<std::size_t>(model.links()));
+  link_loads_.resize(loads_.size());
+  for (int l = 0; l < model.links(); ++l) floating_of_.push_back(tree_of(model, floating_, l));
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
     const auto first = static_cast<std::size_t>(model.first_velocity(l));
@@ -290,15 +308,54 @@ se3 Articulation::twist_in_data(int link, const Vec3& p) const {
   return {V.w, V.v + cross(V.w, p - detail::origin_of(data_.work(), node))};
 }
 
-// change_ = (M + dt D)^-1 dt (-h(q, at) - D v)
+// change_ = (M + dt D)^-1 dt (f - h(q, at) - D v)
 void Articulation::find_change(double dt, std::span<const double> at) {
-  const Loads loads{.gravity = gravity_, .external = {}};
+  Loads loads{.gravity = gravity_, .external = {}};
+  if (loaded_) loads.external = link_loads_;
   inverse_dynamics<double>(model_, data_, q, at, zero_, loads, force_);
   for (std::size_t i = 0; i < v.size(); ++i) {
     // inverse_dynamics() has the damping of the velocities that it is given.
     change_[i] = dt * (damping_[i] * (at[i] - v[i]) - force_[i]);
   }
+  if (loaded_) {
+    for (std::size_t i = 0; i < v.size(); ++i) change_[i] += dt * joint_loads_[i];
+  }
   factor_.solve(change_);
+}
+
+void Articulation::clear_loads() {
+  if (!loaded_) return;
+  loaded_ = false;
+  std::fill(loads_.begin(), loads_.end(), dse3{});
+  std::fill(joint_loads_.begin(), joint_loads_.end(), 0.0);
+}
+
+void Articulation::find_loads_of_links() {
+  for (std::size_t l = 0; l < loads_.size(); ++l) {
+    const SE3 T = T_world_link(static_cast<int>(l));
+    link_loads_[l] = {T.unrotate(loads_[l].m), T.unrotate(loads_[l].f)};
+  }
+}
+
+// What they add to the momentum of trees whose roots are free: those on links, and those of the
+// root's own joint, which are in its frame.
+void Articulation::add_loads_of_trees(double dt) {
+  const auto add = [&](WholeTree& tree, const Vec3& at, const dse3& load) {
+    tree.linear += dt * load.f;
+    tree.angular += dt * (load.m + cross(at - tree.centre, load.f));
+  };
+  for (std::size_t l = 0; l < loads_.size(); ++l) {
+    if (floating_of_[l] < 0) continue;
+    const SE3 T = T_world_link(static_cast<int>(l));
+    add(whole_[static_cast<std::size_t>(floating_of_[l])], T.position(), loads_[l]);
+  }
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    const int root = floating_[i].root();
+    const Mat3 R = detail::pose_of(data_.work(), root).rotation();
+    const double* f = joint_loads_.data() + model_.tree().nodes[static_cast<std::size_t>(root)].v;
+    const WholeTree& tree = whole_[i];
+    add(whole_[i], tree.root, {R * Vec3{f[0], f[1], f[2]}, R * Vec3{f[3], f[4], f[5]}});
+  }
 }
 
 bool Articulation::add_constant_forces(double dt) {
@@ -307,8 +364,41 @@ bool Articulation::add_constant_forces(double dt) {
     v[i] += dt * fall_[i];
     falls = falls || fall_[i] != 0.0;
   }
+  if (loaded_) {
+    std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    for (std::size_t l = 0; l < loads_.size(); ++l) add_impulse(static_cast<int>(l), dt);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (joint_loads_[i] != 0.0) add_joint_impulse(static_cast<std::uint32_t>(i), dt);
+    }
+    factor_.to_velocities(velocity_);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += velocity_[i];
+    falls = true;
+  }
   if (falls) update_twists();
   return falls;
+}
+
+// Of a link's load for dt, to velocity_ (impulse_factor.h).
+void Articulation::add_impulse(int link, double dt) {
+  const dse3& load = loads_[static_cast<std::size_t>(link)];
+  if (load == dse3{}) return;
+  const auto add = [&] {
+    std::uint32_t d = factor_.first(link);
+    for (std::uint32_t k = 0; k < factor_.depth(link); ++k, d = factor_.next()[d]) {
+      velocity_[d] += rate_[k];
+    }
+  };
+  factor_.force_row(link, T_world_link(link).position(), dt * load.f, rate_.data());
+  add();
+  factor_.moment_row(link, dt * load.m, rate_.data());
+  add();
+}
+void Articulation::add_joint_impulse(std::uint32_t dof, double dt) {
+  const detail::ImpulseFactor::JointRow row = factor_.joint_row(dof);
+  std::uint32_t d = dof;
+  for (std::uint32_t k = 0; k < factor_.depth_of_dof(dof); ++k, d = factor_.next()[d]) {
+    velocity_[d] += dt * joint_loads_[dof] * row.y[k];
+  }
 }
 
 bool Articulation::integrate_forces(double dt, bool& changed) {
@@ -320,6 +410,7 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
   for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(model_, data_);
   const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
   factored_ = !damped_;
+  if (loaded_) find_loads_of_links();
   find_change(dt, v);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
   find_change(dt, rate_);
@@ -327,6 +418,9 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
   if (!floating_.empty()) forward_kinematics<double>(model_, data_, q, v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
     whole_[i].linear += (dt * whole_[i].mass) * gravity_;
+  }
+  if (loaded_) add_loads_of_trees(dt);
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
     floating_[i].set_momentum(model_, data_, whole_[i], v);
   }
   update_twists();

@@ -94,6 +94,22 @@ class Articulation {
   // World frame. False, and nothing changes, if a velocity would leave the range.
   bool apply_impulse(int link, const Vec3& impulse, const Vec3& point);
 
+  // --- forces of the user for the next step (forces.cpp)
+  // On a link: about its origin, world axes.
+  dse3 load(int link) const { return loads_[static_cast<std::size_t>(link)]; }
+  void set_load(int link, const dse3& load) {
+    loads_[static_cast<std::size_t>(link)] = load;
+    loaded_ = true;
+  }
+  // Of a velocity's degree of freedom.
+  double joint_load(std::size_t dof) const { return joint_loads_[dof]; }
+  void set_joint_load(std::size_t dof, double force) {
+    joint_loads_[dof] = force;
+    loaded_ = true;
+  }
+  bool is_loaded() const { return loaded_; }
+  void clear_loads();
+
   // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step
   bool touched = false;      // by a contact of this instant, in the stage of impacts
@@ -128,6 +144,10 @@ class Articulation {
   void place_on_lines();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
+  void find_loads_of_links();
+  void add_loads_of_trees(double dt);
+  void add_impulse(int link, double dt);
+  void add_joint_impulse(std::uint32_t dof, double dt);
   bool add_constant_forces(double dt);
   void advance_floating(double h);
 
@@ -171,6 +191,11 @@ class Articulation {
   bool factored_ = false;  // for this configuration, without damping
   bool twists_ = false;    // the factor has the links' velocities, else the data
   bool regular_ = false;
+  bool loaded_ = false;
+  std::vector<dse3> loads_;          // of each link
+  std::vector<dse3> link_loads_;     // the same, as the model's passes want them: in its frame
+  std::vector<double> joint_loads_;  // of each degree of freedom
+  std::vector<int> floating_of_;     // of each link: the tree that it is of, or -1
 
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v

@@ -67,10 +67,11 @@ bool is_worn(const Mat3& R) {
 
 }  // namespace
 
-Turned turned_freely(const Body& body, double h) {
+Turned turned_freely(const Body& body, double h, const Vec3& more_w) {
   const Mat3& R = body.T.rotation();
   const Vec3 w = transposed_times(R, body.w), L = R * (body.central * w);
-  const FreeTurn turn = free_turn(body.central, body.inverse_central, w, h);
+  const Vec3 mean = more_w == Vec3{} ? w : transposed_times(R, body.w + more_w);
+  const FreeTurn turn = free_turn(body.central, body.inverse_central, mean, h);
   Mat3 next = R * from_quaternion(turn.q);
   next = straightened(next);
   // What stays to rounding is the angular momentum of the world's frame.
@@ -160,8 +161,10 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
         body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
     const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
     for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
-    put(row.rate, desc.gravity);
-    put(row.rate + 3, gyroscopic_acceleration(body, dt));
+    const Velocity a = acceleration_of(body);
+    put(row.rate, a.v);
+    const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
+    put(row.rate + 3, is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
   std::copy_n(way, 6, start_ways[index].begin());
   const float* v = row.velocity;
@@ -249,6 +252,7 @@ bool World::Impl::leave_untouched(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   solve::BodyRow& row = body_rows[index + 1];
   if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
+  if (is_torqued(body)) return false;
   if (hardly_turns(body.w, dt)) return false;
   const float h = static_cast<float>(dt / sub_steps_taken);
   float w[3];
@@ -273,10 +277,14 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
   Velocity more;
   if (!body.by_rows()) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps_taken);
-    const Vec3 v = body.v;
-    body.v = (v + dt * desc.gravity) * (1.0 / (1.0 + dt * body.linear_damping));
+    const Vec3 v = body.v, w = body.w;
+    const Velocity a = acceleration_of(body);
+    const bool torqued = is_torqued(body);
+    body.v = (v + dt * a.v) * (1.0 / (1.0 + dt * body.linear_damping));
+    if (torqued) body.w += dt * a.w;
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
-    more.v = v + half * desc.gravity - body.v;
+    more.v = v + half * a.v - body.v;
+    if (torqued) more.w = w + half * a.w - body.w;
     return more;
   }
   const float* start = start_ways[index].data();

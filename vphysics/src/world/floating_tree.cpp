@@ -35,8 +35,9 @@ WholeTree FloatingTree::whole(const Model& model, const Data& data) const {
     P = P + own * detail::velocity_of(data.work(), node);
   }
   const Vec3 c = J.centre_of_mass();
-  return {J.mass(), c + detail::origin_of(data.work(), root_), J.central(), P.f,
-          P.m - cross(c, P.f)};
+  const Vec3 origin = detail::origin_of(data.work(), root_);
+  return {J.mass(), c + origin,          J.central(),
+          P.f,      P.m - cross(c, P.f), detail::pose_of(data.work(), root_).position() + origin};
 }
 
 void FloatingTree::set_momentum(const Model& model, const Data& data, const WholeTree& wanted,

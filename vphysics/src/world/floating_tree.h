@@ -20,6 +20,7 @@ struct WholeTree {
   Vec3 centre;           // of mass, world frame
   Sym3 central;          // rotational inertia about it, world axes
   Vec3 linear, angular;  // momentum, the angular one about the centre
+  Vec3 root;             // the root's origin, world frame
 };
 
 class FloatingTree {
@@ -34,6 +35,7 @@ class FloatingTree {
   void set_momentum(const Model& model, const Data& data, const WholeTree& wanted,
                     std::span<double> v) const;
   void shift(const Model& model, const Vec3& by, std::span<double> q) const;
+  int root() const { return root_; }  // the number of its node
 
  private:
   int root_ = 0;

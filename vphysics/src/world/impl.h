@@ -48,7 +48,8 @@ struct alignas(64) Body {
   std::uint16_t region = solve::kBetween;  // regions.cpp
   std::uint32_t lanes = 0;                 // of the solver that hold it
   std::uint32_t first_joint = kNone, first_collider = kNone;
-  float bounded_at[6] = {};  // its way when its proxies' bounds were last set
+  std::uint32_t load = kNone;  // its entry in the world's loads; of a link none
+  float bounded_at[6] = {};    // its way when its proxies' bounds were last set
   // To the farthest point of its bounded colliders from the reference point; half of the least
   // extent of one [m].
   double reach = 0.0, least_size = 1e9;
@@ -185,6 +186,13 @@ struct Velocity {
   bool operator==(const Velocity&) const = default;
 };
 
+// Forces and torques that the user has put on a body for the next step; world frame, about its
+// centre of mass.
+struct BodyLoad {
+  std::uint32_t body = 0;
+  Vec3 force, torque;
+};
+
 // What the narrow phase has found of a contact.
 struct Looked {
   std::uint32_t contact;
@@ -239,6 +247,7 @@ struct World::Impl {
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key and part
   std::vector<DestroyedPair> destroyed_pairs;
+  std::vector<BodyLoad> loads;  // of bodies that are no links, for the next step
 
   collide::PairFinder finder;
   std::vector<Contact> contact_pool;
@@ -366,9 +375,21 @@ struct World::Impl {
   Articulation* find(ArticulationId id);
   const Articulation* find(ArticulationId id) const;
   Vec3 reference_point(const Body& body) const;
+  // Of a link, too; of what is not dynamic its origin.
+  Vec3 centre_of_mass(const Body& body);
   void place(Body& body, const Vec3& reference, const Mat3& R);
   void release_collider(std::uint32_t index);
   void give_velocity(std::uint32_t body, const se3& V);
+
+  // forces.cpp
+  Velocity acceleration_of(const Body& body) const;
+  bool is_torqued(const Body& body) const {
+    return body.load != kNone && !(loads[body.load].torque == Vec3{});
+  }
+  Expected<void> add_load(const char* call, BodyId id, const Vec3& force, const Vec3& torque);
+  void set_load(std::uint32_t body, const Vec3& force, const Vec3& torque);
+  void remove_load(std::uint32_t body);
+  void clear_loads();
 
   // articulations.cpp
   void reserve_link_rows();
@@ -410,7 +431,8 @@ struct World::Impl {
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance(double h, bool to_end);
-  void advance_body(Body& body, const collide::Motion& motion, double h, bool freely);
+  void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
+                    const Vec3& more_w);
   void advance_all(double dt);
   bool advance_by_row(std::uint32_t body, double dt);
   void apply_corrections();
@@ -632,6 +654,9 @@ struct World::Impl {
   void write(Sink& sink) const;
 };
 
+// Whether the longest step leaves a body that is no link and turned by R, from rest, within 1e9 m/s
+// and rad/s.
+bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
 // Distance from the body's reference point to the farthest point of its local bounds.
 double reach_of(const Body& body);
 // Of a dynamic body; its velocities are not those of the new centre of mass.
@@ -641,7 +666,8 @@ struct Turned {
   Mat3 R;
   Vec3 w;
 };
-Turned turned_freely(const Body& body, double h);
+// With more_w: it turns as at the rate w + more_w, and ends with the angular momentum of w.
+Turned turned_freely(const Body& body, double h, const Vec3& more_w = {});
 // The rate of a body that is turned to R at a rate of its contacts' choice: as seen from the body
 // where its energy would grow else.
 Vec3 rate_at(const Body& body, const Mat3& R);

@@ -156,8 +156,12 @@ solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, doub
     s.articulation = static_cast<int>(body.articulation);
     s.link = body.link;
   } else {
-    s.forced_w = {};
-    s.forced_v = body.motion == Motion::dynamic ? h * desc.gravity : Vec3{};
+    s.forced_w = s.forced_v = {};
+    if (body.motion == Motion::dynamic) {
+      const Velocity a = acceleration_of(body);
+      s.forced_w = h * a.w;
+      s.forced_v = h * a.v;
+    }
   }
   return s;
 }

@@ -75,6 +75,20 @@ struct SetMassFromColliders {
   BodyId body;
 };
 
+struct ApplyForce {
+  BodyId body;
+  Vec3 force, point;
+};
+struct ApplyTorque {
+  BodyId body;
+  Vec3 torque;
+};
+struct ApplyJointForce {
+  ArticulationId articulation;
+  std::uint32_t link = 0, dof = 0;
+  double force = 0.0;
+};
+
 }  // namespace calls
 
 struct RecordedCall {
@@ -83,7 +97,8 @@ struct RecordedCall {
                    calls::CreateArticulation, calls::CreateJoint, calls::DestroyJoint,
                    calls::SetPose, calls::SetVelocity, calls::ApplyImpulse, calls::SetJointStates,
                    calls::SetJointState, calls::SetLinkDrive, calls::SetJointDrive,
-                   calls::SetAxisDrive, calls::Restore, calls::Wake, calls::SetMassFromColliders>;
+                   calls::SetAxisDrive, calls::Restore, calls::Wake, calls::SetMassFromColliders,
+                   calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce>;
   What what;
 };
 

@@ -480,6 +480,19 @@ void fields(Io& io, Field<Io, calls::SetMassFromColliders> c) {
   io(c.body);
 }
 
+template <class Io>
+void fields(Io& io, Field<Io, calls::ApplyForce> c) {
+  io(c.body, c.force, c.point);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::ApplyTorque> c) {
+  io(c.body, c.torque);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::ApplyJointForce> c) {
+  io(c.articulation, c.link, c.dof, c.force);
+}
+
 template <class T>
 void Writer::one(const T& x) {
   fields(*this, x);

@@ -82,6 +82,16 @@ class Doer {
   Expected<void> operator()(const calls::SetMassFromColliders& c) {
     return world_.set_mass_from_colliders(c.body);
   }
+  Expected<void> operator()(const calls::ApplyForce& c) {
+    return world_.apply_force(c.body, c.force, c.point);
+  }
+  Expected<void> operator()(const calls::ApplyTorque& c) {
+    return world_.apply_torque(c.body, c.torque);
+  }
+  Expected<void> operator()(const calls::ApplyJointForce& c) {
+    return world_.apply_joint_force(c.articulation, static_cast<int>(c.link),
+                                    static_cast<int>(c.dof), c.force);
+  }
 
  private:
   template <class T>

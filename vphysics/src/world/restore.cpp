@@ -171,6 +171,7 @@ struct World::Impl::Incoming {
   const char* read(Reader& in);
   void read_joints(Reader& in);
   void read_records(Reader& in, std::size_t count, std::size_t destroyed_count);
+  void read_loads(Reader& in);
 
   Impl& world;
   double sub_step_before = 0.0, push_length = 0.0;
@@ -180,6 +181,11 @@ struct World::Impl::Incoming {
   std::vector<PairRecord> records;
   std::vector<DestroyedPair> destroyed_pairs;
   std::vector<JointState> joints;  // that are alive
+  std::vector<BodyLoad> loads;
+  // Articulations with forces on them; of all, one after the other, those on links and on joints.
+  std::vector<std::uint32_t> loaded;
+  std::vector<dse3> link_loads;
+  std::vector<double> joint_loads;
   ContactState contacts;
 };
 
@@ -209,6 +215,7 @@ const char* World::Impl::Incoming::read(Reader& in) {
     if (joint.alive && in.ok()) joints.push_back(vp::read(in, joint));
   }
   if (in.ok()) contacts.read(in);
+  read_loads(in);
   const bool whole = in.ok() && in.at_end();
   return whole ? nullptr : "restore: a value is out of range; the bytes are damaged";
 }
@@ -222,6 +229,48 @@ void World::Impl::Incoming::read_joints(Reader& in) {
     for (const JointDof& dof : art.dofs) vp::read(in, dof, dofs.emplace_back());
     in.check(has_unit_quaternions(art.model(), std::span(q).subspan(first)));
   }
+}
+
+void World::Impl::Incoming::read_loads(Reader& in) {
+  loads.clear();
+  loaded.clear();
+  link_loads.clear();
+  joint_loads.clear();
+  if (!in.ok() || in.at_end()) return;
+  constexpr std::size_t kLoad = 7;  // words
+  std::uint32_t next = 0;
+  std::size_t state = 0;  // of that body among `bodies`
+  const auto numbers = [&in] {
+    const double x = in.number(), y = in.number(), z = in.number();
+    return Vec3{x, y, z};
+  };
+  for (std::size_t n = in.count(kLoad); n > 0 && in.ok(); --n) {
+    BodyLoad load;
+    load.body = in.index(world.bodies.size());
+    load.force = numbers();
+    load.torque = numbers();
+    in.check(loads.empty() || loads.back().body < load.body);
+    if (!in.ok()) return;
+    for (; next < load.body; ++next) state += world.bodies[next].is_link ? 0 : 1;
+    const Body& body = world.bodies[load.body];
+    in.check(body.alive && !body.is_link && body.motion == Motion::dynamic);
+    if (!in.ok()) return;
+    in.check(can_bear(body, bodies[state].T.rotation(), 0.5 * load.force, 0.5 * load.torque));
+    loads.push_back(load);
+  }
+  for (std::size_t n = in.count(1); n > 0 && in.ok(); --n) {
+    const std::uint32_t a = in.index(world.articulations.size());
+    in.check(loaded.empty() || loaded.back() < a);
+    if (!in.ok()) return;
+    loaded.push_back(a);
+    const Articulation& art = world.articulations[a];
+    for (std::size_t l = 0; l < art.bodies.size(); ++l) {
+      const Vec3 m = in.vector(), f = in.vector();
+      link_loads.push_back({m, f});
+    }
+    for (std::size_t i = 0; i < art.v.size(); ++i) joint_loads.push_back(in.bounded());
+  }
+  in.check(!loads.empty() || !loaded.empty());
 }
 
 void World::Impl::Incoming::read_records(Reader& in, std::size_t count,
@@ -269,6 +318,16 @@ void World::Impl::adopt(Incoming& from) {
   auto joint_state = from.joints.cbegin();
   for (BodyJoint& joint : joints) {
     if (joint.alive) vp::adopt(joint, *joint_state++);
+  }
+  clear_loads();
+  for (const BodyLoad& load : from.loads) set_load(load.body, load.force, load.torque);
+  auto link_load = from.link_loads.cbegin();
+  auto joint_load = from.joint_loads.cbegin();
+  for (const std::uint32_t a : from.loaded) {
+    Articulation& art = articulations[a];
+    const int links = art.model().links();
+    for (int l = 0; l < links; ++l) art.set_load(l, *link_load++);
+    for (std::size_t i = 0; i < art.v.size(); ++i) art.set_joint_load(i, *joint_load++);
   }
   from.contacts.adopt();
   sub_step_before = from.sub_step_before;

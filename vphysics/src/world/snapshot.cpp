@@ -9,7 +9,11 @@
 //   joints:         turns; of a gear its bodies' first poses; of each axis its drive (5) and
 //                   impulses (2)
 //   contacts:       contact_state.h
+//   loads, only if there are any: how many bodies have one; of each its number, force, torque; how
+//                   many articulations; of each its number, the wrench on each link, the force of
+//                   each degree of freedom
 //   digest of all words before
+#include <algorithm>
 #include <bit>
 
 #include "world/contact_state.h"
@@ -138,6 +142,30 @@ void World::Impl::write(Sink& sink) const {
     if (joint.alive) put(sink, joint);
   }
   write_contacts(sink);
+  const auto loaded = static_cast<std::uint64_t>(
+      std::count_if(articulations.begin(), articulations.end(),
+                    [](const Articulation& art) { return art.is_loaded(); }));
+  if (loads.empty() && loaded == 0) return;
+  sink.word(loads.size());
+  for (const Body& body : bodies) {
+    if (body.load == kNone) continue;
+    const BodyLoad& load = loads[body.load];
+    sink.word(load.body);
+    put(sink, load.force);
+    put(sink, load.torque);
+  }
+  sink.word(loaded);
+  for (std::size_t a = 0; a < articulations.size(); ++a) {
+    const Articulation& art = articulations[a];
+    if (!art.is_loaded()) continue;
+    sink.word(a);
+    for (std::size_t l = 0; l < art.bodies.size(); ++l) {
+      const dse3 load = art.load(static_cast<int>(l));
+      put(sink, load.m);
+      put(sink, load.f);
+    }
+    for (std::size_t i = 0; i < art.v.size(); ++i) put(sink, art.joint_load(i));
+  }
 }
 
 void World::snapshot(std::vector<std::byte>& bytes) const {

@@ -128,7 +128,9 @@ void World::Impl::integrate_forces(double dt) {
     if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
     forced[i] = {body.w, body.v};
     if (body.is_link) continue;
-    body.v += dt * desc.gravity;
+    const Velocity a = acceleration_of(body);
+    body.v += dt * a.v;
+    if (is_torqued(body)) body.w += dt * a.w;
     body.v *= 1.0 / (1.0 + dt * body.linear_damping);
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
   }
@@ -196,9 +198,10 @@ void World::Impl::refresh_solver_bodies() {
 // A constant twist for h. A tumbling body's is that which comes to the same end.
 collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, double h) const {
   collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
-  if (h > 0.0 && body.tumbles() && body.turns_freely() && !hardly_turns(body.w, h)) {
+  const Vec3& mean = more.w == Vec3{} ? body.w : motion.w;
+  if (h > 0.0 && body.tumbles() && body.turns_freely() && !hardly_turns(mean, h)) {
     const Mat3& R = body.T.rotation();
-    const Vec3 w = transposed_times(R, body.w);
+    const Vec3 w = transposed_times(R, mean);
     const FreeTurn turn = free_turn(body.central, body.inverse_central, w, h);
     motion.w = (1.0 / h) * (R * constant_turn(turn));
   }
@@ -245,10 +248,11 @@ Vec3 rate_on_the_way(const Body& body, const Mat3& next) {
 }  // namespace
 
 // Freely: not at the constant twist, but as a tumbling body does that nothing touches.
-void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely) {
+void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely,
+                               const Vec3& more_w) {
   const bool tumbles = body.tumbles();
   if (freely && tumbles && body.turns_freely()) {
-    const Turned free = turned_freely(body, h);
+    const Turned free = turned_freely(body, h, more_w);
     body.w = free.w;
     return place(body, m.x + h * m.v, free.R);
   }
@@ -276,7 +280,7 @@ void World::Impl::advance_all(double dt) {
     Body& body = bodies[i];
     const SE3 start = body.T;
     const Velocity more = body.motion == Motion::dynamic ? settle(i, dt) : Velocity{};
-    advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true);
+    advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true, more.w);
     (void)stop_if_out_of_range(i, start);
   }
 }
@@ -293,7 +297,7 @@ void World::Impl::advance(double h, bool to_end) {
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
     if (body.is_link || is_still(body) || held[i]) continue;
-    advance_body(bodies[i], motions[i], h, !as_swept[i]);
+    advance_body(bodies[i], motions[i], h, !as_swept[i], drift[i].w);
     if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
   }
   advance_articulations(h);
@@ -382,7 +386,9 @@ void World::Impl::feel_forces(double dt) {
   for (const std::uint32_t i : movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
       drift[i] = settle(i, dt);
-      forced[i].v = bodies[i].by_rows() ? Vec3{} : dt * desc.gravity;
+      if (bodies[i].by_rows()) continue;
+      const Velocity a = acceleration_of(bodies[i]);
+      forced[i] = {dt * a.w, dt * a.v};
     }
   }
 }
@@ -452,6 +458,7 @@ void World::Impl::finish_step() {
     return !loaded;
   });
   records.swap(next_records);
+  clear_loads();
 }
 
 }  // namespace vp

@@ -75,6 +75,13 @@ Vec3 World::Impl::reference_point(const Body& body) const {
   return body.motion == Motion::dynamic && !body.is_link ? body.T * body.centre : body.T.position();
 }
 
+Vec3 World::Impl::centre_of_mass(const Body& body) {
+  if (!body.is_link) return reference_point(body);
+  Articulation& art = articulations[body.articulation];
+  look_at(art);
+  return art.T_world_link(body.link) * art.model().link(body.link).inertia.centre_of_mass();
+}
+
 void World::Impl::place(Body& body, const Vec3& reference, const Mat3& R) {
   const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
   body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
@@ -145,6 +152,7 @@ Expected<void> World::destroy_body(BodyId id) {
     impl_->release_collider(c);
   }
   while (body->first_joint != kNone) impl_->remove_joint(body->first_joint / 2);
+  impl_->remove_load(id.index - 1);
   body->alive = false;
   body->w = body->v = {};
   body->prescribed = {};

@@ -1,0 +1,146 @@
+// Forces and torques that a user puts on bodies and joints for the next step.
+//
+//   v' = g + F / m,   w' = I^-1 M      beside what contacts and joints do
+//
+// F and M, about the centre of mass, are constant in the world frame while the step lasts. They are
+// spread over its sub-steps as gravity is, so that contacts and joints meet them as a load; then
+// they are forgotten. Of a link they are about its origin, and its articulation feels them through
+// its joints (articulation.cpp).
+#include <algorithm>
+#include <string>
+
+#include "world/impl.h"
+#include "world/recorded_call.h"
+#include "world/refuse.h"
+#include "world/validate.h"
+
+namespace vp {
+
+// Of a dynamic body that is no link; w is 0 where no torque acts.
+Velocity World::Impl::acceleration_of(const Body& body) const {
+  Velocity a{{}, desc.gravity};
+  if (body.load == kNone) return a;
+  const BodyLoad& load = loads[body.load];
+  a.v += body.inverse_mass * load.force;
+  if (is_torqued(body)) {
+    a.w = rotated(body.T.rotation(), body.inverse_central) * load.torque;
+  }
+  return a;
+}
+
+bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque) {
+  const Vec3 w = rotated(R, body.inverse_central) * torque;
+  return in_range((kLongestStep * body.inverse_mass) * force) && in_range(kLongestStep * w);
+}
+
+void World::Impl::set_load(std::uint32_t index, const Vec3& force, const Vec3& torque) {
+  Body& body = bodies[index];
+  if (body.load == kNone) {
+    body.load = static_cast<std::uint32_t>(loads.size());
+    loads.push_back({index, {}, {}});
+  }
+  loads[body.load].force = force;
+  loads[body.load].torque = torque;
+}
+
+void World::Impl::remove_load(std::uint32_t index) {
+  const std::uint32_t load = bodies[index].load;
+  if (load == kNone) return;
+  bodies[index].load = kNone;
+  loads[load] = loads.back();
+  loads.pop_back();
+  if (load < loads.size()) bodies[loads[load].body].load = load;
+}
+
+void World::Impl::clear_loads() {
+  for (const BodyLoad& load : loads) bodies[load.body].load = kNone;
+  loads.clear();
+  for (Articulation& art : articulations) art.clear_loads();
+}
+
+// torque: about the centre of mass, of a link about its origin.
+Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& force,
+                                     const Vec3& torque) {
+  Body& body = *find(id);
+  const std::uint32_t index = id.index - 1;
+  Vec3 F = force, M = torque;
+  if (body.is_link) {
+    Articulation& art = articulations[body.articulation];
+    const dse3 before = art.load(body.link);
+    F += before.f;
+    M += before.m;
+  } else if (body.load != kNone) {
+    F += loads[body.load].force;
+    M += loads[body.load].torque;
+  }
+  const bool good =
+      body.is_link ? in_range(F) && in_range(M) : can_bear(body, body.T.rotation(), F, M);
+  if (!good) {
+    return refuse(std::string(call) +
+                  ": the body would become faster than 1e9 m/s or rad/s, or a link bear more than "
+                  "1e9 N or N m; apply less");
+  }
+  if (body.is_link) {
+    Articulation& art = articulations[body.articulation];
+    look_at(art);
+    art.set_load(body.link, {M, F});
+  } else {
+    wake(index);
+    set_load(index, F, M);
+  }
+  return {};
+}
+
+Expected<void> World::apply_force(BodyId id, const Vec3& force, const Vec3& point) {
+  const Body* body = impl_->find(id);
+  if (!body) return stale("apply_force", "the body");
+  if (body->motion != Motion::dynamic) return refuse("apply_force: the body is not dynamic");
+  if (!std::isfinite(dot(force, force)) || !in_range(point)) {
+    return refuse("apply_force: force and point must be finite, the point within 1e9 m");
+  }
+  Vec3 from = impl_->reference_point(*body);
+  if (body->is_link) {
+    impl_->look_at(impl_->articulations[body->articulation]);
+    from = impl_->articulations[body->articulation].T_world_link(body->link).position();
+  }
+  const auto added = impl_->add_load("apply_force", id, force, cross(point - from, force));
+  if (added && impl_->recorder) impl_->log({calls::ApplyForce{id, force, point}});
+  return added;
+}
+
+Expected<void> World::apply_force(BodyId id, const Vec3& force) {
+  const Body* body = impl_->find(id);
+  if (!body) return stale("apply_force", "the body");
+  return apply_force(id, force, impl_->centre_of_mass(*body));
+}
+
+Expected<void> World::apply_torque(BodyId id, const Vec3& torque) {
+  const Body* body = impl_->find(id);
+  if (!body) return stale("apply_torque", "the body");
+  if (body->motion != Motion::dynamic) return refuse("apply_torque: the body is not dynamic");
+  if (!std::isfinite(dot(torque, torque))) return refuse("apply_torque: the torque must be finite");
+  const auto added = impl_->add_load("apply_torque", id, {}, torque);
+  if (added && impl_->recorder) impl_->log({calls::ApplyTorque{id, torque}});
+  return added;
+}
+
+Expected<void> World::apply_joint_force(ArticulationId id, int link, int dof, double force) {
+  Articulation* art = impl_->find(id);
+  const int i = art ? art->dof_index(link, dof) : -1;
+  if (i < 0) {
+    return refuse("apply_joint_force: no such degree of freedom; check articulation, link and dof");
+  }
+  const double sum = art->joint_load(static_cast<std::size_t>(i)) + force;
+  if (!in_range(sum)) {
+    return refuse("apply_joint_force: the sum of the forces must be finite and at most 1e9");
+  }
+  impl_->look_at(*art);
+  art->set_joint_load(static_cast<std::size_t>(i), sum);
+  if (impl_->recorder) {
+    impl_->log({calls::ApplyJointForce{id, static_cast<std::uint32_t>(link),
+                                       static_cast<std::uint32_t>(dof), force}});
+  }
+  return {};
+}
+
+}  // namespace vp
