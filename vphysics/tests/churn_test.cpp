@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <set>
+#include <utility>
 
 #include "random.h"
 #include "rig.h"
@@ -32,7 +34,7 @@ class Churn {
   }
 
   void call() {
-    switch (pick(14)) {
+    switch (pick(22)) {
       case 0:
       case 1:
       case 2:
@@ -61,6 +63,17 @@ class Churn {
         return save_and_restore();
       case 11:
         (void)world_.wake(any());
+        return;
+      case 12:
+        return push();
+      case 13:
+        return change_body();
+      case 14:
+        return change_collider();
+      case 15:
+        return make_tree();
+      case 16:
+        if (!trees_.empty()) (void)world_.destroy_articulation(trees_[pick(trees_.size())]);
         return;
       default:
         return step();
@@ -106,20 +119,85 @@ class Churn {
         return Sphere{r};
     }
   }
-  bool add_collider(BodyId body) {
+  bool add_collider(BodyId body, bool sensor = false) {
     ColliderDesc c;
     c.shape = shape();
     c.material = material();
-    c.sensor = pick(6) == 0;
+    c.sensor = pick(6) == 0 || sensor;
     c.T_body_shape = SE3(random_.rotation(), random_.in_cube(0.1));
-    return world_.add_collider(body, c).has_value();
+    const auto collider = world_.add_collider(body, c);
+    if (collider) colliders_.push_back(*collider);
+    return collider.has_value();
+  }
+  void push() {
+    const BodyId body = any();
+    (void)world_.apply_force(body, random_.in_cube(100.0));
+    (void)world_.apply_force(body, random_.in_cube(100.0), place());
+    (void)world_.apply_torque(any(), random_.in_cube(5.0));
+    if (!trees_.empty()) {
+      const ArticulationId tree = trees_[pick(trees_.size())];
+      (void)world_.apply_joint_force(tree, 0, static_cast<int>(pick(2)), random_.uniform(-1, 1));
+      (void)world_.apply_force(world_.link_body(tree, 0), random_.in_cube(10.0));
+    }
+  }
+  void change_body() {
+    const BodyId body = any();
+    switch (pick(6)) {
+      case 0:
+      case 1:
+        (void)world_.set_motion(body, static_cast<Motion>(pick(3)));
+        return;
+      case 2:
+        (void)world_.set_inertia(body, solid_inertia(Sphere{random_.uniform(0.05, 0.3)}, 1000.0));
+        return;
+      case 3:
+        (void)world_.set_damping(body, random_.uniform(0, 5), random_.uniform(0, 5));
+        return;
+      case 4:
+        (void)world_.set_gravity_scale(body, random_.uniform(-1, 2));
+        return;
+      default:
+        (void)world_.set_allow_sleep(body, pick(2) == 0);
+    }
+  }
+  void change_collider() {
+    if (colliders_.empty()) return;
+    const ColliderId collider = colliders_[pick(colliders_.size())];
+    switch (pick(4)) {
+      case 0:
+        (void)world_.set_material(collider, material());
+        return;
+      case 1:
+        (void)world_.set_filter(collider, {1u << pick(2), pick(3) == 0 ? 1u : ~0u});
+        return;
+      case 2:
+        (void)world_.set_surface_velocity(collider, random_.in_cube(1.0));
+        return;
+      default:
+        (void)world_.remove_collider(collider);
+    }
+  }
+  void make_tree() {
+    if (trees_.size() > 6) return;
+    LinkSpec link;
+    link.inertia = solid_inertia(Sphere{0.15}, 1000.0);
+    link.T_parent_joint = SE3(random_.rotation(), place());
+    link.joint = PrismaticJoint{{0, 0, 1}};
+    if (pick(2) == 0) link.joint = FreeJoint{};
+    if (pick(3) == 0) link.joint = CylindricalJoint{};
+    const auto tree = world_.create_articulation({model_of({link})});
+    ASSERT_TRUE(tree.has_value());
+    trees_.push_back(*tree);
+    // Sensors: links that are made deep within bodies are another test's matter.
+    for (std::size_t i = pick(3); i > 0; --i) (void)add_collider(world_.link_body(*tree, 0), true);
   }
   void create() {
     BodyDesc d;
     const std::size_t kind = pick(8);
     d.motion = kind == 0 ? Motion::fixed : kind == 1 ? Motion::kinematic : Motion::dynamic;
     d.T_world_body = SE3(random_.rotation(), place());
-    d.inertia = solid_inertia(Sphere{0.15}, 1000.0);
+    if (pick(3) != 0) d.inertia = solid_inertia(Sphere{0.15}, 1000.0);
+    if (pick(4) == 0) d.gravity_scale = 0.5;
     d.continuous = kind == 2;
     if (d.motion != Motion::fixed) d.velocity = {random_.in_cube(5.0), random_.in_cube(3.0)};
     const auto body = world_.create_body(d);
@@ -161,20 +239,35 @@ class Churn {
     const auto status = world_.step(dt);
     ASSERT_TRUE(status.has_value());
     ASSERT_FALSE(status->non_finite);
+    follow_events();
     seen.contacts += world_.counters().contacts;
     seen.joints += joints_.size();
     for (const BodyId body : bodies_)
       seen.asleep += world_.contains(body) && world_.is_asleep(body);
   }
+  // Each begin is followed by one end.
+  void follow_events() {
+    for (const ContactEvent& event : world_.contact_events()) {
+      const std::pair pair{event.a, event.b};
+      if (event.kind == ContactEvent::Kind::begin) {
+        ASSERT_TRUE(touching_.insert(pair).second);
+      } else {
+        ASSERT_TRUE(touching_.contains(pair));
+      }
+      if (event.kind == ContactEvent::Kind::end) touching_.erase(pair);
+    }
+  }
   // Back to the snapshot after a step: the same step has the same end.
   void save_and_restore() {
     bytes_.clear();
+    const auto touching = touching_;
     world_.snapshot(bytes_);
     const std::uint64_t hash = world_.state_hash();
     step(0.002);
     const std::uint64_t after = world_.state_hash();
     ASSERT_TRUE(world_.restore(bytes_).has_value());
     ASSERT_EQ(world_.state_hash(), hash);
+    touching_ = touching;
     step(0.002);
     ASSERT_EQ(world_.state_hash(), after);
   }
@@ -183,6 +276,9 @@ class Churn {
   World world_;
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
+  std::vector<ColliderId> colliders_;
+  std::vector<ArticulationId> trees_;
+  std::set<std::pair<ColliderId, ColliderId>> touching_;
   std::vector<std::byte> bytes_;
 };
 

@@ -158,6 +158,43 @@ std::vector<Change> changes() {
          must(y.world.apply_torque(y.boxes[6], {1, 2, 3}));
        }},
       {"apply_joint_force", [](Yard& y) { must(y.world.apply_joint_force(y.hanging, 0, 2, 0.5)); }},
+      {"set_motion", [](Yard& y) { must(y.world.set_motion(y.boxes[5], Motion::kinematic)); }},
+      {"set_motion to fixed", [](Yard& y) { must(y.world.set_motion(y.boxes[5], Motion::fixed)); }},
+      {"set_inertia",
+       [](Yard& y) {
+         must(y.world.set_inertia(y.boxes[3], Inertia(2.0, Vec3{1, 1, 1})));
+       }},
+      {"set_damping", [](Yard& y) { must(y.world.set_damping(y.boxes[2], 1.0, 2.0)); }},
+      {"set_gravity_scale", [](Yard& y) { must(y.world.set_gravity_scale(y.boxes[2], 0.5)); }},
+      {"set_allow_sleep", [](Yard& y) { must(y.world.set_allow_sleep(y.boxes[2], false)); }},
+      {"set_material",
+       [](Yard& y) {
+         must(y.world.set_material({1, 1}, {0.1, 0.2, 0.3, 0.4}));
+       }},
+      {"set_filter",
+       [](Yard& y) {
+         must(y.world.set_filter({3, 1}, {5, 3}));
+       }},
+      {"set_surface_velocity",
+       [](Yard& y) {
+         must(y.world.set_surface_velocity({1, 1}, {1, 2, 3}));
+       }},
+      {"remove_collider",
+       [](Yard& y) {
+         must(y.world.remove_collider({4, 1}));
+       }},
+      {"destroy_articulation",
+       [](Yard& y) {
+         must(y.world.destroy_articulation(must(y.world.create_articulation(rod_desc(-3.0, 0.5)))));
+       }},
+      {"create_body of other gravity that does not sleep",
+       [](Yard& y) {
+         BodyDesc desc;
+         desc.gravity_scale = 0.3;
+         desc.allow_sleep = false;
+         desc.T_world_body = SE3(Vec3{-5, 0, 1});
+         must(y.world.create_body(desc));
+       }},
       {"set_joint_states",
        [](Yard& y) {
          const std::vector<double> q{0.6, 0, 0, 0.8, 0.3}, v{1, 0, 0, -2};

@@ -108,6 +108,9 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
        }},
       {"linear_damping", [](Recipe& r) { r.body.linear_damping = 0.1; }},
       {"angular_damping", [](Recipe& r) { r.body.angular_damping = 0.1; }},
+      {"gravity_scale", [](Recipe& r) { r.body.gravity_scale = 0.5; }},
+      {"allow_sleep", [](Recipe& r) { r.body.allow_sleep = false; }},
+      {"no inertia", [](Recipe& r) { r.body.inertia = {}; }},
       {"radius", [&](Recipe& r) { r.collider.shape = Sphere{next(0.5)}; }},
       {"shape",
        [](Recipe& r) {

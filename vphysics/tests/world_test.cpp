@@ -49,7 +49,8 @@ TEST(CreateBody, RefusesWhatIsNoBody) {
   }
   refused([](BodyDesc& d) { d.T_world_body = SE3({{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}); });
   refused([](BodyDesc& d) { d.T_world_body = SE3({{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}); });
-  refused([](BodyDesc& d) { d.inertia = Inertia(); });
+  refused([](BodyDesc& d) { d.inertia = Inertia(0.0, Vec3{1, 1, 1}); });
+  refused([](BodyDesc& d) { d.inertia = Inertia(1.0, Vec3{}); });
   refused([](BodyDesc& d) { d.inertia = Inertia(1.0, Vec3{1, -1, 1}); });
   refused([](BodyDesc& d) { d.angular_damping = -1.0; });
 }

@@ -63,13 +63,17 @@ struct BodyDesc {
   Motion motion = Motion::dynamic;
   SE3 T_world_body;
   se3 velocity;  // body frame [rad/s, m/s]
-  // About the body's origin. Of dynamic bodies: mass from 1e-15 to 1e9 kg, moments about the centre
+  // About the body's origin. None, as here: a dynamic body has the mass of its colliders, by their
+  // shapes and densities, as they are added and removed; until one has a volume, 1 kg and 1 kg m^2
+  // about each axis. Of dynamic bodies: mass from 1e-15 to 1e9 kg, moments about the centre
   // of mass from 1e-30 kg m^2, a water drop of a micrometre, to 1e15, and those of a mass: none of
   // the three principal ones above the sum of the others, but by the 4 % of
   // rounded numbers.
   Inertia inertia;
   double linear_damping = 0.0;   // [1/s]
   double angular_damping = 0.0;  // [1/s]
+  double gravity_scale = 1.0;    // of WorldDesc::gravity; at most 1e6 either way
+  bool allow_sleep = true;       // false: nor does anything sleep that hangs together with it
   bool continuous = false;       // passes through nothing, however fast; cannot be joined
   std::uint64_t user_data = 0;
 };
@@ -111,6 +115,12 @@ struct ContactEvent {
   double time;            // within the step, [0, dt]: 0 but of impacts, and of sensors swept into
 };
 
+// In the world's axes.
+struct VelocityWorld {
+  Vec3 linear;   // [m/s]
+  Vec3 angular;  // [rad/s]
+};
+
 class Recorder;
 
 class World {
@@ -148,6 +158,36 @@ class World {
   Expected<JointId> create_joint(BodyId a, BodyId b, const JointDesc& desc);
   Expected<void> destroy_joint(JointId joint);
 
+  // --- changes ----------------------------------------------------------------------------------
+  // Of what the world is made of, while it runs. All wake what sleeps. A snapshot of before is
+  // refused after one of them, as after other calls that build; they are recorded. Refused: stale
+  // ids, links where a body is asked for, and values that create_body() and add_collider() refuse.
+
+  // Its velocity stays, as far as the motion knows one: what becomes kinematic goes on at it. What
+  // becomes dynamic has the inertia that it was created with or given, or that of its colliders.
+  // Its contacts end, and those that still touch begin anew in the next step. Refused: half-spaces,
+  // meshes and height fields on what may not carry them, joints left without a dynamic body.
+  Expected<void> set_motion(BodyId body, Motion motion);
+  // Instead of what it had, its colliders' too. The velocity of its origin stays.
+  Expected<void> set_inertia(BodyId body, const Inertia& inertia);
+  Expected<void> set_damping(BodyId body, double linear, double angular);  // [1/s]
+  Expected<void> set_gravity_scale(BodyId body, double scale);
+  Expected<void> set_allow_sleep(BodyId body, bool allow);
+
+  bool contains(ColliderId collider) const;
+  BodyId body_of(ColliderId collider) const;  // null if there is none
+  // Links' colliders too. Contacts have the new values from the next step on, and what no longer
+  // meets by its filter ends.
+  Expected<void> set_material(ColliderId collider, const Material& material);
+  Expected<void> set_filter(ColliderId collider, const CollisionFilter& filter);
+  Expected<void> set_surface_velocity(ColliderId collider, const Vec3& velocity);
+  // The next step reports the end of what it touched.
+  Expected<void> remove_collider(ColliderId collider);
+
+  bool contains(ArticulationId articulation) const;
+  // With its links and their colliders; the next step reports the end of what they touched.
+  Expected<void> destroy_articulation(ArticulationId articulation);
+
   // --- state ------------------------------------------------------------------------------------
   bool contains(BodyId body) const;
   SE3 pose(BodyId body) const;         // T_world_body; precondition: contains(body)
@@ -155,6 +195,12 @@ class World {
   Inertia inertia(BodyId body) const;  // about its origin, 0 if not dynamic; precondition: the same
   Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
   Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
+  // The same in the world's axes, and of the centre of mass: of links too; of bodies that are not
+  // dynamic, of the origin. Precondition: contains(body).
+  VelocityWorld velocity_world(BodyId body) const;
+  Vec3 velocity_at(BodyId body, const Vec3& point_world) const;  // of the body's point there [m/s]
+  // Refused for links, and where set_velocity is.
+  Expected<void> set_velocity_world(BodyId body, const VelocityWorld& velocity);
   // Refused: what would make it faster than 1e9 m/s or rad/s.
   Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
   // Forces and torques act over the whole of the next step, constant in the world frame, and are

@@ -46,6 +46,8 @@ class Articulation {
   std::vector<double> q, v;
   std::vector<JointDof> dofs;         // of each velocity
   std::vector<std::uint32_t> bodies;  // of each link
+  bool alive = true;
+  std::uint32_t generation = 1;  // of its slot
 
   const Model& model() const { return model_; }
   // The index of a joint's degree of freedom among the velocities, or -1.
@@ -109,6 +111,11 @@ class Articulation {
   }
   bool is_loaded() const { return loaded_; }
   void clear_loads();
+  // It is one no longer: its slot waits for another.
+  void destroy() {
+    clear_loads();
+    alive = can_be_remote = remote = sub_stepped = touched = false;
+  }
 
   // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step

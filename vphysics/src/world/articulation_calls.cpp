@@ -12,9 +12,9 @@
 namespace vp {
 
 const Articulation* World::Impl::find(ArticulationId id) const {
-  return id.index != 0 && id.index <= articulations.size() && id.generation == 1
-             ? &articulations[id.index - 1]
-             : nullptr;
+  if (id.index == 0 || id.index > articulations.size()) return nullptr;
+  const Articulation& art = articulations[id.index - 1];
+  return art.alive && id.generation == art.generation ? &art : nullptr;
 }
 Articulation* World::Impl::find(ArticulationId id) {
   return const_cast<Articulation*>(std::as_const(*this).find(id));
@@ -28,7 +28,13 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
                   "create_articulation: a joint moves no inertia; give its links an inertia about "
                   "its axis, or the joint an armature");
   }
-  const auto number = static_cast<std::uint32_t>(impl_->articulations.size());
+  auto number = static_cast<std::uint32_t>(impl_->articulations.size());
+  if (!impl_->free_articulations.empty()) {
+    number = impl_->free_articulations.back();
+    impl_->free_articulations.pop_back();
+    art.generation = impl_->articulations[number].generation + 1;
+  }
+  const ArticulationId id{number + 1, art.generation};
   for (int link = 0; link < desc.model.links(); ++link) {
     const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
     Body& body = impl_->bodies[index];
@@ -42,14 +48,18 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   structure.add(0x400u + art.bodies.front());
   structure.add(desc);
   impl_->follow(art);
-  impl_->articulations.push_back(std::move(art));
+  if (number < impl_->articulations.size()) {
+    impl_->articulations[number] = std::move(art);
+  } else {
+    impl_->articulations.push_back(std::move(art));
+  }
   impl_->lists_are_stale = true;
   if (impl_->recorder) {
     calls::CreateArticulation call;
     for (int l = 0; l < desc.model.links(); ++l) call.links.push_back(desc.model.link(l));
     impl_->log({std::move(call)});
   }
-  return ArticulationId{number + 1, 1};
+  return id;
 }
 
 BodyId World::link_body(ArticulationId id, int link) const {

@@ -60,7 +60,7 @@ void World::Impl::reserve_link_rows() {
 
 void World::Impl::integrate_articulations(double dt) {
   for (Articulation& art : articulations) {
-    if (art.sub_stepped) continue;  // its forces have been felt
+    if (!art.alive || art.sub_stepped) continue;  // its forces have been felt
     art.mark_start();
     if (art.remote) continue;  // balanced: no force but its motors'
     bool changed = false;
@@ -153,7 +153,7 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
   joint_rows.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
-    if (of == JointRowsOf::sub_step && !art.sub_stepped) continue;
+    if (!art.alive || (of == JointRowsOf::sub_step && !art.sub_stepped)) continue;
     if (of == JointRowsOf::first_instant && !art.sub_stepped && !art.touched &&
         art.settle_alone(h)) {
       if (!art.remote) follow_velocities(art, false);
@@ -178,7 +178,8 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
 
 void World::Impl::begin_solve_articulations() {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
-    if (!articulations[a].remote) solver_articulations[a] = articulations[a].begin_solve();
+    Articulation& art = articulations[a];
+    if (art.alive && !art.remote) solver_articulations[a] = art.begin_solve();
   }
 }
 
@@ -187,7 +188,7 @@ void World::Impl::end_solve_articulations(bool first) {
     if (row.remember) *row.remember = row.impulse;
   }
   for (Articulation& art : articulations) {
-    if (art.remote) continue;
+    if (!art.alive || art.remote) continue;
     const Articulation::Change change = art.end_solve();
     if (change == Articulation::Change::none || stop_if_out_of_range(art)) continue;
     follow_velocities(art, first);
@@ -197,7 +198,7 @@ void World::Impl::end_solve_articulations(bool first) {
 
 void World::Impl::advance_articulations(double h) {
   for (Articulation& art : articulations) {
-    if (held[art.bodies.front()]) continue;
+    if (!art.alive || held[art.bodies.front()]) continue;
     art.advance(h);
     if (stop_if_out_of_range(art)) {
       hold(art.bodies.front());

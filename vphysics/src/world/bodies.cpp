@@ -146,7 +146,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
   row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
-  if (body.linear_damping > 0.0 || body.angular_damping > 0.0) {
+  if (pushed && (body.linear_damping > 0.0 || body.angular_damping > 0.0)) {
     const double h = dt / sub_steps_in(dt);
     row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
     row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));

@@ -23,8 +23,8 @@ void World::Impl::ContactState::read(Reader& in) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     read_body(in, bodies_[i]);
     const Body& body = world_.bodies[i];
-    in.check(!bodies_[i].asleep ||
-             (body.motion == Motion::dynamic && !body.is_link && !body.continuous));
+    in.check(!bodies_[i].asleep || (body.motion == Motion::dynamic && !body.is_link &&
+                                    !body.continuous && body.allow_sleep));
   }
   read_pool(in);
   for (std::uint32_t i = 0; i < bodies_.size() && in.ok(); ++i) read_edges(in, i);

@@ -70,7 +70,9 @@ class World::Impl::Drawing {
     if (options_.shapes || options_.bounds) draw_colliders();
     if (options_.frames || options_.centres) draw_bodies();
     if (options_.joints) {
-      for (const Articulation& tree : world_.articulations) draw_tree(tree);
+      for (const Articulation& tree : world_.articulations) {
+        if (tree.alive) draw_tree(tree);
+      }
       for (const BodyJoint& joint : world_.joints) {
         if (joint.alive) draw_joint(joint);
       }

@@ -1,6 +1,6 @@
 // Forces and torques that a user puts on bodies and joints for the next step.
 //
-//   v' = g + F / m,   w' = I^-1 M      beside what contacts and joints do
+//   v' = s g + F / m,   w' = I^-1 M      s: the body's gravity_scale
 //
 // F and M, about the centre of mass, are constant in the world frame while the step lasts. They are
 // spread over its sub-steps as gravity is, so that contacts and joints meet them as a load; then
@@ -18,7 +18,7 @@ namespace vp {
 
 // Of a dynamic body that is no link; w is 0 where no torque acts.
 Velocity World::Impl::acceleration_of(const Body& body) const {
-  Velocity a{{}, desc.gravity};
+  Velocity a{{}, body.gravity_scale * desc.gravity};
   if (body.load == kNone) return a;
   const BodyLoad& load = loads[body.load];
   a.v += body.inverse_mass * load.force;

@@ -45,6 +45,9 @@ struct alignas(64) Body {
   bool posed = false;      // the colliders' poses and bounds are those of T
   bool bounded = false;    // so are `bounds`
   bool untouched = false;  // by what its row met in this step, so it has turned freely
+  bool allow_sleep = true;
+  bool mass_from_colliders = false;        // as they come and go
+  bool wants_continuous = false;           // as a dynamic body
   std::uint16_t region = solve::kBetween;  // regions.cpp
   std::uint32_t lanes = 0;                 // of the solver that hold it
   std::uint32_t first_joint = kNone, first_collider = kNone;
@@ -60,6 +63,7 @@ struct alignas(64) Body {
   Vec3 centre;                    // of mass, body frame
   Sym3 inverse_central, central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
+  double gravity_scale = 1.0;
   // Since it was last faster than desc.sleep_speed; once drowsy, sleep_after and the time since it
   // asked (sleep.cpp) [s].
   double rest_time = 0.0;
@@ -242,7 +246,7 @@ struct World::Impl {
   std::vector<Collider> colliders;
   std::vector<Articulation> articulations;
   std::vector<BodyJoint> joints;
-  std::vector<std::uint32_t> free_bodies, free_colliders, free_joints;
+  std::vector<std::uint32_t> free_bodies, free_colliders, free_joints, free_articulations;
   std::uint32_t next_serial = 1;
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key and part
@@ -378,8 +382,24 @@ struct World::Impl {
   // Of a link, too; of what is not dynamic its origin.
   Vec3 centre_of_mass(const Body& body);
   void place(Body& body, const Vec3& reference, const Mat3& R);
+  void note_collider(std::uint32_t index);
+  void drop_contacts(std::uint32_t collider);
   void release_collider(std::uint32_t index);
   void give_velocity(std::uint32_t body, const se3& V);
+
+  // changes.cpp
+  Collider* find(ColliderId id);
+  const Collider* find(ColliderId id) const;
+  Body* find_body_to_change(BodyId id);
+  tl::unexpected<Error> no_body_to_change(const char* call, BodyId id) const;
+  Inertia inertia_of_colliders(const Body& body) const;
+  void change_mass(std::uint32_t body, const Inertia& inertia);
+  void update_mass(std::uint32_t body);
+  void change_motion(std::uint32_t body, Motion motion, const std::optional<Inertia>& inertia,
+                     const se3& V);
+  void wake_all_about(std::uint32_t body);
+  void take_collider_off(std::uint32_t collider);
+  void summarize_colliders(std::uint32_t body);
 
   // forces.cpp
   Velocity acceleration_of(const Body& body) const;

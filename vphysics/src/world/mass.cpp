@@ -46,25 +46,14 @@ Expected<void> World::set_mass_from_colliders(BodyId id) {
   if (body->motion != Motion::dynamic) {
     return refuse("set_mass_from_colliders: the body is not dynamic, so it needs no mass");
   }
-  Inertia sum;
-  for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
-    const Collider& collider = impl_->colliders[c];
-    if (collider.sensor) continue;
-    sum = sum + solid_inertia(collider.shape, collider.density).InvXform(collider.T_body_shape);
-  }
+  const Inertia sum = impl_->inertia_of_colliders(*body);
   if (sum.mass() == 0.0) {
     return refuse(
         "set_mass_from_colliders: the body has no collider with a volume but sensors; add "
         "one first");
   }
   if (auto problem = problem_with(sum)) return refuse("set_mass_from_colliders: " + *problem);
-  impl_->wake(id.index - 1);
-  const se3 V = velocity(id);
-  set_mass(*body, sum);
-  body->reach = reach_of(*body);
-  body->w = body->T.rotate(V.w);
-  body->v = body->T.rotate(V.v + cross(V.w, body->centre));
-  impl_->mark_contacts_stale(id.index - 1);
+  impl_->change_mass(id.index - 1, sum);
   Structure structure(impl_->structure);
   structure.add(0x700u + id.index);
   structure.add(sum);

@@ -89,6 +89,45 @@ struct ApplyJointForce {
   double force = 0.0;
 };
 
+struct SetMotion {
+  BodyId body;
+  Motion motion = Motion::dynamic;
+};
+struct SetInertia {
+  BodyId body;
+  Inertia inertia;
+};
+struct SetDamping {
+  BodyId body;
+  double linear = 0.0, angular = 0.0;
+};
+struct SetGravityScale {
+  BodyId body;
+  double scale = 1.0;
+};
+struct SetAllowSleep {
+  BodyId body;
+  bool allow = true;
+};
+struct SetMaterial {
+  ColliderId collider;
+  Material material;
+};
+struct SetFilter {
+  ColliderId collider;
+  CollisionFilter filter;
+};
+struct SetSurfaceVelocity {
+  ColliderId collider;
+  Vec3 velocity;
+};
+struct RemoveCollider {
+  ColliderId collider;
+};
+struct DestroyArticulation {
+  ArticulationId articulation;
+};
+
 }  // namespace calls
 
 struct RecordedCall {
@@ -98,7 +137,10 @@ struct RecordedCall {
                    calls::SetPose, calls::SetVelocity, calls::ApplyImpulse, calls::SetJointStates,
                    calls::SetJointState, calls::SetLinkDrive, calls::SetJointDrive,
                    calls::SetAxisDrive, calls::Restore, calls::Wake, calls::SetMassFromColliders,
-                   calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce>;
+                   calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce, calls::SetMotion,
+                   calls::SetInertia, calls::SetDamping, calls::SetGravityScale,
+                   calls::SetAllowSleep, calls::SetMaterial, calls::SetFilter,
+                   calls::SetSurfaceVelocity, calls::RemoveCollider, calls::DestroyArticulation>;
   What what;
 };
 

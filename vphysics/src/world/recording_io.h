@@ -280,8 +280,23 @@ void fields(Io& io, Field<Io, WorldDesc> d) {
 }
 template <class Io>
 void fields(Io& io, Field<Io, BodyDesc> d) {
-  io(d.motion, d.T_world_body, d.velocity, d.inertia, d.linear_damping, d.angular_damping,
-     d.continuous, d.user_data);
+  io(d.motion, d.T_world_body, d.velocity, d.inertia, d.linear_damping, d.angular_damping);
+  // What came later is behind flags, so that bodies without it are written as before.
+  constexpr std::uint8_t kContinuous = 1, kScaled = 2, kSleepless = 4;
+  if constexpr (Io::kReads) {
+    const std::uint8_t flags = io.byte();
+    io.check(flags <= (kContinuous | kScaled | kSleepless));
+    d.continuous = (flags & kContinuous) != 0;
+    d.allow_sleep = (flags & kSleepless) == 0;
+    d.gravity_scale = 1.0;
+    if ((flags & kScaled) != 0) io(d.gravity_scale);
+  } else {
+    const bool scaled = d.gravity_scale != 1.0;
+    io.byte(static_cast<std::uint8_t>((d.continuous ? kContinuous : 0) | (scaled ? kScaled : 0) |
+                                      (d.allow_sleep ? 0 : kSleepless)));
+    if (scaled) io(d.gravity_scale);
+  }
+  io(d.user_data);
 }
 template <class Io>
 void fields(Io& io, Field<Io, Sphere> s) {
@@ -491,6 +506,47 @@ void fields(Io& io, Field<Io, calls::ApplyTorque> c) {
 template <class Io>
 void fields(Io& io, Field<Io, calls::ApplyJointForce> c) {
   io(c.articulation, c.link, c.dof, c.force);
+}
+
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetMotion> c) {
+  io(c.body, c.motion);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetInertia> c) {
+  io(c.body, c.inertia);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetDamping> c) {
+  io(c.body, c.linear, c.angular);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetGravityScale> c) {
+  io(c.body, c.scale);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetAllowSleep> c) {
+  io(c.body, c.allow);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetMaterial> c) {
+  io(c.collider, c.material);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetFilter> c) {
+  io(c.collider, c.filter.category, c.filter.mask);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::SetSurfaceVelocity> c) {
+  io(c.collider, c.velocity);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::RemoveCollider> c) {
+  io(c.collider);
+}
+template <class Io>
+void fields(Io& io, Field<Io, calls::DestroyArticulation> c) {
+  io(c.articulation);
 }
 
 template <class T>

@@ -5,10 +5,13 @@
 
 namespace vp::recording {
 
-// Those that change the structure of the world; its digest follows them.
+// Those that change the structure of the world; its digest follows them. By their codes: the first
+// ones build, and all from SetMotion on.
 inline bool builds(const RecordedCall& call) {
-  return call.what.index() <= RecordedCall::What(calls::DestroyJoint{}).index() ||
-         std::holds_alternative<calls::SetMassFromColliders>(call.what);
+  const std::size_t code = call.what.index();
+  return code <= RecordedCall::What(calls::DestroyJoint{}).index() ||
+         code == RecordedCall::What(calls::SetMassFromColliders{}).index() ||
+         code >= RecordedCall::What(calls::SetMotion{}).index();
 }
 
 }  // namespace vp::recording

@@ -53,6 +53,7 @@ void World::Impl::list_remote_articulations() {
   remote_bodies.assign(bodies.size(), 0);
   impact_bodies_are_stale = impact_scratch_is_stale = true;
   for (Articulation& art : articulations) {
+    if (!art.alive) continue;
     look_at(art);
     art.can_be_remote = few && can_be_remote(art);
   }

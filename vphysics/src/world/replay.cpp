@@ -92,6 +92,36 @@ class Doer {
     return world_.apply_joint_force(c.articulation, static_cast<int>(c.link),
                                     static_cast<int>(c.dof), c.force);
   }
+  Expected<void> operator()(const calls::SetMotion& c) {
+    return world_.set_motion(c.body, c.motion);
+  }
+  Expected<void> operator()(const calls::SetInertia& c) {
+    return world_.set_inertia(c.body, c.inertia);
+  }
+  Expected<void> operator()(const calls::SetDamping& c) {
+    return world_.set_damping(c.body, c.linear, c.angular);
+  }
+  Expected<void> operator()(const calls::SetGravityScale& c) {
+    return world_.set_gravity_scale(c.body, c.scale);
+  }
+  Expected<void> operator()(const calls::SetAllowSleep& c) {
+    return world_.set_allow_sleep(c.body, c.allow);
+  }
+  Expected<void> operator()(const calls::SetMaterial& c) {
+    return world_.set_material(c.collider, c.material);
+  }
+  Expected<void> operator()(const calls::SetFilter& c) {
+    return world_.set_filter(c.collider, c.filter);
+  }
+  Expected<void> operator()(const calls::SetSurfaceVelocity& c) {
+    return world_.set_surface_velocity(c.collider, c.velocity);
+  }
+  Expected<void> operator()(const calls::RemoveCollider& c) {
+    return world_.remove_collider(c.collider);
+  }
+  Expected<void> operator()(const calls::DestroyArticulation& c) {
+    return world_.destroy_articulation(c.articulation);
+  }
 
  private:
   template <class T>

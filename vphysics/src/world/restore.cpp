@@ -224,6 +224,7 @@ void World::Impl::Incoming::read_joints(Reader& in) {
   q.clear();
   dofs.clear();
   for (const Articulation& art : world.articulations) {
+    if (!art.alive) continue;
     const std::size_t first = q.size();
     for (std::size_t i = 0; i < art.q.size(); ++i) q.push_back(in.bounded());
     for (const JointDof& dof : art.dofs) vp::read(in, dof, dofs.emplace_back());
@@ -261,6 +262,7 @@ void World::Impl::Incoming::read_loads(Reader& in) {
   for (std::size_t n = in.count(1); n > 0 && in.ok(); --n) {
     const std::uint32_t a = in.index(world.articulations.size());
     in.check(loaded.empty() || loaded.back() < a);
+    in.check(in.ok() && world.articulations[a].alive);
     if (!in.ok()) return;
     loaded.push_back(a);
     const Articulation& art = world.articulations[a];
@@ -305,6 +307,7 @@ void World::Impl::adopt(Incoming& from) {
   auto q = from.q.cbegin();
   auto dof = from.dofs.cbegin();
   for (Articulation& art : articulations) {
+    if (!art.alive) continue;
     for (double& x : art.q) x = *q++;
     for (std::size_t i = 0; i < art.v.size(); ++i, ++dof) {
       art.v[i] = dof->v;

@@ -16,7 +16,8 @@
 namespace vp {
 
 bool World::Impl::may_sleep(const Body& body) const {
-  return body.motion == Motion::dynamic && joins_sub_steps(body) && !body.on_link;
+  return body.allow_sleep && body.motion == Motion::dynamic && joins_sub_steps(body) &&
+         !body.on_link;
 }
 
 bool World::Impl::is_still(const Body& body) const {

@@ -127,6 +127,7 @@ void World::Impl::write(Sink& sink) const {
     }
   }
   for (const Articulation& art : articulations) {
+    if (!art.alive) continue;
     for (const double x : art.q) put(sink, x);
     for (std::size_t i = 0; i < art.v.size(); ++i) {
       const JointDrive& d = art.dofs[i].drive;

@@ -360,7 +360,7 @@ void World::Impl::hold_what_meets(double h) {
 
 // Impacts in the order of time are for continuous bodies and for what meets links.
 bool World::Impl::has_impact_stage() const {
-  return !articulations.empty() || some_are_continuous;
+  return articulations.size() > free_articulations.size() || some_are_continuous;
 }
 
 void World::Impl::run(double dt) {

@@ -55,6 +55,9 @@ class Structure {
     add(desc.inertia);
     add(desc.linear_damping);
     add(desc.angular_damping);
+    const BodyDesc usual;
+    add_unless(usual.gravity_scale, 'w', desc.gravity_scale);
+    add_unless(std::uint64_t{1}, 'p', static_cast<std::uint64_t>(desc.allow_sleep));
   }
   void add(const ColliderDesc& desc) {
     add(desc.shape);

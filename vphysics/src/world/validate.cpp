@@ -111,6 +111,12 @@ std::optional<std::string> problem_with(const WorldDesc& desc) {
   return std::nullopt;
 }
 
+bool has_no_inertia(const BodyDesc& desc) {
+  const Inertia& J = desc.inertia;
+  const Sym3& I = J.rotational();
+  return J.mass() == 0.0 && J.first_moment() == Vec3{} && I == Sym3{};
+}
+
 std::optional<std::string> problem_with(const BodyDesc& desc) {
   if (!is_pose(desc.T_world_body)) return "T_world_body must be a finite rotation and position";
   if (!in_range(desc.velocity)) return std::string("velocity") + kRange;
@@ -118,7 +124,10 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
   if (!not_negative(desc.linear_damping) || !not_negative(desc.angular_damping)) {
     return "damping must be zero or more";
   }
-  if (desc.motion != Motion::dynamic) return std::nullopt;
+  if (!is_gravity_scale(desc.gravity_scale)) {
+    return "gravity_scale must be finite and at most 1e6 either way";
+  }
+  if (desc.motion != Motion::dynamic || has_no_inertia(desc)) return std::nullopt;
   if (auto problem = problem_with(desc.inertia)) return problem;
   const se3& V = desc.velocity;
   if (!nearly_in_range(V.v + cross(V.w, desc.inertia.centre_of_mass()))) {
@@ -167,15 +176,19 @@ std::optional<std::string> problem_with(const Inertia& J) {
   return std::nullopt;
 }
 
-std::optional<std::string> problem_with(const ColliderDesc& desc) {
-  if (auto problem = problem_with_shape(desc.shape)) return problem;
-  if (!is_pose(desc.T_body_shape)) return "T_body_shape must be a finite rotation and position";
-  const Material& m = desc.material;
+std::optional<std::string> problem_with(const Material& m) {
   if (!not_negative(m.friction)) return "material: friction must be zero or more";
   if (!(m.restitution >= 0.0 && m.restitution <= 1.0))
     return "material: restitution must be in [0, 1]";
   if (!not_negative(m.rolling_friction)) return "material: rolling friction must be zero or more";
   if (!not_negative(m.spinning_friction)) return "material: spinning friction must be zero or more";
+  return std::nullopt;
+}
+
+std::optional<std::string> problem_with(const ColliderDesc& desc) {
+  if (auto problem = problem_with_shape(desc.shape)) return problem;
+  if (!is_pose(desc.T_body_shape)) return "T_body_shape must be a finite rotation and position";
+  if (auto problem = problem_with(desc.material)) return problem;
   if (!in_range(desc.surface_velocity)) return std::string("surface_velocity") + kRange;
   if (!positive(desc.density)) return "density must be positive and finite";
   return std::nullopt;

@@ -39,6 +39,11 @@ inline bool nearly_in_range(const Vec3& a) {
 }
 
 bool is_pose(const SE3& T);
+inline bool is_gravity_scale(double scale) {
+  return in_range(1e3 * scale);
+}
+// The body takes its mass from its colliders.
+bool has_no_inertia(const BodyDesc& desc);
 // Of all ball and free joints.
 bool has_unit_quaternions(const Model& model, std::span<const double> q);
 
@@ -46,6 +51,7 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q);
 std::optional<std::string> problem_with(const WorldDesc& desc);
 std::optional<std::string> problem_with(const BodyDesc& desc);
 std::optional<std::string> problem_with(const Inertia& inertia);
+std::optional<std::string> problem_with(const Material& material);
 std::optional<std::string> problem_with(const ColliderDesc& desc);
 std::optional<std::string> problem_with_shape(const Shape& shape);
 std::optional<std::string> problem_with(const ArticulationDesc& desc);

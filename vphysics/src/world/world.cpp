@@ -93,14 +93,17 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
   Body& body = impl_->bodies[index];
   body.motion = desc.motion;
+  body.wants_continuous = desc.continuous;
   body.continuous = desc.continuous && desc.motion == Motion::dynamic;
   body.user_data = desc.user_data;
   body.T = SE3(orthonormalized(desc.T_world_body.rotation()), desc.T_world_body.position());
-  if (desc.motion == Motion::dynamic) {
-    set_mass(body, desc.inertia);
-    body.linear_damping = desc.linear_damping;
-    body.angular_damping = desc.angular_damping;
-  }
+  body.linear_damping = desc.linear_damping;
+  body.angular_damping = desc.angular_damping;
+  body.gravity_scale = desc.gravity_scale;
+  body.allow_sleep = desc.allow_sleep;
+  body.mass_from_colliders = has_no_inertia(desc) || problem_with(desc.inertia).has_value();
+  if (!body.mass_from_colliders) set_mass(body, desc.inertia);
+  impl_->update_mass(index);
   if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
   Structure structure(impl_->structure);
   structure.add(0x100u + index);
@@ -112,7 +115,8 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   return id;
 }
 
-void World::Impl::release_collider(std::uint32_t index) {
+// Ends all that it touches; the next step reports it.
+void World::Impl::drop_contacts(std::uint32_t index) {
   std::erase_if(records, [&](const PairRecord& r) {
     if (r.a != index && r.b != index) return false;
     if (r.touching) {
@@ -121,7 +125,7 @@ void World::Impl::release_collider(std::uint32_t index) {
     }
     return true;
   });
-  Collider& collider = colliders[index];
+  const Collider& collider = colliders[index];
   wake(collider.body);
   wake_neighbours(collider.body);
   std::uint32_t next = kNone;
@@ -137,8 +141,13 @@ void World::Impl::release_collider(std::uint32_t index) {
     finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
     remove_contact(e / 2);
   }
-  finder.remove(collider.proxy);
   ready_for_queries = false;
+}
+
+void World::Impl::release_collider(std::uint32_t index) {
+  drop_contacts(index);
+  Collider& collider = colliders[index];
+  finder.remove(collider.proxy);
   collider.alive = false;
   colliders[index].shape = HalfSpace{};
   free_colliders.push_back(index);
@@ -183,6 +192,33 @@ collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
 
 }  // namespace
 
+// Adds it to what its body has of all its colliders.
+void World::Impl::note_collider(std::uint32_t index) {
+  Collider& c = colliders[index];
+  Body& body = bodies[c.body];
+  body.categories |= c.filter.category;
+  body.masks |= c.filter.mask;
+  body.has_sensor |= c.sensor;
+  if (std::holds_alternative<HalfSpace>(c.shape)) {
+    body.unbounded = true;
+    return;
+  }
+  const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
+  c.centre = 0.5 * (local.lower + local.upper);
+  c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
+                                                      : 0.5 * norm(local.upper - local.lower);
+  body.local = merged(body.local, local);
+  c.size = size_of(c.geometry);
+  body.reach = reach_of(body);
+  if (body.is_link) {
+    const Articulation& art = articulations[body.articulation];
+    const Vec3 line = art.line_of(body.link);
+    c.around_line = bounds_around(line, local);
+    body.around_line = bounds_around(line, body.local);
+  }
+  body.least_size = std::min(body.least_size, c.size);
+}
+
 Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
   Body* body = impl_->find(body_handle);
   if (!body) return stale("add_collider", "the body");
@@ -197,6 +233,12 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
   if (half_space && (body->motion != Motion::fixed)) {
     return refuse("add_collider: a half-space needs a fixed body");
+  }
+  const bool adds_mass = body->mass_from_colliders && body->motion == Motion::dynamic;
+  if (adds_mass && !desc.sensor) {
+    const Inertia sum = impl_->inertia_of_colliders(*body) +
+                        solid_inertia(desc.shape, desc.density).InvXform(desc.T_body_shape);
+    if (auto problem = problem_with(sum)) return refuse("add_collider: with it, " + *problem);
   }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
   Collider& c = impl_->colliders[index];
@@ -216,27 +258,8 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   body->last_collider = index;
   body->moved();
   if (body->is_link) impl_->follow(impl_->articulations[body->articulation]);
-  body->categories |= c.filter.category;
-  body->masks |= c.filter.mask;
-  body->has_sensor |= c.sensor;
-  if (half_space) {
-    body->unbounded = true;
-  } else {
-    const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
-    c.centre = 0.5 * (local.lower + local.upper);
-    c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
-                                                        : 0.5 * norm(local.upper - local.lower);
-    body->local = merged(body->local, local);
-    c.size = size_of(c.geometry);
-    body->reach = reach_of(*body);
-    if (body->is_link) {
-      const Articulation& art = impl_->articulations[body->articulation];
-      const Vec3 line = art.line_of(body->link);
-      c.around_line = bounds_around(line, local);
-      body->around_line = bounds_around(line, body->local);
-    }
-    body->least_size = std::min(body->least_size, c.size);
-  }
+  impl_->note_collider(index);
+  if (adds_mass) impl_->update_mass(c.body);
   impl_->lists_are_stale = true;
   impl_->wake(c.body);
   impl_->add_proxy(index);
@@ -275,6 +298,32 @@ se3 World::velocity(BodyId id) const {
   }
   const Vec3 v = body->v + cross(body->w, body->T.position() - impl_->reference_point(*body));
   return {body->T.unrotate(body->w), body->T.unrotate(v)};
+}
+
+VelocityWorld World::velocity_world(BodyId id) const {
+  const Body* body = impl_->find(id);
+  VP_ASSERT(body && "velocity_world: the body does not exist (any more)");
+  if (!body) return {};
+  return {velocity_at(id, impl_->centre_of_mass(*body)), pose(id).rotate(velocity(id).w)};
+}
+
+Vec3 World::velocity_at(BodyId id, const Vec3& point) const {
+  VP_ASSERT(impl_->find(id) && "velocity_at: the body does not exist (any more)");
+  const SE3 T = pose(id);
+  const se3 V = velocity(id);
+  return T.rotate(V.v) + cross(T.rotate(V.w), point - T.position());
+}
+
+Expected<void> World::set_velocity_world(BodyId id, const VelocityWorld& velocity) {
+  const Body* body = impl_->find(id);
+  if (!body) return stale("set_velocity_world", "the body");
+  if (!in_range(velocity.linear) || !in_range(velocity.angular)) {
+    return refuse("set_velocity_world: every entry must be finite and at most 1e9");
+  }
+  const SE3& T = body->T;
+  const Vec3 from = T.position() - impl_->reference_point(*body);
+  return set_velocity(id, {T.unrotate(velocity.angular),
+                           T.unrotate(velocity.linear + cross(velocity.angular, from))});
 }
 
 Expected<void> World::set_pose(BodyId id, const SE3& T) {

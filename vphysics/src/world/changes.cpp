@@ -1,0 +1,398 @@
+// Changes of what a world is made of, while it runs.
+//
+// All of these are constants of the world: they enter its digest (structure.h), so that a snapshot
+// of before is not taken after them. What hangs together with a changed body is woken. Contacts
+// whose constants changed are looked at anew in the next step; those that are no more end, with an
+// event of the next step.
+#include <algorithm>
+
+#include "world/impl.h"
+#include "world/recorded_call.h"
+#include "world/refuse.h"
+#include "world/structure.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+// Of a body that takes its mass from its colliders, as long as none has one.
+const Inertia kUnitInertia(1.0, Vec3{1.0, 1.0, 1.0});
+
+enum class Change : std::uint64_t {
+  motion = 1,
+  inertia,
+  damping,
+  gravity_scale,
+  allow_sleep,
+  material,
+  filter,
+  surface_velocity,
+  removed_collider,
+  destroyed_articulation,
+};
+std::uint64_t word_of(Change change, std::uint32_t index) {
+  return (static_cast<std::uint64_t>(change) << 32) | index;
+}
+
+// Its centre of mass, V being its velocity.
+bool is_slow_enough(const se3& V, const Vec3& centre) {
+  return nearly_in_range(V.v + cross(V.w, centre));
+}
+
+std::optional<std::string> why_not(const Body& body, const std::vector<Collider>& colliders,
+                                   Motion motion) {
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    const Shape& shape = colliders[c].shape;
+    if (std::holds_alternative<HalfSpace>(shape) && motion != Motion::fixed) {
+      return "it carries a half-space, which needs a fixed body; remove that collider first";
+    }
+    const bool surface =
+        std::holds_alternative<TriangleMesh>(shape) || std::holds_alternative<HeightField>(shape);
+    if (surface && motion == Motion::dynamic) {
+      return "it carries a mesh or a height field, which nothing can push; remove that collider "
+             "first";
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Inertia World::Impl::inertia_of_colliders(const Body& body) const {
+  Inertia sum;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    const Collider& collider = colliders[c];
+    if (collider.sensor) continue;
+    sum = sum + solid_inertia(collider.shape, collider.density).InvXform(collider.T_body_shape);
+  }
+  return sum;
+}
+
+// The velocity of its origin stays, and so do the forces on it.
+void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
+  Body& body = bodies[index];
+  wake(index);
+  const Vec3 before = reference_point(body);
+  const Vec3 v = body.v + cross(body.w, body.T.position() - before);
+  const se3 V{body.T.unrotate(body.w), body.T.unrotate(v)};
+  set_mass(body, inertia);
+  body.reach = reach_of(body);
+  if (body.motion != Motion::dynamic) return;
+  body.w = body.T.rotate(V.w);
+  body.v = body.T.rotate(V.v + cross(V.w, body.centre));
+  if (body.load != kNone) {
+    BodyLoad& load = loads[body.load];
+    load.torque += cross(before - reference_point(body), load.force);
+  }
+  mark_contacts_stale(index);
+}
+
+// Of a dynamic body that takes its mass from its colliders; they have changed.
+void World::Impl::update_mass(std::uint32_t index) {
+  const Body& body = bodies[index];
+  if (!body.mass_from_colliders || body.motion != Motion::dynamic) return;
+  const Inertia sum = inertia_of_colliders(body);
+  change_mass(index, sum.mass() > 0.0 ? sum : kUnitInertia);
+}
+
+void World::Impl::wake_all_about(std::uint32_t index) {
+  wake(index);
+  wake_neighbours(index);
+}
+
+Body* World::Impl::find_body_to_change(BodyId id) {
+  Body* body = find(id);
+  return body && !body->is_link ? body : nullptr;
+}
+tl::unexpected<Error> World::Impl::no_body_to_change(const char* call, BodyId id) const {
+  if (!find(id)) return stale(call, "the body");
+  return refuse(std::string(call) + ": a link is as its articulation's model has it");
+}
+
+Collider* World::Impl::find(ColliderId id) {
+  return const_cast<Collider*>(std::as_const(*this).find(id));
+}
+const Collider* World::Impl::find(ColliderId id) const {
+  if (id.index == 0 || id.index > colliders.size()) return nullptr;
+  const Collider& c = colliders[id.index - 1];
+  return c.alive && c.generation == id.generation ? &c : nullptr;
+}
+
+// --- bodies --------------------------------------------------------------------------------------
+
+Expected<void> World::set_motion(BodyId id, Motion motion) {
+  Body* body = impl_->find_body_to_change(id);
+  if (!body) return impl_->no_body_to_change("set_motion", id);
+  const std::uint32_t index = id.index - 1;
+  if (motion > Motion::dynamic) return refuse("set_motion: fixed, kinematic or dynamic");
+  if (motion == body->motion) return {};
+  if (auto problem = why_not(*body, impl_->colliders, motion)) {
+    return refuse(Errc::unsupported, "set_motion: " + *problem);
+  }
+  for (std::uint32_t e = body->first_joint; e != kNone; e = impl_->joints[e / 2].next[e % 2]) {
+    const BodyJoint& joint = impl_->joints[e / 2];
+    const Body& other = impl_->bodies[joint.a == index ? joint.b : joint.a];
+    if (motion != Motion::dynamic && other.motion != Motion::dynamic) {
+      return refuse("set_motion: a joint would be left without a dynamic body; destroy it first");
+    }
+    if (motion == Motion::dynamic && body->wants_continuous) {  // joined while it was not
+      return refuse(Errc::unsupported, "set_motion: a continuous body cannot be joined");
+    }
+  }
+  std::optional<Inertia> inertia;  // none: what the body has
+  Vec3 centre = body->centre;
+  if (motion == Motion::dynamic && body->mass_from_colliders) {
+    inertia = impl_->inertia_of_colliders(*body);
+    if (inertia->mass() == 0.0) inertia = kUnitInertia;
+    if (auto problem = problem_with(*inertia)) return refuse("set_motion: " + *problem);
+    centre = inertia->centre_of_mass();
+  }
+  const se3 V = velocity(id);
+  if (motion == Motion::dynamic && !is_slow_enough(V, centre)) {
+    return refuse("set_motion: the centre of mass would move faster than 1e9 m/s");
+  }
+  impl_->change_motion(index, motion, inertia, V);
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::motion, index));
+  structure.add(static_cast<std::uint64_t>(motion));
+  if (impl_->recorder) impl_->log({calls::SetMotion{id, motion}});
+  return {};
+}
+
+// Its contacts end, and those that still touch begin anew: their places in the solver are of the
+// motion of before.
+void World::Impl::change_motion(std::uint32_t index, Motion motion,
+                                const std::optional<Inertia>& inertia, const se3& V) {
+  Body& body = bodies[index];
+  wake_all_about(index);
+  remove_load(index);
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    drop_contacts(c);
+    finder.remove(colliders[c].proxy);
+  }
+  forget_joints(index);
+  body.motion = motion;
+  body.continuous = body.wants_continuous && motion == Motion::dynamic;
+  body.rested = false;
+  body.region = solve::kBetween;
+  body.w = body.v = {};
+  body.prescribed = motion == Motion::kinematic ? V : se3{};
+  if (motion == Motion::dynamic) {
+    if (inertia) set_mass(body, *inertia);
+    body.w = body.T.rotate(V.w);
+    body.v = body.T.rotate(V.v + cross(V.w, body.centre));
+  }
+  body.reach = reach_of(body);
+  body.moved();
+  if (index + 1 < body_rows.size()) body_rows[index + 1] = {};
+  std::fill_n(body.bounded_at, 6, 1e9f);
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) add_proxy(c);
+  lists_are_stale = true;
+}
+
+Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
+  Body* body = impl_->find_body_to_change(id);
+  if (!body) return impl_->no_body_to_change("set_inertia", id);
+  if (auto problem = problem_with(inertia)) return refuse("set_inertia: " + *problem);
+  if (!is_slow_enough(velocity(id), inertia.centre_of_mass())) {
+    return refuse("set_inertia: the centre of mass would move faster than 1e9 m/s");
+  }
+  body->mass_from_colliders = false;
+  impl_->change_mass(id.index - 1, inertia);
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::inertia, id.index));
+  structure.add(inertia);
+  if (impl_->recorder) impl_->log({calls::SetInertia{id, inertia}});
+  return {};
+}
+
+Expected<void> World::set_damping(BodyId id, double linear, double angular) {
+  Body* body = impl_->find_body_to_change(id);
+  if (!body) return impl_->no_body_to_change("set_damping", id);
+  if (!in_range(linear) || !in_range(angular) || linear < 0.0 || angular < 0.0) {
+    return refuse("set_damping: damping must be from 0 to 1e9 1/s");
+  }
+  impl_->wake(id.index - 1);
+  body->linear_damping = linear;
+  body->angular_damping = angular;
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::damping, id.index));
+  structure.add(linear);
+  structure.add(angular);
+  if (impl_->recorder) impl_->log({calls::SetDamping{id, linear, angular}});
+  return {};
+}
+
+Expected<void> World::set_gravity_scale(BodyId id, double scale) {
+  Body* body = impl_->find_body_to_change(id);
+  if (!body) return impl_->no_body_to_change("set_gravity_scale", id);
+  if (!is_gravity_scale(scale)) {
+    return refuse("set_gravity_scale: the scale must be finite and at most 1e6 either way");
+  }
+  impl_->wake(id.index - 1);
+  body->gravity_scale = scale;
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::gravity_scale, id.index));
+  structure.add(scale);
+  if (impl_->recorder) impl_->log({calls::SetGravityScale{id, scale}});
+  return {};
+}
+
+Expected<void> World::set_allow_sleep(BodyId id, bool allow) {
+  Body* body = impl_->find_body_to_change(id);
+  if (!body) return impl_->no_body_to_change("set_allow_sleep", id);
+  impl_->wake(id.index - 1);
+  body->allow_sleep = allow;
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::allow_sleep, id.index));
+  structure.add(static_cast<std::uint64_t>(allow));
+  if (impl_->recorder) impl_->log({calls::SetAllowSleep{id, allow}});
+  return {};
+}
+
+// --- colliders -----------------------------------------------------------------------------------
+
+bool World::contains(ColliderId id) const {
+  return impl_->find(id) != nullptr;
+}
+BodyId World::body_of(ColliderId id) const {
+  const Collider* c = impl_->find(id);
+  return c ? body_id(impl_->bodies, c->body) : BodyId{};
+}
+
+Expected<void> World::set_material(ColliderId id, const Material& material) {
+  Collider* c = impl_->find(id);
+  if (!c) return stale("set_material", "the collider");
+  if (auto problem = problem_with(material)) return refuse("set_material: " + *problem);
+  c->material = material;
+  impl_->wake_all_about(c->body);
+  impl_->mark_contacts_stale(c->body);
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::material, id.index));
+  for (const double x : {material.friction, material.restitution, material.rolling_friction,
+                         material.spinning_friction}) {
+    structure.add(x);
+  }
+  if (impl_->recorder) impl_->log({calls::SetMaterial{id, material}});
+  return {};
+}
+
+Expected<void> World::set_surface_velocity(ColliderId id, const Vec3& velocity) {
+  Collider* c = impl_->find(id);
+  if (!c) return stale("set_surface_velocity", "the collider");
+  if (!in_range(velocity)) {
+    return refuse("set_surface_velocity: every entry must be finite and at most 1e9");
+  }
+  c->surface_velocity = velocity;
+  impl_->wake_all_about(c->body);
+  impl_->mark_contacts_stale(c->body);
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::surface_velocity, id.index));
+  structure.add(velocity);
+  if (impl_->recorder) impl_->log({calls::SetSurfaceVelocity{id, velocity}});
+  return {};
+}
+
+Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
+  Collider* c = impl_->find(id);
+  if (!c) return stale("set_filter", "the collider");
+  Body& body = impl_->bodies[c->body];
+  c->filter = filter;
+  impl_->wake_all_about(c->body);
+  if (!body.continuous) impl_->finder.set_filter(c->proxy, filter.category, filter.mask);
+  body.categories = body.masks = 0;
+  for (std::uint32_t i = body.first_collider; i != kNone; i = impl_->colliders[i].next) {
+    body.categories |= impl_->colliders[i].filter.category;
+    body.masks |= impl_->colliders[i].filter.mask;
+  }
+  impl_->ready_for_queries = false;
+  impl_->lists_are_stale = true;
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::filter, id.index));
+  structure.add(std::uint64_t{filter.category} << 32 | filter.mask);
+  if (impl_->recorder) impl_->log({calls::SetFilter{id, filter}});
+  return {};
+}
+
+Expected<void> World::remove_collider(ColliderId id) {
+  const Collider* c = impl_->find(id);
+  if (!c) return stale("remove_collider", "the collider");
+  const std::uint32_t body = c->body;
+  if (impl_->bodies[body].mass_from_colliders && impl_->bodies[body].motion == Motion::dynamic) {
+    Inertia sum;
+    for (std::uint32_t i = impl_->bodies[body].first_collider; i != kNone;
+         i = impl_->colliders[i].next) {
+      const Collider& other = impl_->colliders[i];
+      if (i == id.index - 1 || other.sensor) continue;
+      sum = sum + solid_inertia(other.shape, other.density).InvXform(other.T_body_shape);
+    }
+    const auto problem = sum.mass() > 0.0 ? problem_with(sum) : std::nullopt;
+    if (problem) return refuse("remove_collider: of what is left, " + *problem);
+  }
+  impl_->take_collider_off(id.index - 1);
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::removed_collider, id.index));
+  if (impl_->recorder) impl_->log({calls::RemoveCollider{id}});
+  return {};
+}
+
+void World::Impl::take_collider_off(std::uint32_t index) {
+  const std::uint32_t owner = colliders[index].body;
+  Body& body = bodies[owner];
+  if (body.is_link) look_at(articulations[body.articulation]);
+  release_collider(index);
+  std::uint32_t previous = kNone;
+  for (std::uint32_t c = body.first_collider; c != index; c = colliders[c].next) previous = c;
+  (previous == kNone ? body.first_collider : colliders[previous].next) = colliders[index].next;
+  if (body.last_collider == index) body.last_collider = previous;
+  summarize_colliders(owner);
+  update_mass(owner);
+  mark_contacts_stale(owner);
+  body.moved();
+  lists_are_stale = true;
+}
+
+// What a body has of all its colliders.
+void World::Impl::summarize_colliders(std::uint32_t index) {
+  Body& body = bodies[index];
+  const Body none;
+  body.categories = body.masks = 0;
+  body.has_sensor = body.unbounded = false;
+  body.local = none.local;
+  body.around_line = none.around_line;
+  body.least_size = none.least_size;
+  body.reach = none.reach;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) note_collider(c);
+}
+
+// --- articulations -------------------------------------------------------------------------------
+
+bool World::contains(ArticulationId id) const {
+  return impl_->find(id) != nullptr;
+}
+
+Expected<void> World::destroy_articulation(ArticulationId id) {
+  Articulation* art = impl_->find(id);
+  if (!art) return refuse("destroy_articulation: no such articulation");
+  impl_->look_at(*art);
+  for (const std::uint32_t b : art->bodies) {
+    Body& body = impl_->bodies[b];
+    for (std::uint32_t c = body.first_collider; c != kNone; c = impl_->colliders[c].next) {
+      impl_->release_collider(c);
+    }
+    body.alive = false;
+    body.w = body.v = {};
+    body.first_collider = kNone;
+    impl_->free_bodies.push_back(b);
+  }
+  art->destroy();
+  impl_->free_articulations.push_back(id.index - 1);
+  impl_->lists_are_stale = true;
+  impl_->impact_bodies_are_stale = true;
+  Structure structure(impl_->structure);
+  structure.add(word_of(Change::destroyed_articulation, id.index));
+  if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});
+  return {};
+}
+
+}  // namespace vp
