@@ -375,7 +375,7 @@ TEST(Force, AddsToTheMomentumOfAFloatingTree) {
     forward_kinematics<double>(model, data, world.coordinates(id), world.velocities(id));
     return momentum<double>(model, data, {});  // about the world's origin
   };
-  Vec3 angular, linear;
+  Vec3 linear;
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
     const BodyId body = world.link_body(id, i % 4);

@@ -24,7 +24,7 @@ class Compound {
   // are taken instead. Refused: no parts or, with those of compounds, more than 2^16; half-spaces,
   // meshes and height fields, which move nowhere: give each a collider; sizes and poses that a
   // collider would be refused for.
-  static Expected<Compound> of(std::span<const CompoundPart> parts);
+  [[nodiscard]] static Expected<Compound> of(std::span<const CompoundPart> parts);
 
   // Precondition of all below: not moved from.
   // In the order given, compounds replaced by their parts. A contact's sub-shape is an index of

@@ -42,7 +42,8 @@ class ConvexHull {
   // exactly, in integers. Refused: points that are not finite or beyond 1e9 m, an extent below 1e-6
   // m, and what has no volume: fewer than four different points, points on a line, points in a
   // plane, or a body thinner than a millionth of its extent.
-  static Expected<ConvexHull> of(std::span<const Vec3> points, const HullOptions& options = {});
+  [[nodiscard]] static Expected<ConvexHull> of(std::span<const Vec3> points,
+                                               const HullOptions& options = {});
 
   // Precondition of all below: not moved from.
   std::span<const Vec3> vertices() const;  // among the points given, in lexicographic order

@@ -32,11 +32,11 @@ class HeightField {
   // Refused: fewer than 2 or more than 2^15 columns or rows, another number of heights or holes
   // than the grid has, spacings that are not in [1e-6, 1e6] m, heights that are not finite or
   // beyond 1e9 m.
-  static Expected<HeightField> of(const HeightGrid& grid);
+  [[nodiscard]] static Expected<HeightField> of(const HeightGrid& grid);
 
   // The same data, stretched along the axes of the field's frame; factors multiply those that it
   // has already. Refused: factors, or products of them, that are not in [1e-6, 1e6].
-  Expected<HeightField> scaled(const Vec3& factors) const;
+  [[nodiscard]] Expected<HeightField> scaled(const Vec3& factors) const;
 
   // Precondition of all below: not moved from.
   const Vec3& scale() const { return scale_; }

@@ -62,8 +62,8 @@ class Recorder {
 
  private:
   friend class World;
-  Expected<void> begin(const World& world, const WorldDesc& desc, std::uint64_t structure,
-                       bool empty);
+  [[nodiscard]] Expected<void> begin(const World& world, const WorldDesc& desc,
+                                     std::uint64_t structure, bool empty);
   void add(const RecordedCall& call, std::uint64_t structure);
   void add_step(const World& world, double dt);
   void end();
@@ -88,14 +88,16 @@ class Replay {
  public:
   // Of a recording that began with an empty world. Refused with Errc::bad_data: bytes that do not
   // begin as a recording of this version; with Errc::invalid_argument: one that began later.
-  static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts = {});
+  [[nodiscard]] static Expected<Replay> open(std::vector<std::byte> bytes,
+                                             RecordedParts parts = {});
   // Of one that began later, with a world made by the same calls. Refused alike.
-  static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts, World built);
+  [[nodiscard]] static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts,
+                                             World built);
 
   // The calls up to the next step, and that step. It may go on after a difference. Refused with
   // Errc::bad_data, and from then on for good: damaged bytes, of which nothing is done; a call that
   // the world refuses; parts that are not those recorded.
-  Expected<ReplayState> step();
+  [[nodiscard]] Expected<ReplayState> step();
 
   // To look at; whoever changes it makes the steps that follow differ.
   World& world() { return world_; }
@@ -107,11 +109,12 @@ class Replay {
  private:
   Replay(std::vector<std::byte> bytes, RecordedParts parts, World world)
       : bytes_(std::move(bytes)), parts_(std::move(parts)), world_(std::move(world)) {}
-  static Expected<Replay> begin(std::vector<std::byte> bytes, RecordedParts parts, World* built);
+  [[nodiscard]] static Expected<Replay> begin(std::vector<std::byte> bytes, RecordedParts parts,
+                                              World* built);
   class Frame;
-  Expected<void> play(std::span<const std::byte> frame);
-  Expected<void> make(const RecordedCall& call, std::uint64_t structure);
-  Expected<void> make_step(double dt, const std::uint64_t* hash);
+  [[nodiscard]] Expected<void> play(std::span<const std::byte> frame);
+  [[nodiscard]] Expected<void> make(const RecordedCall& call, std::uint64_t structure);
+  [[nodiscard]] Expected<void> make_step(double dt, const std::uint64_t* hash);
   tl::unexpected<Error> stop(const Error& error);
 
   std::vector<std::byte> bytes_;

@@ -93,6 +93,6 @@ Inertia solid_inertia(const Shape& shape, double density);
 // The shape stretched along the axes of its own frame, each factor in [1e-6, 1e6]. Refused: factors
 // that turn the shape into another kind, as unequal ones do with a sphere or a capsule and unequal
 // x and y with a cylinder or a cone; make a convex hull of it for these.
-Expected<Shape> scaled(const Shape& shape, const Vec3& scale);
+[[nodiscard]] Expected<Shape> scaled(const Shape& shape, const Vec3& scale);
 
 }  // namespace vp

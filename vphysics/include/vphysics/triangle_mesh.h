@@ -38,13 +38,13 @@ class TriangleMesh {
 
   // Refused: no triangles or more than 2^26, more than 2^26 vertices, vertices that are not finite
   // or beyond 1e9 m, indices of no vertex, a mesh of which all triangles have no area.
-  static Expected<TriangleMesh> of(std::span<const Vec3> vertices,
-                                   std::span<const Triangle> triangles,
-                                   const MeshOptions& options = {});
+  [[nodiscard]] static Expected<TriangleMesh> of(std::span<const Vec3> vertices,
+                                                 std::span<const Triangle> triangles,
+                                                 const MeshOptions& options = {});
 
   // The same data, stretched along the axes of the mesh's frame; factors multiply those that it has
   // already. Refused: factors, or products of them, that are not in [1e-6, 1e6].
-  Expected<TriangleMesh> scaled(const Vec3& factors) const;
+  [[nodiscard]] Expected<TriangleMesh> scaled(const Vec3& factors) const;
 
   // Precondition of all below: not moved from.
   const Vec3& scale() const { return scale_; }
@@ -60,7 +60,7 @@ class TriangleMesh {
   double volume() const;  // [m^3]; of a closed mesh, > 0 if its triangles face outwards
   // Of what is inside, of uniform density [kg/m^3], about the frame's origin. Refused: a mesh that
   // is not closed, or inside out.
-  Expected<Inertia> inertia(double density) const;
+  [[nodiscard]] Expected<Inertia> inertia(double density) const;
 
   // For the engine; null if moved from.
   const std::shared_ptr<const collide::MeshData>& data() const { return data_; }

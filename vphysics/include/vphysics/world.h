@@ -121,6 +121,15 @@ struct VelocityWorld {
   Vec3 angular;  // [rad/s]
 };
 
+// Where a collider of a body touches another, and what that did to the body in a step.
+struct ContactPoint {
+  ColliderId collider, other;  // the body's, and what it touches
+  Vec3 point;                  // world frame [m]; to a hundredth of the shapes' size
+  Vec3 normal;                 // unit, world frame, towards the body
+  double normal_impulse;       // of the whole step, along the normal, >= 0 [N s]
+  Vec3 friction_impulse;       // across the normal, world frame [N s]
+};
+
 class Recorder;
 
 class World {
@@ -128,7 +137,7 @@ class World {
   // Of settings that come from a file or a user. Refused: numbers that are not finite, negative
   // ones, gravity or lengths beyond 1e9, no iterations or more than 1000, sub-steps beyond 1000,
   // more than 100000 impacts a step, regions of no bodies or of more than 1,000,000.
-  static Expected<World> create(const WorldDesc& desc);
+  [[nodiscard]] static Expected<World> create(const WorldDesc& desc);
   // Precondition: create() would take it.
   explicit World(const WorldDesc& desc = {});
   ~World();
@@ -139,24 +148,25 @@ class World {
   World& operator=(const World&) = delete;
 
   // --- building ---------------------------------------------------------------------------------
-  Expected<BodyId> create_body(const BodyDesc& desc);
+  [[nodiscard]] Expected<BodyId> create_body(const BodyDesc& desc);
   // Its colliders go with it; the next step reports the end of what they touched. Refused for
   // links.
-  Expected<void> destroy_body(BodyId body);
-  Expected<ColliderId> add_collider(BodyId body, const ColliderDesc& desc);  // links too
+  [[nodiscard]] Expected<void> destroy_body(BodyId body);
+  [[nodiscard]] Expected<ColliderId> add_collider(BodyId body,
+                                                  const ColliderDesc& desc);  // links too
   // Mass, centre of mass and inertia of a dynamic body from its colliders' shapes and densities.
   // Sensors count for nothing; what two shapes both fill counts twice. The velocity stays that of
   // the body's origin. Refused: links, bodies that are not dynamic or have no collider with a mass,
   // and what create_body refuses as an inertia.
-  Expected<void> set_mass_from_colliders(BodyId body);
+  [[nodiscard]] Expected<void> set_mass_from_colliders(BodyId body);
   // With every joint at zero, or at the stop next to it, at rest. Refused with Errc::singular: a
   // joint that moves no inertia.
-  Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
+  [[nodiscard]] Expected<ArticulationId> create_articulation(const ArticulationDesc& desc);
   BodyId link_body(ArticulationId articulation, int link) const;  // null if there is none
 
   // Destroying either body destroys the joint.
-  Expected<JointId> create_joint(BodyId a, BodyId b, const JointDesc& desc);
-  Expected<void> destroy_joint(JointId joint);
+  [[nodiscard]] Expected<JointId> create_joint(BodyId a, BodyId b, const JointDesc& desc);
+  [[nodiscard]] Expected<void> destroy_joint(JointId joint);
 
   // --- changes ----------------------------------------------------------------------------------
   // Of what the world is made of, while it runs. All wake what sleeps. A snapshot of before is
@@ -167,42 +177,43 @@ class World {
   // becomes dynamic has the inertia that it was created with or given, or that of its colliders.
   // Its contacts end, and those that still touch begin anew in the next step. Refused: half-spaces,
   // meshes and height fields on what may not carry them, joints left without a dynamic body.
-  Expected<void> set_motion(BodyId body, Motion motion);
+  [[nodiscard]] Expected<void> set_motion(BodyId body, Motion motion);
   // Instead of what it had, its colliders' too. The velocity of its origin stays.
-  Expected<void> set_inertia(BodyId body, const Inertia& inertia);
-  Expected<void> set_damping(BodyId body, double linear, double angular);  // [1/s]
-  Expected<void> set_gravity_scale(BodyId body, double scale);
-  Expected<void> set_allow_sleep(BodyId body, bool allow);
+  [[nodiscard]] Expected<void> set_inertia(BodyId body, const Inertia& inertia);
+  [[nodiscard]] Expected<void> set_damping(BodyId body, double linear, double angular);  // [1/s]
+  [[nodiscard]] Expected<void> set_gravity_scale(BodyId body, double scale);
+  [[nodiscard]] Expected<void> set_allow_sleep(BodyId body, bool allow);
 
   bool contains(ColliderId collider) const;
   BodyId body_of(ColliderId collider) const;  // null if there is none
   // Links' colliders too. Contacts have the new values from the next step on, and what no longer
   // meets by its filter ends.
-  Expected<void> set_material(ColliderId collider, const Material& material);
-  Expected<void> set_filter(ColliderId collider, const CollisionFilter& filter);
-  Expected<void> set_surface_velocity(ColliderId collider, const Vec3& velocity);
+  [[nodiscard]] Expected<void> set_material(ColliderId collider, const Material& material);
+  [[nodiscard]] Expected<void> set_filter(ColliderId collider, const CollisionFilter& filter);
+  [[nodiscard]] Expected<void> set_surface_velocity(ColliderId collider, const Vec3& velocity);
   // The next step reports the end of what it touched.
-  Expected<void> remove_collider(ColliderId collider);
+  [[nodiscard]] Expected<void> remove_collider(ColliderId collider);
 
   bool contains(ArticulationId articulation) const;
   // With its links and their colliders; the next step reports the end of what they touched.
-  Expected<void> destroy_articulation(ArticulationId articulation);
+  [[nodiscard]] Expected<void> destroy_articulation(ArticulationId articulation);
 
   // --- state ------------------------------------------------------------------------------------
   bool contains(BodyId body) const;
   SE3 pose(BodyId body) const;         // T_world_body; precondition: contains(body)
   se3 velocity(BodyId body) const;     // body frame; precondition: contains(body)
   Inertia inertia(BodyId body) const;  // about its origin, 0 if not dynamic; precondition: the same
-  Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
-  Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
+  [[nodiscard]] Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
+  [[nodiscard]] Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
   // The same in the world's axes, and of the centre of mass: of links too; of bodies that are not
   // dynamic, of the origin. Precondition: contains(body).
   VelocityWorld velocity_world(BodyId body) const;
   Vec3 velocity_at(BodyId body, const Vec3& point_world) const;  // of the body's point there [m/s]
   // Refused for links, and where set_velocity is.
-  Expected<void> set_velocity_world(BodyId body, const VelocityWorld& velocity);
+  [[nodiscard]] Expected<void> set_velocity_world(BodyId body, const VelocityWorld& velocity);
   // Refused: what would make it faster than 1e9 m/s or rad/s.
-  Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world, const Vec3& point_world);
+  [[nodiscard]] Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world,
+                                             const Vec3& point_world);
   // Forces and torques act over the whole of the next step, constant in the world frame, and are
   // forgotten when it ends: apply them anew before each. What is applied before the same step adds
   // up. Contacts, friction and joints meet them as they meet gravity, as a load and not as an
@@ -211,12 +222,13 @@ class World {
   //
   // The moment about the centre of mass is that of the moment of the call; without a point the
   // force acts through the centre of mass.
-  Expected<void> apply_force(BodyId body, const Vec3& force_world, const Vec3& point_world);
-  Expected<void> apply_force(BodyId body, const Vec3& force_world);
-  Expected<void> apply_torque(BodyId body, const Vec3& torque_world);
+  [[nodiscard]] Expected<void> apply_force(BodyId body, const Vec3& force_world,
+                                           const Vec3& point_world);
+  [[nodiscard]] Expected<void> apply_force(BodyId body, const Vec3& force_world);
+  [[nodiscard]] Expected<void> apply_torque(BodyId body, const Vec3& torque_world);
   bool is_asleep(BodyId body) const;  // precondition: contains(body)
   // With all that hangs together with it; nothing if it is awake.
-  Expected<void> wake(BodyId body);
+  [[nodiscard]] Expected<void> wake(BodyId body);
 
   const Model* model(ArticulationId articulation) const;  // what it was created of; null: no such
   // All coordinates and velocities of an articulation, as its model orders them; valid until the
@@ -225,24 +237,28 @@ class World {
   std::span<const double> velocities(ArticulationId articulation) const;
   // Refused: other lengths, numbers that are not finite or beyond 1e9, coordinates beyond a limit,
   // a quaternion that is not of unit length.
-  Expected<void> set_joint_states(ArticulationId articulation, std::span<const double> coordinates,
-                                  std::span<const double> velocities);
+  [[nodiscard]] Expected<void> set_joint_states(ArticulationId articulation,
+                                                std::span<const double> coordinates,
+                                                std::span<const double> velocities);
 
   // One degree of freedom of a link's joint, counted from 0; not of a ball or a free joint.
   double joint_position(ArticulationId articulation, int link, int dof) const;
   double joint_velocity(ArticulationId articulation, int link, int dof) const;
-  Expected<void> set_joint_state(ArticulationId articulation, int link, int dof, double position,
-                                 double velocity);
+  [[nodiscard]] Expected<void> set_joint_state(ArticulationId articulation, int link, int dof,
+                                               double position, double velocity);
   // Of any joint.
-  Expected<void> set_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
+  [[nodiscard]] Expected<void> set_drive(ArticulationId articulation, int link, int dof,
+                                         const JointDrive& drive);
   // The same of all its degrees of freedom, in the order of velocities(): for many joints cheaper
   // than a call for each. Refused: another number of drives, or one refused; then all stay.
-  Expected<void> set_drives(ArticulationId articulation, std::span<const JointDrive> drives);
+  [[nodiscard]] Expected<void> set_drives(ArticulationId articulation,
+                                          std::span<const JointDrive> drives);
 
   // A force [N] or torque [N m] of one degree of freedom, dual to its velocity, over the next step
   // as apply_force() has it; beside the drive. Of any joint: of a ball or a free one it is in the
   // link's frame. Refused: sums beyond 1e9.
-  Expected<void> apply_joint_force(ArticulationId articulation, int link, int dof, double force);
+  [[nodiscard]] Expected<void> apply_joint_force(ArticulationId articulation, int link, int dof,
+                                                 double force);
 
   bool contains(JointId joint) const;
   // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six
@@ -252,8 +268,8 @@ class World {
   double joint_coordinate(JointId joint, JointAxis axis) const;
   double joint_residual(JointId joint, int row) const;
   // Refused: joints that have no such coordinate, or hold it, as well as those without a drive.
-  Expected<void> set_drive(JointId joint, const JointDrive& drive);
-  Expected<void> set_drive(JointId joint, JointAxis axis, const JointDrive& drive);
+  [[nodiscard]] Expected<void> set_drive(JointId joint, const JointDrive& drive);
+  [[nodiscard]] Expected<void> set_drive(JointId joint, JointAxis axis, const JointDrive& drive);
   // Of the last step; zero before the first and after restore(). Precondition: the joint exists.
   JointForce joint_force(JointId joint) const;
 
@@ -265,10 +281,16 @@ class World {
   void observe_stages(std::shared_ptr<StageObserver> observer);
   // Advances by dt seconds, 1e-7 <= dt <= 0.1 (else refused): what still shorter steps add to a
   // speed is lost in the solver's single precision. No heap allocation once warm.
-  Expected<StepStatus> step(double dt);
+  [[nodiscard]] Expected<StepStatus> step(double dt);
   // Of the last step, by time, of one time as they were found; none after restore().
   std::span<const ContactEvent> contact_events() const;
   const StepCounters& counters() const;  // of the last step
+  // All points at which the body touches others that push it, with the impulses of the last step on
+  // it, appended: divided by dt, the mean forces on a foot or a gripper. Links too. What is swept
+  // or of a link has a point for each impact. Of what sleeps, as when it fell asleep; none before
+  // the first step and after restore(). Not in it: rolling and spinning friction, and between
+  // bodies in sub-steps the friction of a bounce. Precondition: contains(body).
+  void contacts_of(BodyId body, std::vector<ContactPoint>& points) const;
 
   // --- queries ----------------------------------------------------------------------------------
   // Against every shape, through trees of bounds, at the poses of now. Nothing is changed, not even
@@ -279,34 +301,38 @@ class World {
   // half-spaces, meshes and height fields as the shape that is asked about.
 
   // The first collider along a ray of max_distance [m]; the direction is of any length but zero.
-  Expected<std::optional<RayHit>> ray_cast(const Vec3& origin, const Vec3& direction,
-                                           double max_distance,
-                                           const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<std::optional<RayHit>> ray_cast(const Vec3& origin, const Vec3& direction,
+                                                         double max_distance,
+                                                         const QueryFilter& filter = {}) const;
   // Each collider where the ray enters it first, in order of distance, appended to hits.
-  Expected<void> ray_cast_all(const Vec3& origin, const Vec3& direction, double max_distance,
-                              std::vector<RayHit>& hits, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<void> ray_cast_all(const Vec3& origin, const Vec3& direction,
+                                            double max_distance, std::vector<RayHit>& hits,
+                                            const QueryFilter& filter = {}) const;
   // The first collider that a shape meets on its way.
-  Expected<std::optional<ShapeHit>> shape_cast(const Shape& shape, const SE3& T_world_shape,
-                                               const CastMotion& motion,
-                                               const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<std::optional<ShapeHit>> shape_cast(const Shape& shape,
+                                                             const SE3& T_world_shape,
+                                                             const CastMotion& motion,
+                                                             const QueryFilter& filter = {}) const;
   // Each collider where the shape, were the others not there, would meet it first, in order of
   // fraction, appended to hits.
-  Expected<void> shape_cast_all(const Shape& shape, const SE3& T_world_shape,
-                                const CastMotion& motion, std::vector<ShapeHit>& hits,
-                                const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<void> shape_cast_all(const Shape& shape, const SE3& T_world_shape,
+                                              const CastMotion& motion, std::vector<ShapeHit>& hits,
+                                              const QueryFilter& filter = {}) const;
   // Colliders that the shape touches, in order of creation, appended to found.
-  Expected<void> overlapping(const Shape& shape, const SE3& T_world_shape,
-                             std::vector<ColliderId>& found, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<void> overlapping(const Shape& shape, const SE3& T_world_shape,
+                                           std::vector<ColliderId>& found,
+                                           const QueryFilter& filter = {}) const;
   // The collider that is nearest, or in which the shape is deepest, no farther than max_distance.
-  Expected<std::optional<NearestHit>> nearest(const Shape& shape, const SE3& T_world_shape,
-                                              double max_distance,
-                                              const QueryFilter& filter = {}) const;
-  Expected<std::optional<NearestHit>> nearest(const Vec3& point, double max_distance,
-                                              const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<std::optional<NearestHit>> nearest(const Shape& shape,
+                                                            const SE3& T_world_shape,
+                                                            double max_distance,
+                                                            const QueryFilter& filter = {}) const;
+  [[nodiscard]] Expected<std::optional<NearestHit>> nearest(const Vec3& point, double max_distance,
+                                                            const QueryFilter& filter = {}) const;
 
   // Tells draw what the options ask for; a callback must not change the world. Refused: sizes that
   // are not in (0, 1e6].
-  Expected<void> debug_draw(const DebugDrawOptions& options, DebugDraw& draw) const;
+  [[nodiscard]] Expected<void> debug_draw(const DebugDrawOptions& options, DebugDraw& draw) const;
 
   // --- rollback ---------------------------------------------------------------------------------
   // The whole mutable state, warm starts and ids included, appended to bytes. A world made by the
@@ -316,14 +342,14 @@ class World {
   void snapshot(std::vector<std::byte>& bytes) const;
   // Refuses truncated or corrupt bytes and those of a world made otherwise with Errc::bad_data; the
   // world is then unchanged.
-  Expected<void> restore(std::span<const std::byte> bytes);
+  [[nodiscard]] Expected<void> restore(std::span<const std::byte> bytes);
   std::uint64_t state_hash() const;  // of the same bytes as snapshot()
 
   // --- recording --------------------------------------------------------------------------------
   // From now on the recorder notes every call that changes the world, of this object or of the one
   // it is moved to; nullptr ends the recording. vphysics/recording.h. Refused: a recorder that has
   // been used, settings with numbers that no simulation has.
-  Expected<void> record(std::shared_ptr<Recorder> recorder);
+  [[nodiscard]] Expected<void> record(std::shared_ptr<Recorder> recorder);
 
  private:
   friend class Replay;

@@ -157,6 +157,14 @@ struct DestroyedPair {
   bool sensor = false;
 };
 
+// A point of the impacts of a step, or of a link in its sub-steps.
+struct StepContact {
+  ColliderId a, b;
+  Vec3 point, normal;  // from a to b
+  double impulse = 0.0;
+  Vec3 friction;  // on b
+};
+
 struct ColliderPair {
   std::uint64_t key;
   std::uint32_t a, b;
@@ -286,6 +294,7 @@ struct World::Impl {
   std::vector<ContactEvent> events;
   StepCounters counters;
   int sub_steps_taken = 0;
+  std::vector<StepContact> step_contacts;  // but those of lanes
 
   // --- of queries
   bool ready_for_queries = false;     // nothing has moved since find_strays()
@@ -639,6 +648,7 @@ struct World::Impl {
   void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
   void report_contacts(std::span<const solve::ContactConstraint> solved, double time);
   bool has_impact_stage() const;
+  void note_contacts(std::span<const solve::ContactConstraint> solved);
   void remember_impulses(std::span<const solve::ContactConstraint> solved, double scale);
   void report_ends();
   void report_ends_of_destroyed();
@@ -649,6 +659,11 @@ struct World::Impl {
   void add_event(const ContactEvent& event);
 
   class Drawing;  // debug_draw.cpp
+
+  // contact_points.cpp
+  template <int P>
+  void add_points_of(const Contact& contact, const solve::ContactBlock<P>& block, bool of_a,
+                     std::vector<ContactPoint>& points) const;
 
   // queries.cpp
   void find_strays();

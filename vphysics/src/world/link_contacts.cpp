@@ -208,6 +208,8 @@ void World::Impl::end_links(double dt, int sub_steps) {
   for (solve::ContactConstraint& c : link_contacts) {
     for (int i = 0; i < c.count; ++i) {
       solve::ContactPoint& p = c.points[i];
+      const double last = p.normal_impulse;
+      for (double& q : p.tangent_impulse) q *= last > 0.0 ? p.step_impulse / last : 0.0;
       p.normal_impulse = p.step_impulse;
       p.approach = p.step_approach;
       p.hits = p.step_hits;
@@ -215,6 +217,7 @@ void World::Impl::end_links(double dt, int sub_steps) {
     counters.contacts += static_cast<std::uint32_t>(c.count);
   }
   report_contacts(link_contacts, 0.0);
+  note_contacts(link_contacts);
   for (Articulation& art : articulations) {
     if (!art.sub_stepped) continue;
     art.end_sub_steps(dt);

@@ -339,6 +339,7 @@ void World::Impl::adopt(Incoming& from) {
   records.swap(from.records);
   destroyed_pairs.swap(from.destroyed_pairs);
   events.clear();
+  step_contacts.clear();
   counters = {};
   sub_steps_taken = 0;
 }

@@ -45,6 +45,7 @@ void World::Impl::begin_step(double dt) {
   manifold_scratch.crowded = manifold_scratch.rough = false;
   manifolds_renewed = 0;
   events.clear();
+  step_contacts.clear();
   next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
   const std::size_t room = 64 + 2 * colliders.size() + destroyed_pairs.size();
@@ -92,6 +93,7 @@ void World::Impl::begin_impact_stage() {
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   link_contacts.reserve(room);
+  step_contacts.reserve(4 * room);
   manifolds.reserve(kManifoldsOfPair);
   bodies_on_links.reserve(n);
   bounds.resize(n);
@@ -407,6 +409,7 @@ void World::Impl::run_impacts(double dt) {
     solve_contacts(h, dt, solves == 0);
     if (solves == 0) remember_impulses(contacts, 1.0);
     report_contacts(contacts, time);
+    note_contacts(contacts);
     refresh_ways(h);
     find_swept_pairs(h);
     double t = next_impact(h);

@@ -94,6 +94,7 @@ void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool load
   Contact& c = contact_pool[index];
   const double closing = static_cast<double>(block.closing.lane[lane]);
   const double impulse = impulse_of(block, lane);
+  block.given.lane[lane] += block.impact.lane[lane];  // for contacts_of()
   block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
   block.touches.lane[lane] = loaded ? 1 : 0;
   if (c.is_part()) {

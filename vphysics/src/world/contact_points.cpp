@@ -1,0 +1,85 @@
+// What a body's contacts did to it in the last step.
+//
+// Contacts of lanes tell the sum of their normal impulses over the sub-steps, and how the last one
+// divided it among the points; their friction is that of the last sub-step, scaled alike.
+#include "vphysics/assert.h"
+#include "world/impl.h"
+
+namespace vp {
+namespace {
+
+Vec3 at(const solve::Field3& f, int lane) {
+  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
+          static_cast<double>(f.z.lane[lane])};
+}
+double at(const solve::Field& f, int lane) {
+  return static_cast<double>(f.lane[lane]);
+}
+
+}  // namespace
+
+// Of the impulses that solve() has left.
+void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
+  for (const solve::ContactConstraint& c : solved) {
+    for (int i = 0; i < c.count; ++i) {
+      const solve::ContactPoint& p = c.points[i];
+      if (p.normal_impulse <= 0.0) continue;
+      step_contacts.push_back(
+          {collider_id(colliders, c.collider_a), collider_id(colliders, c.collider_b), p.position,
+           c.normal, p.normal_impulse,
+           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]});
+    }
+  }
+}
+
+template <int P>
+void World::Impl::add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool of_a,
+                                std::vector<ContactPoint>& points) const {
+  const int lane = solve::ContactGraph::lane(c.place);
+  const double sign = of_a ? -1.0 : 1.0, all = at(block.given, lane);
+  double last = 0.0;
+  for (int i = 0; i < c.count; ++i) last += at(block.impulse[i], lane);
+  const Vec3 n = at(block.normal, lane), t = at(block.tangent, lane);
+  const Vec3 friction =
+      at(block.tangent_impulse[0], lane) * t + at(block.tangent_impulse[1], lane) * cross(n, t);
+  const double scale = last > 0.0 ? all / last : 0.0;
+  for (int i = 0; i < c.count; ++i) {
+    const double share = last > 0.0 ? at(block.impulse[i], lane) / last : 1.0 / c.count;
+    ContactPoint& p = points.emplace_back();
+    p.collider = collider_id(colliders, of_a ? c.a : c.b);
+    p.other = collider_id(colliders, of_a ? c.b : c.a);
+    p.point = c.position[i];
+    p.normal = sign * n;
+    p.normal_impulse = share * all;
+    p.friction_impulse = (sign * share * scale) * friction;
+  }
+}
+
+void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
+  const Body* body = impl_->find(id);
+  VP_ASSERT(body && "contacts_of: the body does not exist (any more)");
+  if (!body) return;
+  const Impl& world = *impl_;
+  const bool stepped = world.sub_steps_taken > 0;
+  for (std::uint32_t e = stepped ? body->first_edge : kNone; e != kNone;
+       e = world.contact_pool[e / 2].next[e % 2]) {
+    const Contact& c = world.contact_pool[e / 2];
+    if (!c.touching || c.sensor || c.place.points == 0) continue;
+    if (c.place.points == 1) {
+      world.add_points_of(c, world.graph.block<1>(c.place), e % 2 == 0, points);
+    } else {
+      world.add_points_of(c, world.graph.block<4>(c.place), e % 2 == 0, points);
+    }
+  }
+  for (const StepContact& c : world.step_contacts) {
+    const Collider *a = world.find(c.a), *b = world.find(c.b);
+    if (!a || !b) continue;
+    const bool of_a = a->body == id.index - 1;
+    if (!of_a && b->body != id.index - 1) continue;
+    const double sign = of_a ? -1.0 : 1.0;
+    points.push_back({of_a ? c.a : c.b, of_a ? c.b : c.a, c.point, sign * c.normal, c.impulse,
+                      sign * c.friction});
+  }
+}
+
+}  // namespace vp
