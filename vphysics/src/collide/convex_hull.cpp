@@ -219,6 +219,15 @@ void set_mass(HullData& hull) {
   hull.volume = m.volume;
   hull.centre = middle + (1.0 / m.volume) * m.first;
   hull.unit = Inertia(m.volume, m.first, about_middle).about(-middle);
+  if (hull.vertices.size() <= collide::kMostSupport) {
+    const std::size_t n = hull.vertices.size(), lanes = collide::kSupportLanes;
+    for (std::size_t i = 0; i < (n + lanes - 1) / lanes * lanes; ++i) {
+      const Vec3& v = hull.vertices[i < n ? i : 0];
+      hull.support_x.push_back(v.x);
+      hull.support_y.push_back(v.y);
+      hull.support_z.push_back(v.z);
+    }
+  }
   hull.radius = 0.0;
   for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, norm(v - hull.centre));
 }

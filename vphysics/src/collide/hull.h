@@ -8,6 +8,8 @@
 
 namespace vp::collide {
 
+inline constexpr std::size_t kSupportLanes = 4, kMostSupport = 64;
+
 // Between two vertices, v0 < v1. Seen from outside, the face on its left has v0 before v1.
 struct HullEdge {
   std::uint16_t v0, v1;
@@ -17,6 +19,9 @@ struct HullEdge {
 
 struct HullData {
   std::vector<Vec3> vertices;
+  // Of hulls that support_vertex() goes through as a whole: their x, y and z, each filled up with
+  // the first vertex to a multiple of kSupportLanes; else empty.
+  std::vector<double> support_x, support_y, support_z;
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
   std::vector<std::uint16_t> corners;   // of all faces, one face after the other
   std::vector<HullEdge> edges;          // sorted by their vertices

@@ -1,5 +1,8 @@
 #include "collide/polytope.h"
 
+#include <cstring>
+
+#include "collide/bounds.h"
 #include "collide/support.h"
 
 namespace vp::collide {
@@ -18,21 +21,42 @@ PolytopeOf::PolytopeOf(const Geometry& g) {
   view_ = {vertices_, faces_, kBoxEdges};
 }
 
+namespace {
+
+// Four numbers side by side; one of them at a time where the machine has no such registers.
+using Four [[gnu::vector_size(32)]] = double;
+Four four_of(const double* from) {
+  Four lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+// The first of those that are farthest along d.
+int farthest_vertex(const HullData& hull, const Vec3& d) {
+  const std::size_t n = hull.support_x.size();
+  Four most{-kFar, -kFar, -kFar, -kFar}, found{}, at{0.0, 1.0, 2.0, 3.0};
+  for (std::size_t i = 0; i < n; i += kSupportLanes) {
+    const Four along = d.x * four_of(&hull.support_x[i]) + d.y * four_of(&hull.support_y[i]) +
+                       d.z * four_of(&hull.support_z[i]);
+    const auto farther = along > most;
+    most = farther ? along : most;
+    found = farther ? at : found;
+    at += static_cast<double>(kSupportLanes);
+  }
+  int best = 0;
+  for (int lane = 1; lane < static_cast<int>(kSupportLanes); ++lane) {
+    if (most[lane] > most[best] || (most[lane] == most[best] && found[lane] < found[best]))
+      best = lane;
+  }
+  return static_cast<int>(found[best]);
+}
+
+}  // namespace
+
 int support_vertex(const HullData& hull, const Vec3& d, int hint) {
-  constexpr int kFew = 16;
+  if (!hull.support_x.empty()) return farthest_vertex(hull, d);
   const int n = static_cast<int>(hull.vertices.size());
   int best = 0;
-  if (n <= kFew) {
-    double most = dot(d, hull.vertices[0]);
-    for (int i = 1; i < n; ++i) {
-      const double along = dot(d, hull.vertices[static_cast<std::size_t>(i)]);
-      if (along > most) {
-        most = along;
-        best = i;
-      }
-    }
-    return best;
-  }
   if (hint > 0 && hint < n) best = hint;
   double most = dot(d, hull.vertices[static_cast<std::size_t>(best)]);
   for (int from = -1; from != best;) {

@@ -47,7 +47,7 @@ inline double core_reach(const Geometry& g) {
   return norm(g.half);
 }
 
-// Few vertices are looked through; from one neighbour to the next among more.
+// All of few vertices are looked at; from one neighbour to the next among more.
 int support_vertex(const HullData& hull, const Vec3& d, int hint);
 
 inline Vec3 rim_direction(const Vec3& d) {

@@ -17,12 +17,12 @@ namespace {
 // An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
 // overlap more neighbours.
 constexpr double kMargin = 0.1;
-// A row's way is started anew beyond this [m or rad], and its displacement beyond so many more
-// steps of it, so that single precision tells small steps.
-constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f;
+// A row's way is started anew beyond this [m], and so many more steps of it, so that single
+// precision tells small steps; and beyond this turn [rad], since turns are added up as vectors.
+constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f, kFarTurn = 0.25f;
 
-// Half a margin of the least collider is surely within all enlarged bounds. Sums of components, no
-// less than the lengths, will do.
+// Half a margin of the least collider is within all enlarged bounds (update_bounds). Sums of
+// components, no less than the lengths, will do.
 bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
   const float *at = body.bounded_at, *way = row.way, *velocity = row.velocity;
   const auto gone = [&](int i) { return std::fabs(way[i] - at[i]) + dt * std::fabs(velocity[i]); };
@@ -171,7 +171,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const float far = kFarWay + kFarSteps * static_cast<float>(dt) * speed;
   const auto beyond = [](float limit) { return [limit](float x) { return std::fabs(x) > limit; }; };
-  return std::any_of(way, way + 3, beyond(far)) || std::any_of(way + 3, way + 6, beyond(kFarWay));
+  return std::any_of(way, way + 3, beyond(far)) || std::any_of(way + 3, way + 6, beyond(kFarTurn));
 }
 
 // Contacts that have points are looked at again; of the others the clearance becomes less by what
@@ -240,8 +240,10 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
     const Vec3 way = dt * (body.v + cross(body.w, arm));
     const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
     const double more = turn * own + 0.5 * turn * turn * norm(arm) + desc.contact_slop;
-    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, more),
-                      kMargin * collider.size, 2.0 * way);
+    // Half of the margin is left now, whether the enlarged bounds are new or those of before.
+    const double half = 0.5 * kMargin * collider.size;
+    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, more + half), half,
+                      2.0 * way);
   }
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
 }
