@@ -300,6 +300,7 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   c->filter = filter;
   impl_->wake_all_about(c->body);
   if (!body.continuous) impl_->finder.set_filter(c->proxy, filter.category, filter.mask);
+  impl_->mark_contacts_stale(c->body);  // some may be no more
   body.categories = body.masks = 0;
   for (std::uint32_t i = body.first_collider; i != kNone; i = impl_->colliders[i].next) {
     body.categories |= impl_->colliders[i].filter.category;

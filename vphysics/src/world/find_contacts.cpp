@@ -1,7 +1,8 @@
 // Which contacts there are, and their geometry.
 //
-//   broad phase    new pairs become contacts; those whose enlarged bounds have parted are dropped
-//   stale ones     those that may have moved by more than a little since they were looked at
+//   broad phase    new pairs become contacts
+//   stale ones     those that may have moved by more than a little since they were looked at; of
+//                  these, such as have parted by their enlarged bounds are dropped
 //   narrow phase   for these alone; the rest keep their lanes, whose separations follow the bodies'
 //                  ways (contact_block.h)
 #include <algorithm>
@@ -104,7 +105,7 @@ void World::Impl::find_contacts(double dt) {
   {
     const auto stage = in(Stage::broad_phase);
     find_new_contacts();
-    drop_parted_contacts();
+    drop_parted_link_contacts();
     find_bodies_on_links();
   }
   look_at_stale_contacts(dt);
@@ -118,31 +119,29 @@ void World::Impl::find_new_contacts() {
   }
 }
 
-// A body's contacts are gone through once, however many of its colliders have moved.
-void World::Impl::drop_parted_contacts() {
-  rebounded_bodies.clear();
+bool World::Impl::has_parted(const Contact& c) const {
+  return !finder.should_pair(colliders[c.a].proxy, colliders[c.b].proxy);
+}
+void World::Impl::drop_contact(std::uint32_t index) {
+  const Contact& c = contact_pool[index];
+  finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
+  remove_contact(index);
+}
+
+// Contacts of links are looked at elsewhere; all others are dropped when they are looked at and
+// their enlarged bounds have parted, so that until then nothing is gone through for it.
+void World::Impl::drop_parted_link_contacts() {
+  if (link_bodies.empty()) return;
   for (const std::uint32_t proxy : finder.moved()) {
     if (!finder.exists(proxy)) continue;
-    Collider& collider = colliders[finder.user(proxy)];
-    collider.rebounded = true;
-    if (std::exchange(bodies[collider.body].rebounded, true)) continue;
-    rebounded_bodies.push_back(collider.body);
-  }
-  for (const std::uint32_t body : rebounded_bodies) {
+    const std::uint32_t collider = finder.user(proxy);
     std::uint32_t next = kNone;
-    for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = next) {
+    for (std::uint32_t e = bodies[colliders[collider].body].first_edge; e != kNone; e = next) {
       const Contact& c = contact_pool[e / 2];
-      next = c.next[e % 2];  // behind a whole come no parts of it
-      const Collider &a = colliders[c.a], &b = colliders[c.b];
-      if (c.is_part() || !(a.rebounded || b.rebounded)) continue;
-      if (finder.should_pair(a.proxy, b.proxy)) continue;
-      finder.remove_pair(a.proxy, b.proxy);
-      remove_contact(e / 2);
+      next = c.next[e % 2];
+      if (!c.of_link || (c.a != collider && c.b != collider)) continue;
+      if (has_parted(c)) drop_contact(e / 2);
     }
-  }
-  for (const std::uint32_t body : rebounded_bodies) bodies[body].rebounded = false;
-  for (const std::uint32_t proxy : finder.moved()) {
-    if (finder.exists(proxy)) colliders[finder.user(proxy)].rebounded = false;
   }
 }
 
@@ -367,6 +366,10 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
     const Contact& c = contact_pool[index];
     if (!c.alive || !c.stale || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
+    if (has_parted(c)) {
+      drop_contact(index);
+      continue;
+    }
     looked.push_back({index, {}, 0.0, 0.0, 0.0});
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
   }

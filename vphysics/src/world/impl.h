@@ -41,7 +41,6 @@ struct alignas(64) Body {
   // colliders; else ask its articulation.
   bool asleep = false;
   bool wanted = false;     // its colliders' poses are about to be computed
-  bool rebounded = false;  // listed among rebounded_bodies
   bool posed = false;      // the colliders' poses and bounds are those of T
   bool bounded = false;    // so are `bounds`
   bool untouched = false;  // by what its row met in this step, so it has turned freely
@@ -100,36 +99,37 @@ struct alignas(64) Body {
 
 inline constexpr double kEndless = 1e30;  // a radius [m]
 
-struct Collider {
-  std::uint32_t generation = 0;
+// What is read of a collider whenever one of its contacts is looked at comes first.
+struct alignas(64) Collider {
+  std::uint32_t body = kNone;
+  std::uint32_t proxy = kNone;  // in the broad phase
   bool alive = false;
   bool sensor = false;
-  std::uint32_t body = kNone;
+  bool stray = false;          // out of its proxy's bounds: find_strays()
   std::uint32_t next = kNone;  // of the same body
-  std::uint32_t serial = 0;    // order of creation
-  Shape shape = HalfSpace{};   // owns what geometry points to
-  collide::Geometry geometry;
-  SE3 T_body_shape;
-  Material material;
-  Vec3 surface_velocity;  // shape's frame
-  CollisionFilter filter;
-  std::uint64_t user_data = 0;
-  std::uint32_t proxy = kNone;  // in the broad phase
-  bool stray = false;           // out of its proxy's bounds: find_strays()
-  bool rebounded = false;       // its proxy has new enlarged bounds
   // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
   // half-spaces, meshes and height fields.
   double size = 0.0;
   // A ball around it, body frame; of a half-space without end.
-  Vec3 centre;
   double radius = kEndless;
-  double density = 0.0;  // [kg/m^3]
+  Vec3 centre;
+  std::uint32_t generation = 0;
+  std::uint32_t serial = 0;  // order of creation
+
+  collide::Geometry geometry;
   // Follows from the body's pose, the one of that number; refreshed by the step (Body::posed).
   std::uint64_t posed_for = 0;
   SE3 T;
+  Material material;
+  Vec3 surface_velocity;  // shape's frame
   collide::Bounds bounds;
+  SE3 T_body_shape;
+  CollisionFilter filter;
+  double density = 0.0;  // [kg/m^3]
   // Of a link that moves along and about a line alone, as Body::around_line.
   collide::Bounds around_line;
+  std::uint64_t user_data = 0;
+  Shape shape = HalfSpace{};  // owns what geometry points to
 };
 
 struct PairPoint {
@@ -333,7 +333,6 @@ struct World::Impl {
   std::vector<collide::ProxyPair> new_pairs;
   std::vector<std::uint64_t> stale_bits;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
-  std::vector<std::uint32_t> rebounded_bodies;  // some of their colliders have new enlarged bounds
   std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
   std::uint64_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
@@ -516,7 +515,9 @@ struct World::Impl {
   void find_new_contacts();
   std::uint32_t new_contact(const Contact& contact);
   void find_stale_contacts(double dt);
-  void drop_parted_contacts();
+  void drop_parted_link_contacts();
+  bool has_parted(const Contact& contact) const;
+  void drop_contact(std::uint32_t contact);
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void remove_contact(std::uint32_t contact);
   void look_at(Looked& looked, double dt);
