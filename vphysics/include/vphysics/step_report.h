@@ -15,6 +15,7 @@ struct StepStatus {
   bool manifold_limit = false;  // Limit::manifolds
   bool distance_limit = false;  // Limit::distances
   bool colour_limit = false;    // Limit::colours
+  bool position_error = false;  // Limit::positions
   double time_held = 0.0;       // the part of dt lost to impact_limit [s]
 
   StepStatus& operator|=(const StepStatus& other);  // what either has met; times add up
@@ -33,9 +34,15 @@ enum class Limit : std::uint8_t {
               // smaller one's size when the rounds of the search are over: the best is taken
   colours,    // a body has more contacts than there are colours for, 40 with what moves and 23 with
               // what does not: the rest are solved one after the other, with nothing lost but time
+  positions,  // this step and the one before ended with shapes that overlap by more than half
+              // of the smaller one's least half extent, or with a hard joint that is open by more
+              // than half of the smaller body's radius or by 0.2 rad: loads, masses or joints ask
+              // for more than a step can do. Of what meets in sub-steps; not of gears and users'
+              // constraints
 };
 inline constexpr std::array kLimits{Limit::impacts,   Limit::range,     Limit::bounces,
-                                    Limit::manifolds, Limit::distances, Limit::colours};
+                                    Limit::manifolds, Limit::distances, Limit::colours,
+                                    Limit::positions};
 
 bool reached(const StepStatus& status, Limit limit);
 // For whoever watches: what happened, and what helps.

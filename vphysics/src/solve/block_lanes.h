@@ -47,10 +47,10 @@ class BlockLanes {
     F r[16];
     lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    take_way(r + 8, x_a, turn_a);
+    take_way(r + 8, x_a, turn_a, carried_a_, share_less_one_a_);
     lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
-    take_way(r + 8, x_b, turn_b);
+    take_way(r + 8, x_b, turn_b, carried_b_, share_less_one_b_);
   }
   void scatter_velocities() const { scatter_velocities(F(0.0f) < F(1.0f)); }
   // Of those lanes.
@@ -61,9 +61,10 @@ class BlockLanes {
     scatter([this](int i) { return row_b(i).velocity; }, b, both(pushes_b(), of));
   }
   void scatter_ways() const {
-    const F zero(0.0f);
-    const F a[8] = {x_a.x, x_a.y, x_a.z, turn_a.x, turn_a.y, turn_a.z, zero, zero};
-    const F b[8] = {x_b.x, x_b.y, x_b.z, turn_b.x, turn_b.y, turn_b.z, zero, zero};
+    const F a[8] = {x_a.x,    x_a.y,    x_a.z,      turn_a.x,
+                    turn_a.y, turn_a.z, carried_a_, share_less_one_a_};
+    const F b[8] = {x_b.x,    x_b.y,    x_b.z,      turn_b.x,
+                    turn_b.y, turn_b.z, carried_b_, share_less_one_b_};
     scatter([this](int i) { return row_a(i).way; }, a, pushes_a());
     scatter([this](int i) { return row_b(i).way; }, b, pushes_b());
   }
@@ -94,6 +95,15 @@ class BlockLanes {
 
   const F& inverse_mass_a() const { return mass_a_; }
   const F& inverse_mass_b() const { return mass_b_; }
+  // Of a push: the smaller one of the two. Precondition: ways were gathered.
+  F share() const { return F(1.0f) + smaller(share_less_one_a_, share_less_one_b_); }
+  // Of a displacement of b against a: what a does of it, and what b does.
+  void split(F& by_a, F& by_b) const {
+    const F both = mass_a_ + mass_b_;
+    const F inverse = F(1.0f) / select(both > F(0.0f), both, F(1.0f));
+    by_a = mass_a_ * inverse;
+    by_b = mass_b_ * inverse;
+  }
   // Lanes whose a, or b, impulses move.
   LaneMask<W> pushes_a() const { return mass_a_ > F(0.0f); }
   LaneMask<W> pushes_b() const { return mass_b_ > F(0.0f); }
@@ -139,15 +149,17 @@ class BlockLanes {
     mass = r[kInverseMass];
     falls = r[kFalls];
   }
-  static void take_way(const F* r, V& x, V& turn) {
+  static void take_way(const F* r, V& x, V& turn, F& carried, F& share_less_one) {
     x = {r[0], r[1], r[2]};
     turn = {r[3], r[4], r[5]};
+    carried = r[kCarried];
+    share_less_one = r[kShareLessOne];
   }
 
   Block& block_;
   int at_;
   BodyRow* rows_;
-  F mass_a_, mass_b_;
+  F mass_a_, mass_b_, carried_a_, carried_b_, share_less_one_a_, share_less_one_b_;
 };
 
 }  // namespace vp::solve

@@ -15,7 +15,8 @@ struct alignas(64) BodyRow {
   // step, 0 if something did, which matters to bounces.
   float velocity[8];
   // Way of the centre of mass since the row was last rebased [m], and its turning, the sum of small
-  // rotation vectors [rad]; 1 if something carried it in this step, else 0; 0.
+  // rotation vectors [rad]; 1 if something carried it in this step, else 0; the
+  // share of the fastest push that each of its contacts has, less 1: 0 unless they are many.
   float way[8];
   // Inverse rotational inertia xx yy zz xy yz zx; the shares of v and of w that damping leaves in a
   // sub-step.
@@ -25,7 +26,7 @@ struct alignas(64) BodyRow {
 };
 inline constexpr int kInverseMass = 6, kFalls = 7;       // in velocity
 inline constexpr int kKeepLinear = 6, kKeepAngular = 7;  // in inertia
-inline constexpr int kCarried = 6;                       // in way
+inline constexpr int kCarried = 6, kShareLessOne = 7;    // in way
 static_assert(sizeof(BodyRow) == 128);
 
 inline constexpr std::uint32_t kWorldRow = 0;

@@ -129,8 +129,6 @@ LaneMask<W> neither_bounces_nor_comes_to_touch(const LaneMask<W>& loaded, const 
 // Of the load: a contact that a round of pushing has changed by less is left alone by those after
 // it. Ten times as much does for piles, but a wall then takes longer to come to rest.
 inline constexpr float kSettledForNow = 1e-4f;
-// And one without a load if no blow slower than this closes its gap within the sub-step [m/s].
-inline constexpr float kReach = 1.0f;
 
 // --- friction
 // -------------------------------------------------------------------------------------
@@ -260,36 +258,87 @@ inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 // push.
 enum class Round { first, again, relax };
 
-// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is
-// positive; of what is not open, the push's, negative or zero. Rounds after the first take over
-// what it has found: nothing moves on between them.
-template <int W, int P, Round kRound>
-void find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, Lanes<W>* bias) {
+// A contact deeper than so many of its slid_limit, a hundredth of the smaller shape's half extent,
+// is more than the solver can take out: half of that half extent.
+inline constexpr float kTooDeep = 50.0f;
+
+template <int W, int P>
+Lanes<W> deepest_of(const Lanes<W>* s) {
+  Lanes<W> deepest = s[0];
+  for (int i = 1; i < P; ++i) deepest = smaller(deepest, s[i]);
+  return deepest;
+}
+
+// Of lanes of which a point is deeper than the fastest push takes out; u: the speeds of separation.
+// The push is as fast with what the loss of the load takes from it; what is still lacking moves the
+// bodies apart: a velocity to which many deep contacts add would stay with them.
+template <int W, int P>
+void push_deep(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, const Lanes<W>* u,
+               const Lanes<W>* s, Lanes<W>* bias) {
   using F = Lanes<W>;
   auto& block = c.block();
+  const F share = c.share(), zero(0.0f);
+  const F by_load = sum_of_impulses(c) * (c.inverse_mass_a() + c.inverse_mass_b());
+  const F fastest = F(soft.fastest_push) * share + F((1.0f - soft.share) / soft.share) * by_load;
+  const F shift = F(soft.fastest_shift) * share;
+  F lacking(0.0f);
+  for (int i = 0; i < P; ++i) {
+    const F wanted = -(F(soft.rate) * s[i]);
+    bias[i] = select(s[i] > zero, bias[i], -smaller(wanted, fastest));
+    c.put(block.bias[i], bias[i]);
+    lacking = larger(lacking, smaller(wanted, shift) - larger(fastest, u[i]));
+  }
+  F by_a, by_b;
+  c.split(by_a, by_b);
+  const F way = F(soft.h) * lacking;
+  c.x_a -= (by_a * way) * normals.n;
+  c.x_b += (by_b * way) * normals.n;
+  c.scatter_ways();
+}
+
+// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is
+// positive; of what is not open, the push's, negative or zero. Rounds after the first take over
+// what it has found: nothing moves on between them. Returns the lanes that are too deep, of
+// relaxing in the last sub-step.
+template <int W, int P, Round kRound>
+LaneMask<W> find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft,
+                      const Lanes<W>* u, Lanes<W>* bias) {
+  using F = Lanes<W>;
+  auto& block = c.block();
+  LaneMask<W> too_deep = F(0.0f) > F(0.0f);
   if constexpr (kRound == Round::again) {
     for (int i = 0; i < P; ++i) bias[i] = c.get(block.bias[i]);
-    return;
+    return too_deep;
   }
   F s[P];
   normals.separations(c, s);
+  F push(0.0f);
+  if constexpr (kRound == Round::first) push = F(-soft.fastest_push) * c.share();
   for (int i = 0; i < P; ++i) {
-    const F push =
-        kRound == Round::relax ? F(0.0f) : larger(F(soft.rate) * s[i], F(-soft.fastest_push));
-    bias[i] = select(s[i] > F(0.0f), F(soft.inverse_h) * s[i], push);
+    const F closed = kRound == Round::relax ? F(0.0f) : larger(F(soft.rate) * s[i], push);
+    bias[i] = select(s[i] > F(0.0f), F(soft.inverse_h) * s[i], closed);
     if constexpr (kRound == Round::first) c.put(block.bias[i], bias[i]);
   }
+  if constexpr (kRound == Round::first) {
+    const auto deep = F(soft.rate) * deepest_of<W, P>(s) < push;
+    if (!none(deep)) push_deep(c, normals, soft, u, s, bias);
+  } else if (soft.last) {
+    const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
+    too_deep = both(there, deepest_of<W, P>(s) < F(-kTooDeep) * c.get(block.slid_limit));
+  }
+  return too_deep;
 }
 
+// True if one is too deep.
 template <int W, int P, Round kRound>
-void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
+bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   using F = Lanes<W>;
   constexpr bool kPush = kRound != Round::relax;
   auto& block = c.block();
   LaneMask<W> acts = F(0.0f) <= F(0.0f);
   if constexpr (kRound == Round::again) {
     acts = c.get(block.active) > F(0.0f);
-    if (none(acts)) return;
+    if (none(acts)) return false;
     c.gather_velocities();
   } else {
     c.gather_velocities_and_ways();
@@ -299,7 +348,7 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
 
   F u[P], bias[P], p0[P], p[P], mass[P], share[P], most[P];
   normals.speeds(c, u);
-  find_bias<W, P, kRound>(c, normals, soft, bias);
+  const auto too_deep = find_bias<W, P, kRound>(c, normals, soft, u, bias);
   for (int i = 0; i < P; ++i) {
     const auto open = bias[i] > F(0.0f);
     u[i] += bias[i];
@@ -341,8 +390,8 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     c.put(block.impulse[i], p[i]);
     load += p[i];
     moved = larger(moved, abs(change[i]));
-    // Of what carries nothing: no blow slower than kReach closes it.
-    quiet = both(quiet, points.closing(i) + F(kReach) * mass[i] <= F(0.0f));
+    // Of what carries nothing.
+    quiet = both(quiet, points.closing(i) + F(soft.reach) * mass[i] <= F(0.0f));
   }
   normals.push(c, change);
   c.scatter_velocities();
@@ -357,6 +406,7 @@ void solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
     c.put(block.active, select(both(!idle, there), F(1.0f), F(0.0f)));
   }
+  return !none(too_deep);
 }
 
 }  // namespace vp::solve

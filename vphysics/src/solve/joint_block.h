@@ -25,7 +25,8 @@
 namespace vphysics_solver {
 
 inline constexpr int kJointRows = 6;
-inline constexpr float kNowhere = 1e30f;  // a limit that is not there
+inline constexpr float kNowhere = 1e30f;     // a limit that is not there
+inline constexpr float kFastestTurn = 3.0f;  // by which velocities take out an error [rad/s]
 
 // What a row measures: slots 0 to 5 are those of JointAxis, the first three ways along a's axes.
 inline constexpr std::uint8_t kSwingX = 3, kSwingY = 4, kTwist = 5, kCone = 6;

@@ -54,8 +54,12 @@ void load_joint_inertias(const typename JointPasses<B>::Run& run) {
   for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { c.load_inertias(); });
 }
 template <class B>
-[[gnu::flatten]] void prepare_joints(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int at) { prepare_lanes(c, run.gone, at); });
+[[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
+  bool some_far = false;
+  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int at) {
+    some_far = prepare_lanes(c, run.gone, at, run.fastest_push) || some_far;
+  });
+  return some_far;
 }
 template <class B>
 [[gnu::flatten]] void warm_start_joints(const typename JointPasses<B>::Run& run) {
@@ -63,7 +67,9 @@ template <class B>
 }
 template <class B, bool kFirst>
 [[gnu::flatten]] void push_joints(const typename JointPasses<B>::Run& run, float h) {
-  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) { push_lanes(c, h, kFirst); });
+  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) {
+    push_lanes(c, h, run.fastest_push, run.some_far, kFirst);
+  });
 }
 template <class B>
 [[gnu::flatten]] void relax_joints(const typename JointPasses<B>::Run& run, float h) {

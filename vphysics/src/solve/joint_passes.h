@@ -21,8 +21,14 @@ inline constexpr float kExplicit = 0.25f;
 // A pivot below this share of its row's own K is of a row that others hold already.
 inline constexpr float kDependent = 1e-6f;
 inline constexpr float kLeastResponse = 1e-30f;  // of a pivot whose inverse is a number
+// A hard row's error counts as no more than what gives it a steady load of so many times the speed
+// at which it is taken out. Larger loads pull the joint open: rows that contradict one another
+// would else hold a load that throws their bodies about.
+inline constexpr float kStrongest = 2.0f;
+// In sub-steps shorter than a fifth of this [s] errors that small are taken out faster: they may be
+// what single precision leaves.
+inline constexpr float kBriefly = 3.3e-4f;
 inline constexpr float kSettledJoint = 1e-4f;  // of the load: the change of a round that is enough
-inline constexpr float kFastestStop = 3.0f;    // out of a limit [m/s or rad/s]
 
 constexpr int factor_index(int i, int j) {
   return i * (i + 1) / 2 + j;  // j <= i
@@ -157,7 +163,8 @@ class JointLanes : public BlockLanes<W, BLOCK> {
 // Arms and gap of the point, axes and coordinates of the rows, where the bodies are now. Residuals
 // of the point go to gap.
 template <int W, class B>
-void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W>>& gap) {
+void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest_push,
+                    Vec3T<Lanes<W>>& gap) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].turn; });
@@ -167,7 +174,20 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, Vec3T<Lanes<W
     const V start_a = c.get(point.start_arm_a), start_b = c.get(point.start_arm_b);
     const V less_a = a.less(start_a), less_b = b.less(start_b);
     gap = c.get(point.start_gap) + (b.way - a.way) + (less_b - less_a);
-    c.put(point.arm_a, start_a + less_a + gap);
+    V arm_a = start_a + less_a + gap;
+    if constexpr (B::kPointRows > 0) {
+      // Of a point that is farther away than the bodies are large, a part: a body is no rod of any
+      // length. Where it is pulled along the gap, that turns it as before.
+      const F large = F(kStrongest * fastest_push) / larger(c.rate(0), F(kLeastResponse));
+      const F far = dot(gap, gap);
+      const F near = larger(dot(start_a, start_a) + dot(start_b, start_b), large * large);
+      const LaneMask<W> too_far = far > near;
+      if (!none(too_far)) {
+        const F left = F(1.0f) - sqrt(near / select(too_far, far, F(1.0f)));
+        arm_a = arm_a - select(too_far, left, F(0.0f)) * gap;
+      }
+    }
+    c.put(point.arm_a, arm_a);
     c.put(point.arm_b, start_b + less_b);
   }
   if constexpr (B::kAxes && B::kOtherRows > 0) {
@@ -291,17 +311,35 @@ void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
   }
 }
 
+// How fast a held row takes out its error; what the user made soft is a spring.
 template <int W, class B>
-void prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at) {
+Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float push) {
+  using F = Lanes<W>;
+  const bool linear = i < B::kPointRows || c.is_along(i - B::kPointRows);
+  F fastest(linear ? push : kFastestTurn);
+  if constexpr (!B::kAxes) {
+    const TwelvePart& J = c.block().jacobian[i];
+    const auto square = [&](const Field3& f) { return dot(c.get(f), c.get(f)); };
+    fastest = larger(F(push) * sqrt(larger(square(J.linear_a), square(J.linear_b))),
+                     F(kFastestTurn) * sqrt(larger(square(J.angular_a), square(J.angular_b))));
+  }
+  fastest = larger(fastest, c.rate(i) * (fastest * F(kBriefly)));
+  return select(c.relaxes(i) > F(0.0f), fastest, F(kNowhere));
+}
+
+// True if an error of a hard row is too large to be taken out at once.
+template <int W, class B>
+bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest_push) {
   using F = Lanes<W>;
   constexpr int kAll = B::kAll;
   c.gather_velocities();
   Vec3T<F> gap;
-  evaluate_lanes(c, gone, at, gap);
+  evaluate_lanes(c, gone, at, fastest_push, gap);
   F K[kAll][kAll];
   find_response(c, K);
   B& block = c.block();
   const int n = c.count(), held = c.held();
+  LaneMask<W> far = F(0.0f) > F(0.0f);
   F own[kAll];
   const F gaps[3] = {gap.x, gap.y, gap.z};
   for (int i = 0; i < kAll && i < n; ++i) {
@@ -311,7 +349,10 @@ void prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at) {
     const F leak = c.loss(i) * own[i];
     const F residual =
         i < B::kPointRows ? gaps[i < 3 ? i : 0] : c.get(block.rows[i - B::kPointRows].residual);
-    c.put(block.bias[i], c.rate(i) * residual);
+    const F fastest = fastest_of(c, i, fastest_push), most = F(kStrongest) * fastest;
+    const F bias = smaller(larger(c.rate(i) * residual, -most), most);
+    c.put(block.bias[i], bias);
+    far = either(far, abs(bias) > fastest);
     c.put(block.leak[i], leak);
     K[i][i] += leak;
   }
@@ -330,6 +371,7 @@ void prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at) {
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) c.put(block.factor[factor_index(i, j)], K[i][j]);
   }
+  return !none(far);
 }
 
 // --- laws of bounded rows ------------------------------------------------------------------------
@@ -384,7 +426,7 @@ Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
 // The same of the limits. An open one lets the gap close; one that is passed is pushed out.
 template <int W, class B>
 Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
-                     float h, bool pushes) {
+                     float h, float fastest_push, bool pushes) {
   using F = Lanes<W>;
   const F zero(0.0f);
   const BoundPart& bound = c.block().bounds[i];
@@ -398,7 +440,8 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
   F apart = p - mass * (speed + gap * F(1.0f / h));
   if (!pushes) apart = smaller(apart, p);  // what closes next is the next sub-step's affair
-  const F push = larger(c.get(row.rate) * gap, F(-kFastestStop));
+  const bool linear = !B::kAxes || c.is_along(i);
+  const F push = larger(c.get(row.rate) * gap, F(linear ? -fastest_push : -kFastestTurn));
   const F passed = pushes ? p - (mass * (speed + push) + loss * p) / (F(1.0f) + loss)
                           : p - c.get(row.relaxes) * mass * speed;
   const F next = larger(select(gap > zero, apart, passed), zero);
@@ -413,7 +456,7 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
 // the changes of impulses; none in lanes that do not go on.
 template <int W, class B>
 void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, Lanes<W>* change,
-                float h, bool pushes) {
+                float h, float fastest_push, bool pushes) {
   using F = Lanes<W>;
   B& block = c.block();
   const F zero(0.0f);
@@ -443,7 +486,7 @@ void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, La
         }
         if (!none(holds)) by_drive = select(holds, hold_change(c, k, u[i], K, h, pushes), by_drive);
         give(block.rows[k].impulse, by_drive);
-        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, pushes));
+        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, fastest_push, pushes));
       }
     }
   }
@@ -467,9 +510,10 @@ void warm_start_lanes(JointLanes<W, B>& c) {
   c.scatter_velocities();
 }
 
-// A round of pushing. Those after the first of a sub-step pass by what has settled.
+// A round of pushing. Those after the first of a sub-step pass by what has settled. some_far: some
+// joints of the world have errors too large to be taken out at once.
 template <int W, class B>
-void push_lanes(JointLanes<W, B>& c, float h, bool first) {
+void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool some_far, bool first) {
   using F = Lanes<W>;
   const F zero(0.0f), one(1.0f);
   B& block = c.block();
@@ -479,9 +523,18 @@ void push_lanes(JointLanes<W, B>& c, float h, bool first) {
   c.gather_velocities();
   c.speeds(u);
   for (int i = 0; i < c.held(); ++i) {
-    u[i] += c.get(block.bias[i]) + c.get(block.leak[i]) * c.impulse(i);
+    const F bias = c.get(block.bias[i]);
+    const F lost = c.get(block.leak[i]) * c.impulse(i);
+    F wanted = bias + lost;
+    if (some_far) {
+      // As fast with what the loss of the load takes from it; the loss itself stays whole.
+      const F fastest = fastest_of(c, i, fastest_push);
+      const F most = larger(fastest - select(bias > zero, lost, -lost), zero);
+      wanted = select(abs(bias) > fastest, clamped(bias, -most, most) + lost, wanted);
+    }
+    u[i] += wanted;
   }
-  solve_rows(c, goes_on, u, change, h, true);
+  solve_rows(c, goes_on, u, change, h, fastest_push, true);
   c.push(change);
   c.scatter_velocities(goes_on);
   F moved = zero, load = zero;  // by what they do: rows are of forces and of moments
@@ -504,7 +557,7 @@ void relax_lanes(JointLanes<W, B>& c, float h) {
   c.gather_velocities();
   c.speeds(u);
   for (int i = 0; i < c.held(); ++i) u[i] *= c.relaxes(i);
-  solve_rows(c, F(0.0f) < F(1.0f), u, change, h, false);
+  solve_rows(c, F(0.0f) < F(1.0f), u, change, h, 0.0f, false);
   c.push(change);
   c.scatter_velocities();
   V force = c.get(block.force), torque = c.get(block.torque);

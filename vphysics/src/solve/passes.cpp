@@ -90,6 +90,14 @@ template <int P, Round kRound>
   for_lanes<P>(run,
                [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kRound>(c, soft); });
 }
+template <int P>
+[[gnu::flatten]] bool relax(const typename ContactPasses<P>::Run& run, const Soft& soft) {
+  bool too_deep = false;
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
+    too_deep = solve_lanes<W, P, Round::relax>(c, soft) || too_deep;
+  });
+  return too_deep;
+}
 // Lanes that are not in use have no say.
 std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block) {
   const std::uint32_t count = std::min(stride, lanes - static_cast<std::uint32_t>(block) * stride);
@@ -125,10 +133,8 @@ template <int P>
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {load_inertias<P>,       strike<P>,
-          warm_start<P>,          solve<P, Round::first>,
-          solve<P, Round::again>, solve<P, Round::relax>,
-          find_moved<P>,          find_news<P>};
+  return {load_inertias<P>,       strike<P>, warm_start<P>, solve<P, Round::first>,
+          solve<P, Round::again>, relax<P>,  find_moved<P>, find_news<P>};
 }
 
 }  // namespace

@@ -19,12 +19,20 @@ namespace vphysics_solver {
 // How a contact answers penetration s < 0 in a sub-step h: as a spring and a damper of frequency f
 // and damping ratio z, integrated implicitly, that is by
 //   p' = p - share m (u + max(rate s, -fastest_push)) - (1 - share) p
+// What a deeper one lacks of  -rate s  moves the two bodies apart without a velocity, in all by no
+// more than fastest_shift. Both limits are shared where a body has many contacts; that of the push
+// is beyond what the loss of a load takes from it.
 struct Soft {
-  float rate;          // [1/s]
-  float share;         // of the effective mass, and what stays of the accumulated impulse
-  float fastest_push;  // [m/s]
-  float inverse_h;     // [1/s]
-  float kept;          // 0 in the first sub-step of a step, else 1: of ContactBlock::given
+  float rate;                  // [1/s]
+  float share;                 // of the effective mass, and what stays of the accumulated impulse
+  float fastest_push;          // [m/s]
+  float inverse_h;             // [1/s]
+  float kept;                  // 0 in the first sub-step of a step, else 1: of ContactBlock::given
+  float fastest_shift = 0.0f;  // [m/s]
+  float h = 0.0f;              // [s]
+  // A contact without a load is left alone if no impact slower than this closes its gap [m/s].
+  float reach = 1.0f;
+  bool last = false;  // the last sub-step of a step: relax tells what is too deep
 };
 
 // The passes over the blocks of one colour, of which `lanes` are used. One block a lane: of the
@@ -44,7 +52,7 @@ struct ContactPasses {
   // Rounds of pushing: the first of a sub-step, and those after it.
   void (*solve_first)(const Run& run, const Soft& soft);
   void (*solve_again)(const Run& run, const Soft& soft);
-  void (*relax)(const Run& run, const Soft& soft);
+  bool (*relax)(const Run& run, const Soft& soft);  // true: one is too deep (kTooDeep)
   // Of all that find: a bit for each lane, a word for each block.
   void (*find_moved)(const Run& run, float dt, float turn, std::uint32_t* bits);
   // Those of which there is something to tell: that they begin or end to touch, or a hit; in the
@@ -83,10 +91,12 @@ struct JointPasses {
     std::size_t count;  // of blocks
     const JointForm* form;
     BodyRow* rows;
-    const Gone* gone;  // by row
+    const Gone* gone;           // by row
+    float fastest_push = 3.0f;  // at which errors of hard rows are taken out [m/s]
+    bool some_far = true;       // false: prepare has found none too large to be taken out at once
   };
   void (*load_inertias)(const Run& run);  // before the sub-steps of a step
-  void (*prepare)(const Run& run);
+  bool (*prepare)(const Run& run);        // true: an error is too large to be taken out at once
   void (*warm_start)(const Run& run);
   // Rounds of pushing: the first of a sub-step h, and those after it.
   void (*push_first)(const Run& run, float h);

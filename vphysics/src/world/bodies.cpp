@@ -17,8 +17,9 @@ namespace {
 // An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
 // overlap more neighbours.
 constexpr double kMargin = 0.1;
-// A row's way is started anew beyond this [m], and so many more steps of it, so that single
-// precision tells small steps; and beyond this turn [rad], since turns are added up as vectors.
+// A row's way is started anew beyond this [length units], and so many more steps of it, so that
+// single precision tells small steps; and beyond this turn [rad], since turns are added up as
+// vectors.
 constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f, kFarTurn = 0.25f;
 
 // Half a margin of the least collider is within all enlarged bounds (update_bounds). Sums of
@@ -152,6 +153,10 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
     row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
   }
   row.way[solve::kCarried] = 0.0f;
+  row.way[solve::kShareLessOne] = 0.0f;
+  if (pushed && body.lanes > kCrowd)
+    row.way[solve::kShareLessOne] =
+        static_cast<float>(kCrowd / static_cast<double>(body.lanes) - 1.0);
   const float* way = row.way;
   if (!pushed) {
     std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
@@ -169,9 +174,13 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   std::copy_n(way, 6, start_ways[index].begin());
   const float* v = row.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  const float far = kFarWay + kFarSteps * static_cast<float>(dt) * speed;
-  const auto beyond = [](float limit) { return [limit](float x) { return std::fabs(x) > limit; }; };
-  return std::any_of(way, way + 3, beyond(far)) || std::any_of(way + 3, way + 6, beyond(kFarTurn));
+  const float far = kFarWay * static_cast<float>(desc.length_unit) +
+                    kFarSteps * static_cast<float>(dt) * speed;
+  const auto beyond = [way](int first, float limit) {
+    return std::any_of(way + first, way + first + 3,
+                       [limit](float x) { return std::fabs(x) > limit; });
+  };
+  return beyond(0, far) || beyond(3, kFarTurn);
 }
 
 // Contacts that have points are looked at again; of the others the clearance becomes less by what

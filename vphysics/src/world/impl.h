@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -240,14 +241,24 @@ class InStage {
 
 struct RecordedCall;
 
-// Share of a penetration that a sub-step pushes out, and the fastest that it pushes [m/s].
+// Share of a penetration that a sub-step pushes out, the fastest that velocities push, and the
+// fastest with what moves the bodies themselves [m/s of things of a metre]. A body of more contacts
+// than kCrowd shares both. In short sub-steps velocities push out kSmallDepth [m of such things] at
+// once, which may be what single precision leaves.
 inline constexpr double kPush = 0.1;
-inline constexpr double kFastestPush = 3.0;
+inline constexpr double kFastestPush = 0.25;
+inline constexpr double kFastestShift = 3.0;
+inline constexpr double kCrowd = 6.0;
+inline constexpr double kSmallDepth = 1e-3;
+// How fast joints take out their errors [m/s of things of a metre].
+inline constexpr double kFastestJoint = 3.0;
 
 enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
 struct World::Impl {
-  WorldDesc desc;
+  WorldDesc given_desc;
+  WorldDesc desc;                           // the same, its lengths and speeds in metres
+  double speed_unit = 1.0;                  // what a speed of things of a metre counts
   std::shared_ptr<Jobs> jobs;               // none: all is done by who calls step()
   std::shared_ptr<StageObserver> observer;  // or null
   std::vector<Body> bodies;
@@ -339,7 +350,11 @@ struct World::Impl {
   bool finds_contacts = false;
   double dt_now = 0.0;  // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
-  std::vector<std::size_t> first_block;  // of each region's, among lane_bits
+  std::atomic<bool> some_are_too_deep = false;  // of contacts, and
+  bool some_are_far_open = false;               // of joints, when the sub-steps end
+  bool some_joints_are_far = false;             // JointPasses::Run::some_far
+  bool position_error_before = false;           // one of the two in the last step
+  std::vector<std::size_t> first_block;         // of each region's, among lane_bits
   std::vector<RegionKey> region_keys;
   std::vector<std::uint32_t> changed_regions, region_ends;
   solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
@@ -508,6 +523,8 @@ struct World::Impl {
   void solve_joints(double h, int round);
   void relax_joints(double h);
   void end_joints(double dt);
+  template <class BLOCK>
+  bool is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const;
 
   // find_contacts.cpp
   bool has_contacts_to_find() const;
@@ -593,6 +610,7 @@ struct World::Impl {
   void take_sub_steps(double dt, int count);
   void strike(const SubSteps& steps, std::size_t blocks);
   std::size_t number_blocks();
+  void note_position_errors();
 
   // runs.h
   template <class F>

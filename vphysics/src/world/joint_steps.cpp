@@ -1,6 +1,7 @@
 // Joints between bodies: their part of a step. Impulses go into lanes when its sub-steps begin, and
 // come back when they have ended.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "solve/row_vector.h"
@@ -146,8 +147,9 @@ void World::Impl::for_joint_runs(const F& f) {
     const auto& passes = passes_for(run);
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
-      f(passes, Run{run.blocks.data() + begin, end - begin, &run.form, body_rows.data(),
-                    joint_ways.data()});
+      f(passes,
+        Run{run.blocks.data() + begin, end - begin, &run.form, body_rows.data(), joint_ways.data(),
+            static_cast<float>(kFastestJoint * speed_unit), some_joints_are_far});
     };
     if (run.alone) {
       part(0, run.blocks.size());
@@ -251,12 +253,14 @@ void World::Impl::prepare_joints() {
     solve::joint_passes().find_gone(body_rows.data(), start_ways.data(),
                                     joined_bodies.data() + begin, end - begin, joint_ways.data());
   });
+  std::atomic<bool> far = false;
   for_joint_runs([&](const auto& passes, const auto& run) {
     if constexpr (std::is_same_v<decltype(run.blocks), solve::RowsBlock*>) {
       for (std::size_t i = 0; i < run.count; ++i) evaluate_joints(run.blocks[i]);
     }
-    passes.prepare(run);
+    if (passes.prepare(run)) far.store(true, std::memory_order_relaxed);
   });
+  some_joints_are_far = far;
 }
 void World::Impl::warm_start_joints() {
   if (active_joints.empty()) return;
@@ -274,7 +278,49 @@ void World::Impl::relax_joints(double h) {
       [&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h)); });
 }
 
+// Whether it is open by more than kOpen of the smaller body's radius or by kTurnedOff, of what it
+// holds hard. Only errors too large to be taken out at once are looked at; those of a gear and of a
+// user's constraint have no size to be compared with.
+template <class BLOCK>
+bool World::Impl::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
+  constexpr double kOpen = 0.5, kTurnedOff = 0.2;
+  constexpr float kAtLimit = 0.999f;
+  if (joint.law.form == JointLaw::Form::gear || joint.law.form == JointLaw::Form::user)
+    return false;
+  const auto exceeds = [&](int row, double fastest) {
+    return std::fabs(block.bias[row].lane[lane]) >= kAtLimit * static_cast<float>(fastest);
+  };
+  double size = 1e30;
+  const auto find_size = [&](std::uint32_t index, const SE3& T_body_joint) {
+    const Body& body = bodies[index];
+    if (body.motion != Motion::dynamic) return;
+    size = std::min(size, std::max(body.reach, norm(T_body_joint.position() - body.centre)));
+  };
+  const auto is_open = [&](double gap) {
+    find_size(joint.a, joint.T_a_joint);
+    find_size(joint.b, joint.T_b_joint);
+    return gap > kOpen * size;
+  };
+  const double fastest = kFastestJoint * speed_unit;
+  constexpr int kPoint = BLOCK::kPointRows;
+  if (kPoint > 0 && joint.rows[0].relaxes &&
+      (exceeds(0, fastest) || exceeds(1, fastest) || exceeds(2, fastest))) {
+    const SE3 T_a = place_within_step(joint.a).T, T_b = place_within_step(joint.b).T;
+    if (is_open(norm(T_b * joint.T_b_joint.position() - T_a * joint.T_a_joint.position())))
+      return true;
+  }
+  for (int i = kPoint; i < joint.held; ++i) {
+    const BodyJointRow& row = joint.rows[i];
+    const bool linear = joint.law.form == JointLaw::Form::distance || row.slot < solve::kSwingX;
+    if (!row.relaxes || !exceeds(i, linear ? fastest : double{solve::kFastestTurn})) continue;
+    const double error = std::fabs(get(block.rows[i - kPoint].residual, lane));
+    if (linear ? is_open(error) : error > kTurnedOff) return true;
+  }
+  return false;
+}
+
 void World::Impl::end_joints(double dt) {
+  some_are_far_open = false;
   if (active_joints.empty()) return;
   joint_runs.for_each([&](const auto& run) {
     const std::uint32_t each = run.alone ? 1 : std::uint32_t{kLanes};
@@ -283,6 +329,7 @@ void World::Impl::end_joints(double dt) {
       const int lane = static_cast<int>(i % each);
       BodyJoint& joint = joints[block.joint.lane[lane]];
       take_rows(block, lane, joint);
+      some_are_far_open = some_are_far_open || is_far_open(joint, block, lane);
       joint.force *= 1.0 / dt;
       joint.torque *= 1.0 / dt;
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {

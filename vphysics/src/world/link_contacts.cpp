@@ -102,7 +102,7 @@ solve::StepContext World::Impl::link_context(double h) {
           desc.restitution_threshold,
           desc.velocity_iterations,
           kPush / h,
-          kFastestPush};
+          kFastestShift * speed_unit};
 }
 
 // Their velocities as the lanes and joints have left them.

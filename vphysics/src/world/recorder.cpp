@@ -24,9 +24,9 @@ std::uint32_t recording::check_of(std::span<const std::byte> bytes) {
 Expected<void> World::record(std::shared_ptr<Recorder> recorder) {
   if (recorder) {
     std::uint64_t untouched = 0;
-    Structure(untouched).add(impl_->desc);
+    Structure(untouched).add(impl_->given_desc);
     const auto begun =
-        recorder->begin(*this, impl_->desc, impl_->structure, impl_->structure == untouched);
+        recorder->begin(*this, impl_->given_desc, impl_->structure, impl_->structure == untouched);
     if (!begun) return begun;
   }
   if (impl_->recorder) impl_->recorder->end();

@@ -29,7 +29,7 @@
 namespace vp::recording {
 
 inline constexpr std::uint64_t kMagic = 0x4443455259485056u;  // "VPHYRECD"
-inline constexpr std::uint64_t kFormat = 2;
+inline constexpr std::uint64_t kFormat = 3;
 // Codes of items that are no calls.
 inline constexpr std::uint8_t kStep = 0x80, kNewDt = 1, kHash = 2, kEnd = 0xff;
 
@@ -270,7 +270,7 @@ void fields(Io& io, Field<Io, WorldDesc> d) {
   auto impacts = static_cast<std::uint32_t>(d.max_impacts_per_step);
   auto region_bodies = static_cast<std::uint32_t>(d.region_bodies);
   io(d.gravity, d.restitution_threshold, d.contact_slop, iterations, sub_steps, impacts,
-     d.sleep_after, d.sleep_speed, region_bodies);
+     d.sleep_after, d.sleep_speed, region_bodies, d.length_unit);
   if constexpr (Io::kReads) {
     d.velocity_iterations = static_cast<int>(iterations);
     d.sub_steps = static_cast<int>(sub_steps);

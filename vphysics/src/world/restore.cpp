@@ -335,6 +335,7 @@ void World::Impl::adopt(Incoming& from) {
   from.contacts.adopt();
   sub_step_before = from.sub_step_before;
   push_length = from.push_length;
+  position_error_before = false;
   ready_for_queries = false;
   records.swap(from.records);
   destroyed_pairs.swap(from.destroyed_pairs);

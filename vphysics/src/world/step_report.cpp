@@ -9,6 +9,7 @@ StepStatus& StepStatus::operator|=(const StepStatus& other) {
   manifold_limit |= other.manifold_limit;
   distance_limit |= other.distance_limit;
   colour_limit |= other.colour_limit;
+  position_error |= other.position_error;
   time_held += other.time_held;
   return *this;
 }
@@ -27,6 +28,8 @@ bool reached(const StepStatus& status, Limit limit) {
       return status.distance_limit;
     case Limit::colours:
       return status.colour_limit;
+    case Limit::positions:
+      return status.position_error;
   }
   return false;
 }
@@ -50,6 +53,9 @@ const char* sentence(Limit limit) {
              "shorter";
     case Limit::colours:
       return "a body has more contacts than are solved side by side: the step takes longer";
+    case Limit::positions:
+      return "shapes overlap deeply, or a joint is far open: look for joints that contradict one "
+             "another and for large ratios of mass, or take more sub-steps";
   }
   return "";
 }

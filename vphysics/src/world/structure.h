@@ -48,6 +48,7 @@ class Structure {
     add_unless(usual.sleep_speed, 'z', desc.sleep_speed);
     add_unless(static_cast<std::uint64_t>(usual.region_bodies), 'g',
                static_cast<std::uint64_t>(desc.region_bodies));
+    add_unless(usual.length_unit, 'l', desc.length_unit);
   }
   void add(const BodyDesc& desc) {
     add(static_cast<std::uint64_t>(desc.motion));

@@ -1,5 +1,6 @@
 // The sub-stepped solver: soft contacts, colour after colour (solve/contact_passes.h).
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -27,10 +28,10 @@ constexpr int kStrikes = 64;
 }  // namespace
 
 // Errors grow with the square of the sub-step, so longer steps have shorter shares: 2 sub-steps at
-// 1 kHz, 5 at 240 Hz, 9 at 60 Hz.
+// 1 kHz, 5 at 240 Hz, 9 at 60 Hz. What is smaller falls by its own size sooner, by the root.
 int World::Impl::sub_steps_in(double dt) const {
   if (desc.sub_steps > 0) return desc.sub_steps;
-  return std::max(1, static_cast<int>(std::ceil(std::sqrt(dt / 0.00026))));
+  return std::max(1, static_cast<int>(std::ceil(std::sqrt(dt / (0.00026 * speed_unit)))));
 }
 
 // Of all regions and colours; a word of lane_bits for each. Returns how many.
@@ -137,8 +138,11 @@ class World::Impl::SubSteps {
         p.find_news(part, world_.lane_bits.data() + first);
       });
     }
-    world_.for_parts_of(
-        region, [&](const auto& p, const auto& part, std::size_t) { p.relax(part, soft_); });
+    solve::Soft soft = soft_;
+    soft.last = last;
+    world_.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t) {
+      if (p.relax(part, soft)) world_.some_are_too_deep.store(true, std::memory_order_relaxed);
+    });
   }
   void move_and_relax(std::size_t region, bool last) const {
     move(region);
@@ -173,9 +177,17 @@ void World::Impl::take_sub_steps(double dt, int n) {
   // What has sunk in longer sub-steps is not thrown out by shorter ones: the push becomes as fast
   // as theirs by and by.
   push_length = std::max(static_cast<double>(h), push_length - kHurry * dt);
+  const double fastest = std::clamp(kPush / push_length * kSmallDepth * desc.length_unit,
+                                    kFastestPush * speed_unit, kFastestShift * speed_unit);
   SubSteps steps(*this, h,
-                 {static_cast<float>(kPush / push_length), static_cast<float>(1.0 - kLoss),
-                  static_cast<float>(kFastestPush), 1.0f / h, 0.0f});
+                 {.rate = static_cast<float>(kPush / push_length),
+                  .share = static_cast<float>(1.0 - kLoss),
+                  .fastest_push = static_cast<float>(fastest),
+                  .inverse_h = 1.0f / h,
+                  .kept = 0.0f,
+                  .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
+                  .h = h,
+                  .reach = static_cast<float>(speed_unit)});
   begin_joints(h);
   const bool links = !bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
@@ -222,6 +234,14 @@ void World::Impl::take_sub_steps(double dt, int n) {
     steps.go_on();
   }
   end_joints(dt);
+  note_position_errors();
+}
+
+// What is pushed out within a step of its beginning is no trouble.
+void World::Impl::note_position_errors() {
+  const bool now = some_are_too_deep.exchange(false) || some_are_far_open;
+  status.position_error = now && position_error_before;
+  position_error_before = now;
 }
 
 // Until nothing bounces any more.

@@ -106,6 +106,8 @@ std::optional<std::string> problem_with(const WorldDesc& desc) {
     return "sub_steps must be from 0 (as the step needs) to 1000";
   if (desc.max_impacts_per_step < 0 || desc.max_impacts_per_step > 100000)
     return "max_impacts_per_step must be from 0 to 100000";
+  if (!(desc.length_unit >= 1e-6 && desc.length_unit <= 1e6))
+    return "length_unit must be from 1e-6 to 1e6 m";
   if (desc.region_bodies < 1 || desc.region_bodies > 1000000)
     return "region_bodies must be from 1 to 1000000";
   return std::nullopt;

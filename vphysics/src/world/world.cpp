@@ -44,7 +44,12 @@ ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t ind
 
 World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   VP_ASSERT(!problem_with(desc));
+  impl_->given_desc = desc;
   impl_->desc = desc;
+  impl_->desc.contact_slop *= desc.length_unit;
+  impl_->speed_unit = std::sqrt(desc.length_unit);
+  impl_->desc.restitution_threshold *= impl_->speed_unit;
+  impl_->desc.sleep_speed *= impl_->speed_unit;
   impl_->body_rows.resize(1);
   Structure(impl_->structure).add(desc);
 }
