@@ -21,7 +21,7 @@ struct Tower {
   double size;
   std::vector<BodyId> boxes;
 
-  Tower(const WorldDesc& desc, double size, int count) : world(desc), size(size) {
+  Tower(const WorldDesc& desc, double side, int count) : world(desc), size(side) {
     add_ground(world, {});
     for (int i = 0; i < count; ++i) {
       boxes.push_back(add_dynamic(world, {.shape = Box{{0.5 * size, 0.5 * size, 0.5 * size}},

@@ -70,7 +70,8 @@ struct SearchMargin {
 
   // Where they meet within a ball, world frame.
   double within(const Vec3& centre, double radius) const {
-    const double moved = norm(displacement + cross(turn, centre - about)) + radius * norm(turn);
+    const double moved = norm(displacement + cross(turn, centre - about)) +
+                         radius * std::min(norm(turn), 2.0);  // rotation keeps it in its ball
     return std::min(largest, at_rest + moved);
   }
 

@@ -174,8 +174,8 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   std::copy_n(way, 6, start_ways[index].begin());
   const float* v = row.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  const float far = kFarWay * static_cast<float>(desc.length_unit) +
-                    kFarSteps * static_cast<float>(dt) * speed;
+  const float far =
+      kFarWay * static_cast<float>(desc.length_unit) + kFarSteps * static_cast<float>(dt) * speed;
   const auto beyond = [way](int first, float limit) {
     return std::any_of(way + first, way + first + 3,
                        [limit](float x) { return std::fabs(x) > limit; });

@@ -273,15 +273,23 @@ Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
           ball || is_ball(b) ? 0.0 : radius};
 }
 
-// No two points near one another of the two close in faster [m/s].
-double World::Impl::approach_speed(const Collider& a, const Collider& b) const {
+// The two close in by no more within dt [m], as long as neither turns far: where they meet they
+// move at the velocities that they have there. And by no more than the balls around both do, and
+// what rotation moves within these.
+double World::Impl::approach(const Collider& a, const Collider& b, double dt) const {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
-  const Vicinity at = vicinity_of(a, b);
-  const auto velocity = [&](const Body& body) {
-    return body.v + cross(body.w, at.centre - reference_point(body));
+  const auto velocity = [&](const Body& body, const Vec3& at) {
+    return body.v + cross(body.w, at - reference_point(body));
   };
-  return norm(velocity(body_b) - velocity(body_a)) +
-         norm(at.radius_b * body_b.w - at.radius_a * body_a.w);
+  const Vicinity at = vicinity_of(a, b);
+  const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
+                          norm(at.radius_b * body_b.w - at.radius_a * body_a.w);
+  const auto turned = [&](const Collider& c, const Body& body) {
+    return c.geometry.kind == collide::Kind::sphere ? 0.0
+                                                    : c.radius * std::min(dt * norm(body.w), 2.0);
+  };
+  const Vec3 apart = velocity(body_b, body_b.T * b.centre) - velocity(body_a, body_a.T * a.centre);
+  return std::min(dt * together, dt * norm(apart) + turned(a, body_a) + turned(b, body_b));
 }
 
 // Of a part, the whole.
@@ -395,7 +403,7 @@ void World::Impl::look_at(Looked& found, double dt) {
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const double leeway = kSlide * smaller_size(a, b);
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
-  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach_speed(a, b) * dt;
+  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
   // A compound's slower parts are looked for within less.
   const Collider& smaller = a.radius <= b.radius ? a : b;
   const bool in_parts = smaller.geometry.kind == collide::Kind::compound;

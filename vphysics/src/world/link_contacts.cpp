@@ -70,9 +70,9 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
     pose_colliders(i);
     pose_colliders(j);
-    const double speed = approach_speed(colliders[pair.a], colliders[pair.b]);
+    const double closing = approach(colliders[pair.a], colliders[pair.b], dt);
     std::uint32_t part = 0;
-    for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + speed * dt)) {
+    for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + closing)) {
       add_contact(pair, found.manifold, part++, false, true, link_contacts);
     }
   }
