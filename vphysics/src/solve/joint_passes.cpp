@@ -65,11 +65,15 @@ template <class B>
 [[gnu::flatten]] void warm_start_joints(const typename JointPasses<B>::Run& run) {
   for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { warm_start_lanes(c); });
 }
-template <class B, bool kFirst>
-[[gnu::flatten]] void push_joints(const typename JointPasses<B>::Run& run, float h) {
+template <class B, bool kSomeFar, bool kFirst>
+[[gnu::flatten]] void push_joints_that(const typename JointPasses<B>::Run& run, float h) {
   for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) {
-    push_lanes(c, h, run.fastest_push, run.some_far, kFirst);
+    push_lanes<kSomeFar>(c, h, run.fastest_push, kFirst);
   });
+}
+template <class B, bool kFirst>
+void push_joints(const typename JointPasses<B>::Run& run, float h) {
+  (run.some_far ? push_joints_that<B, true, kFirst> : push_joints_that<B, false, kFirst>)(run, h);
 }
 template <class B>
 [[gnu::flatten]] void relax_joints(const typename JointPasses<B>::Run& run, float h) {

@@ -178,11 +178,11 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest
     if constexpr (B::kPointRows > 0) {
       // Of a point that is farther away than the bodies are large, a part: a body is no rod of any
       // length. Where it is pulled along the gap, that turns it as before.
-      const F large = F(kStrongest * fastest_push) / larger(c.rate(0), F(kLeastResponse));
-      const F far = dot(gap, gap);
-      const F near = larger(dot(start_a, start_a) + dot(start_b, start_b), large * large);
-      const LaneMask<W> too_far = far > near;
-      if (!none(too_far)) {
+      const F pull = c.rate(0) * c.rate(0) * dot(gap, gap);
+      const LaneMask<W> strong = pull > F(kStrongest * kStrongest * fastest_push * fastest_push);
+      if (!none(strong)) {
+        const F far = dot(gap, gap), near = dot(start_a, start_a) + dot(start_b, start_b);
+        const LaneMask<W> too_far = both(strong, far > near);
         const F left = F(1.0f) - sqrt(near / select(too_far, far, F(1.0f)));
         arm_a = arm_a - select(too_far, left, F(0.0f)) * gap;
       }
@@ -510,10 +510,10 @@ void warm_start_lanes(JointLanes<W, B>& c) {
   c.scatter_velocities();
 }
 
-// A round of pushing. Those after the first of a sub-step pass by what has settled. some_far: some
-// joints of the world have errors too large to be taken out at once.
-template <int W, class B>
-void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool some_far, bool first) {
+// A round of pushing. Those after the first of a sub-step pass by what has settled. kSomeFar:
+// some joints of the world have errors too large to be taken out at once.
+template <bool kSomeFar, int W, class B>
+void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool first) {
   using F = Lanes<W>;
   const F zero(0.0f), one(1.0f);
   B& block = c.block();
@@ -526,7 +526,7 @@ void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool some_far,
     const F bias = c.get(block.bias[i]);
     const F lost = c.get(block.leak[i]) * c.impulse(i);
     F wanted = bias + lost;
-    if (some_far) {
+    if constexpr (kSomeFar) {
       // As fast with what the loss of the load takes from it; the loss itself stays whole.
       const F fastest = fastest_of(c, i, fastest_push);
       const F most = larger(fastest - select(bias > zero, lost, -lost), zero);

@@ -329,7 +329,8 @@ void World::Impl::end_joints(double dt) {
       const int lane = static_cast<int>(i % each);
       BodyJoint& joint = joints[block.joint.lane[lane]];
       take_rows(block, lane, joint);
-      some_are_far_open = some_are_far_open || is_far_open(joint, block, lane);
+      if (some_joints_are_far && !some_are_far_open)
+        some_are_far_open = is_far_open(joint, block, lane);
       joint.force *= 1.0 / dt;
       joint.torque *= 1.0 / dt;
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
