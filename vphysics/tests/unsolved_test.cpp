@@ -36,7 +36,7 @@ Vec3 momentum(const World& world, const std::vector<BodyId>& bodies) {
 
 // --- overlaps ------------------------------------------------------------------------------------
 
-// In m/s: 100 boxes 98 to 107 before, 5.9, 6.8 and 7.7 now; 40 balls 43, 4.0; scattered ones 1.3.
+// In m/s: 100 boxes 98 before, 5.8 now; 60 at 240 Hz, 30 at 1 kHz, 40 balls, scattered ones less.
 TEST(Overlap, OfManyBodiesAtOnePlaceIsPushedOutSlowly) {
   struct Case {
     Shape shape;
@@ -180,6 +180,51 @@ TEST(HeavyOnLight, StandsOrIsReported) {
       EXPECT_EQ(seen.reports, 0);
     } else {
       EXPECT_GT(seen.reports, 0);
+    }
+  }
+}
+
+// --- elastic balls -------------------------------------------------------------------------------
+
+// Balls that meet deep in one another, since a bounce within the step threw them there, are parted
+// without a speed. At 10 ms and a pitch of 2.05 radii 2.6% more energy before, 0.2% now.
+TEST(ElasticBalls, GainNoEnergy) {
+  constexpr double kRadius = 0.1;
+  constexpr int kAlong = 5;
+  for (const double dt : {0.004, 0.01}) {
+    for (const double pitch : {2.0, 2.05, 2.5}) {
+      for (const double friction : {0.0, 0.5}) {
+        World world;
+        const Material elastic{friction, 1.0, 0.0};
+        add_ground(world, elastic);
+        Random random(7);
+        std::vector<BodyId> balls;
+        for (int i = 0; i < kAlong * kAlong * kAlong; ++i) {
+          const Vec3 at{1.0 * (i % kAlong), 1.0 * (i / kAlong % kAlong),
+                        1.0 * (i / (kAlong * kAlong))};
+          const Vec3 off = pitch > 2.1 ? random.in_cube(0.005) : Vec3{};
+          balls.push_back(add_dynamic(
+              world, {.shape = Sphere{kRadius},
+                      .material = elastic,
+                      .pose = SE3(pitch * kRadius * at + Vec3{0, 0, 5.0 * kRadius} + off)}));
+        }
+        const auto energy = [&] {  // of a kilogram
+          double sum = 0.0;
+          for (const BodyId ball : balls) {
+            const se3 V = world.velocity(ball);
+            sum += 0.5 * dot(V.v, V.v) + 0.2 * kRadius * kRadius * dot(V.w, V.w) +
+                   9.81 * world.pose(ball).position().z;
+          }
+          return sum;
+        };
+        const double first = energy();
+        double most = first;
+        for (int i = 0; i < std::lround(2.0 / dt); ++i) {
+          must(world.step(dt));
+          most = std::max(most, energy());
+        }
+        EXPECT_LT(most, 1.005 * first) << dt << ' ' << pitch << ' ' << friction;
+      }
     }
   }
 }
