@@ -20,9 +20,9 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0xe7eed464c8bc1d86u;
+constexpr std::uint64_t kGolden = 0x516d3c3aa0ebda5cu;
 // Of players with levels.
-constexpr std::uint64_t kGoldenLevel = 0x41ab3d40885a0f9du;
+constexpr std::uint64_t kGoldenLevel = 0xe25ea29adfa7268au;
 
 struct Players {
   explicit Players(std::uint64_t seed, const char* player = "classic:0.9")

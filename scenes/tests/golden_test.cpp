@@ -25,31 +25,31 @@ TEST(GoldenScenes, TowersOf1120Boxes) {
   EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 10733894783079065100u);
 }
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 2570754858419614889u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 5105400079415374744u);
 }
 // In 16 regions, which its bodies leave and enter.
 TEST(GoldenScenes, APileInRegions) {
   vp::WorldDesc settings;
   settings.region_bodies = 8;
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0, settings), 3165333648593521254u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0, settings), 7997902759652724305u);
 }
 TEST(GoldenScenes, AWallThatIsHit) {
-  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 3212827972750805872u);
+  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 2046799520221545825u);
 }
 TEST(GoldenScenes, AHouseOfCards) {
-  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 212499808574667378u);
+  EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 1181578310430912429u);
 }
 TEST(GoldenScenes, Dominoes) {
-  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 4561921339861540417u);
+  EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 5180858666714097760u);
 }
 TEST(GoldenScenes, Ragdolls) {
-  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 1921358785960653672u);
+  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 2929619618153253153u);
 }
 TEST(GoldenScenes, AChainUnderLoad) {
-  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 13878857140071969274u);
+  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 7319095620592925210u);
 }
 TEST(GoldenScenes, ABridgeUnderCrates) {
-  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 12969542924782518404u);
+  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 9304579703133479475u);
 }
 
 }  // namespace

@@ -158,8 +158,8 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
 
 void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
   const Boxes boxes(pair);
-  m.apart = gap_along_last(boxes, pair, cache);
-  if (m.apart > margin) return;
+  m.apart_by_at_least = gap_along_last(boxes, pair, cache);
+  if (m.apart_by_at_least > margin) return;
   const ContactQuery query(pair, margin);
   FaceAxis face;
   const bool near = find_best_face(query, boxes, face);
@@ -171,7 +171,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
   if (!by_edges) {
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
-    m.apart = face.gap;
+    m.apart_by_at_least = face.gap;
     if (!near) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
@@ -183,7 +183,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
     const bool within = place_edges(pair, boxes, edge);
     if (edge.axis.gap > margin || edge.axis.gap <= 0.0 || within) {
       remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
-      m.apart = edge.axis.gap;
+      m.apart_by_at_least = edge.axis.gap;
       return add_contact_along(query, edge.axis, m);
     }
   }

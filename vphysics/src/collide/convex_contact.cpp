@@ -149,7 +149,7 @@ void remember(PairCache& cache, const Vec3& normal, PairCache::Feature feature, 
 
 void collide_apart(const ContactQuery& q, const GjkResult& found, PairCache& cache, Manifold& m) {
   remember(cache, found.normal);
-  m.apart = found.distance - q.radii;
+  m.apart_by_at_least = found.distance - q.radii;
   if (found.state == GjkResult::State::beyond) return;
   if (found.distance - q.radii > q.margin) return;
   add_contact(q, {found.distance, found.normal, found.on_a, found.on_b}, m);

@@ -16,9 +16,9 @@ struct NearBlock {
   // When it was last looked at: the rows' ways, and how far the two may go against each other [m].
   Field3 x_a, turn_a, x_b, turn_b;
   // From the bodies' centres to that of a ball in which the two meet, and its radius as far as
-  // their rotations count [m].
+  // rotation counts [m].
   Field3 arm_a, arm_b;
-  Field radius_a, radius_b;
+  Field radius;
   Field clearance;
 };
 inline constexpr std::size_t kNearFields =

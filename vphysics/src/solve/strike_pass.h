@@ -207,8 +207,7 @@ std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, f
   const auto bow = [&](const V& turn, const V& arm) {
     return F(0.5f) * dot(turn, turn) * size(arm);
   };
-  const F gone = size(by_b - by_a) +
-                 size(get(block.radius_b) * turn_b - get(block.radius_a) * turn_a) +
+  const F gone = size(by_b - by_a) + get(block.radius) * size(turn_b - turn_a) +
                  bow(turn_a, arm_a) + bow(turn_b, arm_b);
   const auto stays = gone <= get(block.clearance);
   return lanes::bits_of(!stays);

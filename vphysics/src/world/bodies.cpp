@@ -178,7 +178,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
       kFarWay * static_cast<float>(desc.length_unit) + kFarSteps * static_cast<float>(dt) * speed;
   const auto beyond = [way](int first, float limit) {
     return std::any_of(way + first, way + first + 3,
-                       [limit](float x) { return std::fabs(x) > limit; });
+                       [limit](float x) { return !(std::fabs(x) <= limit); });  // NaN too
   };
   return beyond(0, far) || beyond(3, kFarTurn);
 }

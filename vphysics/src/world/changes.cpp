@@ -153,7 +153,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   }
   impl_->change_motion(index, motion, inertia, V);
   Structure structure(impl_->structure);
-  structure.add(word_of(Change::motion, index));
+  structure.add(word_of(Change::motion, id.index));
   structure.add(static_cast<std::uint64_t>(motion));
   if (impl_->recorder) impl_->log({calls::SetMotion{id, motion}});
   return {};
@@ -329,6 +329,10 @@ Expected<void> World::remove_collider(ColliderId id) {
     }
     const auto problem = sum.mass() > 0.0 ? problem_with(sum) : std::nullopt;
     if (problem) return refuse("remove_collider: of what is left, " + *problem);
+    const BodyId owner = body_id(impl_->bodies, impl_->colliders[id.index - 1].body);
+    if (sum.mass() > 0.0 && !is_slow_enough(velocity(owner), sum.centre_of_mass())) {
+      return refuse("remove_collider: the centre of mass would move faster than 1e9 m/s");
+    }
   }
   impl_->take_collider_off(id.index - 1);
   Structure structure(impl_->structure);

@@ -235,8 +235,7 @@ void World::Impl::set_clearance(const Contact& c, double clearance) {
   put_end(block.a.lane[lane], bodies[a.body], block.x_a, block.turn_a, block.arm_a);
   put_end(block.b.lane[lane], bodies[b.body], block.x_b, block.turn_b, block.arm_b);
   block.clearance.lane[lane] = static_cast<float>(clearance);
-  block.radius_a.lane[lane] = static_cast<float>(at.radius_a);
-  block.radius_b.lane[lane] = static_cast<float>(at.radius_b);
+  block.radius.lane[lane] = static_cast<float>(at.radius);
 }
 
 void World::Impl::unset_near(std::uint32_t index) {
@@ -258,19 +257,16 @@ void World::Impl::use_clearance(const Contact& c) {
   };
   const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
   const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
-  const Vec3 turn = static_cast<double>(block.radius_b.lane[lane]) * b.turn -
-                    static_cast<double>(block.radius_a.lane[lane]) * a.turn;
+  const double turned = static_cast<double>(block.radius.lane[lane]) * norm(b.turn - a.turn);
   block.clearance.lane[lane] -=
-      static_cast<float>(norm(b.displacement - a.displacement) + norm(turn) + a.bow + b.bow);
+      static_cast<float>(norm(b.displacement - a.displacement) + turned + a.bow + b.bow);
 }
 
 Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
-  const auto is_ball = [](const Collider& c) { return c.geometry.kind == collide::Kind::sphere; };
   const Collider& smaller = a.radius <= b.radius ? a : b;
-  const double radius = smaller.radius < kEndless ? smaller.radius : 0.0;
-  const bool ball = is_ball(smaller);  // the other meets it along the line through its centre
-  return {bodies[smaller.body].T * smaller.centre, ball || is_ball(a) ? 0.0 : radius,
-          ball || is_ball(b) ? 0.0 : radius};
+  const bool turns = smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kEndless;
+  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0,
+          smaller.geometry.kind == collide::Kind::compound};
 }
 
 // The two close in by no more within dt [m], as long as neither turns far: where they meet they
@@ -283,7 +279,7 @@ double World::Impl::approach(const Collider& a, const Collider& b, double dt) co
   };
   const Vicinity at = vicinity_of(a, b);
   const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
-                          norm(at.radius_b * body_b.w - at.radius_a * body_a.w);
+                          at.radius * norm(body_b.w - body_a.w);
   const auto turned = [&](const Collider& c, const Body& body) {
     return c.geometry.kind == collide::Kind::sphere ? 0.0
                                                     : c.radius * std::min(dt * norm(body.w), 2.0);
@@ -378,7 +374,7 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
       drop_contact(index);
       continue;
     }
-    looked.push_back({index, {}, 0.0, 0.0, 0.0});
+    looked.push_back({index, {}, 0.0, 0.0, 0.0, false});
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
   }
   in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
@@ -404,17 +400,17 @@ void World::Impl::look_at(Looked& found, double dt) {
   const double leeway = kSlide * smaller_size(a, b);
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
-  // A compound's slower parts are looked for within less.
-  const Collider& smaller = a.radius <= b.radius ? a : b;
-  const bool in_parts = smaller.geometry.kind == collide::Kind::compound;
-  found.clearance = (in_parts ? found.margin_at_rest : found.margin) - desc.contact_slop;
+  // The slower parts of a compound that is the smaller one are looked for within less.
+  found.by_part = vicinity_of(a, b).of_compound;
+  found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - desc.contact_slop;
   found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {
     found.clearance = kNeverMeets;
   } else if (!c.has_parts) {
     find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
     if (found.manifold.count == 0)
-      found.clearance = std::max(found.clearance, found.manifold.apart - desc.contact_slop);
+      found.clearance =
+          std::max(found.clearance, found.manifold.apart_by_at_least - desc.contact_slop);
   }
 }
 

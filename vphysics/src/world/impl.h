@@ -186,12 +186,13 @@ struct PartNews {
   Vec3 point, normal;
 };
 
-// The ball around the smaller of two colliders, where they meet if they do. World frame.
+// The ball around the smaller of two colliders, where they meet if they do. World frame. The one
+// rule of how near they come: relative velocity at its centre, and relative rotation times its
+// radius.
 struct Vicinity {
   Vec3 centre;
-  // Of the ball, as far as the rotation of a and of b can bring them together: that of a collider
-  // that is a ball itself cannot.
-  double radius_a, radius_b;
+  double radius;  // 0 if the smaller is a ball itself: it is met along the line through its centre
+  bool of_compound;  // the smaller is one
 };
 
 struct Velocity {
@@ -212,6 +213,7 @@ struct Looked {
   collide::Manifold manifold;
   // Within which it was looked for, and would be if nothing moved; free of contact for so far [m].
   double margin, margin_at_rest, clearance;
+  bool by_part;  // of a compound: each part within its own margin
 };
 
 inline constexpr std::size_t kMostRegions = 4096;

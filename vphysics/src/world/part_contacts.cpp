@@ -48,11 +48,12 @@ void World::Impl::find_parts(const Looked& look) {
   manifolds.clear();
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const Vec3 about = reference_point(body_b), arm = about - reference_point(body_a);
-  const collide::SearchMargin margin(look.margin, look.margin_at_rest,
-                                     dt_now * (body_b.v - body_a.v - cross(body_a.w, arm)),
-                                     dt_now * (body_b.w - body_a.w), about);
-  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, contact_pool[index].cache, known_parts,
-                 manifold_scratch, manifolds);
+  const collide::SearchMargin by_part(look.margin, look.margin_at_rest,
+                                      dt_now * (body_b.v - body_a.v - cross(body_a.w, arm)),
+                                      dt_now * (body_b.w - body_a.w), about);
+  find_manifolds(a.geometry, a.T, b.geometry, b.T,
+                 look.by_part ? by_part : collide::SearchMargin(look.margin),
+                 contact_pool[index].cache, known_parts, manifold_scratch, manifolds);
   for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
   if (contact_pool[index].sensor) {
     const bool touches = !manifolds.empty();
@@ -62,7 +63,8 @@ void World::Impl::find_parts(const Looked& look) {
   double clearance = look.clearance;
   if (manifolds.empty()) {
     clearance = std::max(clearance,
-                         distance_of_parts(a.geometry, a.T, b.geometry, b.T, parts_scratch.cast));
+                         distance_of_parts(a.geometry, a.T, b.geometry, b.T, parts_scratch.cast) -
+                             desc.contact_slop);
   }
   set_clearance(contact_pool[index], clearance);
   claimed_parts.clear();

@@ -56,6 +56,7 @@ void World::Impl::begin_step(double dt) {
   for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts, &look_again})
     list->reserve(std::max(room, contact_pool.capacity()));  // parts have contacts of their own
   looked.reserve(std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
+  to_pose.reserve(n);
   near_list.reserve(room);
   body_stack.reserve(n);
   woken.reserve(n);

@@ -129,7 +129,14 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
   if (!is_gravity_scale(desc.gravity_scale)) {
     return "gravity_scale must be finite and at most 1e6 either way";
   }
-  if (desc.motion != Motion::dynamic || has_no_inertia(desc)) return std::nullopt;
+  if (has_no_inertia(desc)) return std::nullopt;
+  if (desc.motion != Motion::dynamic) {
+    const Sym3& I = desc.inertia.rotational();
+    const bool finite = std::isfinite(desc.inertia.mass() + norm(desc.inertia.first_moment()) +
+                                      I.xx + I.yy + I.zz + I.xy + I.yz + I.zx);
+    if (finite) return std::nullopt;
+    return "inertia: every number must be finite";
+  }
   if (auto problem = problem_with(desc.inertia)) return problem;
   const se3& V = desc.velocity;
   if (!nearly_in_range(V.v + cross(V.w, desc.inertia.centre_of_mass()))) {

@@ -244,6 +244,10 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
     const Inertia sum = impl_->inertia_of_colliders(*body) +
                         solid_inertia(desc.shape, desc.density).InvXform(desc.T_body_shape);
     if (auto problem = problem_with(sum)) return refuse("add_collider: with it, " + *problem);
+    const se3 V = velocity(body_handle);
+    if (!nearly_in_range(V.v + cross(V.w, sum.centre_of_mass()))) {
+      return refuse("add_collider: the centre of mass would move faster than 1e9 m/s");
+    }
   }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
   Collider& c = impl_->colliders[index];

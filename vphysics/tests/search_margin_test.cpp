@@ -1,0 +1,81 @@
+// Near pairs that are left alone for some steps: what they do meanwhile must not hide a contact.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rig.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kDt = 1.0 / 60;
+
+// A stick flies past a ball that turns, at the speed that the ball's points have where the middle
+// of the stick is: there the two are at rest against each other, but the stick's end comes nearer.
+TEST(SearchMargin, AStickThatGoesWithATurningBoulderMeetsIt) {
+  constexpr double kRadius = 1.1, kHalfLength = 1.0, kHalfWidth = 0.1;
+  for (const bool kinematic : {false, true}) {
+    for (const double rate : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+      for (const double gap : {0.05, 0.1, 0.15}) {
+        WorldDesc desc;
+        desc.gravity = {};
+        World world(desc);
+        const SE3 tilt = SE3(Exp(Vec3{0, -0.5, 0}), {});
+        const Vec3 end = tilt * Vec3{-kHalfLength, 0, -kHalfWidth};
+        const double height = std::sqrt((kRadius + gap) * (kRadius + gap) - end.x * end.x) - end.z;
+        BodyDesc ball;
+        ball.motion = kinematic ? Motion::kinematic : Motion::dynamic;
+        ball.velocity.w = {0, rate, 0};
+        ball.inertia = solid_inertia(Sphere{kRadius}, 1000.0);
+        const BodyId boulder = must(world.create_body(ball));
+        ColliderDesc collider;
+        collider.shape = Sphere{kRadius};
+        must(world.add_collider(boulder, collider));
+        const BodyId stick =
+            add_dynamic(world, {.shape = Box{{kHalfLength, kHalfWidth, kHalfWidth}},
+                                .pose = SE3(tilt.rotation(), Vec3{0, 0, height}),
+                                .velocity = {{}, tilt.unrotate(Vec3{rate * height, 0, 0})}});
+        double deepest = 0.0;
+        for (int i = 0; i < 200; ++i) {
+          must(world.step(kDt));
+          const Vec3 at = inverse_times(world.pose(stick), world.pose(boulder).position());
+          const auto beyond = [](double x, double half) {
+            return std::max(std::fabs(x) - half, 0.0);
+          };
+          const Vec3 out{beyond(at.x, kHalfLength), beyond(at.y, kHalfWidth),
+                         beyond(at.z, kHalfWidth)};
+          deepest = std::max(deepest, kRadius - norm(out));
+        }
+        EXPECT_LT(deepest, 2e-3) << kinematic << ", " << rate << " rad/s, gap " << gap;
+      }
+    }
+  }
+}
+
+// A stick that spins above a compound much larger than itself loses its spin, but not its fall.
+TEST(SearchMargin, ASpinThatEndsHidesNoPartOfALargeCompound) {
+  WorldDesc desc;
+  desc.gravity = {};
+  World world(desc);
+  std::vector<CompoundPart> plates;
+  for (const double x : {-20.0, 0.0, 20.0})
+    plates.push_back({Box{{0.05, 0.05, 0.01}}, SE3(Vec3{x, 0, 0})});
+  add_fixed(world, Compound::of(plates).value(), {});
+  BodyDesc stick;
+  stick.T_world_body = SE3(Vec3{0, 0, 0.06});
+  stick.velocity = {{0, 0, 10.0}, {0, 0, -0.5}};
+  stick.angular_damping = 1e6;
+  stick.inertia = solid_inertia(Box{{1.0, 0.02, 0.02}}, 1000.0);
+  const BodyId body = must(world.create_body(stick));
+  ColliderDesc collider;
+  collider.shape = Box{{1.0, 0.02, 0.02}};
+  must(world.add_collider(body, collider));
+  for (int i = 0; i < 40; ++i) {
+    must(world.step(kDt));
+    EXPECT_GT(world.pose(body).position().z, 0.025);
+  }
+}
+
+}  // namespace
+}  // namespace vp::test
