@@ -104,7 +104,7 @@ std::unique_ptr<draw::Window> SandboxRender::window;
 
 TEST_P(SandboxRender, EveryKindOfSceneIsNotBlank) {
   for (const char* name : {"towers1120", "pile1120", "ragdolls", "bridge", "cards", "conveyor",
-                           "trees100", "junkyard"}) {
+                           "convex_pile", "junkyard"}) {
     Simulation simulation = opened(name);
     look_at_all(simulation);
     const draw::Image image = drawn(simulation);
