@@ -25,19 +25,16 @@ namespace {
 
 // Four numbers side by side; one of them at a time where the machine has no such registers.
 using Four [[gnu::vector_size(32)]] = double;
-Four four_of(const double* from) {
-  Four lanes;
-  std::memcpy(&lanes, from, sizeof lanes);
-  return lanes;
-}
-
 // The first of those that are farthest along d.
 int farthest_vertex(const HullData& hull, const Vec3& d) {
   const std::size_t n = hull.support_x.size();
   Four most{-kFar, -kFar, -kFar, -kFar}, found{}, at{0.0, 1.0, 2.0, 3.0};
   for (std::size_t i = 0; i < n; i += kSupportLanes) {
-    const Four along = d.x * four_of(&hull.support_x[i]) + d.y * four_of(&hull.support_y[i]) +
-                       d.z * four_of(&hull.support_z[i]);
+    Four x, y, z;
+    std::memcpy(&x, &hull.support_x[i], sizeof x);
+    std::memcpy(&y, &hull.support_y[i], sizeof y);
+    std::memcpy(&z, &hull.support_z[i], sizeof z);
+    const Four along = d.x * x + d.y * y + d.z * z;
     const auto farther = along > most;
     most = farther ? along : most;
     found = farther ? at : found;
