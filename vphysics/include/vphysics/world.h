@@ -182,8 +182,9 @@ class World {
 
   // Its velocity stays, as far as the motion knows one: what becomes kinematic goes on at it. What
   // becomes dynamic has the inertia that it was created with or given, or that of its colliders.
-  // Its contacts end, and those that still touch begin anew in the next step. Refused: half-spaces,
-  // meshes and height fields on what may not carry them, joints left without a dynamic body.
+  // Its contacts end, and those that still touch begin again in the next step. Refused:
+  // half-spaces, meshes and height fields on what may not carry them, joints left without a dynamic
+  // body.
   [[nodiscard]] Expected<void> set_motion(BodyId body, Motion motion);
   // Instead of what it had, its colliders' too. The velocity of its origin stays.
   [[nodiscard]] Expected<void> set_inertia(BodyId body, const Inertia& inertia);
@@ -222,7 +223,7 @@ class World {
   [[nodiscard]] Expected<void> apply_impulse(BodyId body, const Vec3& impulse_world,
                                              const Vec3& point_world);
   // Forces and torques act over the whole of the next step, constant in the world frame, and are
-  // forgotten when it ends: apply them anew before each. What is applied before the same step adds
+  // forgotten when it ends: apply them again before each. What is applied before the same step adds
   // up. Contacts, friction and joints meet them as they meet gravity, as a load and not as an
   // impact. Links too. What sleeps is woken. Refused: bodies that are not dynamic, and what would
   // make one faster than 1e9 m/s or rad/s within 0.1 s; of links, sums beyond 1e9 N or N m.

@@ -54,7 +54,8 @@ int axis_from_face(int face) {
   return kBoxFaceAxis[static_cast<std::size_t>(face)];
 }
 
-// Whether what separated them last time still does.
+// The gap along the axis that separated them last time: no more than their distance. 0: there is
+// none.
 double gap_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
   switch (cache.feature) {
     case PairCache::face_of_a:

@@ -36,8 +36,8 @@ struct ManifoldScratch {
   static constexpr std::uint32_t kNoTriangle = ~0u;
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
-  std::vector<std::uint8_t>
-      settled;  // of each point: a manifold has it, or points that stand for it
+  // Of each point, 1: a manifold has it, or points that stand for it.
+  std::vector<std::uint8_t> settled;
   // For whoever wants to know: triangles, counted up; set, that there were more normals than
   // kMostClusters, and that of a triangle CorePair::rough was set.
   std::uint32_t looked_at = 0;

@@ -17,8 +17,8 @@ namespace {
 // An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
 // overlap more neighbours.
 constexpr double kMargin = 0.1;
-// A row's way is started anew beyond this [length units], and so many more steps of it, so that
-// single precision tells small steps; and beyond this turn [rad], since turns are added up as
+// A row's way begins again at zero beyond this [length units], and so many more steps of it, so
+// that single precision tells small steps; and beyond this turn [rad], since turns are added up as
 // vectors.
 constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f, kFarTurn = 0.25f;
 
@@ -136,7 +136,7 @@ Vec3 gyroscopic_acceleration(const Body& body, double dt) {
 
 }  // namespace
 
-// True if its way has become so long that it must be started anew.
+// True if its way has become so long that it must begin again.
 bool World::Impl::load_row(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   body.untouched = false;

@@ -2,7 +2,7 @@
 //
 // All of these are constants of the world: they enter its digest (structure.h), so that a snapshot
 // of before is not taken after them. What hangs together with a changed body is woken. Contacts
-// whose constants changed are looked at anew in the next step; those that are no more end, with an
+// whose constants changed are looked at again in the next step; those that are no more end, with an
 // event of the next step.
 #include <algorithm>
 
@@ -159,7 +159,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   return {};
 }
 
-// Its contacts end, and those that still touch begin anew: their places in the solver are of the
+// Its contacts end, and those that still touch begin again: their places in the solver are of the
 // motion of before.
 void World::Impl::change_motion(std::uint32_t index, Motion motion,
                                 const std::optional<Inertia>& inertia, const se3& V) {

@@ -401,7 +401,7 @@ void World::Impl::look_at(Looked& found, double dt) {
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
   // The slower parts of a compound that is the smaller one are looked for within less.
-  found.by_part = vicinity_of(a, b).of_compound;
+  found.by_part = c.has_parts && vicinity_of(a, b).of_compound;
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - desc.contact_slop;
   found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {
