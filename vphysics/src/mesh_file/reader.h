@@ -1,0 +1,73 @@
+// What the readers of mesh files share: the mesh as it grows, and text as words and numbers.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "vphysics/mesh_file.h"
+
+namespace vp::detail {
+
+// Takes a mesh together, within a limit of triangles, and of three times as many vertices.
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(std::size_t max_triangles) : max_triangles_(max_triangles) {}
+
+  // The index of the vertex, which may have any numbers.
+  std::uint32_t vertex(const Vec3& v) {
+    full_ = full_ || mesh.vertices.size() >= 3 * max_triangles_;
+    mesh.vertices.push_back(v);
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  }
+  // A polygon, cut into triangles from its first corner. Its indices are checked.
+  void polygon(std::span<const std::int64_t> corners);
+  // What follows is another object.
+  void begin_object();
+  bool full() const { return full_; }
+  // Vertices that are not finite go, with the triangles that they had taken with them before.
+  Expected<MeshFile> finish(const char* format);
+
+  MeshFile mesh;
+
+ private:
+  bool good(std::int64_t index) const;
+
+  std::size_t max_triangles_;
+  bool full_ = false;
+};
+
+inline constexpr std::string_view kSpace = " \t\r\n\f\v";
+
+// The next word, and off the front of the text with it; empty at the end.
+inline std::string_view take_word(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(kSpace));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+// Unlike strtod it asks no locale. Not a number where the word is none.
+inline double to_number(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return failed == std::errc() && end == word.data() + word.size() ? value : std::nan("");
+}
+inline Vec3 take_vec3(std::string_view& text) {
+  const double x = to_number(take_word(text));
+  const double y = to_number(take_word(text));
+  const double z = to_number(take_word(text));
+  return {x, y, z};
+}
+
+void read_stl(std::string_view bytes, MeshBuilder& builder, std::string& fault);
+void read_obj(std::string_view text, MeshBuilder& builder);
+void read_collada(std::string_view text, MeshBuilder& builder, std::string& fault);
+
+}  // namespace vp::detail
