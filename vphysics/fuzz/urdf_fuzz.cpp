@@ -1,5 +1,5 @@
 // parse_urdf on a stranger's text. What is refused has a line; what is accepted has numbers that
-// the algorithms can work with.
+// the algorithms can work with, and comes into a world, or is refused by it.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
@@ -7,6 +7,7 @@
 
 #include "vphysics/multibody/dynamics.h"
 #include "vphysics/multibody/urdf.h"
+#include "vphysics/urdf_world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vp;
@@ -27,6 +28,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)forward_dynamics<double>(model, work, q, v, v, {}, a);
   for (const UrdfJoint& joint : read->joints) {
     if (joint.link < 0 || joint.link >= model.links()) std::abort();
+  }
+  if (read->collisions.size() > 50 || model.links() > 50) return 0;
+  UrdfWorldOptions in_world;
+  in_world.density = data[0] & 2 ? 100.0 : 0.0;
+  in_world.triangles_where_fixed = data[0] & 4;
+  in_world.read_mesh = [](const std::string&) -> Expected<std::string> {
+    return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  };
+  World world;
+  const auto robot = add_urdf(world, *read, in_world);
+  if (!robot) {
+    if (robot.error().message.empty()) std::abort();
+    return 0;
+  }
+  if (robot->colliders.size() != read->collisions.size()) std::abort();
+  for (int k = 0; k < 3; ++k) {
+    if (!world.step(0.001)) std::abort();
   }
   return 0;
 }

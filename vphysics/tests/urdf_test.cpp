@@ -200,7 +200,7 @@ TEST(Urdf, WhatIsLeftOutIsTold) {
           "izz=\"1\"/></inertial></link>\n<gazebo/>\n"),
       {UrdfBase::floating, {}});
   const std::vector<std::string> notes{
-      "line 5: <collision> of <link> left out", "line 7: <gazebo> of <robot> left out",
+      "line 5: a <collision> without geometry is left out", "line 7: <gazebo> of <robot> left out",
       "line 2: <material> of <robot> left out", "line 4: <visual> of <link> left out, 2 in all",
       "line 3: attribute \"colour\" of <link> left out"};
   EXPECT_EQ(read.notes, notes);

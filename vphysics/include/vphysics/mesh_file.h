@@ -45,10 +45,10 @@ std::optional<MeshFormat> mesh_format(std::string_view path);
 
 // STL: three corners each, whichever way the stored normal points. OBJ: polygons are cut into
 // triangles from their first corner; indices may count from the end. COLLADA: triangles, polylists
-// and polygons, where the scene's nodes put them; the axis that is up is not regarded, as the
-// robots' own tools have it. Refused with Errc::bad_data: bytes without a vertex, binary STL that
-// is cut short, text that is not well-formed XML; with Errc::unsupported: more bytes or triangles
-// than the limits.
+// and polygons, where the scene's nodes put them; which axis is up is not regarded, as RViz has it.
+// Refused with Errc::bad_data: bytes without a vertex, binary STL that is cut short, text that is
+// not well-formed XML; with Errc::unsupported: more bytes or triangles than the limits, or three
+// times as many vertices.
 [[nodiscard]] Expected<MeshFile> parse_mesh(std::string_view bytes, MeshFormat format,
                                             const MeshLimits& limits = {});
 // The same from a file; Errc::unsupported too where its name has no known end. The message begins

@@ -1,6 +1,6 @@
 // COLLADA 1.4 and 1.5, as far as a shape needs it: the geometries (triangles, polylist, polygons)
-// and where the scene's nodes place them. The unit of length is taken into account; the axis that
-// is up is not, as robots' tools have it. Without a scene every geometry is taken as it is.
+// and where the scene's nodes place them. The unit of length is taken into account; which axis is
+// up is not, as RViz has it. Without a scene every geometry is taken as it is.
 //
 //   <mesh> <source id="p"><float_array>x y z ...</float_array></source>
 //          <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>

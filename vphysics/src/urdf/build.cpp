@@ -152,8 +152,8 @@ class Builder {
     auto model = this->model();
     if (!model) return tl::make_unexpected(model.error());
     std::vector<ConstraintPtr> couplings = this->couplings(*model);
-    return UrdfModel{tree->getName(), *std::move(model), std::move(joints_), std::move(couplings),
-                     std::move(notes_)};
+    return UrdfModel{tree->getName(),      *std::move(model),      std::move(joints_),
+                     std::move(couplings), std::move(collisions_), std::move(notes_)};
   }
 
  private:
@@ -171,6 +171,12 @@ class Builder {
     const int number =
         add(std::move(spec),
             inertial != lines_.inertials.end() ? inertial->second : lines_.links.at(link.name));
+    if (const auto found = lines_.collisions.find(link.name); found != lines_.collisions.end()) {
+      for (const UrdfCollision& collision : found->second) {
+        collisions_.push_back(collision);
+        collisions_.back().link = number;
+      }
+    }
     const std::size_t first = waiting_.size();
     for (const auto& joint : link.child_joints) waiting_.push_back({joint.get(), number});
     std::sort(waiting_.begin() + static_cast<std::ptrdiff_t>(first), waiting_.end(),
@@ -276,6 +282,7 @@ class Builder {
   std::vector<int> link_lines_;
   std::vector<Waiting> waiting_;
   std::vector<UrdfJoint> joints_;
+  std::vector<UrdfCollision> collisions_;
 };
 
 }  // namespace

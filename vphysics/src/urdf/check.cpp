@@ -109,6 +109,7 @@ class Checker {
       fail(link, "the link " + quoted(name) + " stands on line " + std::to_string(at->second) +
                      " already");
     }
+    collisions(link, name);
     children(link, {"inertial"});
     XMLElement* inertial = once(link, "inertial", Need::optional);
     if (!inertial) return;
@@ -130,6 +131,104 @@ class Checker {
         inertia->SetAttribute(product, "0");
       }
     }
+  }
+
+  // They go from the document: urdfdom would refuse a robot for a fault in one of them.
+  void collisions(XMLElement& link, const std::string& name) {
+    for (XMLElement* e = link.FirstChildElement("collision"); e;) {
+      XMLElement* const next = e->NextSiblingElement("collision");
+      if (auto read = collision(*e)) lines_.collisions[name].push_back(*std::move(read));
+      link.DeleteChild(e);
+      e = next;
+    }
+  }
+
+  std::optional<UrdfCollision> collision(XMLElement& element) {
+    using Kind = UrdfCollision::Kind;
+    constexpr std::array<double, 3> kOrigin{};
+    UrdfCollision out;
+    out.line = element.GetLineNum();
+    out.name = text(element, "name", Need::optional);
+    if (const XMLElement* origin = element.FirstChildElement("origin")) {
+      const auto xyz = numbers_or<3>(*origin, "xyz", kOrigin);
+      const auto rpy = numbers_or<3>(*origin, "rpy", kOrigin);
+      if (!xyz || !rpy) return std::nullopt;
+      const auto about = [&](const Vec3& axis, std::size_t k) { return Exp((*rpy)[k] * axis); };
+      out.T_link_shape = SE3(about({0, 0, 1}, 2) * about({0, 1, 0}, 1) * about({1, 0, 0}, 0),
+                             {(*xyz)[0], (*xyz)[1], (*xyz)[2]});
+    }
+    const XMLElement* geometry = element.FirstChildElement("geometry");
+    const XMLElement* shape = geometry ? geometry->FirstChildElement() : nullptr;
+    if (!shape) {
+      note(element, "a <collision> without geometry is left out");
+      return std::nullopt;
+    }
+    const auto length = [&](const char* what, double& value) {
+      const auto read = numbers_or<1>(*shape, what, std::nullopt);
+      if (read) value = (*read)[0];
+      return read.has_value();
+    };
+    const std::string_view kind = shape->Name();
+    bool good = false;
+    if (kind == "box" || kind == "mesh") {
+      const bool box = kind == "box";
+      const auto size = box ? numbers_or<3>(*shape, "size", std::nullopt) : scale_of(*shape);
+      if (size) out.size = {(*size)[0], (*size)[1], (*size)[2]};
+      if (!box) out.mesh = text_or_empty(*shape, "filename");
+      out.kind = box ? Kind::box : Kind::mesh;
+      good = size.has_value();
+    } else if (kind == "sphere") {
+      out.kind = Kind::sphere;
+      good = length("radius", out.radius);
+    } else if (kind == "cylinder" || kind == "capsule") {
+      out.kind = kind == "capsule" ? Kind::capsule : Kind::cylinder;
+      good = length("radius", out.radius) && length("length", out.length);
+    } else {
+      note(*shape, "a <collision> is left out: " + tag(*shape) +
+                       " is not known; it is box, sphere, cylinder, capsule or mesh");
+    }
+    return good ? std::optional(std::move(out)) : std::nullopt;
+  }
+
+  static std::string text_or_empty(const XMLElement& element, const char* attribute) {
+    const char* value = element.Attribute(attribute);
+    return value ? value : "";
+  }
+  // One factor stands for three.
+  std::optional<std::array<double, 3>> scale_of(const XMLElement& mesh) {
+    if (const char* scale = mesh.Attribute("scale")) {
+      if (const auto one = all_numbers<1>(scale))
+        return std::array{(*one)[0], (*one)[0], (*one)[0]};
+    }
+    return numbers_or<3>(mesh, "scale", std::array{1.0, 1.0, 1.0});
+  }
+  // Of a collision: the numbers of an attribute, or those that stand for it where it is not given.
+  // None, and a note, where it has none or has to be given.
+  template <std::size_t N>
+  std::optional<std::array<double, N>> numbers_or(const XMLElement& element, const char* attribute,
+                                                  std::optional<std::array<double, N>> otherwise) {
+    const char* given = element.Attribute(attribute);
+    if (!given && otherwise) return otherwise;
+    const auto read = all_numbers<N>(given ? given : "");
+    if (!read) {
+      note(element, "a <collision> is left out: " + std::string(attribute) + "=" +
+                        quoted(given ? given : "") + " of " + tag(element) +
+                        (N == 1 ? " is no finite number"
+                                : " is not " + std::to_string(N) + " finite numbers"));
+    }
+    return read;
+  }
+  template <std::size_t N>
+  static std::optional<std::array<double, N>> all_numbers(std::string_view text) {
+    std::array<double, N> values{};
+    for (double& value : values) {
+      text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+      const std::optional<double> number = take_number(text);
+      if (!number) return std::nullopt;
+      value = *number;
+    }
+    if (text.find_first_not_of(kBlank) != std::string_view::npos) return std::nullopt;
+    return values;
   }
 
   void joint(XMLElement& joint) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "vphysics/error.h"
+#include "vphysics/multibody/urdf.h"
 
 namespace vp::detail {
 
@@ -24,6 +25,7 @@ struct UrdfLines {
   std::map<std::string, int> links;      // line of each
   std::map<std::string, int> inertials;  // by the link's name
   std::map<std::string, Joint> joints;
+  std::map<std::string, std::vector<UrdfCollision>> collisions;  // by the link's name
 };
 
 // Written into a document for what has no bound: URDF has no word for it.

@@ -13,9 +13,10 @@
 //                          link more, without a name and before the joint's own, as the plane's
 //                          frame
 //
-// What a model has no place for is told in notes: visual and collision geometry, materials,
-// transmissions and other extensions are left out; a joint that mimics another keeps a coordinate
-// of its own, and UrdfJoint says what it shall follow.
+// What a model has no place for is told in notes: visual geometry, materials, transmissions and
+// other extensions are left out; a joint that mimics another keeps a coordinate of its own, and
+// UrdfJoint says what it shall follow. Collision geometry is described, and meshes are named, not
+// read: vphysics/urdf_world.h puts a robot with its geometry into a World.
 //
 // What robots' files have wrong is mended, and told in notes by its line:
 //   an inertia that no body has           taken as stated; a negative principal moment is zero
@@ -28,12 +29,15 @@
 //   products of inertia not given         zero
 //   an <axis> without xyz                 x; of a fixed or floating joint it is never read
 //   an element twice                      the first
+//   a <collision> without geometry or     left out
+//   with numbers that are none
 //   a mimic that leads in a circle, to    left out
 //   no joint, or not from one coordinate
 //   to one
 //   a robot without a name, zero bytes at its end
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -72,13 +76,35 @@ struct UrdfJoint {
   double multiplier = 1.0, offset = 0.0;
 };
 
+// A <collision> of a link: one shape. Lengths in metres, as the file has them: sizes may be zero or
+// negative.
+struct UrdfCollision {
+  enum class Kind : std::uint8_t {
+    box,
+    sphere,
+    cylinder,  // along z
+    capsule,   // along z; an extension of the format
+    mesh,
+  };
+  std::string name{};  // may be empty
+  int line = 0;        // of the file
+  int link = 0;
+  SE3 T_link_shape{};
+  Kind kind = Kind::box;
+  Vec3 size{};  // of a box, its edges; of a mesh, the factors that its axes are stretched by
+  double radius = 0.0;  // of a sphere, a cylinder, a capsule
+  double length = 0.0;  // of a cylinder; of a capsule without its caps
+  std::string mesh{};   // as the file names it: a path, package://NAME/..., model://, file://
+};
+
 struct UrdfModel {
   std::string name{};  // the robot's
   Model model;         // links in the order of the joints in the file, parents before children
   std::vector<UrdfJoint> joints{};  // of the file, in the order of the links
   // One for each joint that mimics another: for a ConstraintSet. Both have one coordinate.
   std::vector<ConstraintPtr> couplings{};
-  std::vector<std::string> notes{};  // what was left out or mended, with its line
+  std::vector<UrdfCollision> collisions{};  // in the order of the links
+  std::vector<std::string> notes{};         // what was left out or mended, with its line
 
   // The joint of this name, or null; valid as long as the joints are.
   const UrdfJoint* find_joint(std::string_view joint_name) const;
