@@ -129,6 +129,24 @@ TEST(UrdfWorld, GeometryOfWeldedLinksIsInItsPlace) {
   EXPECT_EQ(placed.robot.link_body(placed.world, "none"), BodyId{});
 }
 
+// A frame that a file names, without mass and geometry: where a camera is, or a tool.
+TEST(UrdfWorld, ALinkWithoutMassHasTheVelocityOfItsOrigin) {
+  Placed placed = place(robot(link("a", "") + link("b", "") + link("camera", "", false) +
+                              joint("j", "continuous", "a", "b", "<axis xyz=\"0 0 1\"/>") +
+                              joint("weld", "fixed", "b", "camera", origin("3 0 0"))));
+  World& world = placed.world;
+  const int b = placed.robot.urdf.model.find_link("b");
+  ASSERT_TRUE(world.set_joint_state(placed.robot.articulation, b, 0, 0.0, 2.0));
+  const BodyId camera = placed.robot.link_body(world, "camera");
+  const VelocityWorld v = world.velocity_world(camera);
+  EXPECT_LT(norm(v.linear - Vec3{0, 6, 0}), 1e-12);
+  EXPECT_LT(norm(v.angular - Vec3{0, 0, 2}), 1e-12);
+  // A force there turns the joint: 1 N at 3 m against 0.5 kg m^2, over 1 ms.
+  ASSERT_TRUE(world.apply_force(camera, {0, 1, 0}));
+  ASSERT_TRUE(world.step(0.001));
+  EXPECT_NEAR(world.joint_velocity(placed.robot.articulation, b, 0), 2.0 + 0.006, 1e-9);
+}
+
 // A cube of edge 2 on two hulls: what lies on it, or falls onto its middle, feels both.
 TEST(UrdfWorld, EachObjectOfAMeshIsAHull) {
   for (const std::size_t max_hulls : {std::size_t{16}, std::size_t{1}}) {

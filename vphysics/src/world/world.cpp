@@ -84,7 +84,9 @@ Vec3 World::Impl::centre_of_mass(const Body& body) {
   if (!body.is_link) return reference_point(body);
   Articulation& art = articulations[body.articulation];
   look_at(art);
-  return art.T_world_link(body.link) * art.model().link(body.link).inertia.centre_of_mass();
+  const Inertia& inertia = art.model().link(body.link).inertia;
+  const SE3 T = art.T_world_link(body.link);
+  return inertia.mass() > 0.0 ? T * inertia.centre_of_mass() : T.position();
 }
 
 void World::Impl::place(Body& body, const Vec3& reference, const Mat3& R) {
