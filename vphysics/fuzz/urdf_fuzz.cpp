@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
   };
   World world;
-  const auto robot = add_urdf(world, *read, in_world);
+  const auto robot = add_urdf(world, *read, "", in_world);
   if (!robot) {
     if (robot.error().message.empty()) std::abort();
     return 0;

@@ -63,7 +63,7 @@ struct Placed {
 Placed place(const std::string& text, UrdfWorldOptions options = {}) {
   if (!options.read_mesh) options.read_mesh = meshes;
   Placed out{World(), {must_parse(text, {options.base, options.T_world_root})}};
-  out.robot = must_build(add_urdf(out.world, std::move(out.robot.urdf), options));
+  out.robot = must_build(add_urdf(out.world, std::move(out.robot.urdf), "", options));
   return out;
 }
 // Down from 10 m at (x, y): where the world begins, and the collider's number, or -1.
@@ -303,7 +303,7 @@ TEST(UrdfWorld, WhatCannotBeMadeIsNotedOrRefused) {
     strict.require_all = true;
     strict.read_mesh = meshes;
     World world, untouched;
-    const auto refused = add_urdf(world, must_parse(text), strict, "robot.urdf");
+    const auto refused = add_urdf(world, must_parse(text), "robot.urdf", strict);
     ASSERT_FALSE(refused) << bad.geometry;
     EXPECT_EQ(refused.error().message.rfind("robot.urdf: line 3: ", 0), 0u);
     EXPECT_FALSE(world.contains(ArticulationId{1, 1}));

@@ -85,9 +85,8 @@ struct UrdfRobot {
 [[nodiscard]] Expected<UrdfRobot> add_urdf(World& world, const std::string& path,
                                            const UrdfWorldOptions& options = {});
 // The same of a robot that has been read: base and T_world_root are the model's, which stands at
-// zero coordinates. The path is that of its file, if it has one, for meshes and notes.
-[[nodiscard]] Expected<UrdfRobot> add_urdf(World& world, UrdfModel robot,
-                                           const UrdfWorldOptions& options = {},
-                                           const std::string& path = {});
+// zero coordinates. The path is that of its file, for meshes and notes; it may be empty.
+[[nodiscard]] Expected<UrdfRobot> add_urdf(World& world, UrdfModel robot, const std::string& path,
+                                           const UrdfWorldOptions& options = {});
 
 }  // namespace vp

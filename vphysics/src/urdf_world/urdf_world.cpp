@@ -337,8 +337,8 @@ Expected<UrdfRobot> add_urdf(World& world, const std::string& path,
   return add(world, *std::move(robot), options, path, fixed ? Motion::fixed : Motion::dynamic);
 }
 
-Expected<UrdfRobot> add_urdf(World& world, UrdfModel robot, const UrdfWorldOptions& options,
-                             const std::string& path) {
+Expected<UrdfRobot> add_urdf(World& world, UrdfModel robot, const std::string& path,
+                             const UrdfWorldOptions& options) {
   return add(world, std::move(robot), options, path, Motion::dynamic);
 }
 
