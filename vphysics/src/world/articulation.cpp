@@ -69,8 +69,8 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   const auto n = static_cast<std::size_t>(model.velocities());
   v.resize(n);
   dofs.resize(n);
-  for (std::vector<double>* scratch :
-       {&damping_, &moving_, &drift_, &rate_, &change_, &force_, &zero_, &velocity_, &shift_}) {
+  for (std::vector<double>* scratch : {&damping_, &forced_, &moving_, &drift_, &rate_, &change_,
+                                       &force_, &zero_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
   whole_.resize(floating_.size());
@@ -402,6 +402,22 @@ void Articulation::add_joint_impulse(std::uint32_t dof, double dt) {
 }
 
 bool Articulation::integrate_forces(double dt, bool& changed) {
+  for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
+  const bool fine = add_forces(dt, changed);
+  for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
+  return fine;
+}
+
+void Articulation::take_back_forces(double share) {
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double added = share * forced_[i];
+    if (added * v[i] > 0.0)
+      v[i] -= std::copysign(std::min(std::fabs(added), std::fabs(v[i])), v[i]);
+  }
+  refresh();
+}
+
+bool Articulation::add_forces(double dt, bool& changed) {
   changed = true;
   if (constant_) {
     changed = add_constant_forces(dt);

@@ -137,8 +137,15 @@ class Articulation {
   double slides_since_remote(double h) const;
 
   bool in_range() const;
+  // Of what the step's forces have added to the velocities, a share, as far as that made them
+  // faster.
+  void take_back_forces(double share);
+
   // Where it was when the step began, at rest.
-  void mark_start() { start_q_ = q; }
+  void mark_start() {
+    start_q_ = q;
+    std::fill(forced_.begin(), forced_.end(), 0.0);
+  }
   void return_to_start();
 
  private:
@@ -155,6 +162,7 @@ class Articulation {
   void add_loads_of_trees(double dt);
   void add_impulse(int link, double dt);
   void add_joint_impulse(std::uint32_t dof, double dt);
+  bool add_forces(double dt, bool& changed);
   bool add_constant_forces(double dt);
   void advance_floating(double h);
 
@@ -206,6 +214,7 @@ class Articulation {
 
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
+  std::vector<double> forced_;          // what the forces of this step have added to v
   std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, velocity_, shift_;
   std::vector<double> remote_q_;
   std::vector<WholeTree> whole_;

@@ -489,6 +489,7 @@ struct World::Impl {
   void run_impacts(double dt);
   double next_impact(double h);
   void hold_what_meets(double h);
+  void take_back_forces(double h);
 
   // bodies.cpp
   void list_bodies();

@@ -359,6 +359,35 @@ void World::Impl::hold_what_meets(double h) {
       hold(b);
     }
   }
+  take_back_forces(h);
+}
+
+namespace {
+
+// Of a velocity to which forces have added `added`, a share: as far as that made it faster.
+void take_back(Vec3& velocity, const Vec3& added, double share) {
+  const double with = dot(added, velocity);
+  if (with > 0.0) velocity *= 1.0 - std::min(1.0, share * with / dot(velocity, velocity));
+}
+
+}  // namespace
+
+// For what is held no time passes: for so long forces make it no faster. Else it would collect
+// speed in each step in which it is held, and fly off when it is not.
+void World::Impl::take_back_forces(double h) {
+  const double share = h / dt_now;
+  for (const std::uint32_t i : impact_bodies()) {
+    Body& body = bodies[i];
+    if (!held[i] || body.is_link || body.motion != Motion::dynamic) continue;
+    const Velocity a = acceleration_of(body);
+    take_back(body.v, dt_now * a.v, share);
+    take_back(body.w, dt_now * a.w, share);
+  }
+  for (Articulation& art : articulations) {
+    if (!art.alive || !held[art.bodies.front()]) continue;
+    art.take_back_forces(share);
+    follow(art);
+  }
 }
 
 // Impacts in the order of time are for continuous bodies and for what meets links.
