@@ -211,7 +211,7 @@ void World::Impl::start_way_anew(std::uint32_t index) {
 }
 
 void World::Impl::load_rows(double dt) {
-  constexpr std::uint8_t kFar = 1, kLeaves = 2;
+  constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
   mover_news.resize(movers.size());
   in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -221,13 +221,16 @@ void World::Impl::load_rows(double dt) {
       const bool far = load_row(i, dt);
       const bool stays = joins_sub_steps(body) &&
                          stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
-      mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (far || !stays ? kLeaves : 0));
+      const bool pulled = !(pull_of(body, dt) == Velocity{});
+      mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
+                                                (far || !stays ? kLeaves : 0));
     }
   });
   for (std::size_t k = 0; k < movers.size(); ++k) {
     if (mover_news[k] == 0) continue;
     const std::uint32_t i = movers[k];
     if ((mover_news[k] & kFar) != 0) start_way_anew(i);
+    if ((mover_news[k] & kPulled) != 0) mark_contacts_stale(i);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
 }
@@ -240,7 +243,8 @@ void World::Impl::update_bounds_of_links(double dt) {
 void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
   pose_colliders(index);
-  const double turn = dt * norm(body.w);
+  const Velocity pull = pull_of(body, dt);
+  const double turn = dt * (norm(body.w) + norm(pull.w));
   const Vec3 reference = reference_point(body);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     const Collider& collider = colliders[c];
@@ -251,8 +255,10 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
     const double more = turn * own + 0.5 * turn * turn * norm(arm) + desc.contact_slop;
     // Half of the margin is left now, whether the enlarged bounds are new or those of before.
     const double half = 0.5 * kMargin * collider.size;
-    finder.set_bounds(collider.proxy, bounds_along(collider.bounds, way, more + half), half,
-                      2.0 * way);
+    const Vec3 pulled = dt * (pull.v + cross(pull.w, arm));
+    const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
+    finder.set_bounds(collider.proxy, bounds_along(start, way, more + half), half,
+                      2.0 * (way + pulled));
   }
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
 }

@@ -23,6 +23,9 @@ namespace {
 // by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
+// An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
+// way of a step is found by the step after. What a stronger one adds is searched for.
+constexpr double kBornePull = 50.0;
 constexpr double kNeverMeets = 1e30;    // a clearance [m]
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
@@ -269,6 +272,17 @@ Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
           smaller.geometry.kind == collide::Kind::compound};
 }
 
+// What gravity and forces add to the body's velocity on the mean of a step, if that is more than
+// margins bear; else nothing, and the next step finds it by its velocity.
+Velocity World::Impl::pull_of(const Body& body, double dt) const {
+  if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
+  const Velocity a = acceleration_of(body);
+  const double most = norm(a.v) + body.reach * norm(a.w);
+  if (most <= kBornePull || dt * dt * most <= desc.contact_slop) return {};
+  const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(dt));
+  return {mean * a.w, mean * a.v};
+}
+
 // The two close in by no more within dt [m], as long as neither turns far: where they meet they
 // move at the velocities that they have there. And by no more than the balls around both do, and
 // what rotation moves within these.
@@ -277,15 +291,25 @@ double World::Impl::approach(const Collider& a, const Collider& b, double dt) co
   const auto velocity = [&](const Body& body, const Vec3& at) {
     return body.v + cross(body.w, at - reference_point(body));
   };
+  const Velocity pull_a = pull_of(body_a, dt), pull_b = pull_of(body_b, dt);
+  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at) {
+    if (pull == Velocity{}) return 0.0;
+    return norm(pull.v + cross(pull.w, at - reference_point(body)));
+  };
   const Vicinity at = vicinity_of(a, b);
   const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
-                          at.radius * norm(body_b.w - body_a.w);
-  const auto turned = [&](const Collider& c, const Body& body) {
-    return c.geometry.kind == collide::Kind::sphere ? 0.0
-                                                    : c.radius * std::min(dt * norm(body.w), 2.0);
+                          at.radius * norm(body_b.w - body_a.w) +
+                          pulled(body_a, pull_a, at.centre) + pulled(body_b, pull_b, at.centre) +
+                          at.radius * (norm(pull_a.w) + norm(pull_b.w));
+  const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
+    const double turn = dt * (norm(body.w) + norm(pull.w));
+    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
   };
-  const Vec3 apart = velocity(body_b, body_b.T * b.centre) - velocity(body_a, body_a.T * a.centre);
-  return std::min(dt * together, dt * norm(apart) + turned(a, body_a) + turned(b, body_b));
+  const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
+  const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
+                       pulled(body_a, pull_a, end_a) + pulled(body_b, pull_b, end_b);
+  return std::min(dt * together,
+                  dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
 }
 
 // Of a part, the whole.
@@ -401,7 +425,9 @@ void World::Impl::look_at(Looked& found, double dt) {
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
   // The slower parts of a compound that is the smaller one are looked for within less.
-  found.by_part = c.has_parts && vicinity_of(a, b).of_compound;
+  found.by_part = c.has_parts && vicinity_of(a, b).of_compound &&
+                  pull_of(bodies[a.body], dt) == Velocity{} &&
+                  pull_of(bodies[b.body], dt) == Velocity{};
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - desc.contact_slop;
   found.manifold.count = 0;
   if (keeps_apart(a.body, b.body)) {

@@ -551,6 +551,7 @@ struct World::Impl {
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   void want_posed(std::uint32_t body);
   Vicinity vicinity_of(const Collider& a, const Collider& b) const;
+  Velocity pull_of(const Body& body, double dt) const;
   double approach(const Collider& a, const Collider& b, double dt) const;
   void mark_stale(std::uint32_t contact);
   void mark_contacts_stale(std::uint32_t body);
