@@ -226,8 +226,8 @@ class World {
   // forgotten when it ends: apply them again before each. What is applied before the same step adds
   // up. Contacts, friction and joints meet them as they meet gravity, as a load and not as an
   // impact. Links too. What sleeps is woken. Refused: bodies that are not dynamic, and what would
-  // make one faster than 1e9 m/s or rad/s within 0.1 s; of links, sums beyond 1e9 N or N m.
-  //
+  // make one faster than 1e9 m/s or rad/s within 0.1 s; of links, sums beyond 1e9 N or N m. Until
+  // they are forgotten, masses and poses with which they would are refused too.
   // The moment about the centre of mass is that of the moment of the call; without a point the
   // force acts through the centre of mass.
   [[nodiscard]] Expected<void> apply_force(BodyId body, const Vec3& force_world,

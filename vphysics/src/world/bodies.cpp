@@ -201,7 +201,9 @@ void World::Impl::start_way_anew(std::uint32_t index) {
     const Contact& c = contact_pool[contact];
     const float left =
         near_list.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)];
-    left > 0.0f ? set_clearance(c, static_cast<double>(left)) : mark_stale(contact);
+    if (left > 0.0f) return set_clearance(c, static_cast<double>(left));
+    reset_near(c);
+    mark_stale(contact);
   });
   for (std::uint32_t e = bodies[index].first_edge; e != kNone;
        e = contact_pool[e / 2].next[e % 2]) {
@@ -316,10 +318,23 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
     status.non_finite = true;
     body.v = body.w = {};
     more = {};
-    forget_contacts(index);
-    forget_joints(index);
+    lost_bodies.push_back(index);
   }
   return more;
+}
+
+// When all have been settled by what their rows and lanes held: then no order decides who is lost,
+// and no way that is no number gets into a contact that is kept.
+void World::Impl::forget_lost_bodies() {
+  for (const std::uint32_t i : lost_bodies) {
+    std::fill_n(body_rows[i + 1].way, 6, 0.0f);
+    std::fill_n(bodies[i].bounded_at, 6, 1e9f);
+  }
+  for (const std::uint32_t i : lost_bodies) {
+    forget_contacts(i);
+    forget_joints(i);
+  }
+  lost_bodies.clear();
 }
 
 // The same, and its pose, of a dynamic body that its row leads; false if it flies out of range.
@@ -352,7 +367,6 @@ bool World::Impl::advance_by_row(std::uint32_t index, double dt) {
 
 // What its lanes hold is no good to start from.
 void World::Impl::forget_contacts(std::uint32_t body) {
-  std::fill_n(body_rows[body + 1].way, 6, 0.0f);
   std::uint32_t next = kNone;
   for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = next) {
     const Contact& c = contact_pool[e / 2];
@@ -363,6 +377,8 @@ void World::Impl::forget_contacts(std::uint32_t body) {
     } else if (c.place.points > 0) {
       take_out_of_lane(e / 2);
       set_near(e / 2, 0.0);
+    } else if (!c.parked) {
+      reset_near(c);
     }
   }
 }

@@ -68,6 +68,17 @@ Inertia World::Impl::inertia_of_colliders(const Body& body) const {
   return sum;
 }
 
+// Why the body, whose velocity is V, cannot have that inertia; nothing if it can.
+std::optional<std::string> World::Impl::problem_with_mass(const Body& body, const se3& V,
+                                                          const Inertia& inertia) const {
+  if (auto problem = problem_with(inertia)) return problem;
+  if (!is_slow_enough(V, inertia.centre_of_mass())) {
+    return "the centre of mass would move faster than 1e9 m/s";
+  }
+  if (!can_bear_load(body, inertia, body.T)) return kUnbearable;
+  return std::nullopt;
+}
+
 // The velocity of its origin stays, and so do the forces on it.
 void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   Body& body = bodies[index];
@@ -151,6 +162,9 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   if (motion == Motion::dynamic && !is_slow_enough(V, centre)) {
     return refuse("set_motion: the centre of mass would move faster than 1e9 m/s");
   }
+  if (motion == Motion::kinematic && !in_range(V)) {
+    return refuse("set_motion: the body moves faster than 1e9 m/s or rad/s; slow it down first");
+  }
   impl_->change_motion(index, motion, inertia, V);
   Structure structure(impl_->structure);
   structure.add(word_of(Change::motion, id.index));
@@ -193,9 +207,8 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
 Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
   Body* body = impl_->find_body_to_change(id);
   if (!body) return impl_->no_body_to_change("set_inertia", id);
-  if (auto problem = problem_with(inertia)) return refuse("set_inertia: " + *problem);
-  if (!is_slow_enough(velocity(id), inertia.centre_of_mass())) {
-    return refuse("set_inertia: the centre of mass would move faster than 1e9 m/s");
+  if (auto problem = impl_->problem_with_mass(*body, velocity(id), inertia)) {
+    return refuse("set_inertia: " + *problem);
   }
   body->mass_from_colliders = false;
   impl_->change_mass(id.index - 1, inertia);
@@ -327,11 +340,10 @@ Expected<void> World::remove_collider(ColliderId id) {
       if (i == id.index - 1 || other.sensor) continue;
       sum = sum + solid_inertia(other.shape, other.density).InvXform(other.T_body_shape);
     }
-    const auto problem = sum.mass() > 0.0 ? problem_with(sum) : std::nullopt;
-    if (problem) return refuse("remove_collider: of what is left, " + *problem);
-    const BodyId owner = body_id(impl_->bodies, impl_->colliders[id.index - 1].body);
-    if (sum.mass() > 0.0 && !is_slow_enough(velocity(owner), sum.centre_of_mass())) {
-      return refuse("remove_collider: the centre of mass would move faster than 1e9 m/s");
+    const se3 V = velocity(body_id(impl_->bodies, body));
+    const Inertia left = sum.mass() > 0.0 ? sum : kUnitInertia;
+    if (auto problem = impl_->problem_with_mass(impl_->bodies[body], V, left)) {
+      return refuse("remove_collider: of what is left, " + *problem);
     }
   }
   impl_->take_collider_off(id.index - 1);

@@ -150,7 +150,7 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_par
     const std::uint64_t feature = in.word();
     in.check(feature <= 0xffffffffu);
     c.feature[i] = static_cast<std::uint32_t>(feature);
-    c.position[i] = in.nearly_bounded_vector();
+    c.position[i] = in.finite_vector();
   }
 }
 

@@ -275,7 +275,8 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
     PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b), part);
     record.count = static_cast<std::uint32_t>(c.count);
     // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
-    record.rolling = in_range(c.rolling_impulse) ? scale * c.rolling_impulse : Vec3{};
+    const Vec3 rolling = scale * c.rolling_impulse;
+    record.rolling = in_range(rolling) ? rolling : Vec3{};
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};

@@ -164,7 +164,8 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.has_parts = has_parts(a.geometry, b.geometry);
   const std::uint32_t index = new_contact(c);
   if (!c.of_link) mark_stale(index);
-  set_near(index, c.of_link ? kNeverMeets : 0.0);
+  set_near(index, 0.0);
+  reset_near(contact_pool[index]);
 }
 
 // In a slot of the pool and in its bodies' lists.
@@ -239,6 +240,11 @@ void World::Impl::set_clearance(const Contact& c, double clearance) {
   put_end(block.b.lane[lane], bodies[b.body], block.x_b, block.turn_b, block.arm_b);
   block.clearance.lane[lane] = static_cast<float>(clearance);
   block.radius.lane[lane] = static_cast<float>(at.radius);
+}
+
+// Of what is to be looked at; of a link, elsewhere.
+void World::Impl::reset_near(const Contact& c) {
+  set_clearance(c, c.of_link ? kNeverMeets : 0.0);
 }
 
 void World::Impl::unset_near(std::uint32_t index) {

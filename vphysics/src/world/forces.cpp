@@ -33,6 +33,16 @@ bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& to
   return in_range((kLongestStep * body.inverse_mass) * force) && in_range(kLongestStep * w);
 }
 
+// What is on it, if it had that inertia and that pose: it may have been applied before.
+bool World::Impl::can_bear_load(const Body& body, const Inertia& inertia, const SE3& T) const {
+  if (body.load == kNone) return true;
+  const BodyLoad& load = loads[body.load];
+  Body changed = body;
+  set_mass(changed, inertia);
+  const Vec3 arm = T.rotate(body.centre - changed.centre);
+  return can_bear(changed, T.rotation(), load.force, load.torque + cross(arm, load.force));
+}
+
 void World::Impl::set_load(std::uint32_t index, const Vec3& force, const Vec3& torque) {
   Body& body = bodies[index];
   if (body.load == kNone) {

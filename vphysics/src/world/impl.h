@@ -4,7 +4,9 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "collide/bounds.h"
@@ -284,6 +286,7 @@ struct World::Impl {
   std::uint32_t points_in_lanes = 0;
   // Of sub-steps: that of the impulses in lanes and joints, 0: none yet; that of the push [s].
   double sub_step_before = 0.0, push_length = 0.0;
+  bool position_error_before = false;  // the last step ended with one, of contacts or of joints
   solve::ContactGraph graph;
   solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
   // Regions but kBetween: a power of two, or none; along which axis each halving went, by its
@@ -350,12 +353,12 @@ struct World::Impl {
   std::uint64_t islands_found = 0;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
   bool finds_contacts = false;
-  double dt_now = 0.0;  // of the step that is going on; 0: none is
+  std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
+  double dt_now = 0.0;                     // of the step that is going on; 0: none is
   std::vector<std::uint32_t> lane_bits;
   std::atomic<bool> some_are_too_deep = false;  // of contacts, and
   bool some_are_far_open = false;               // of joints, when the sub-steps end
   bool some_joints_are_far = false;             // JointPasses::Run::some_far
-  bool position_error_before = false;           // one of the two in the last step
   std::vector<std::size_t> first_block;         // of each region's, among lane_bits
   std::vector<RegionKey> region_keys;
   std::vector<std::uint32_t> changed_regions, region_ends;
@@ -418,6 +421,8 @@ struct World::Impl {
   Body* find_body_to_change(BodyId id);
   tl::unexpected<Error> no_body_to_change(const char* call, BodyId id) const;
   Inertia inertia_of_colliders(const Body& body) const;
+  std::optional<std::string> problem_with_mass(const Body& body, const se3& V,
+                                               const Inertia& inertia) const;
   void change_mass(std::uint32_t body, const Inertia& inertia);
   void update_mass(std::uint32_t body);
   void change_motion(std::uint32_t body, Motion motion, const std::optional<Inertia>& inertia,
@@ -432,6 +437,7 @@ struct World::Impl {
     return body.load != kNone && !(loads[body.load].torque == Vec3{});
   }
   Expected<void> add_load(const char* call, BodyId id, const Vec3& force, const Vec3& torque);
+  bool can_bear_load(const Body& body, const Inertia& inertia, const SE3& T) const;
   void set_load(std::uint32_t body, const Vec3& force, const Vec3& torque);
   void remove_load(std::uint32_t body);
   void clear_loads();
@@ -501,6 +507,7 @@ struct World::Impl {
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void update_bounds_of_links(double dt);
   void add_proxy(std::uint32_t collider);
+  void forget_lost_bodies();
   void forget_contacts(std::uint32_t body);
   void jumped(std::uint32_t body);
 
@@ -546,6 +553,7 @@ struct World::Impl {
   void take_out_of_lane(std::uint32_t contact);
   void set_near(std::uint32_t contact, double clearance);
   void set_clearance(const Contact& contact, double clearance);
+  void reset_near(const Contact& contact);
   void use_clearance(const Contact& contact);
   void unset_near(std::uint32_t contact);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
@@ -715,6 +723,9 @@ struct World::Impl {
 // Whether the longest step leaves a body that is no link and turned by R, from rest, within 1e9 m/s
 // and rad/s.
 bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
+inline constexpr const char* kUnbearable =
+    "the forces that it has for the next step would then make it faster than 1e9 m/s or rad/s; "
+    "apply them afterwards";
 // Distance from the body's reference point to the farthest point of its local bounds.
 double reach_of(const Body& body);
 // Of a dynamic body; its velocities are not those of the new centre of mass.

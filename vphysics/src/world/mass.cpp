@@ -52,7 +52,9 @@ Expected<void> World::set_mass_from_colliders(BodyId id) {
         "set_mass_from_colliders: the body has no collider with a volume but sensors; add "
         "one first");
   }
-  if (auto problem = problem_with(sum)) return refuse("set_mass_from_colliders: " + *problem);
+  if (auto problem = impl_->problem_with_mass(*body, velocity(id), sum)) {
+    return refuse("set_mass_from_colliders: " + *problem);
+  }
   impl_->change_mass(id.index - 1, sum);
   Structure structure(impl_->structure);
   structure.add(0x700u + id.index);

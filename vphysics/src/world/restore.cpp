@@ -175,6 +175,7 @@ struct World::Impl::Incoming {
 
   Impl& world;
   double sub_step_before = 0.0, push_length = 0.0;
+  bool position_error_before = false;
   std::vector<BodyState> bodies;  // that are no links
   std::vector<double> q;          // of all articulations, one after the other, and so:
   std::vector<DofState> dofs;
@@ -204,6 +205,7 @@ const char* World::Impl::Incoming::read(Reader& in) {
   sub_step_before = in.bounded();
   push_length = in.bounded();
   in.check(sub_step_before >= 0.0 && push_length >= 0.0);
+  position_error_before = in.index(2) != 0;
   bodies.clear();
   for (const Body& body : world.bodies) {
     if (!body.is_link) vp::read(in, bodies.emplace_back());
@@ -241,15 +243,11 @@ void World::Impl::Incoming::read_loads(Reader& in) {
   constexpr std::size_t kLoad = 7;  // words
   std::uint32_t next = 0;
   std::size_t state = 0;  // of that body among `bodies`
-  const auto numbers = [&in] {
-    const double x = in.number(), y = in.number(), z = in.number();
-    return Vec3{x, y, z};
-  };
   for (std::size_t n = in.count(kLoad); n > 0 && in.ok(); --n) {
     BodyLoad load;
     load.body = in.index(world.bodies.size());
-    load.force = numbers();
-    load.torque = numbers();
+    load.force = in.finite_vector();
+    load.torque = in.finite_vector();
     in.check(loads.empty() || loads.back().body < load.body);
     if (!in.ok()) return;
     for (; next < load.body; ++next) state += world.bodies[next].is_link ? 0 : 1;
@@ -335,7 +333,7 @@ void World::Impl::adopt(Incoming& from) {
   from.contacts.adopt();
   sub_step_before = from.sub_step_before;
   push_length = from.push_length;
-  position_error_before = false;
+  position_error_before = from.position_error_before;
   ready_for_queries = false;
   records.swap(from.records);
   destroyed_pairs.swap(from.destroyed_pairs);

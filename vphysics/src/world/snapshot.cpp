@@ -1,7 +1,8 @@
 // The mutable state as bytes: 8-byte little-endian words.
 //
 //   magic, format, structure digest, numbers of bodies, articulations, pair
-//   records, destroyed pairs; lengths of sub-steps: of impulses, of the push
+//   records, destroyed pairs; lengths of sub-steps: of impulses, of the push; 1 if the last step
+//   ended with a position error, else 0
 //   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
 //   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
 //   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
@@ -118,6 +119,7 @@ void World::Impl::write(Sink& sink) const {
   sink.word(destroyed_pairs.size());
   put(sink, sub_step_before);
   put(sink, push_length);
+  sink.word(position_error_before ? 1 : 0);
   for (const Body& body : bodies) {
     if (body.is_link) continue;
     const Mat3& R = body.T.rotation();

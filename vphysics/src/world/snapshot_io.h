@@ -13,7 +13,7 @@
 namespace vp {
 
 inline constexpr std::uint64_t kSnapshotMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-inline constexpr std::uint64_t kSnapshotFormat = 11;
+inline constexpr std::uint64_t kSnapshotFormat = 12;
 
 template <class Sink>
 void put(Sink& sink, double x) {
@@ -64,10 +64,15 @@ class Reader {
     const double x = bounded(), y = bounded(), z = bounded();
     return {x, y, z};
   }
-  Vec3 nearly_bounded_vector() {
+  Vec3 finite_vector() {
     const double x = number(), y = number(), z = number();
-    check(nearly_in_range(Vec3{x, y, z}));
     return {x, y, z};
+  }
+  // Rounding may have made it larger than the call that set it accepts.
+  Vec3 nearly_bounded_vector() {
+    const Vec3 a = finite_vector();
+    check(nearly_in_range(0.999 * a));
+    return a;
   }
   struct Two {
     std::uint32_t high, low;

@@ -57,6 +57,7 @@ void World::Impl::begin_step(double dt) {
     list->reserve(std::max(room, contact_pool.capacity()));  // parts have contacts of their own
   looked.reserve(std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
   to_pose.reserve(n);
+  lost_bodies.reserve(n);
   near_list.reserve(room);
   body_stack.reserve(n);
   woken.reserve(n);
@@ -286,6 +287,7 @@ void World::Impl::advance_all(double dt) {
     advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true, more.w);
     (void)stop_if_out_of_range(i, start);
   }
+  forget_lost_bodies();
 }
 
 // To the next impact, or to the end of the step. On the way to an impact what may be met goes as it
@@ -423,6 +425,7 @@ void World::Impl::feel_forces(double dt) {
       forced[i] = {dt * a.w, dt * a.v};
     }
   }
+  forget_lost_bodies();
 }
 
 void World::Impl::run_impacts(double dt) {

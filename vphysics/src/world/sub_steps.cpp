@@ -51,7 +51,10 @@ std::size_t World::Impl::number_blocks() {
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_in(dt);
   sub_steps_taken = n;
-  if (!some_are_not) return;
+  if (!some_are_not) {
+    position_error_before = false;
+    return;
+  }
   take_sub_steps(dt, n);
   const auto stage = in(Stage::report);
   report_news();

@@ -33,9 +33,9 @@ inline bool in_range(const se3& V) {
   return in_range(V.w) && in_range(V.v);
 }
 // Of what is in range in a frame of its own, or lies at the edge of what is: turned into the
-// world's axes an entry may be the square root of three times as large.
+// world's axes an entry may be the square root of three times as large. The same in any frame.
 inline bool nearly_in_range(const Vec3& a) {
-  return in_range(0.5 * a);
+  return dot(a, a) <= 4.0 * kLargest * kLargest;
 }
 
 bool is_pose(const SE3& T);

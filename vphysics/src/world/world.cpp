@@ -245,10 +245,8 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   if (adds_mass && !desc.sensor) {
     const Inertia sum = impl_->inertia_of_colliders(*body) +
                         solid_inertia(desc.shape, desc.density).InvXform(desc.T_body_shape);
-    if (auto problem = problem_with(sum)) return refuse("add_collider: with it, " + *problem);
-    const se3 V = velocity(body_handle);
-    if (!nearly_in_range(V.v + cross(V.w, sum.centre_of_mass()))) {
-      return refuse("add_collider: the centre of mass would move faster than 1e9 m/s");
+    if (auto problem = impl_->problem_with_mass(*body, velocity(body_handle), sum)) {
+      return refuse("add_collider: with it, " + *problem);
     }
   }
   const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
@@ -342,6 +340,9 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   if (!body) return stale("set_pose", "the body");
   if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
   if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
+  if (!impl_->can_bear_load(*body, inertia(id), T)) {
+    return refuse(std::string("set_pose: ") + kUnbearable);
+  }
   body->T = SE3(orthonormalized(T.rotation()), T.position());
   body->moved();
   impl_->jumped(id.index - 1);
