@@ -341,6 +341,11 @@ TEST(TreeAlgorithms, AllocateNothing) {
   const std::size_t n = s.v.size();
   Data data(model);
   DerivativesData memory(model);
+  using Four = PackT<double, 4>;
+  DataT<Four> packs(model);
+  DerivativesDataT<Four> packed_memory(model);
+  const std::vector<Four> q4(s.q.begin(), s.q.end()), v4(s.v.begin(), s.v.end());
+  std::vector<Four> x4(n), A4(n * n), B4(n * n), C4(n * n);
   std::vector<double> q(s.q.size()), x(n), A(n * n), B(n * n), C(n * n);
   std::vector<se3> J(n);
   std::vector<Vec3> P(n);
@@ -366,8 +371,14 @@ TEST(TreeAlgorithms, AllocateNothing) {
   const bool forward =
       forward_dynamics_derivatives<double>(model, data, memory, s.q, s.v, s.tau, {}, {x, A, B, C})
           .has_value();
+  const bool of_packs =
+      inverse_dynamics_derivatives<Four>(model, packs, packed_memory, q4, v4, v4, {}, {A4, B4, C4})
+          .has_value() &&
+      forward_dynamics_derivatives<Four>(model, packs, packed_memory, q4, v4, v4, {},
+                                         {x4, A4, B4, C4})
+          .has_value();
   EXPECT_EQ(g_allocations - before, 0);
-  EXPECT_TRUE(rates && inverse && forward);
+  EXPECT_TRUE(rates && inverse && forward && of_packs);
 }
 
 TEST(Integrators, AllocateNothingInAStep) {

@@ -1,35 +1,35 @@
-// The inner passes of the derivatives, compiled for several instruction sets as those of kernels.h
-// are: with the same bits from each, and nothing but addresses between the namespaces.
+// The passes of the derivatives, compiled for several instruction sets as those of kernels.h are:
+// with the same bits from each but for fused multiply-add, and nothing but addresses between the
+// namespaces.
 #pragma once
 
-#include <cstddef>
+#include "multibody/kernels.h"
 
 namespace vphysics_kernels {
 
-// tree, work and memory: Tree, Work and DerivativesWork; the others as in derivatives.h.
-struct DifferentiateArguments {
+// tree, work and memory: Tree, Work and DerivativesWork, the work as inverse or forward dynamics
+// of the same state has left it; the others as in derivatives.h. The results by q, by v, and by a
+// or tau.
+struct DerivativeArguments {
   const void* tree;
-  const void* work;
+  void* work;
   void* memory;
   const void *q, *v, *a;
-  const void* loads;
-  const void* matrices;  // InverseMatrices
+  const void* gravity;
+  const void* external;  // of each link, or null
+  void *by_q, *by_v, *by_force;
 };
-struct SolveArguments {
-  void* memory;
-  std::size_t velocities;
-  void *a_q, *a_v, *a_tau;
-};
+enum class Differentiated { done, no_slopes, singular };
 
 struct DerivativeKernels {
-  bool (*differentiate)(const DifferentiateArguments&);
-  bool (*solve)(const SolveArguments&);
+  Differentiated (*inverse)(const DerivativeArguments&);
+  Differentiated (*forward)(const DerivativeArguments&);
 };
+using DerivativeTable = std::array<DerivativeKernels, kScalars>;
 
-// Of double and of float.
-extern const DerivativeKernels kBaselineDerivatives[2];
+extern const DerivativeTable kBaselineDerivatives;
 // Only in libraries built with VP_INSTRUCTION_SETS.
-extern const DerivativeKernels kAvx2Derivatives[2];
-extern const DerivativeKernels kAvx512Derivatives[2];
+extern const DerivativeTable kAvx2Derivatives;
+extern const DerivativeTable kAvx512Derivatives;
 
 }  // namespace vphysics_kernels

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "multibody/derivative_kernels.h"
+#include "multibody/instantiate.h"
 #include "multibody/instruction_set.h"
 #include "vphysics/assert.h"
 
@@ -13,16 +14,22 @@ namespace vp {
 namespace detail {
 namespace {
 
+using vphysics_kernels::DerivativeArguments;
+using vphysics_kernels::Differentiated;
+
 template <class T>
-void lay_out_branches(const Tree<T>& tree, DerivativesWork<T>& memory) {
+void lay_out_branches(const Tree<base_t<T>>& tree, DerivativesWork<T>& memory) {
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const Node<T>& node = tree.nodes[i];
+    const auto& node = tree.nodes[i];
     for (int k = 0; k < node.dofs; ++k) {
       Branch& branch = memory.branches[static_cast<std::size_t>(node.v + k)];
+      branch.node = static_cast<int>(i);
+      branch.column = k;
+      branch.last = k + 1 == node.dofs;
       branch.parent = node.v + k - 1;
       if (k == 0 && node.parent == kWorld) branch.parent = -1;
       if (k == 0 && node.parent != kWorld) {
-        const Node<T>& before = tree.nodes[static_cast<std::size_t>(node.parent)];
+        const auto& before = tree.nodes[static_cast<std::size_t>(node.parent)];
         branch.parent = before.v + before.dofs - 1;
       }
     }
@@ -58,66 +65,84 @@ void lay_out_branches(const Tree<T>& tree, DerivativesWork<T>& memory) {
 
 template <class T>
 const vphysics_kernels::DerivativeKernels& derivative_kernels_of(const DataT<T>& data) {
-  constexpr std::size_t kScalar = std::is_same_v<T, double> ? 0 : 1;
   switch (data.work().instruction_set) {
 #ifdef VP_INSTRUCTION_SETS
     case InstructionSet::avx512:
-      return vphysics_kernels::kAvx512Derivatives[kScalar];
+      return vphysics_kernels::kAvx512Derivatives[scalar_index<T>()];
     case InstructionSet::avx2:
-      return vphysics_kernels::kAvx2Derivatives[kScalar];
+      return vphysics_kernels::kAvx2Derivatives[scalar_index<T>()];
 #endif
     default:
-      return vphysics_kernels::kBaselineDerivatives[kScalar];
+      return vphysics_kernels::kBaselineDerivatives[scalar_index<T>()];
   }
 }
 
+// What both calls hand to their kernels, but for the accelerations and the results.
 template <class T>
-Expected<void> differentiate(const char* call, const ModelT<T>& model, const DataT<T>& data,
-                             DerivativesWork<T>& memory, Span<T> q, Span<T> v, Span<T> a,
-                             const LoadsT<T>& loads, const InverseMatrices<T>& out) {
+DerivativeArguments start(const ModelT<base_t<T>>& model, DataT<T>& data,
+                          DerivativesDataT<T>& memory, Span<T> q, Span<T> v,
+                          const LoadsT<T>& loads) {
+  VP_ASSERT(memory.work().velocities() == v.size());
   VP_ASSERT(loads.external.empty() ||
             loads.external.size() == static_cast<std::size_t>(model.links()));
-  if (derivative_kernels_of(data).differentiate(
-          {&model.tree(), &data.work(), &memory, q.data(), v.data(), a.data(), &loads, &out})) {
-    return {};
+  DerivativeArguments args{};
+  args.tree = &model.tree();
+  args.work = &data.work();
+  args.memory = &memory.work();
+  args.q = q.data();
+  args.v = v.data();
+  args.gravity = &loads.gravity;
+  args.external = loads.external.empty() ? nullptr : loads.external.data();
+  return args;
+}
+
+Expected<void> report(const char* call, Differentiated how) {
+  switch (how) {
+    case Differentiated::done:
+      return {};
+    case Differentiated::no_slopes:
+      return tl::make_unexpected(
+          Error{Errc::unsupported, std::string(call) +
+                                       ": a joint of one's own does not say its slopes; override "
+                                       "UserJoint::slopes in it"});
+    case Differentiated::singular:
+      break;
   }
   return tl::make_unexpected(
-      Error{Errc::unsupported, std::string(call) +
-                                   ": a joint of one's own does not say its slopes; override "
-                                   "UserJoint::slopes in it"});
+      Error{Errc::singular, std::string(call) +
+                                ": the mass matrix is not positive definite in this "
+                                "configuration; give the links an inertia, or the joints an "
+                                "armature"});
 }
 
 }  // namespace
 
 template <class T>
-DerivativesWork<T>::DerivativesWork(const Tree<T>& tree)
+DerivativesWork<T>::DerivativesWork(const Tree<base_t<T>>& tree)
     : branches(static_cast<std::size_t>(tree.velocities)),
       A(tree.nodes.size()),
-      composites(tree.nodes.size()),
-      S(branches.size()),
-      S1(branches.size()),
-      S2(branches.size()),
-      Sv(branches.size()),
-      L(branches.size()),
-      L_transposed(branches.size()),
-      Q(branches.size()),
-      V(branches.size()),
-      inverse(branches.size()),
-      D_inverse(branches.size()) {
-  for (auto& numbers : along)
-    numbers = AlignedArray<T>(padded<T>(branches.size() + kWidestPack<T>));
-  for (const Node<T>& node : tree.nodes) {
+      records(static_cast<std::size_t>(groups() * kVelocityFields * kSlots<T>)),
+      scratch(static_cast<std::size_t>(kScratchFields * kSlots<T>)),
+      D_inverse(branches.size()),
+      row_size(padded<T>(branches.size())),
+      factor(branches.size() * row_size) {
+  if constexpr (kSlots < T >> 1) {
+    both = AlignedArray<T>(branches.size() * static_cast<std::size_t>(2 * groups() * kSlots<T>));
+    inverse = AlignedArray<T>(branches.size() * row_size);
+  }
+  L = {factor.data(), row_size};
+  for (const auto& node : tree.nodes) {
     const bool user = node.kind == NodeKind::user;
     slopes_of.push_back(user ? static_cast<int>(slopes.size()) : -1);
     if (user) slopes.emplace_back();
   }
-  lay_out_branches(tree, *this);
+  lay_out_branches<T>(tree, *this);
 }
 
 }  // namespace detail
 
 template <class T>
-DerivativesDataT<T>::DerivativesDataT(const ModelT<T>& model)
+DerivativesDataT<T>::DerivativesDataT(const ModelT<base_t<T>>& model)
     : work_(std::make_unique<detail::DerivativesWork<T>>(model.tree())) {}
 template <class T>
 DerivativesDataT<T>::~DerivativesDataT() = default;
@@ -127,7 +152,7 @@ template <class T>
 DerivativesDataT<T>& DerivativesDataT<T>::operator=(DerivativesDataT&&) noexcept = default;
 
 template <class T>
-Expected<void> inverse_dynamics_derivatives(const ModelT<T>& model, DataT<T>& data,
+Expected<void> inverse_dynamics_derivatives(const ModelT<base_t<T>>& model, DataT<T>& data,
                                             DerivativesDataT<T>& memory, std::span<const T> q,
                                             std::span<const T> v, std::span<const T> a,
                                             const LoadsT<T>& loads,
@@ -137,17 +162,17 @@ Expected<void> inverse_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
   VP_ASSERT(detail::is_square(out.tau_q, v.size()) && detail::is_square(out.tau_v, v.size()) &&
             detail::is_square(out.tau_a, v.size()));
   forward_kinematics<T>(model, data, q, v);
-  for (const auto& matrix : {out.tau_q, out.tau_v, out.tau_a}) {
-    std::fill(matrix.begin(), matrix.end(), T(0));
-  }
-  const std::size_t n = v.size();
-  return detail::differentiate<T>(
-      "inverse_dynamics_derivatives", model, data, memory.work(), q, v, a, loads,
-      {{out.tau_q.data(), n}, {out.tau_v.data(), n}, {out.tau_a.data(), n}});
+  auto args = detail::start<T>(model, data, memory, q, v, loads);
+  args.a = a.data();
+  args.by_q = out.tau_q.data();
+  args.by_v = out.tau_v.data();
+  args.by_force = out.tau_a.data();
+  return detail::report("inverse_dynamics_derivatives",
+                        detail::derivative_kernels_of(data).inverse(args));
 }
 
 template <class T>
-Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& data,
+Expected<void> forward_dynamics_derivatives(const ModelT<base_t<T>>& model, DataT<T>& data,
                                             DerivativesDataT<T>& memory, std::span<const T> q,
                                             std::span<const T> v, std::span<const T> tau,
                                             const LoadsT<T>& loads,
@@ -158,34 +183,24 @@ Expected<void> forward_dynamics_derivatives(const ModelT<T>& model, DataT<T>& da
             detail::is_square(out.a_v, v.size()) && detail::is_square(out.a_tau, v.size()));
   const auto solved = forward_dynamics<T>(model, data, q, v, tau, loads, out.a);
   if (!solved) return solved;
-  detail::DerivativesWork<T>& work = memory.work();
-  // L has its zeros where M has them, in every configuration; X does not keep them.
-  work.Q.clear();
-  work.V.clear();
-  const auto differentiated =
-      detail::differentiate<T>("forward_dynamics_derivatives", model, data, work, q, v, out.a,
-                               loads, {work.Q, work.V, work.L});
-  if (!differentiated) return differentiated;
-  if (!detail::derivative_kernels_of(data).solve(
-          {&work, v.size(), out.a_q.data(), out.a_v.data(), out.a_tau.data()})) {
-    return tl::make_unexpected(
-        Error{Errc::singular,
-              "forward_dynamics_derivatives: the mass matrix is not positive definite in this "
-              "configuration; give the links an inertia, or the joints an armature"});
-  }
-  return {};
+  auto args = detail::start<T>(model, data, memory, q, v, loads);
+  args.a = out.a.data();
+  args.by_q = out.a_q.data();
+  args.by_v = out.a_v.data();
+  args.by_force = out.a_tau.data();
+  return detail::report("forward_dynamics_derivatives",
+                        detail::derivative_kernels_of(data).forward(args));
 }
 
-#define VP_DERIVATIVES(T)                                                                        \
-  template struct detail::DerivativesWork<T>;                                                    \
-  template class DerivativesDataT<T>;                                                            \
-  template Expected<void> inverse_dynamics_derivatives(                                          \
-      const ModelT<T>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>, std::span<const T>, \
-      std::span<const T>, const LoadsT<T>&, const InverseDerivativesT<T>&);                      \
-  template Expected<void> forward_dynamics_derivatives(                                          \
-      const ModelT<T>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>, std::span<const T>, \
-      std::span<const T>, const LoadsT<T>&, const ForwardDerivativesT<T>&);
-VP_DERIVATIVES(double)
-VP_DERIVATIVES(float)
+#define VP_DERIVATIVES(T)                                                                       \
+  template struct detail::DerivativesWork<T>;                                                   \
+  template class DerivativesDataT<T>;                                                           \
+  template Expected<void> inverse_dynamics_derivatives(                                         \
+      const ModelT<base_t<T>>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>,            \
+      std::span<const T>, std::span<const T>, const LoadsT<T>&, const InverseDerivativesT<T>&); \
+  template Expected<void> forward_dynamics_derivatives(                                         \
+      const ModelT<base_t<T>>&, DataT<T>&, DerivativesDataT<T>&, std::span<const T>,            \
+      std::span<const T>, std::span<const T>, const LoadsT<T>&, const ForwardDerivativesT<T>&);
+VP_FOR_EACH_SCALAR(VP_DERIVATIVES)
 
 }  // namespace vp

@@ -1,9 +1,11 @@
-// The memory of the derivatives, and the passes that forward and inverse dynamics share.
+// The memory of the derivatives, and what its passes share.
+//
+// Each velocity has a record of numbers, in groups of kSlots as a data's slots are (lanes.h): of
+// one state a pass computes eight velocities at once, of a pack of states one velocity of all
+// states.
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <vector>
 
 #include "multibody/kinematics.h"
@@ -12,106 +14,95 @@
 
 namespace vp::detail {
 
-// Of a node: at first of its body, then of the body and all that hangs on it.
-template <class T>
-struct Composite {
-  InertiaT<T> J;
-  dse3T<T> F;  // J A - dad_V (J V) less the loads: the force through the joint
-  // B of derivatives.cpp: angular part K w, linear part 2 w x p of a twist with angular part w
-  Mat3T<T> K;
-  Vec3T<T> p;  // linear momentum
-};
-
-// Velocities by their numbers first to end - 1, all on one way to the root.
+// Velocities by their numbers first to end - 1, all on one path to the root.
 struct Run {
   int first, end;
 };
 
-// What the tree's shape says of one velocity.
+// A velocity's place in the tree of velocities.
 struct Branch {
-  int parent;              // the velocity before it on the way to the root, or -1
+  int parent;              // the velocity before it on the path to the root, or -1
+  int node, column;        // whose it is, and which of the node's
+  bool last;               // of its node: the body is there
   int first_run, end_run;  // of itself and all before it, in `runs`
-  int first, end;          // the least number on the way, one more than the largest that it moves
+  int first, end;          // the least number on the path, one more than the largest that it moves
   int tree_end;            // one more than the largest of its tree
 };
 
-// Lanes of the inner loops: a register of the target's, for wider packs pass through memory. Arrays
-// are padded to 64 bytes, so that whole packs may be read and written past the end of a run.
-#if defined(__AVX512F__)
-inline constexpr std::size_t kRegister = 64;
-#elif defined(__AVX__)
-inline constexpr std::size_t kRegister = 32;
-#else
-inline constexpr std::size_t kRegister = 16;
-#endif
-template <class T>
-inline constexpr std::size_t kPack = kRegister / sizeof(T);
-template <class T>
-using Lanes = PackT<T, static_cast<int>(kPack<T>)>;
-template <class T>
-inline constexpr std::size_t kWidestPack = 64 / sizeof(T);
-template <class T>
-std::size_t padded(std::size_t n) {
-  return (n + kWidestPack<T> - 1) / kWidestPack<T> * kWidestPack<T>;
-}
-
-template <class T>
-Lanes<T> load_lanes(const T* from) {
-  Lanes<T> x;
-  std::memcpy(&x.lanes, from, sizeof x.lanes);
-  return x;
-}
-template <class T>
-void store_lanes(T* to, const Lanes<T>& x) {
-  std::memcpy(to, &x.lanes, sizeof x.lanes);
-}
-
-// Twists of every velocity, each of their numbers contiguous: the inner loops run along velocities.
-template <class T>
-class TwistArray {
- public:
-  explicit TwistArray(std::size_t n) : stride_(padded<T>(n + kWidestPack<T>)), x_(6 * stride_) {}
-
-  void set(std::size_t i, const se3T<T>& V) {
-    T* x = x_.data() + i;
-    x[0] = V.w.x, x[stride_] = V.w.y, x[2 * stride_] = V.w.z;
-    x[3 * stride_] = V.v.x, x[4 * stride_] = V.v.y, x[5 * stride_] = V.v.z;
-  }
-  se3T<T> get(std::size_t i) const {
-    const T* x = x_.data() + i;
-    return {{x[0], x[stride_], x[2 * stride_]}, {x[3 * stride_], x[4 * stride_], x[5 * stride_]}};
-  }
-  // Number f of velocities i and after.
-  Lanes<T> lanes(std::size_t f, std::size_t i) const {
-    return load_lanes(x_.data() + f * stride_ + i);
-  }
-
- private:
-  std::size_t stride_;
-  AlignedArray<T> x_;
+// Numbers of a velocity: S, S1, S2, Sv, then J, F, B and p (differentiate.h), first of the body,
+// then of the body and all that hangs on it.
+enum VelocityField : int {
+  kColumnS = 0,
+  kColumnS1 = 6,
+  kColumnS2 = 12,
+  kColumnSv = 18,
+  kCompositeMass = 24,
+  kCompositeMoment = 25,
+  kCompositeInertia = 28,
+  kCompositeF = 34,
+  kCompositeK = 40,
+  kCompositeP = 49,
+  kCompositeEnd = 52,
+  kVelocityFields = 52
+};
+// Numbers of which only the group at work needs any: V_p, A_p, V and A on the way outwards; on the
+// way inwards what the loop along the path multiplies with, dF^/dq, dF^/dv, dF^/da and B^* S.
+enum ScratchField : int {
+  kParentV = 0,
+  kParentA = 6,
+  kNodeV = 12,
+  kNodeA = 18,
+  kForceQ = 0,
+  kForceV = 6,
+  kForceA = 12,
+  kTransposed = 18,
+  kScratchFields = 24
 };
 
-// A square matrix by rows; its rows may be longer than it is wide.
+// Lanes of the loops along a matrix's rows: a register of the target's, or a pack of states. Rows
+// of one state are padded to 64 bytes, so that registers may be read and written past their end.
+#if defined(__AVX512F__)
+inline constexpr int kRegister = 64;
+#elif defined(__AVX__)
+inline constexpr int kRegister = 32;
+#else
+inline constexpr int kRegister = 16;
+#endif
+template <class T>
+struct RowLanes {
+  using type = PackT<T, kRegister / static_cast<int>(sizeof(T))>;
+  static constexpr std::size_t kPadding = 64 / sizeof(T);
+};
+template <class B, int N>
+struct RowLanes<PackT<B, N>> {
+  using type = PackT<B, N>;
+  static constexpr std::size_t kPadding = 1;
+};
+template <class T>
+using Lanes = typename RowLanes<T>::type;
+template <class T>
+inline constexpr std::size_t kPack = sizeof(Lanes<T>) / sizeof(T);
+template <class T>
+std::size_t padded(std::size_t n) {
+  constexpr std::size_t kPadding = RowLanes<T>::kPadding;
+  return (n + kPadding - 1) / kPadding * kPadding;
+}
+
+// A matrix by rows, each in groups of kSlots columns.
 template <class T>
 struct MatrixView {
   T* at;
-  std::size_t stride;
-  T* row(std::size_t i) const { return at + i * stride; }
-  T& operator()(std::size_t i, std::size_t k) const { return at[i * stride + k]; }
-};
-// One with room for whole packs.
-template <class T>
-class PaddedMatrix {
- public:
-  explicit PaddedMatrix(std::size_t n) : stride_(padded<T>(n)), x_(n * stride_) {}
-  operator MatrixView<T>() { return {x_.data(), stride_}; }
-  MatrixView<T> view() { return *this; }
-  void clear() { std::fill_n(x_.data(), x_.size(), T(0)); }
+  std::size_t stride;                                              // from row to row
+  std::size_t group_stride = static_cast<std::size_t>(kSlots<T>);  // from group to group
 
- private:
-  std::size_t stride_;
-  AlignedArray<T> x_;
+  T* group(std::size_t row, std::size_t g) const { return at + row * stride + g * group_stride; }
+  T& operator()(std::size_t row, std::size_t column) const {
+    constexpr auto kGroup = static_cast<std::size_t>(kSlots<T>);
+    return group(row, column / kGroup)[column % kGroup];
+  }
 };
+// By q, by v, and the mass matrix; of forward dynamics the factor L below its diagonal
+// (solve_rows.h) takes the place of that.
 template <class T>
 struct InverseMatrices {
   MatrixView<T> q, v, a;
@@ -119,25 +110,42 @@ struct InverseMatrices {
 
 template <class T>
 struct DerivativesWork {
-  explicit DerivativesWork(const Tree<T>& tree);
+  explicit DerivativesWork(const Tree<base_t<T>>& tree);
 
-  // All on the way from the root to a velocity, with itself as the last.
-  std::span<const Run> way(const Branch& branch) const {
+  std::size_t velocities() const { return branches.size(); }
+  // All on the path from the root to a velocity, with itself as the last.
+  std::span<const Run> path(const Branch& branch) const {
     return std::span(runs).subspan(static_cast<std::size_t>(branch.first_run),
                                    static_cast<std::size_t>(branch.end_run - branch.first_run));
   }
+  std::span<const Run> path_before(const Branch& branch) const {
+    if (branch.parent < 0) return {};
+    return path(branches[static_cast<std::size_t>(branch.parent)]);
+  }
+
+  int groups() const { return (static_cast<int>(branches.size()) + kSlots<T> - 1) / kSlots<T>; }
+  Fields<T, T> velocity(int i) {
+    return Fields<T, T>(records.data() + (i / kSlots<T>)*kVelocityFields * kSlots<T> +
+                        i % kSlots<T>);
+  }
+  Fields<T, Wide<T>> group(int g) {
+    return Fields<T, Wide<T>>(records.data() + g * kVelocityFields * kSlots<T>);
+  }
+  Fields<T, T> lane(int k) { return Fields<T, T>(scratch.data() + k); }
+  Fields<T, Wide<T>> lanes() { return Fields<T, Wide<T>>(scratch.data()); }
 
   std::vector<Branch> branches;  // of each velocity
   std::vector<Run> runs;
-  std::vector<se3T<T>> A;                // of each node: acceleration on top of gravity's
-  std::vector<Composite<T>> composites;  // of each node
-  std::vector<UserSlopes<T>> slopes;     // of each user's node, in the tree's frame
-  std::vector<int> slopes_of;            // a node's, or -1
-  TwistArray<T> S, S1, S2, Sv;           // of each velocity: derivatives.cpp
-  std::array<AlignedArray<T>, 5> along;  // of one velocity, along those before it
-  // Of forward dynamics: M = L^T D L, L's transpose, and what the solution works in.
-  PaddedMatrix<T> L, L_transposed, Q, V, inverse;
+  std::vector<se3T<T>> A;             // of each node: acceleration on top of gravity's
+  std::vector<UserSlopes<T>> slopes;  // of each user's node, in the tree's frame
+  std::vector<int> slopes_of;         // a node's, or -1
+  AlignedArray<T> records, scratch;
+  // Of forward dynamics. Of one state dtau/dq and dtau/dv share rows, a group of one after a group
+  // of the other: twice as many sums go on at once.
+  MatrixView<T> L{};
   std::vector<T> D_inverse;
+  std::size_t row_size;  // of L and of `inverse`
+  AlignedArray<T> factor, both, inverse;
 };
 
 template <class T>

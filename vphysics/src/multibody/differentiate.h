@@ -14,13 +14,14 @@
 //   dF/dq_i = -dad_(S_i) F + J S2_i + B S1_i,   dF/dv_i = B S_i + J Sv_i,   dF/da_i = J S_i.
 //
 // These are linear in J, B and F, whose sums over a node and all after it are J^, B^, F^
-// (Composite). For a velocity j on the way from i to the root, all bodies that i moves hang on j
-// too:
+// (VelocityField). For a velocity j on the path from i to the root, all bodies that i moves hang on
+// j too:
 //
 //   dtau_j/dq_i = <S_j, -dad_(S_i) F^ + J^ S2_i + B^ S1_i>   all sums of i's node
-//   dtau_i/dq_j = <S2_j, J^ S_i> + <S1_j, B^* S_i>           what turns S_i turns F^ too, and drops
-//   out dtau_j/dv_i = <S_j, B^ S_i + J^ Sv_i> dtau_i/dv_j = <S_j, B^* S_i> + <Sv_j, J^ S_i> M_ij =
-//   <S_j, J^ S_i>
+//   dtau_i/dq_j = <S2_j, J^ S_i> + <S1_j, B^* S_i>           what turns S_i turns F^ too: no term
+//   dtau_j/dv_i = <S_j, B^ S_i + J^ Sv_i>
+//   dtau_i/dv_j = <S_j, B^* S_i> + <Sv_j, J^ S_i>
+//   M_ij        = <S_j, J^ S_i>
 //
 // If j and i are of one node, its columns turn with the body as well, for either order:
 // dtau_j/dq_i has <ad_(S_i) S_j, F^> besides.
@@ -35,6 +36,7 @@
 #pragma once
 
 #include "multibody/derivatives.h"
+#include "multibody/outwards.h"
 
 namespace vp::detail::slopes {
 
@@ -44,228 +46,324 @@ template <class T>
 Mat3T<T> velocity_product(const InertiaT<T>& J, const se3T<T>& V) {
   const Sym3T<T>& I = J.rotational();
   const Vec3T<T>& h = J.first_moment();
-  const T half = T(0.5) * (I.xx + I.yy + I.zz);
+  const T zero(0), half = T(0.5) * (I.xx + I.yy + I.zz);
   const auto column = [&](const Vec3T<T>& E, const Vec3T<T>& v_times) {
     return T(-2) * (cross(V.w, E) + cross(h, v_times));
   };
   const Vec3T<T>& v = V.v;
-  return {column({half - I.xx, -I.xy, -I.zx}, {T(0), v.z, -v.y}),
-          column({-I.xy, half - I.yy, -I.yz}, {-v.z, T(0), v.x}),
-          column({-I.zx, -I.yz, half - I.zz}, {v.y, -v.x, T(0)})};
+  return {column({half - I.xx, -I.xy, -I.zx}, {zero, v.z, -v.y}),
+          column({-I.xy, half - I.yy, -I.yz}, {-v.z, zero, v.x}),
+          column({-I.zx, -I.yz, half - I.zz}, {v.y, -v.x, zero})};
 }
 
 template <class T>
-Composite<T> body_of(const InertiaT<T>& J, const se3T<T>& V, const se3T<T>& A) {
-  const dse3T<T> momentum = J * V;
-  return {J, J * A - dad(V, momentum), velocity_product(J, V), momentum.f};
+using Records = Fields<T, Wide<T>>;
+
+template <class N, class F>
+InertiaT<N> inertia_at(const F& fields) {
+  return {fields.get(kCompositeMass), fields.vec(kCompositeMoment), fields.sym(kCompositeInertia)};
 }
 
+// What the state says of a velocity's group: S1, S2, Sv, and F, K and p of the bodies.
 template <class T>
-struct Motion {
-  se3T<T> V_before, A_before, V;
-};
+VP_FLATTEN void open_group(const Records<T>& fields, const Records<T>& joints) {
+  using N = Wide<T>;
+  const se3T<N> S = fields.twist(kColumnS), V_p = joints.twist(kParentV);
+  const se3T<N> V = joints.twist(kNodeV);
+  const se3T<N> S1 = ad(V_p, S);
+  fields.set(kColumnS1, S1);
+  fields.set(kColumnS2, ad(joints.twist(kParentA), S) + ad(V_p, S1));
+  fields.set(kColumnSv, S1 + ad(V, S));
+  const InertiaT<N> J = inertia_at<N>(fields);
+  const dse3T<N> momentum = J * V;
+  fields.set(kCompositeF, J * joints.twist(kNodeA) - dad(V, momentum));
+  const Mat3T<N> K = velocity_product(J, V);
+  fields.set(kCompositeK, K.cx);
+  fields.set(kCompositeK + 3, K.cy);
+  fields.set(kCompositeK + 6, K.cz);
+  fields.set(kCompositeP, momentum.f);
+}
 
-// S1, S2 and Sv of a user's joint, what its slopes add.
+// S1, S2 and Sv of column i of a user's joint: what its derivatives add.
 template <class T>
-void add_slopes(const Node<T>& node, const UserSlopes<T>& slopes, Span<T> v, Span<T> a,
-                const Motion<T>& m, std::size_t i, se3T<T>& S1, se3T<T>& S2, se3T<T>& Sv) {
+VP_APART void add_slopes(const Node<base_t<T>>& node, const UserSlopes<T>& slopes, Span<T> v,
+                         Span<T> a, std::size_t i, const Fields<T, T>& fields,
+                         const Fields<T, T>& joints) {
   const auto n = static_cast<std::size_t>(node.dofs), first = static_cast<std::size_t>(node.v);
-  se3T<T> d{}, own{}, accelerated = slopes.rate[i];
+  se3T<T> d{}, self{}, accelerated = slopes.rate[i];
   for (std::size_t k = 0; k < n; ++k) {
     d = d + v[first + k] * slopes.S[n * k + i];
-    own = own + v[first + k] * slopes.S[n * i + k];
+    self = self + v[first + k] * slopes.S[n * i + k];
     accelerated = accelerated + a[first + k] * slopes.S[n * k + i];
   }
-  S1 = S1 + d;
-  S2 = S2 + ad(m.V_before, d) + ad(m.V, d) + accelerated;
-  Sv = Sv + d + own;
+  const se3T<T> turned = ad(joints.twist(kParentV), d) + ad(joints.twist(kNodeV), d);
+  fields.set(kColumnS1, fields.twist(kColumnS1) + d);
+  fields.set(kColumnS2, fields.twist(kColumnS2) + turned + accelerated);
+  fields.set(kColumnSv, fields.twist(kColumnSv) + d + self);
 }
 
+// False where the joint does not say them.
 template <class T>
-bool open_user(const Node<T>& node, const SE3T<T>& X, Span<T> q, Span<T> v, UserSlopes<T>& slopes,
-               se3T<T>& rate) {
-  const UserState at(node, q, v);
-  if (!user_slopes(node, at, slopes)) return false;
+VP_APART bool open_user(const Node<base_t<T>>& node, const SE3T<T>& X, Span<T> q, Span<T> v,
+                        UserSlopes<T>& slopes) {
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    if (!user_slopes<T>(node, UserState(node, q, v, lane), lane, slopes)) return false;
+  }
   for (auto& S : slopes.S) S = Ad(X, S);
   for (auto& r : slopes.rate) r = Ad(X, r);
-  rate = Ad(X, user_rate(node, at));
   return true;
 }
 
-// False where a user's joint does not say its slopes.
 template <class T>
-bool open_node(const Tree<T>& tree, const Work<T>& work, DerivativesWork<T>& memory, int number,
-               Span<T> q, Span<T> v, Span<T> a, const se3T<T>& A_root) {
-  const auto i = static_cast<std::size_t>(number);
-  const Node<T>& node = tree.nodes[i];
-  const bool root = node.parent == kWorld;
-  const Motion<T> m = {root ? se3T<T>{} : velocity_of(work, node.parent),
-                       root ? A_root : memory.A[static_cast<std::size_t>(node.parent)],
-                       velocity_of(work, number)};
-  se3T<T> A = m.A_before + ad(m.V_before, m.V), rate{};
-  const UserSlopes<T>* slopes = nullptr;
+struct State {
+  const Tree<base_t<T>>& tree;
+  Work<T>& work;
+  Span<T> q, v, a;
+  se3T<T> A_root;
+};
+
+template <class T>
+se3T<T> velocity_before(const State<T>& state, const Node<base_t<T>>& node) {
+  return node.parent == kWorld ? se3T<T>{} : velocity_of(state.work, node.parent);
+}
+template <class T>
+se3T<T> acceleration_before(const State<T>& state, const DerivativesWork<T>& memory,
+                            const Node<base_t<T>>& node) {
+  return node.parent == kWorld ? state.A_root : memory.A[static_cast<std::size_t>(node.parent)];
+}
+
+// Of a node, at its first velocity. False where a user's joint does not say its derivatives.
+template <class T>
+bool open_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
+  const auto n = static_cast<std::size_t>(number);
+  const Node<base_t<T>>& node = state.tree.nodes[n];
+  se3T<T> A = acceleration_before(state, memory, node) +
+              ad(velocity_before(state, node), velocity_of(state.work, number));
   if (node.kind == NodeKind::user) {
-    auto& own = memory.slopes[static_cast<std::size_t>(memory.slopes_of[i])];
-    if (!open_user(node, pose_of(work, number), q, v, own, rate)) return false;
-    A = A + rate;
-    slopes = &own;
+    UserSlopes<T>& slopes = memory.slopes[static_cast<std::size_t>(memory.slopes_of[n])];
+    if (!open_user(node, pose_of(state.work, number), state.q, state.v, slopes)) return false;
+    A = A + state.work.columns[static_cast<std::size_t>(state.work.columns_of[n])].rate;
   }
   for (int k = 0; k < node.dofs; ++k) {
-    const auto at = static_cast<std::size_t>(node.v + k);
-    const se3T<T> S = column_of(tree, work, number, k);
-    se3T<T> S1 = ad(m.V_before, S), S2 = ad(m.A_before, S) + ad(m.V_before, S1);
-    se3T<T> Sv = S1 + ad(m.V, S);
-    if (slopes != nullptr) {
-      add_slopes(node, *slopes, v, a, m, static_cast<std::size_t>(k), S1, S2, Sv);
-    }
-    A = A + a[at] * S;
-    memory.S.set(at, S);
-    memory.S1.set(at, S1);
-    memory.S2.set(at, S2);
-    memory.Sv.set(at, Sv);
+    const T& a = state.a[static_cast<std::size_t>(node.v + k)];
+    A = A + a * column_of(state.tree, state.work, number, k);
   }
-  memory.A[i] = A;
-  memory.composites[i] = body_of(inertia_of(tree, work, number), m.V, A);
+  memory.A[n] = A;
   return true;
 }
 
-// The loads' forces on the links, from each node's F.
+// The bodies' inertias, into the fields of their slots.
 template <class T>
-void take_loads(const Tree<T>& tree, const Work<T>& work, DerivativesWork<T>& memory,
-                const LoadsT<T>& loads) {
-  if (loads.external.empty()) return;
-  for (std::size_t l = 0; l < tree.places.size(); ++l) {
-    const auto& place = tree.places[l];
+VP_FLATTEN void place_bodies(const Tree<base_t<T>>& tree, Work<T>& work) {
+  for (int g = 0; g < static_cast<int>(layout_of<T>(tree).groups.size()); ++g) {
+    const auto fields = work.group(g);
+    const Body<Wide<T>> body = BodyInTree<T>()(group_constants<T>(tree, g), fields.pose(kX));
+    const Vec3T<Wide<T>> h = body.mass * body.centre;
+    fields.set(kH, h);
+    fields.set(kI, rotational(body, h));
+  }
+}
+
+// What open_group computes with.
+template <class T>
+void gather(const State<T>& state, DerivativesWork<T>& memory, const Branch& branch,
+            const Fields<T, T>& fields, const Fields<T, T>& joints) {
+  const auto n = static_cast<std::size_t>(branch.node);
+  const Node<base_t<T>>& node = state.tree.nodes[n];
+  fields.set(kColumnS, column_of(state.tree, state.work, branch.node, branch.column));
+  joints.set(kParentV, velocity_before(state, node));
+  joints.set(kParentA, acceleration_before(state, memory, node));
+  joints.set(kNodeV, velocity_of(state.work, branch.node));
+  joints.set(kNodeA, memory.A[n]);
+  if (!branch.last) {
+    for (int f = kCompositeMass; f < kCompositeF; ++f) fields.set(f, T(0));
+    return;
+  }
+  const auto body = state.work.slot(node.body_slot());
+  fields.set(kCompositeMass, constants_of<T>(state.tree, node.body_slot()).get(kMass));
+  fields.set(kCompositeMoment, body.vec(kH));
+  fields.set(kCompositeInertia, body.sym(kI));
+}
+
+// False where a user's joint does not say its derivatives.
+template <class T>
+bool open(const State<T>& state, DerivativesWork<T>& memory) {
+  const int velocities = static_cast<int>(memory.branches.size());
+  place_bodies(state.tree, state.work);
+  for (int g = 0; g < memory.groups(); ++g) {
+    const int first = g * kSlots<T>, count = std::min(kSlots<T>, velocities - first);
+    for (int k = 0; k < count; ++k) {
+      const Branch& branch = memory.branches[static_cast<std::size_t>(first + k)];
+      if (branch.column == 0 && !open_node(state, memory, branch.node)) return false;
+      gather(state, memory, branch, memory.velocity(first + k), memory.lane(k));
+    }
+    open_group<T>(memory.group(g), memory.lanes());
+    for (int k = 0; k < count; ++k) {
+      const Branch& branch = memory.branches[static_cast<std::size_t>(first + k)];
+      const int slopes = memory.slopes_of[static_cast<std::size_t>(branch.node)];
+      if (slopes < 0) continue;
+      add_slopes<T>(state.tree.nodes[static_cast<std::size_t>(branch.node)],
+                    memory.slopes[static_cast<std::size_t>(slopes)], state.v, state.a,
+                    static_cast<std::size_t>(branch.column), memory.velocity(first + k),
+                    memory.lane(k));
+    }
+  }
+  return true;
+}
+
+// The loads' forces on the links, from F of their nodes' bodies.
+template <class T>
+void take_loads(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>> external) {
+  for (std::size_t l = 0; l < external.size(); ++l) {
+    const auto& place = state.tree.places[l];
     if (place.node == kWorld) continue;
-    dse3T<T>& F = memory.composites[static_cast<std::size_t>(place.node)].F;
-    F = F - InvdAd(pose_of(work, place.node) * place.T_node_link, loads.external[l]);
+    const auto& node = state.tree.nodes[static_cast<std::size_t>(place.node)];
+    const auto body = memory.velocity(node.v + node.dofs - 1);
+    const SE3T<T> X = pose_of(state.work, place.node) * wide<T>(place.T_node_link);
+    body.set(kCompositeF, body.wrench(kCompositeF) - InvdAd(X, external[l]));
   }
 }
 
 // --- from the leaves inwards
 
 template <class T>
-void add_up(const Tree<T>& tree, std::vector<Composite<T>>& composites) {
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    if (tree.nodes[i].parent == kWorld) continue;
-    Composite<T>& sum = composites[static_cast<std::size_t>(tree.nodes[i].parent)];
-    const Composite<T>& part = composites[i];
-    sum = {sum.J + part.J, sum.F + part.F, sum.K + part.K, sum.p + part.p};
-  }
+void add_to_parent(DerivativesWork<T>& memory, int i) {
+  const int parent = memory.branches[static_cast<std::size_t>(i)].parent;
+  if (parent < 0) return;
+  const auto part = memory.velocity(i), sum = memory.velocity(parent);
+  for (int f = kCompositeMass; f < kCompositeEnd; ++f) sum.set(f, sum.get(f) + part.get(f));
+}
+
+// dF^/dq_i, dF^/dv_i, dF^/da_i = J^ S_i, and B^* S_i, which is an angular part alone.
+template <class T>
+VP_FLATTEN void close_group(const Records<T>& fields, const Records<T>& forces) {
+  using N = Wide<T>;
+  const InertiaT<N> J = inertia_at<N>(fields);
+  const Mat3T<N> K = fields.mat(kCompositeK);
+  const Vec3T<N> p = fields.vec(kCompositeP);
+  const auto B_times = [&](const se3T<N>& X) { return dse3T<N>{K * X.w, N(2) * cross(X.w, p)}; };
+  const se3T<N> S = fields.twist(kColumnS);
+  forces.set(kForceQ, J * fields.twist(kColumnS2) + B_times(fields.twist(kColumnS1)) -
+                          dad(S, fields.wrench(kCompositeF)));
+  forces.set(kForceV, J * fields.twist(kColumnSv) + B_times(S));
+  forces.set(kForceA, J * S);
+  forces.set(kTransposed, transposed_times(K, S.w) + N(2) * cross(p, S.v));
 }
 
 // --- the matrices
 
-// Numbers of velocity i that the loop along those before it multiplies with.
+// A group of the path: dtau_i/dq_j, dtau_i/dv_j, M_ij or L_ij, dtau_j/dq_i, dtau_j/dv_i for its j.
+enum PathSum : int { kRowQ, kRowV, kRowA, kColumnQ, kColumnV, kPathSums };
+
+// forces: those of velocity i, W: J^ S_i, or what L has of it.
 template <class T>
-struct Factors {
-  std::array<T, 6> F_q, F_v, F_a;  // dF^/dq_i, dF^/dv_i, dF^/da_i = J^ S_i
-  std::array<T, 3> b;              // B^* S_i, which is an angular part alone
-};
-template <class T>
-std::array<T, 6> numbers(const dse3T<T>& F) {
-  return {F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z};
-}
-template <class T>
-dse3T<T> B_times(const Composite<T>& c, const se3T<T>& X) {
-  return {c.K * X.w, T(2) * cross(X.w, c.p)};
-}
-template <class T>
-Factors<T> factors_of(const Composite<T>& c, const DerivativesWork<T>& memory, std::size_t i) {
-  const se3T<T> S = memory.S.get(i), S1 = memory.S1.get(i), S2 = memory.S2.get(i);
-  const Vec3T<T> b = transposed_times(c.K, S.w) + T(2) * cross(c.p, S.v);
-  return {numbers(c.J * S2 + B_times(c, S1) - dad(S, c.F)),
-          numbers(c.J * memory.Sv.get(i) + B_times(c, S)),
-          numbers(c.J * S),
-          {b.x, b.y, b.z}};
+VP_FLATTEN void sum_along(const Records<T>& along, const Fields<T, T>& forces, const T* W,
+                          Wide<T> (&sum)[kPathSums]) {
+  using N = Wide<T>;
+  const N zero(base_t<T>(0));
+  N row_q = zero, row_v = zero, row_a = zero, column_q = zero, column_v = zero;
+  for (int k = 0; k < 6; ++k) {
+    const N S = along.get(kColumnS + k), F_a(forces.get(kForceA + k));
+    row_q += along.get(kColumnS2 + k) * F_a;
+    row_v += along.get(kColumnSv + k) * F_a;
+    row_a += S * N(W[k]);
+    column_q += S * N(forces.get(kForceQ + k));
+    column_v += S * N(forces.get(kForceV + k));
+    if (k >= 3) continue;
+    const N b(forces.get(kTransposed + k));
+    row_q += along.get(kColumnS1 + k) * b;
+    row_v += S * b;
+  }
+  sum[kRowQ] = row_q;
+  sum[kRowV] = row_v;
+  sum[kRowA] = row_a;
+  sum[kColumnQ] = column_q;
+  sum[kColumnV] = column_v;
 }
 
-// What is filled along the velocities before one.
-enum Along : std::size_t { kRowQ, kRowV, kRowA, kColumnQ, kColumnV };
-
 template <class T>
-void fill_run(DerivativesWork<T>& memory, const Factors<T>& f, std::size_t begin, std::size_t end) {
-  // From an aligned place before it: what is not of the run, nobody reads.
-  for (std::size_t j = begin / kPack<T> * kPack<T>; j < end; j += kPack<T>) {
-    std::array<Lanes<T>, 5> sum{};
-    for (std::size_t k = 0; k < 6; ++k) {
-      const Lanes<T> S = memory.S.lanes(k, j), F_a(f.F_a[k]);
-      sum[kRowQ] += memory.S2.lanes(k, j) * F_a;
-      sum[kRowV] += memory.Sv.lanes(k, j) * F_a;
-      sum[kRowA] += S * F_a;
-      sum[kColumnQ] += S * Lanes<T>(f.F_q[k]);
-      sum[kColumnV] += S * Lanes<T>(f.F_v[k]);
-      if (k >= 3) continue;
-      sum[kRowQ] += memory.S1.lanes(k, j) * Lanes<T>(f.b[k]);
-      sum[kRowV] += S * Lanes<T>(f.b[k]);
-    }
-    for (std::size_t which = 0; which < 5; ++which) {
-      store_lanes(memory.along[which].data() + j, sum[which]);
-    }
+void put_column(const MatrixView<T>& to, std::size_t first_row, std::size_t column,
+                const Wide<T>& x, int begin, int end) {
+  if constexpr (kSlots<T> == 1) {
+    to(first_row, column) = x;
+  } else {
+    alignas(64) T numbers[kSlots<T>];
+    store(numbers, x);
+    for (int k = begin; k < end; ++k)
+      to(first_row + static_cast<std::size_t>(k), column) = numbers[k];
   }
 }
 
 // Row and column i as far as velocity i: those before it, then itself.
 template <class T>
-void fill_velocity(const Node<T>& node, const Composite<T>& composite, DerivativesWork<T>& memory,
-                   std::size_t i, const InverseMatrices<T>& out) {
-  const Branch& branch = memory.branches[i];
-  const Factors<T> f = factors_of(composite, memory, i);
-  for (const Run& run : memory.way(branch)) {
-    const auto begin = static_cast<std::size_t>(run.first), end = static_cast<std::size_t>(run.end);
-    fill_run(memory, f, begin, end);
-    for (std::size_t j = begin; j < end; ++j) {
-      out.q(j, i) = memory.along[kColumnQ].data()[j];
-      out.v(j, i) = memory.along[kColumnV].data()[j];
-      out.a(j, i) = memory.along[kRowA].data()[j];
-      out.q(i, j) = memory.along[kRowQ].data()[j];
-      out.v(i, j) = memory.along[kRowV].data()[j];
-      out.a(i, j) = memory.along[kRowA].data()[j];
+void fill_velocity(DerivativesWork<T>& memory, int number, const Fields<T, T>& forces, const T* W,
+                   bool symmetric, const InverseMatrices<T>& out) {
+  const auto i = static_cast<std::size_t>(number);
+  Wide<T> sum[kPathSums];
+  for (const Run& run : memory.path(memory.branches[i])) {
+    for (int g = run.first / kSlots<T>; g * kSlots<T> < run.end; ++g) {
+      const int first = g * kSlots<T>;
+      const int begin = std::max(run.first - first, 0), end = std::min(run.end - first, kSlots<T>);
+      const auto at = static_cast<std::size_t>(first), group = static_cast<std::size_t>(g);
+      sum_along<T>(memory.group(g), forces, W, sum);
+      put_column<T>(out.q, at, i, sum[kColumnQ], begin, end);
+      put_column<T>(out.v, at, i, sum[kColumnV], begin, end);
+      if (symmetric) put_column<T>(out.a, at, i, sum[kRowA], begin, end);
+      store_lanes(out.q.group(i, group), sum[kRowQ], begin, end);
+      store_lanes(out.v.group(i, group), sum[kRowV], begin, end);
+      store_lanes(out.a.group(i, group), sum[kRowA], begin, end);
     }
   }
-  out.a(i, i) += node.armature;
-  out.v(i, i) += node.damping;
 }
 
 // Between velocities of one node.
 template <class T>
-void turn_columns(const Node<T>& node, const dse3T<T>& F, const UserSlopes<T>* slopes,
-                  const TwistArray<T>& columns, const MatrixView<T>& tau_q) {
+VP_APART void turn_columns(DerivativesWork<T>& memory, const Node<base_t<T>>& node,
+                           const UserSlopes<T>* slopes, const MatrixView<T>& tau_q) {
   const auto first = static_cast<std::size_t>(node.v), dofs = static_cast<std::size_t>(node.dofs);
+  const dse3T<T> F = memory.velocity(node.v).wrench(kCompositeF);
+  const auto S = [&](std::size_t k) {
+    return memory.velocity(node.v + static_cast<int>(k)).twist(kColumnS);
+  };
   for (std::size_t k = 0; k < dofs; ++k) {
     for (std::size_t i = 0; i < dofs; ++i) {
       T& tau = tau_q(first + k, first + i);
-      if (k < i) tau += ad(columns.get(first + i), columns.get(first + k)) * F;
+      if (k < i) tau += ad(S(i), S(k)) * F;
       if (slopes != nullptr) tau += slopes->S[dofs * k + i] * F;
     }
   }
 }
 
-// Adds to zeros in out, from what a call with the same q and v has left in the data's work. False
-// where a joint of one's own does not say its slopes.
+// Adds to zeros in out, from what a call with the same q and v has left in the data's work: of
+// inverse dynamics M, else L, from the factors that forward dynamics has left there too. False
+// where a joint of one's own does not say its derivatives.
 template <class T>
-bool differentiate_kernel(const Tree<T>& tree, const Work<T>& work, DerivativesWork<T>& memory,
-                          Span<T> q, Span<T> v, Span<T> a, const LoadsT<T>& loads,
-                          const InverseMatrices<T>& out) {
-  const se3T<T> A_root{{}, -loads.gravity};
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    if (!open_node(tree, work, memory, static_cast<int>(i), q, v, a, A_root)) {
-      return false;
+bool differentiate(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>> external,
+                   bool inverse, const InverseMatrices<T>& out) {
+  if (!open(state, memory)) return false;
+  take_loads(state, memory, external);
+  const int velocities = static_cast<int>(memory.branches.size());
+  for (int g = memory.groups(); g-- > 0;) {
+    const int first = g * kSlots<T>, count = std::min(kSlots<T>, velocities - first);
+    for (int k = count; k-- > 0;) add_to_parent(memory, first + k);
+    close_group<T>(memory.group(g), memory.lanes());
+    for (int k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(first + k);
+      const auto forces = memory.lane(k);
+      const dse3T<T> gain = inverse ? forces.wrench(kForceA) : state.work.factors[i].W;
+      const T W[6] = {gain.m.x, gain.m.y, gain.m.z, gain.f.x, gain.f.y, gain.f.z};
+      fill_velocity(memory, first + k, forces, W, inverse, out);
+      const auto& node = state.tree.nodes[static_cast<std::size_t>(memory.branches[i].node)];
+      if (inverse) out.a(i, i) += T(node.armature);
+      out.v(i, i) += T(node.damping);
     }
   }
-  take_loads(tree, work, memory, loads);
-  add_up(tree, memory.composites);
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const Node<T>& node = tree.nodes[i];
-    const Composite<T>& composite = memory.composites[i];
-    for (int k = 0; k < node.dofs; ++k) {
-      fill_velocity(node, composite, memory, static_cast<std::size_t>(node.v + k), out);
-    }
+  for (std::size_t i = 0; i < state.tree.nodes.size(); ++i) {
+    const Node<base_t<T>>& node = state.tree.nodes[i];
     if (node.dofs == 1 && node.kind != NodeKind::user) continue;
     const int slopes = memory.slopes_of[i];
-    turn_columns(node, composite.F,
-                 slopes < 0 ? nullptr : &memory.slopes[static_cast<std::size_t>(slopes)], memory.S,
-                 out.q);
+    turn_columns(memory, node,
+                 slopes < 0 ? nullptr : &memory.slopes[static_cast<std::size_t>(slopes)], out.q);
   }
   return true;
 }

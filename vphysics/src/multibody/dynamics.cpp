@@ -2,7 +2,6 @@
 #include "vphysics/multibody/dynamics.h"
 
 #include <string>
-#include <type_traits>
 
 #include "multibody/instantiate.h"
 #include "multibody/instruction_set.h"
@@ -16,17 +15,6 @@ namespace {
 
 using vphysics_kernels::Arguments;
 using vphysics_kernels::Kernels;
-
-// Where T stands in VP_FOR_EACH_SCALAR.
-template <class T>
-constexpr std::size_t scalar_index() {
-  std::size_t index = 0, found = 0;
-#define VP_LOOK_AT(Scalar)                      \
-  if (std::is_same_v<T, Scalar>) found = index; \
-  ++index;
-  VP_FOR_EACH_SCALAR(VP_LOOK_AT)
-  return found;
-}
 
 template <class T>
 const Kernels& kernels_of(const DataT<T>& data) {

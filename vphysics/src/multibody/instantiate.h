@@ -1,6 +1,9 @@
 // The scalars for which the algorithms are compiled, once, into the library.
 #pragma once
 
+#include <cstddef>
+#include <type_traits>
+
 #include "vphysics/lie/pack.h"
 
 namespace vp::detail {
@@ -24,3 +27,19 @@ using Float16 = PackT<float, 16>;
   X(detail::Float8)           \
   X(detail::Float16)
 #endif
+
+namespace vp::detail {
+
+// Where T stands in VP_FOR_EACH_SCALAR.
+template <class T>
+constexpr std::size_t scalar_index() {
+  std::size_t index = 0, found = 0;
+#define VP_LOOK_AT(Scalar)                      \
+  if (std::is_same_v<T, Scalar>) found = index; \
+  ++index;
+  VP_FOR_EACH_SCALAR(VP_LOOK_AT)
+#undef VP_LOOK_AT
+  return found;
+}
+
+}  // namespace vp::detail

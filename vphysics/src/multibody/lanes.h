@@ -86,6 +86,27 @@ inline N load_until(const T* from, int size, int count) {
   return x;
 }
 
+// Lanes begin to end - 1 to an array whose number 0 is lane 0's; its others stay as they are.
+template <class N, class T>
+inline void store_lanes(T* to, const N& x, [[maybe_unused]] int begin, [[maybe_unused]] int end) {
+  if constexpr (std::is_same_v<N, T>) {
+    *to = x;
+    return;
+  } else {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+    const auto mask = static_cast<__mmask8>((1 << end) - (1 << begin));
+    if constexpr (std::is_same_v<N, PackT<double, 8>>) {
+      _mm512_mask_storeu_pd(to, mask, x.lanes);
+      return;
+    } else if constexpr (std::is_same_v<N, PackT<float, 8>>) {
+      _mm256_mask_storeu_ps(to, mask, x.lanes);
+      return;
+    }
+#endif
+    for (int k = begin; k < end; ++k) to[k] = x[k];
+  }
+}
+
 // One lane anew. In the register: what is written to a part of it in memory makes the next to read
 // the whole wait.
 template <class B, int N>

@@ -1,9 +1,9 @@
-// What a joint of one's own says of its slopes, in any scalar of one state.
+// What a joint of one's own says of its slopes, in any scalar; of a pack of states lane by lane.
 #pragma once
 
 #include <array>
 
-#include "multibody/tree.h"
+#include "multibody/joints.h"
 
 namespace vp::detail {
 
@@ -22,33 +22,34 @@ se3T<T> cast_twist(const se3& V) {
   return {each(V.w), each(V.v)};
 }
 
-// The joint's coordinates and velocities, in the joint's scalar.
+// The joint's coordinates and velocities in one lane, in the joint's scalar.
 struct UserState {
   std::array<double, 6> q{}, v{};
   std::size_t n;
 
   template <class T>
-  UserState(const Node<T>& node, std::span<const T> all_q, std::span<const T> all_v)
+  UserState(const Node<base_t<T>>& node, std::span<const T> all_q, std::span<const T> all_v,
+            int lane = 0)
       : n(static_cast<std::size_t>(node.dofs)) {
     for (std::size_t k = 0; k < n; ++k) {
-      q[k] = static_cast<double>(all_q[static_cast<std::size_t>(node.q) + k]);
-      v[k] = static_cast<double>(all_v[static_cast<std::size_t>(node.v) + k]);
+      q[k] = lane_of(all_q[static_cast<std::size_t>(node.q) + k], lane);
+      v[k] = lane_of(all_v[static_cast<std::size_t>(node.v) + k], lane);
     }
   }
   std::span<const double> coordinates() const { return std::span(q).first(n); }
   std::span<const double> velocities() const { return std::span(v).first(n); }
 };
 
-// False where the joint does not say them.
+// Of one lane. False where the joint does not say them.
 template <class T>
-bool user_slopes(const Node<T>& node, const UserState& at, UserSlopes<T>& out) {
+bool user_slopes(const Node<base_t<T>>& node, const UserState& at, int lane, UserSlopes<T>& out) {
   UserSlopes<double> found;
   if (!node.user->slopes(at.coordinates(), at.velocities(), std::span(found.S).first(at.n * at.n),
                          std::span(found.rate).first(at.n))) {
     return false;
   }
-  for (std::size_t i = 0; i < at.n * at.n; ++i) out.S[i] = cast_twist<T>(found.S[i]);
-  for (std::size_t i = 0; i < at.n; ++i) out.rate[i] = cast_twist<T>(found.rate[i]);
+  for (std::size_t i = 0; i < at.n * at.n; ++i) set_lane(out.S[i], lane, found.S[i]);
+  for (std::size_t i = 0; i < at.n; ++i) set_lane(out.rate[i], lane, found.rate[i]);
   return true;
 }
 
@@ -73,7 +74,7 @@ bool user_column_rates(const Node<T>& node, const UserState& at, std::array<se3T
     return true;
   }
   UserSlopes<T> slopes;
-  if (!user_slopes(node, at, slopes)) return false;
+  if (!user_slopes<T>(node, at, 0, slopes)) return false;
   for (std::size_t k = 0; k < at.n; ++k) {
     rates[k] = {};
     for (std::size_t l = 0; l < at.n; ++l) {
