@@ -56,6 +56,12 @@ def multibody(rows):
     lanes = in_order(m.group(1) for r in rows if (m := re.fullmatch(r'forward_batch_(\w+)_us', r['metric'])))
     lines += grid('forward dynamics in batches [us a state]', models, lanes,
                   lambda model, lane: value.get((model, 'Virtual Physics', f'forward_batch_{lane}_us')))
+    for call in ('forward', 'inverse'):
+        lanes = in_order(m.group(1) for r in rows
+                         if (m := re.fullmatch(rf'{call}_derivatives_(double\d*|float\d*)_us', r['metric'])))
+        if lanes:
+            lines += grid(f'derivatives of {call} dynamics, of one state and in packs [us a state]', models, lanes,
+                          lambda model, lane: value.get((model, 'Virtual Physics', f'{call}_derivatives_{lane}_us')))
     return [*lines, *verdicts(rows)]
 
 

@@ -55,7 +55,10 @@ inline constexpr EngineKind kEngines[] = {
     {"simbody", "Simbody", make_simbody},
 };
 
-// Ours again, over several states at once: forward dynamics.
+// What is measured of packs of states: forward dynamics, and the derivatives of both dynamics.
+enum class BatchCall { forward, forward_derivatives, inverse_derivatives };
+
+// Ours again, over several states at once, or over one where the peers have no such call.
 class Batch {
  public:
   virtual ~Batch() = default;
@@ -63,12 +66,16 @@ class Batch {
   virtual int lanes() const = 0;
   virtual bool single() const = 0;  // float
   virtual std::size_t packs() const = 0;
-  // Forward dynamics of all states of a pack.
-  virtual double call(std::size_t pack) = 0;
-  virtual std::vector<double> result(std::size_t pack, int lane) = 0;
+  // Of all states of a pack.
+  virtual double call(BatchCall call, std::size_t pack) = 0;
+  // Accelerations, or the derivatives by q, by v, and by a or tau, each by rows.
+  virtual std::vector<double> result(BatchCall call, std::size_t pack, int lane) = 0;
 };
-// Lane l of pack p has the state p * lanes + l. Precondition: a multiple of 16 states.
+// Lane l of pack p has the state p * lanes + l. The first has one lane of double. Precondition: a
+// multiple of 16 states.
 std::vector<std::unique_ptr<Batch>> make_batches(const BenchModel& model,
                                                  const std::vector<State>& states);
+// Their matrices fill the caches, and of longer chains the memory.
+inline constexpr int kMostVelocitiesDifferentiated = 128;
 
 }  // namespace vp::bench

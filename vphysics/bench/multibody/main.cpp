@@ -1,5 +1,6 @@
 // multibody-bench: forward and inverse dynamics and the mass matrix of one list of models, in
-// Virtual Physics and in its peers, which must agree before they are timed. Prints tables and
+// Virtual Physics and in its peers, which must agree before they are timed; and the derivatives in
+// Virtual Physics alone. Prints tables and
 // writes the rows that ./bench keeps.
 #include <fmt/format.h>
 #include <sched.h>

@@ -98,17 +98,65 @@ double worst_difference(Engine& engine, Engine& ours, Metric metric, std::size_t
   return worst;
 }
 
-double worst_difference(Batch& batch, Engine& ours) {
+// Of a batch from what each state gives alone.
+double worst_difference(Batch& batch, BatchCall call,
+                        const std::function<std::vector<double>(std::size_t)>& alone) {
   double worst = 0.0;
   for (std::size_t pack = 0; pack < batch.packs(); ++pack) {
     for (int lane = 0; lane < batch.lanes(); ++lane) {
       const std::size_t state =
           pack * static_cast<std::size_t>(batch.lanes()) + static_cast<std::size_t>(lane);
-      worst = std::max(worst,
-                       difference(batch.result(pack, lane), ours.result(Metric::forward, state)));
+      worst = std::max(worst, difference(batch.result(call, pack, lane), alone(state)));
     }
   }
   return worst;
+}
+
+// Of our derivatives by v from quotients of accelerations or forces that the peers confirm, which
+// are quadratic in v: their error is rounding.
+double worst_difference_by_velocity(const BenchModel& model, const std::vector<State>& states,
+                                    Batch& one, BatchCall call) {
+  constexpr double kStep = 1e-2;
+  constexpr std::size_t kStates = 2;
+  const Metric metric = call == BatchCall::forward_derivatives ? Metric::forward : Metric::inverse;
+  double worst = 0.0;
+  for (std::size_t state = 0; state < std::min(kStates, states.size()); ++state) {
+    const std::size_t n = states[state].v.size();
+    std::vector<State> beside;
+    for (std::size_t k = 0; k < n; ++k) {
+      for (const double step : {-kStep, kStep}) {
+        beside.push_back(states[state]);
+        beside.back().v[k] += step;
+      }
+    }
+    const auto engine = make_ours(model, beside);
+    if (!engine) return std::numeric_limits<double>::infinity();
+    std::vector<double> quotients(n * n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::vector<double> before = (*engine)->result(metric, 2 * k);
+      const std::vector<double> after = (*engine)->result(metric, 2 * k + 1);
+      for (std::size_t i = 0; i < n; ++i) {
+        quotients[i * n + k] = (after[i] - before[i]) / (2.0 * kStep);
+      }
+    }
+    const std::vector<double> all = one.result(call, state, 0);
+    const auto by_v = all.begin() + static_cast<std::ptrdiff_t>(n * n);
+    worst =
+        std::max(worst, difference({by_v, by_v + static_cast<std::ptrdiff_t>(n * n)}, quotients));
+  }
+  return worst;
+}
+
+const char* name_of(BatchCall call) {
+  switch (call) {
+    case BatchCall::forward:
+      return "forward_batch";
+    case BatchCall::forward_derivatives:
+      return "forward_derivatives";
+    case BatchCall::inverse_derivatives:
+      break;
+  }
+  return "inverse_derivatives";
 }
 
 struct Contender {
@@ -146,7 +194,13 @@ class ModelRun {
            [engine = c.engine.get(), metric](std::size_t i) { return engine->call(metric, i); },
            states_.size(), 1});
     }
-    if (metric == Metric::forward && has_ours()) add_batches(runners, figures);
+    if (metric == Metric::forward && has_ours()) {
+      add_batches(BatchCall::forward, runners, figures);
+      if (model_.velocities() <= kMostVelocitiesDifferentiated) {
+        add_batches(BatchCall::forward_derivatives, runners, figures);
+        add_batches(BatchCall::inverse_derivatives, runners, figures);
+      }
+    }
     if (contenders_.size() > 1 && !any_agrees(figures, first)) refuse_ours(runners, figures, first);
     round_robin(runners, seconds, figures);
   }
@@ -192,15 +246,27 @@ class ModelRun {
     std::erase_if(runners, [&](const Runner& r) { return !figures[r.figure].missing.empty(); });
   }
 
-  void add_batches(std::vector<Runner>& runners, std::vector<Figure>& figures) {
+  // A batch's rounds are those of forward dynamics: goals compare them with a peer's.
+  void add_batches(BatchCall call, std::vector<Runner>& runners, std::vector<Figure>& figures) {
     if (batches_.empty()) batches_ = make_batches(model_, states_);
     for (const auto& batch : batches_) {
+      const bool one = batch->lanes() == 1;
+      if (one && call == BatchCall::forward) continue;  // has its figure as an engine
       Figure figure{.model = model_.name,
                     .engine = kEngines[0].name,
-                    .metric = "forward_batch_" + batch->name() + "_us"};
-      figure.difference = worst_difference(*batch, *ours_);
-      if (*figure.difference <= (batch->single() ? kAgreementFloat : kAgreement)) {
-        runners.push_back({figures.size(), [b = batch.get()](std::size_t i) { return b->call(i); },
+                    .metric = fmt::format("{}_{}_us", name_of(call), batch->name())};
+      figure.difference = one ? worst_difference_by_velocity(model_, states_, *batch, call)
+                              : worst_difference(*batch, call, [&](std::size_t state) {
+                                  return call == BatchCall::forward
+                                             ? ours_->result(Metric::forward, state)
+                                             : batches_[0]->result(call, state, 0);
+                                });
+      const double bound = batch->single() ? kAgreementFloat
+                           : one           ? kAgreementQuotients
+                                           : kAgreement;
+      if (*figure.difference <= bound) {
+        runners.push_back({figures.size(),
+                           [b = batch.get(), call](std::size_t i) { return b->call(call, i); },
                            batch->packs(), batch->lanes()});
       } else {
         figure.missing = differs_by(*figure.difference);
@@ -247,13 +313,15 @@ double Figure::p10() const {
 
 std::vector<Figure> measure(const Plan& plan, const std::function<void(const std::string&)>& said) {
   std::vector<Figure> figures;
-  // Forward dynamics has as many to run again, the batches.
-  const double share = plan.seconds / static_cast<double>(plan.models.size()) / 4.0;
+  // Forward dynamics has three times as many to run, the batches and their derivatives.
+  constexpr double kForwardShares = 4.0;
+  const double share =
+      plan.seconds / static_cast<double>(plan.models.size()) / (kForwardShares + 2.0);
   for (const std::string& name : plan.models) {
     ModelRun run(plan, name);
     for (const Metric metric : kMetrics) {
       said(fmt::format("{}, {}", name, name_of(metric)));
-      run.run(metric, metric == Metric::forward ? 2.0 * share : share, figures);
+      run.run(metric, metric == Metric::forward ? kForwardShares * share : share, figures);
     }
   }
   return figures;

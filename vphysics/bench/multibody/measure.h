@@ -15,10 +15,13 @@ inline constexpr double kAgreement = 1e-9;
 // In float a result has no more than 7 digits, and forward dynamics of a long chain loses most of
 // them: what is told apart here from rounding is another answer.
 inline constexpr double kAgreementFloat = 1e-2;
+// A derivative from a quotient of numbers that agree to rounding.
+inline constexpr double kAgreementQuotients = 1e-7;
 
 // What one engine does at one metric of one model.
 struct Figure {
-  std::string model, engine, metric;   // metric: "forward_us", "forward_batch_double4_us", ...
+  std::string model, engine, metric;   // metric: "forward_us", "forward_batch_double4_us",
+                                       // "forward_derivatives_double_us", ...
   std::string missing{};               // why there is none; empty: there are times
   std::optional<double> difference{};  // from ours, relative; of ours: none
   std::vector<double> rounds{};        // us a state, one of each round

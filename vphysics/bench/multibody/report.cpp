@@ -20,6 +20,15 @@ struct ShareGoal {
   double bound;
 };
 constexpr ShareGoal kShares[] = {{"forward", 0.19}, {"inverse", 0.15}, {"mass", 0.28}};
+// Half of Pinocchio's derivatives of forward dynamics, as shares of MuJoCo's forward dynamics.
+struct DerivativeGoal {
+  const char* model;
+  double bound;
+};
+constexpr DerivativeGoal kDerivativeShares[] = {
+    {"arm7", 0.81}, {"quadruped", 0.97}, {"humanoid", 1.10}};
+constexpr const char* kDerivativesBy[] = {"double", "double4", "double8", "float8", "float16"};
+constexpr const char* kDerivativeCalls[] = {"forward_derivatives", "inverse_derivatives"};
 constexpr ShareGoal kBatchShares[] = {{"double8", 0.045}, {"float16", 0.024}};
 constexpr const char* kShareModels[] = {"arm7", "quadruped", "humanoid", "chain10"};
 // The dearest joint of the three chains is at most 15% dearer than the cheapest.
@@ -137,6 +146,12 @@ std::vector<Goal> goals(const std::vector<Figure>& figures, const CompileCost* c
       add_share(figures, model, batch_metric(goal.metric), "forward_us", goal.bound, out);
     }
   }
+  for (const char* scalar : {"double", "double8"}) {
+    for (const DerivativeGoal& goal : kDerivativeShares) {
+      add_share(figures, goal.model, fmt::format("forward_derivatives_{}_us", scalar), "forward_us",
+                goal.bound, out);
+    }
+  }
   add_chains(figures, "forward_us", out);
   add_chains(figures, "inverse_us", out);
   for (const char* batch : kBatches) add_chains(figures, batch_metric(batch), out);
@@ -177,11 +192,20 @@ std::string times_table(const std::vector<Figure>& figures, const Plan& plan) {
 
 std::string batch_table(const std::vector<Figure>& figures, const Plan& plan) {
   if (!std::count(plan.engines.begin(), plan.engines.end(), kEngines[0].option)) return "";
-  return grid("forward in batches, Virtual Physics: us a state, median (10th percentile)", plan,
-              {std::begin(kBatches), std::end(kBatches)},
-              [&](const std::string& model, const char* batch) {
-                return cell(find(figures, model, kOurs, batch_metric(batch)));
-              });
+  std::string out = grid(
+      "forward in batches, Virtual Physics: us a state, median (10th percentile)", plan,
+      {std::begin(kBatches), std::end(kBatches)}, [&](const std::string& model, const char* batch) {
+        return cell(find(figures, model, kOurs, batch_metric(batch)));
+      });
+  for (const std::string call : kDerivativeCalls) {
+    out += grid(
+        call + " of one state and of packs, Virtual Physics: us a state, median (10th percentile)",
+        plan, {std::begin(kDerivativesBy), std::end(kDerivativesBy)},
+        [&](const std::string& model, const char* scalar) {
+          return cell(find(figures, model, kOurs, fmt::format("{}_{}_us", call, scalar)));
+        });
+  }
+  return out;
 }
 
 std::string goals_table(const std::vector<Goal>& goals) {
