@@ -56,12 +56,14 @@ bool factor_root(DerivativesWork<T>& memory, const Work<T>& work, const Node<bas
   const auto S = [&](std::size_t k) {
     return memory.velocity(node.v + static_cast<int>(k)).twist(kColumnS);
   };
-  T A[6][6];
+  T A[6][6], omega[6];
+  for (std::size_t k = 0; k < dofs; ++k) omega[k] = T(1) / work.factors[first + k].inverse;
   for (std::size_t i = 0; i < dofs; ++i) {
+    const se3T<T> S_i = S(i);
     dse3T<T> JS{};
     for (std::size_t k = 0; k < dofs; ++k) {
-      const Factor<T>& factor = work.factors[first + k];
-      JS = JS + ((S(i) * factor.W) / factor.inverse) * factor.W;
+      const dse3T<T>& W = work.factors[first + k].W;
+      JS = JS + (omega[k] * (S_i * W)) * W;
     }
     for (std::size_t j = 0; j <= i; ++j) A[i][j] = S(j) * JS;
   }
