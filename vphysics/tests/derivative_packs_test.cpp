@@ -2,6 +2,7 @@
 // solution of M da = -dtau with the derivatives of inverse dynamics.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -270,6 +271,27 @@ TEST(PackDerivatives, ReproducibleOnesHaveTheSameBitsInEveryLane) {
     ASSERT_TRUE(pack.inverse(Arithmetic::reproducible));
     compare(inverse_alone);
   }
+}
+
+// FNV-1a over the bits. The constant is the same for every compiler, level and machine: a change of
+// it is a change of results.
+TEST(Derivatives, ReproducibleOnesHaveGoldenBits) {
+  Random random(310);
+  std::uint64_t hash = 14695981039346656037u;
+  const auto add = [&](const Derivatives& derivatives) {
+    for (const auto* numbers : {&derivatives.q, &derivatives.v, &derivatives.force}) {
+      for (const double x : *numbers) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211u;
+      }
+    }
+  };
+  for (int round = 0; round < 10; ++round) {
+    const Model model = random_tree(random, 15);
+    const State s = random_state(random, model);
+    add(forward_alone(model, s, {}, Arithmetic::reproducible));
+    add(inverse_alone(model, s, {}, Arithmetic::reproducible));
+  }
+  EXPECT_EQ(hash, 9237749921117450970u);
 }
 
 TEST(PackDerivatives, OfOneLaneDoNotKnowOfAnother) {
