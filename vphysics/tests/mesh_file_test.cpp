@@ -154,7 +154,9 @@ TEST(MeshFile, AFileThatEndsEarlyIsRefusedOrHasFewerTriangles) {
                                                : MeshFormat::collada;
     for (std::size_t size = 0; size < text.size(); ++size) {
       const auto mesh = parse_mesh(text.substr(0, size), format);
-      if (mesh) EXPECT_LE(mesh->triangles.size(), 4u);
+      if (mesh) {
+        EXPECT_LE(mesh->triangles.size(), 4u);
+      }
     }
   }
 }
@@ -206,7 +208,9 @@ TEST(MeshFile, AColladaThatMultipliesItselfEnds) {
       "<library_visual_scenes><visual_scene><node><instance_node url=\"#n0\"/></node>"
       "</visual_scene></library_visual_scenes>";
   const auto mesh = parse_mesh(collada(kTriangles, nodes), MeshFormat::collada);
-  if (mesh) EXPECT_LE(mesh->triangles.size(), 40000u);
+  if (mesh) {
+    EXPECT_LE(mesh->triangles.size(), 40000u);
+  }
 }
 
 TEST(MeshFile, AFileIsReadByTheEndOfItsName) {
