@@ -65,6 +65,18 @@ def multibody(rows):
     return [*lines, *verdicts(rows)]
 
 
+def robots(rows):
+    """Each metric by robot and engine, and what was reached beside its goal."""
+    value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
+    names = in_order(r['subject'] for r in rows)
+    lines = []
+    for metric, title in [('step_us', 'median step [us]'), ('penetration_mm', 'deepest penetration [mm]'),
+                          ('speed_at_end', 'fastest joint at the end [rad/s]')]:
+        lines += grid(title, names, ['Virtual Physics', 'MuJoCo'],
+                      lambda name, engine: value[name, engine, metric])
+    return [*lines, *verdicts(rows)]
+
+
 def operations(rows):
     value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
 
@@ -78,7 +90,7 @@ def operations(rows):
 PICTURES = {'rigid': ('rigid-step-times.png', 'Time of a step by scene and engine'),
             'scaling': ('rigid-scaling.png', 'Time of a step by number of bodies')}
 # Of ./bench's comparisons.
-LAYOUTS = {'loop': flat, 'multibody': multibody, 'operations': operations, 'rigid': rigid_tables.rigid,
+LAYOUTS = {'loop': flat, 'multibody': multibody, 'robots': robots, 'operations': operations, 'rigid': rigid_tables.rigid,
            'scaling': rigid_tables.scaling}
 
 

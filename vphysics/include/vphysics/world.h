@@ -213,8 +213,8 @@ class World {
   Inertia inertia(BodyId body) const;  // about its origin, 0 if not dynamic; precondition: the same
   [[nodiscard]] Expected<void> set_pose(BodyId body, const SE3& T_world_body);  // refused for links
   [[nodiscard]] Expected<void> set_velocity(BodyId body, const se3& velocity);  // refused for links
-  // The same in the world's axes, and of the centre of mass: of links too; of links without mass and
-  // of bodies that are not dynamic, of the origin. Precondition: contains(body).
+  // The same in the world's axes, and of the centre of mass: of links too; of links without mass
+  // and of bodies that are not dynamic, of the origin. Precondition: contains(body).
   VelocityWorld velocity_world(BodyId body) const;
   Vec3 velocity_at(BodyId body, const Vec3& point_world) const;  // of the body's point there [m/s]
   // Refused for links, and where set_velocity is.

@@ -1,0 +1,63 @@
+// Robots on flat ground, described once: Virtual Physics and MuJoCo are built from the same list.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vphysics/multibody/model.h"
+
+namespace robots {
+
+// A segment swept by a sphere; a sphere where both ends are one. In the link's frame.
+struct RoundShape {
+  vp::Vec3 from, to;
+  double radius;
+};
+
+// All joints are revolute, but the first link's, which is free. A link without mass shares its
+// origin and axes with its one child: together they are a joint of two or three axes.
+struct Link {
+  vp::LinkSpec spec;
+  std::vector<RoundShape> shapes;
+  // Of its joint: where it starts and what its motor pulls it to; or the largest random torque.
+  double position = 0.0;
+  double stiffness = 0.0, damping = 0.0;
+  double random_torque = 0.0;
+};
+
+struct Robot {
+  std::string name;
+  std::vector<Link> links;
+  vp::SE3 start;           // T_world_base
+  bool is_random() const;  // some joint has random torques
+};
+
+const std::vector<std::string>& robot_names();
+// Precondition: a name of robot_names().
+Robot make_robot(std::string_view name);
+
+inline constexpr double kFriction = 0.8;
+
+// In [-1, 1]: a new one for each joint with random torques after every kHeldSteps, joint after
+// joint, the same in both engines.
+inline constexpr int kHeldSteps = 10;
+class Torques {
+ public:
+  double next();
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+// One engine with one robot.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  virtual void step() = 0;
+  virtual vp::SE3 pose(int link) const = 0;  // of a link with mass
+  virtual double speed() const = 0;          // the largest of all its velocities
+};
+
+}  // namespace robots
