@@ -33,16 +33,12 @@ vp::Model model_of(const Robot& robot) {
 vp::ColliderDesc collider_of(const RoundShape& shape) {
   vp::ColliderDesc desc;
   desc.material.friction = kFriction;
-  const vp::Vec3 along = shape.to - shape.from;
+  const vp::Vec3 along = shape.to - shape.from, middle = 0.5 * (shape.from + shape.to);
   const double length = norm(along);
-  desc.T_body_shape =
-      vp::SE3(vp::Mat3{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0.5 * (shape.from + shape.to));
+  desc.T_body_shape = vp::SE3(vp::Mat3::identity(), middle);
   desc.shape = vp::Sphere{shape.radius};
   if (length == 0.0) return desc;
-  const vp::Vec3 z = (1.0 / length) * along;
-  const vp::Vec3 other = std::fabs(z.x) < 0.6 ? vp::Vec3{1, 0, 0} : vp::Vec3{0, 1, 0};
-  const vp::Vec3 x = (1.0 / norm(cross(other, z))) * cross(other, z);
-  desc.T_body_shape = vp::SE3(vp::Mat3{x, cross(z, x), z}, 0.5 * (shape.from + shape.to));
+  desc.T_body_shape = vp::SE3(facing((1.0 / length) * along), middle);
   desc.shape = vp::Capsule{shape.radius, 0.5 * length};
   return desc;
 }

@@ -12,13 +12,6 @@ using vp::Vec3;
 constexpr double kDensity = 1000.0;  // [kg/m^3]
 constexpr Vec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
 
-// Any rotation that takes z there.
-vp::Mat3 facing(const Vec3& z) {
-  const Vec3 other = std::fabs(z.x) < 0.6 ? kX : kY;
-  const Vec3 x = cross(other, z), unit = (1.0 / norm(x)) * x;
-  return {unit, cross(z, unit), z};
-}
-
 Inertia inertia_of(const RoundShape& shape) {
   const Vec3 along = shape.to - shape.from, middle = 0.5 * (shape.from + shape.to);
   const double length = norm(along), r = shape.radius;
@@ -27,7 +20,7 @@ Inertia inertia_of(const RoundShape& shape) {
   const double about = 0.4 * ball * r * r + 0.5 * rod * r * r;
   const double across = ball * (0.4 * r * r + 0.25 * length * length + 0.375 * r * length) +
                         rod * (0.25 * r * r + length * length / 12.0);
-  const vp::Mat3 R = length > 0.0 ? facing((1.0 / length) * along) : vp::Mat3{kX, kY, kZ};
+  const vp::Mat3 R = length > 0.0 ? facing((1.0 / length) * along) : vp::Mat3::identity();
   return Inertia(ball + rod, Vec3{across, across, about}).InvXform(SE3(R, middle));
 }
 
@@ -46,7 +39,7 @@ class Builder {
     link.spec.name = "link" + std::to_string(robot_.links.size());
     link.spec.parent = parent;
     link.spec.joint = vp::RevoluteJoint{axis};
-    link.spec.T_parent_joint = SE3(vp::Mat3{kX, kY, kZ}, at);
+    link.spec.T_parent_joint = SE3(vp::Mat3::identity(), at);
     link.spec.armature = armature;
     link.spec.damping = damping;
     vp::JointForces limits;
@@ -113,7 +106,7 @@ Robot humanoid() {
 
 // 18 velocities: a trunk on four legs of three joints that stiff motors hold.
 Robot quadruped() {
-  Builder b("quadruped", SE3(vp::Mat3{kX, kY, kZ}, {0, 0, 0.42}));
+  Builder b("quadruped", SE3(vp::Mat3::identity(), {0, 0, 0.42}));
   const int trunk =
       b.base({{{-0.2, 0.07, 0}, {0.2, 0.07, 0}, 0.07}, {{-0.2, -0.07, 0}, {0.2, -0.07, 0}, 0.07}});
   b.damping = 0.2;
@@ -140,7 +133,7 @@ Robot quadruped() {
 
 // 14 velocities: a ball on four legs of two joints, pushed by random torques.
 Robot ant() {
-  Builder b("ant", SE3(vp::Mat3{kX, kY, kZ}, {0, 0, 0.6}));
+  Builder b("ant", SE3(vp::Mat3::identity(), {0, 0, 0.6}));
   const int torso = b.base({{{0, 0, 0}, {0, 0, 0}, 0.25}});
   b.armature = 1.0;
   constexpr double kHalf = 0.7;  // an eighth of a turn's sine and cosine, nearly
@@ -158,6 +151,12 @@ Robot ant() {
 
 }  // namespace
 
+vp::Mat3 facing(const Vec3& z) {
+  const Vec3 other = std::fabs(z.x) < 0.6 ? kX : kY;
+  const Vec3 x = cross(other, z), unit = (1.0 / norm(x)) * x;
+  return {unit, cross(z, unit), z};
+}
+
 bool Robot::is_random() const {
   for (const Link& link : links) {
     if (link.random_torque > 0.0) return true;
@@ -174,15 +173,6 @@ Robot make_robot(std::string_view name) {
   if (name == "humanoid") return humanoid();
   if (name == "quadruped") return quadruped();
   return ant();
-}
-
-// Steele, Lea and Flood 2014: SplitMix64.
-double Torques::next() {
-  std::uint64_t x = state_ += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  x ^= x >> 31;
-  return static_cast<double>(x >> 11) * 0x1p-52 - 1.0;
 }
 
 }  // namespace robots

@@ -1,7 +1,7 @@
 // Robots on flat ground, described once: Virtual Physics and MuJoCo are built from the same list.
 #pragma once
 
-#include <cstdint>
+#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,15 +40,18 @@ Robot make_robot(std::string_view name);
 
 inline constexpr double kFriction = 0.8;
 
+// A rotation that takes the z axis there, a unit vector.
+vp::Mat3 facing(const vp::Vec3& z);
+
 // In [-1, 1]: a new one for each joint with random torques after every kHeldSteps, joint after
 // joint, the same in both engines.
 inline constexpr int kHeldSteps = 10;
 class Torques {
  public:
-  double next();
+  double next() { return static_cast<double>(numbers_() >> 11) * 0x1p-52 - 1.0; }
 
  private:
-  std::uint64_t state_ = 1;
+  std::mt19937_64 numbers_;
 };
 
 // One engine with one robot.

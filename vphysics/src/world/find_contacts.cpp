@@ -283,6 +283,7 @@ Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
 Velocity World::Impl::pull_of(const Body& body, double dt) const {
   if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
   const Velocity a = acceleration_of(body);
+  if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
   const double most = norm(a.v) + body.reach * norm(a.w);
   if (most <= kBornePull || dt * dt * most <= desc.contact_slop) return {};
   const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(dt));
@@ -298,22 +299,23 @@ double World::Impl::approach(const Collider& a, const Collider& b, double dt) co
     return body.v + cross(body.w, at - reference_point(body));
   };
   const Velocity pull_a = pull_of(body_a, dt), pull_b = pull_of(body_b, dt);
-  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at) {
+  // Of what is within that radius of a point of the body.
+  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at, double radius) {
     if (pull == Velocity{}) return 0.0;
-    return norm(pull.v + cross(pull.w, at - reference_point(body)));
+    return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
   };
   const Vicinity at = vicinity_of(a, b);
   const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
                           at.radius * norm(body_b.w - body_a.w) +
-                          pulled(body_a, pull_a, at.centre) + pulled(body_b, pull_b, at.centre) +
-                          at.radius * (norm(pull_a.w) + norm(pull_b.w));
+                          pulled(body_a, pull_a, at.centre, at.radius) +
+                          pulled(body_b, pull_b, at.centre, at.radius);
   const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
     const double turn = dt * (norm(body.w) + norm(pull.w));
     return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
   };
   const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
   const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
-                       pulled(body_a, pull_a, end_a) + pulled(body_b, pull_b, end_b);
+                       pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
   return std::min(dt * together,
                   dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
 }
