@@ -5,7 +5,6 @@
 #include "world/impl.h"
 #include "world/recorded_call.h"
 #include "world/refuse.h"
-#include "world/slots.h"
 #include "world/structure.h"
 #include "world/validate.h"
 
@@ -36,7 +35,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   }
   const ArticulationId id{number + 1, art.generation};
   for (int link = 0; link < desc.model.links(); ++link) {
-    const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
+    const std::uint32_t index = impl_->bodies.take();
     Body& body = impl_->bodies[index];
     body.motion = art.is_fixed(link) ? Motion::fixed : Motion::dynamic;
     body.is_link = true;
@@ -65,7 +64,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
 BodyId World::link_body(ArticulationId id, int link) const {
   const Articulation* art = impl_->find(id);
   if (!art || link < 0 || link >= art->model().links()) return {};
-  return body_id(impl_->bodies, art->bodies[static_cast<std::size_t>(link)]);
+  return impl_->bodies.id(art->bodies[static_cast<std::size_t>(link)]);
 }
 
 const Model* World::model(ArticulationId id) const {

@@ -92,9 +92,23 @@ Mat3 turned(const Mat3& R, const Vec3& t) {
   return straightened(turned_nearly(R, t));
 }
 
-// Whether it takes part in the sub-stepped solver.
-bool World::Impl::joins_sub_steps(const Body& body) const {
-  return body.alive && !body.is_link && !body.continuous && body.motion != Motion::fixed;
+void place(Body& body, const Vec3& reference, const Mat3& R) {
+  const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
+  body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
+  body.moved();
+}
+
+bool may_meet(const Body& a, const Body& b) {
+  if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
+  if (a.is_link && a.articulation == b.articulation) return false;
+  const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
+  return pushable || a.has_sensor || b.has_sensor;
+}
+
+solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
+  const Body& b = bodies[body];
+  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kBetween};
+  return {body + 1, b.motion == Motion::dynamic, b.region};
 }
 
 void World::Impl::list_bodies() {
@@ -244,7 +258,7 @@ void World::Impl::update_bounds_of_links(double dt) {
 // Gives the broad phase the bounds of what may have left its enlarged ones.
 void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
-  pose_colliders(index);
+  pose_colliders(bodies[index], colliders);
   const Velocity pull = pull_of(body, dt);
   const double turn = dt * (norm(body.w) + norm(pull.w));
   const Vec3 reference = reference_point(body);
@@ -393,7 +407,7 @@ void World::Impl::jumped(std::uint32_t index) {
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
   candidates_are_stale = true;
-  pose_colliders(index);
+  pose_colliders(bodies[index], colliders);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);
   }
@@ -403,7 +417,7 @@ void World::Impl::add_proxy(std::uint32_t index) {
   ready_for_queries = false;
   Collider& collider = colliders[index];
   Body& body = bodies[collider.body];
-  pose_colliders(collider.body);
+  pose_colliders(body, colliders);
   collide::ProxyDesc proxy;
   proxy.bounds = collider.bounds;
   proxy.mobility =

@@ -39,8 +39,7 @@ bool is_slow_enough(const se3& V, const Vec3& centre) {
   return nearly_in_range(V.v + cross(V.w, centre));
 }
 
-std::optional<std::string> why_not(const Body& body, const std::vector<Collider>& colliders,
-                                   Motion motion) {
+std::optional<std::string> why_not(const Body& body, const Colliders& colliders, Motion motion) {
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     const Shape& shape = colliders[c].shape;
     if (std::holds_alternative<HalfSpace>(shape) && motion != Motion::fixed) {
@@ -118,15 +117,6 @@ Body* World::Impl::find_body_to_change(BodyId id) {
 tl::unexpected<Error> World::Impl::no_body_to_change(const char* call, BodyId id) const {
   if (!find(id)) return stale(call, "the body");
   return refuse(std::string(call) + ": a link is as its articulation's model has it");
-}
-
-Collider* World::Impl::find(ColliderId id) {
-  return const_cast<Collider*>(std::as_const(*this).find(id));
-}
-const Collider* World::Impl::find(ColliderId id) const {
-  if (id.index == 0 || id.index > colliders.size()) return nullptr;
-  const Collider& c = colliders[id.index - 1];
-  return c.alive && c.generation == id.generation ? &c : nullptr;
 }
 
 // --- bodies --------------------------------------------------------------------------------------
@@ -270,7 +260,7 @@ bool World::contains(ColliderId id) const {
 }
 BodyId World::body_of(ColliderId id) const {
   const Collider* c = impl_->find(id);
-  return c ? body_id(impl_->bodies, c->body) : BodyId{};
+  return c ? impl_->bodies.id(c->body) : BodyId{};
 }
 
 Expected<void> World::set_material(ColliderId id, const Material& material) {
@@ -340,7 +330,7 @@ Expected<void> World::remove_collider(ColliderId id) {
       if (i == id.index - 1 || other.sensor) continue;
       sum = sum + solid_inertia(other.shape, other.density).InvXform(other.T_body_shape);
     }
-    const se3 V = velocity(body_id(impl_->bodies, body));
+    const se3 V = velocity(impl_->bodies.id(body));
     const Inertia left = sum.mass() > 0.0 ? sum : kUnitInertia;
     if (auto problem = impl_->problem_with_mass(impl_->bodies[body], V, left)) {
       return refuse("remove_collider: of what is left, " + *problem);
@@ -397,10 +387,9 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
     for (std::uint32_t c = body.first_collider; c != kNone; c = impl_->colliders[c].next) {
       impl_->release_collider(c);
     }
-    body.alive = false;
     body.w = body.v = {};
     body.first_collider = kNone;
-    impl_->free_bodies.push_back(b);
+    impl_->bodies.release(b);
   }
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);

@@ -25,8 +25,8 @@ void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved
       const solve::ContactPoint& p = c.points[i];
       if (p.normal_impulse <= 0.0) continue;
       step_contacts.push_back(
-          {collider_id(colliders, c.collider_a), collider_id(colliders, c.collider_b), p.position,
-           c.normal, p.normal_impulse,
+          {colliders.id(c.collider_a), colliders.id(c.collider_b), p.position, c.normal,
+           p.normal_impulse,
            p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]});
     }
   }
@@ -46,8 +46,8 @@ void World::Impl::add_points_of(const Contact& c, const solve::ContactBlock<P>& 
   for (int i = 0; i < c.count; ++i) {
     const double share = last > 0.0 ? at(block.impulse[i], lane) / last : 1.0 / c.count;
     ContactPoint& p = points.emplace_back();
-    p.collider = collider_id(colliders, of_a ? c.a : c.b);
-    p.other = collider_id(colliders, of_a ? c.b : c.a);
+    p.collider = colliders.id(of_a ? c.a : c.b);
+    p.other = colliders.id(of_a ? c.b : c.a);
     p.point = c.position[i];
     p.normal = sign * n;
     p.normal_impulse = share * all;

@@ -107,7 +107,7 @@ void World::Impl::ContactState::check_parts(Reader& in) {
 }
 
 void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
-  const std::vector<Collider>& all = world_.colliders;
+  const Colliders& all = world_.colliders;
   c.key = in.word();
   const Reader::Two both = in.two();
   c.a = both.high;
@@ -184,8 +184,8 @@ void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, boo
     in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
-    c.near_index = near.add(index, world_.end_of(world_.colliders[c.a].body).row,
-                            world_.end_of(world_.colliders[c.b].body).row);
+    c.near_index = near.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
+                            vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
     read_fields(in, solve::fields_of(near.block(c.near_index)),
                 solve::NearList::lane(c.near_index));
   }
@@ -212,7 +212,7 @@ void World::Impl::ContactState::read_regions(Reader& in) {
 }
 
 solve::ContactGraph::End World::Impl::ContactState::end_of(std::uint32_t body) const {
-  solve::ContactGraph::End end = world_.end_of(body);
+  solve::ContactGraph::End end = vp::end_of(world_.bodies, body);
   end.region = bodies_[body].region;
   return end;
 }

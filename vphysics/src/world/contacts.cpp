@@ -204,9 +204,8 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
 void World::Impl::emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
                        const Vec3& normal, double approach, double impulse, double time) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  add_event({kind, a.sensor || b.sensor, collider_id(colliders, pair.a),
-             collider_id(colliders, pair.b), a.user_data, b.user_data, point, normal, approach,
-             impulse, time});
+  add_event({kind, a.sensor || b.sensor, colliders.id(pair.a), colliders.id(pair.b), a.user_data,
+             b.user_data, point, normal, approach, impulse, time});
 }
 
 // In order of time: only sensors swept between two impacts are found out of it.

@@ -97,7 +97,7 @@ class World::Impl::Drawing {
       const Body& body = world_.bodies[c.body];
       const SE3 T = body.T * c.T_body_shape;
       const DebugMark mark = mark_of(body, c);
-      if (options_.shapes && !draw_.shape(collider_id(world_.colliders, i), c.shape, T, mark))
+      if (options_.shapes && !draw_.shape(world_.colliders.id(i), c.shape, T, mark))
         draw_wire(c.shape, T, options_.half_space_size, mark, draw_);
       if (options_.bounds && !std::holds_alternative<HalfSpace>(c.shape)) {
         const collide::Bounds b = bounds_of(c.geometry, T);
@@ -151,11 +151,9 @@ class World::Impl::Drawing {
     const Body &a = world_.bodies[joint.a], &b = world_.bodies[joint.b];
     const bool user = joint.law.form == JointLaw::Form::user;  // has no frames
     const SE3 T_a = user ? a.T : a.T * joint.T_a_joint, T_b = user ? b.T : b.T * joint.T_b_joint;
-    if (a.motion != Motion::fixed)
-      draw_.line(world_.reference_point(a), T_a.position(), DebugMark::joint);
+    if (a.motion != Motion::fixed) draw_.line(reference_point(a), T_a.position(), DebugMark::joint);
     draw_.line(T_a.position(), T_b.position(), DebugMark::joint);
-    if (b.motion != Motion::fixed)
-      draw_.line(T_b.position(), world_.reference_point(b), DebugMark::joint);
+    if (b.motion != Motion::fixed) draw_.line(T_b.position(), reference_point(b), DebugMark::joint);
     draw_.point(T_a.position(), DebugMark::joint);
     draw_.point(T_b.position(), DebugMark::joint);
     const bool gear = joint.law.form == JointLaw::Form::gear;
@@ -182,7 +180,7 @@ class World::Impl::Drawing {
     const std::uint32_t body_a = world_.colliders[c.a].body, body_b = world_.colliders[c.b].body;
     const bool with_b = world_.bodies[body_a].motion == Motion::fixed;
     const std::uint32_t body = with_b ? body_b : body_a;
-    const Vec3 centre = world_.reference_point(world_.bodies[body]);
+    const Vec3 centre = reference_point(world_.bodies[body]);
     const Vec3 turn = vector_of(world_.body_rows[body + 1].way + 3) -
                       lane_of(with_b ? block.turned_b : block.turned_a, lane);
     const Mat3 R = turned(Mat3::identity(), turn);

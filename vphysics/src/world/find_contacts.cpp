@@ -91,12 +91,6 @@ float impulse_of(const Contact& contact, const Held& impulses, const collide::Ma
 
 }  // namespace
 
-solve::ContactGraph::End World::Impl::end_of(std::uint32_t body) const {
-  const Body& b = bodies[body];
-  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kBetween};
-  return {body + 1, b.motion == Motion::dynamic, b.region};
-}
-
 // Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
 // put elsewhere since the last step, and by links.
 bool World::Impl::has_contacts_to_find() const {
@@ -214,7 +208,7 @@ void World::Impl::remove_contact(std::uint32_t index) {
 void World::Impl::set_near(std::uint32_t index, double clearance) {
   Contact& c = contact_pool[index];
   const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
-  c.near_index = near_list.add(index, end_of(a).row, end_of(b).row);
+  c.near_index = near_list.add(index, end_of(bodies, a).row, end_of(bodies, b).row);
   set_clearance(c, clearance);
 }
 
@@ -228,7 +222,7 @@ void World::Impl::set_clearance(const Contact& c, double clearance) {
     to.z.lane[lane] = static_cast<float>(v.z);
   };
   const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const Vicinity at = vicinity_of(a, b);
+  const Vicinity at = vicinity_of(bodies, a, b);
   const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
                            solve::Field3& turn, solve::Field3& arm) {
     const float* way = body_rows[row].way;
@@ -271,13 +265,6 @@ void World::Impl::use_clearance(const Contact& c) {
       static_cast<float>(norm(b.displacement - a.displacement) + turned + a.bow + b.bow);
 }
 
-Vicinity World::Impl::vicinity_of(const Collider& a, const Collider& b) const {
-  const Collider& smaller = a.radius <= b.radius ? a : b;
-  const bool turns = smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kEndless;
-  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0,
-          smaller.geometry.kind == collide::Kind::compound};
-}
-
 // What gravity and forces add to the body's velocity on the mean of a step, if that is more than
 // margins bear; else nothing, and the next step finds it by its velocity.
 Velocity World::Impl::pull_of(const Body& body, double dt) const {
@@ -304,7 +291,7 @@ double World::Impl::approach(const Collider& a, const Collider& b, double dt) co
     if (pull == Velocity{}) return 0.0;
     return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
   };
-  const Vicinity at = vicinity_of(a, b);
+  const Vicinity at = vicinity_of(bodies, a, b);
   const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
                           at.radius * norm(body_b.w - body_a.w) +
                           pulled(body_a, pull_a, at.centre, at.radius) +
@@ -410,7 +397,7 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
   }
   in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) pose_colliders(to_pose[k]);
+    for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
   });
   in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
@@ -433,7 +420,7 @@ void World::Impl::look_at(Looked& found, double dt) {
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
   // The slower parts of a compound that is the smaller one are looked for within less.
-  found.by_part = c.has_parts && vicinity_of(a, b).of_compound &&
+  found.by_part = c.has_parts && vicinity_of(bodies, a, b).of_compound &&
                   pull_of(bodies[a.body], dt) == Velocity{} &&
                   pull_of(bodies[b.body], dt) == Velocity{};
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - desc.contact_slop;
@@ -486,7 +473,7 @@ void World::Impl::take_over(const Looked& found) {
 void World::Impl::take_out_of_lane(std::uint32_t index) {
   Contact& c = contact_pool[index];
   const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
-  const std::uint32_t moved = graph.remove(c.place, end_of(a), end_of(b));
+  const std::uint32_t moved = graph.remove(c.place, end_of(bodies, a), end_of(bodies, b));
   if (moved != solve::kNoContact) contact_pool[moved].place = c.place;
   c.place = {};
   if (!c.parked) points_in_lanes -= c.count;
@@ -499,7 +486,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   Contact& c = contact_pool[index];
   ++manifolds_renewed;
   const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const auto end_a = end_of(a.body), end_b = end_of(b.body);
+  const auto end_a = end_of(bodies, a.body), end_b = end_of(bodies, b.body);
   wake(a.body);
   wake(b.body);
   Held impulses;

@@ -108,7 +108,7 @@ Expected<void> World::apply_force(BodyId id, const Vec3& force, const Vec3& poin
   if (!std::isfinite(dot(force, force)) || !in_range(point)) {
     return refuse("apply_force: force and point must be finite, the point within 1e9 m");
   }
-  Vec3 from = impl_->reference_point(*body);
+  Vec3 from = reference_point(*body);
   if (body->is_link) {
     impl_->look_at(impl_->articulations[body->articulation]);
     from = impl_->articulations[body->articulation].T_world_link(body->link).position();

@@ -23,155 +23,16 @@
 #include "vphysics/jobs.h"
 #include "vphysics/world.h"
 #include "world/articulation.h"
+#include "world/body.h"
+#include "world/collider.h"
 #include "world/contact.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
+#include "world/observed_stage.h"
+#include "world/pair_record.h"
+#include "world/solver_limits.h"
 
 namespace vp {
-
-inline constexpr std::uint32_t kNone = 0xffffffffu;
-
-// What a step reads of every body comes first.
-struct alignas(64) Body {
-  bool alive = false;
-  bool is_link = false;
-  bool continuous = false;
-  bool isotropic = false;  // rotational inertia the same about every axis: no gyroscopic term
-  Motion motion = Motion::fixed;
-  bool rested = false;   // something carried it in the last step
-  bool on_link = false;  // in this step: near a link, its row leads it (link_contacts.cpp)
-  // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
-  // colliders; else ask its articulation.
-  bool asleep = false;
-  bool wanted = false;     // its colliders' poses are about to be computed
-  bool posed = false;      // the colliders' poses and bounds are those of T
-  bool bounded = false;    // so are `bounds`
-  bool untouched = false;  // by what its row met in this step, so it has turned freely
-  bool allow_sleep = true;
-  bool mass_from_colliders = false;        // as they come and go
-  bool wants_continuous = false;           // as a dynamic body
-  std::uint16_t region = solve::kBetween;  // regions.cpp
-  std::uint32_t lanes = 0;                 // of the solver that hold it
-  std::uint32_t first_joint = kNone, first_collider = kNone;
-  std::uint32_t load = kNone;  // its entry in the world's loads; of a link none
-  float bounded_at[6] = {};    // its way when its proxies' bounds were last set
-  // To the farthest point of its bounded colliders from the reference point; half of the least
-  // extent of one [m].
-  double reach = 0.0, least_size = 1e9;
-  // State, with what is constant of it.
-  Vec3 w, v;  // world frame; v of the reference point (centre of mass; a link's origin)
-  double inverse_mass = 0.0;
-  SE3 T;                          // T_world_body
-  Vec3 centre;                    // of mass, body frame
-  Sym3 inverse_central, central;  // rotational inertia about it, body frame
-  double linear_damping = 0.0, angular_damping = 0.0;
-  double gravity_scale = 1.0;
-  // Since it was last faster than desc.sleep_speed; once drowsy, sleep_after and the time since it
-  // asked (sleep.cpp) [s].
-  double rest_time = 0.0;
-
-  std::uint64_t pose_number = 1;  // of T: how often it has moved
-
-  std::uint64_t island = 0;  // the last that it was found in (sleep.cpp)
-  double mass = 0.0;
-  se3 prescribed;         // kinematic: body frame
-  collide::Bounds local;  // of its bounded colliders, body frame
-  // Of a link that moves along and about a line alone: of its bounded colliders, wherever it turns,
-  // about its origin in the world's axes. Empty for all else.
-  collide::Bounds around_line;
-  collide::Bounds bounds;
-  std::uint32_t generation = 0;
-  std::uint32_t articulation = kNone;
-  int link = 0;  // of it
-  std::uint32_t last_collider = kNone;
-  std::uint32_t first_edge = kNone;         // of its contacts
-  std::uint32_t categories = 0, masks = 0;  // union over its colliders
-  bool has_sensor = false;
-  bool unbounded = false;  // carries a half-space
-  std::uint64_t user_data = 0;
-
-  // Its row of the solver tells how it goes; else it falls freely.
-  bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
-  bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
-  bool turns_freely() const { return !by_rows() || untouched; }
-  void moved() {
-    posed = bounded = false;
-    ++pose_number;
-  }
-};
-
-inline constexpr double kEndless = 1e30;  // a radius [m]
-
-// What is read of a collider whenever one of its contacts is looked at comes first.
-struct alignas(64) Collider {
-  std::uint32_t body = kNone;
-  std::uint32_t proxy = kNone;  // in the broad phase
-  bool alive = false;
-  bool sensor = false;
-  bool stray = false;          // out of its proxy's bounds: find_strays()
-  std::uint32_t next = kNone;  // of the same body
-  // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
-  // half-spaces, meshes and height fields.
-  double size = 0.0;
-  // A ball around it, body frame; of a half-space without end.
-  double radius = kEndless;
-  Vec3 centre;
-  std::uint32_t generation = 0;
-  std::uint32_t serial = 0;  // order of creation
-
-  collide::Geometry geometry;
-  // Follows from the body's pose, the one of that number; refreshed by the step (Body::posed).
-  std::uint64_t posed_for = 0;
-  SE3 T;
-  Material material;
-  Vec3 surface_velocity;  // shape's frame
-  collide::Bounds bounds;
-  SE3 T_body_shape;
-  CollisionFilter filter;
-  double density = 0.0;  // [kg/m^3]
-  // Of a link that moves along and about a line alone, as Body::around_line.
-  collide::Bounds around_line;
-  std::uint64_t user_data = 0;
-  Shape shape = HalfSpace{};  // owns what geometry points to
-};
-
-struct PairPoint {
-  std::uint32_t feature;
-  double normal_impulse;
-  Vec3 friction;  // world frame
-  Vec3 position;  // world frame
-};
-
-// What is remembered of a pair of colliders from step to step.
-struct PairRecord {
-  std::uint64_t key = 0;  // serials of both
-  std::uint32_t a = 0, b = 0;
-  std::uint32_t part = 0;  // number of the manifold, of pairs with several
-  std::uint32_t count = 0;
-  bool touching = false;  // the pair: only of part 0
-  Vec3 rolling;
-  PairPoint points[collide::kMaxPoints]{};
-};
-
-// A pair that touched when one of the two was destroyed; the next step reports its end. user_data
-// is not kept: it is the user's and no snapshot carries it.
-struct DestroyedPair {
-  ColliderId a, b;
-  bool sensor = false;
-};
-
-// A point of the impacts of a step, or of a link in its sub-steps.
-struct StepContact {
-  ColliderId a, b;
-  Vec3 point, normal;  // from a to b
-  double impulse = 0.0;
-  Vec3 friction;  // on b
-};
-
-struct ColliderPair {
-  std::uint64_t key;
-  std::uint32_t a, b;
-};
 
 // A pair in which the one is swept against the other; separation is that of now.
 struct SweptPair {
@@ -186,20 +47,6 @@ struct PartNews {
   std::uint32_t whole, part;
   double closing, impulse;
   Vec3 point, normal;
-};
-
-// The ball around the smaller of two colliders, where they meet if they do. World frame. The one
-// rule of how near they come: relative velocity at its centre, and relative rotation times its
-// radius.
-struct Vicinity {
-  Vec3 centre;
-  double radius;  // 0 if the smaller is a ball itself: it is met along the line through its centre
-  bool of_compound;  // the smaller is one
-};
-
-struct Velocity {
-  Vec3 w, v;  // world frame
-  bool operator==(const Velocity&) const = default;
 };
 
 // Forces and torques that the user has put on a body for the next step; world frame, about its
@@ -226,36 +73,7 @@ struct RegionKey {
   std::uint32_t body;
 };
 
-// Tells who watches, if anybody does.
-class InStage {
- public:
-  InStage(StageObserver* observer, Stage stage) : observer_(observer), stage_(stage) {
-    if (observer_) observer_->begin(stage_);
-  }
-  ~InStage() {
-    if (observer_) observer_->end(stage_);
-  }
-  InStage(const InStage&) = delete;
-  InStage& operator=(const InStage&) = delete;
-
- private:
-  StageObserver* observer_;
-  Stage stage_;
-};
-
 struct RecordedCall;
-
-// Share of a penetration that a sub-step pushes out, the fastest that velocities push, and the
-// fastest with what moves the bodies themselves [m/s of things of a metre]. A body of more contacts
-// than kCrowd shares both. In short sub-steps velocities push out kSmallDepth [m of such things] at
-// once, which may be what single precision leaves.
-inline constexpr double kPush = 0.1;
-inline constexpr double kFastestPush = 0.25;
-inline constexpr double kFastestShift = 3.0;
-inline constexpr double kCrowd = 6.0;
-inline constexpr double kSmallDepth = 1e-3;
-// How fast joints take out their errors [m/s of things of a metre].
-inline constexpr double kFastestJoint = 3.0;
 
 enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
@@ -265,11 +83,11 @@ struct World::Impl {
   double speed_unit = 1.0;                  // what a speed of things of a metre counts
   std::shared_ptr<Jobs> jobs;               // none: all is done by who calls step()
   std::shared_ptr<StageObserver> observer;  // or null
-  std::vector<Body> bodies;
-  std::vector<Collider> colliders;
+  Bodies bodies;
+  Colliders colliders;
   std::vector<Articulation> articulations;
-  std::vector<BodyJoint> joints;
-  std::vector<std::uint32_t> free_bodies, free_colliders, free_joints, free_articulations;
+  std::vector<std::uint32_t> free_articulations;
+  Joints joints;
   std::uint32_t next_serial = 1;
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key and part
@@ -402,22 +220,21 @@ struct World::Impl {
   void log_drive(ArticulationId articulation, int link, int dof, const JointDrive& drive);
 
   // world.cpp
-  Body* find(BodyId id);
-  const Body* find(BodyId id) const;
+  Body* find(BodyId id) { return bodies.find(id); }
+  const Body* find(BodyId id) const { return bodies.find(id); }
+  Collider* find(ColliderId id) { return colliders.find(id); }
+  const Collider* find(ColliderId id) const { return colliders.find(id); }
+  BodyJoint* find(JointId id) { return joints.find(id); }
   Articulation* find(ArticulationId id);
   const Articulation* find(ArticulationId id) const;
-  Vec3 reference_point(const Body& body) const;
   // Of a link, too; of what is not dynamic its origin.
   Vec3 centre_of_mass(const Body& body);
-  void place(Body& body, const Vec3& reference, const Mat3& R);
   void note_collider(std::uint32_t index);
   void drop_contacts(std::uint32_t collider);
   void release_collider(std::uint32_t index);
   void give_velocity(std::uint32_t body, const se3& V);
 
   // changes.cpp
-  Collider* find(ColliderId id);
-  const Collider* find(ColliderId id) const;
   Body* find_body_to_change(BodyId id);
   tl::unexpected<Error> no_body_to_change(const char* call, BodyId id) const;
   Inertia inertia_of_colliders(const Body& body) const;
@@ -476,9 +293,6 @@ struct World::Impl {
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
   void refresh_ways(double h);
-  void pose_collider(Collider& collider);
-  void pose_colliders(std::uint32_t body);
-  const collide::Bounds& bounds_at_pose(std::uint32_t body);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance(double h, bool to_end);
@@ -512,8 +326,6 @@ struct World::Impl {
   void jumped(std::uint32_t body);
 
   // joints.cpp
-  BodyJoint* find(JointId id);
-  const BodyJoint* find(JointId id) const;
   BodyPlace place_of(std::uint32_t body) const;
   BodyPlace place_within_step(std::uint32_t body) const;
   bool keeps_apart(std::uint32_t a, std::uint32_t b) const;
@@ -558,7 +370,6 @@ struct World::Impl {
   void unset_near(std::uint32_t contact);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   void want_posed(std::uint32_t body);
-  Vicinity vicinity_of(const Collider& a, const Collider& b) const;
   Velocity pull_of(const Body& body, double dt) const;
   double approach(const Collider& a, const Collider& b, double dt) const;
   void mark_stale(std::uint32_t contact);
@@ -566,8 +377,6 @@ struct World::Impl {
   void look_at_stale_contacts(double dt);
   void order_stale_contacts();
   void find_manifolds_of_stale(double dt, bool first);
-  solve::ContactGraph::End end_of(std::uint32_t body) const;
-  bool joins_sub_steps(const Body& body) const;
 
   // link_contacts.cpp
   void find_bodies_on_links();
@@ -589,7 +398,6 @@ struct World::Impl {
   bool find_resting_island(std::uint32_t body, std::uint64_t first);
   bool is_drowsy(const Body& body) const;
   bool may_sleep(const Body& body) const;
-  bool is_still(const Body& body) const;
   void wake(std::uint32_t body);
   void wake_neighbours(std::uint32_t body);
   void park(std::uint32_t contact);
@@ -726,28 +534,7 @@ bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& to
 inline constexpr const char* kUnbearable =
     "the forces that it has for the next step would then make it faster than 1e9 m/s or rad/s; "
     "apply them afterwards";
-// Distance from the body's reference point to the farthest point of its local bounds.
-double reach_of(const Body& body);
-// Of a dynamic body; its velocities are not those of the new centre of mass.
-void set_mass(Body& body, const Inertia& inertia);
-// Where a body comes to in h, and its rate there, if nothing touches it; world frame.
-struct Turned {
-  Mat3 R;
-  Vec3 w;
-};
-// With more_w: it turns as at the rate w + more_w, and ends with the angular momentum of w.
-Turned turned_freely(const Body& body, double h, const Vec3& more_w = {});
-// The rate of a body that is turned to R at a rate of its contacts' choice: as seen from the body
-// where its energy would grow else.
-Vec3 rate_at(const Body& body, const Mat3& R);
-// The rotation R after a small turn, a vector of the outer frame.
-Mat3 turned(const Mat3& R, const Vec3& turn);
-// Orders a pair by creation.
-ColliderPair make_pair(const std::vector<Collider>& colliders, std::uint32_t i, std::uint32_t j);
-bool should_meet(const Collider& a, const Collider& b);
-bool may_meet(const Body& a, const Body& b);
-BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index);
-ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t index);
+
 // Mixes a word into a digest.
 inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
   digest = (digest ^ word) * 0x9e3779b97f4a7c15u;

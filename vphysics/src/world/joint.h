@@ -7,7 +7,8 @@
 
 #include "solve/joint_block.h"
 #include "vphysics/lie.h"
-#include "vphysics/world_joints.h"
+#include "vphysics/world.h"
+#include "world/slots.h"
 
 namespace vp {
 
@@ -83,6 +84,8 @@ struct BodyJoint {
     return law.form == JointLaw::Form::axes && held >= 3 && rows[2].slot == 2;
   }
 };
+
+using Joints = Slots<BodyJoint, JointId>;
 
 // The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
 void lay_out(BodyJoint& joint, double h);

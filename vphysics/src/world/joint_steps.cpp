@@ -162,7 +162,7 @@ void World::Impl::for_joint_runs(const F& f) {
 void World::Impl::fill_joint(std::uint32_t index) {
   BodyJoint& joint = joints[index];
   const solve::JointForm form = form_of(joint);
-  const auto a = end_of(joint.a), b = end_of(joint.b);
+  const auto a = end_of(bodies, joint.a), b = end_of(bodies, joint.b);
   const auto add = [&]<class BLOCK>() {
     return joint_runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
   };

@@ -4,19 +4,10 @@
 #include "world/parallel.h"
 #include "world/recorded_call.h"
 #include "world/refuse.h"
-#include "world/slots.h"
 #include "world/structure.h"
 #include "world/validate.h"
 
 namespace vp {
-const BodyJoint* World::Impl::find(JointId id) const {
-  if (id.index == 0 || id.index > joints.size()) return nullptr;
-  const BodyJoint& joint = joints[id.index - 1];
-  return joint.alive && joint.generation == id.generation ? &joint : nullptr;
-}
-BodyJoint* World::Impl::find(JointId id) {
-  return const_cast<BodyJoint*>(std::as_const(*this).find(id));
-}
 
 BodyPlace World::Impl::place_of(std::uint32_t body) const {
   return {bodies[body].T, reference_point(bodies[body])};
@@ -52,9 +43,8 @@ void World::Impl::remove_joint(std::uint32_t index) {
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
   }
   mark_contacts_stale(joint.a);
-  joint.alive = false;
   joint.law.user.reset();
-  free_joints.push_back(index);
+  joints.release(index);
 }
 
 Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc& desc) {
@@ -78,7 +68,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
     return refuse("create_joint: one of the two bodies must be dynamic");
   if (auto problem = problem_with(desc)) return refuse("create_joint: " + *problem);
 
-  const std::uint32_t index = take_slot(impl_->joints, impl_->free_joints);
+  const std::uint32_t index = impl_->joints.take();
   BodyJoint& joint = impl_->joints[index];
   joint.a = a_id.index - 1;
   joint.b = b_id.index - 1;

@@ -68,8 +68,8 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
   link_contacts.clear();
   for (const ColliderPair& pair : discrete_pairs) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
-    pose_colliders(i);
-    pose_colliders(j);
+    pose_colliders(bodies[i], colliders);
+    pose_colliders(bodies[j], colliders);
     const double closing = approach(colliders[pair.a], colliders[pair.b], dt);
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + closing)) {

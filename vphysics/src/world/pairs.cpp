@@ -5,33 +5,11 @@
 
 namespace vp {
 
-ColliderPair make_pair(const std::vector<Collider>& colliders, std::uint32_t i, std::uint32_t j) {
-  if (colliders[i].serial > colliders[j].serial) std::swap(i, j);
-  return {(std::uint64_t{colliders[i].serial} << 32) | colliders[j].serial, i, j};
-}
-
-bool should_meet(const Collider& a, const Collider& b) {
-  return (a.filter.category & b.filter.mask) && (b.filter.category & a.filter.mask) &&
-         !(a.sensor && b.sensor);
-}
-
 namespace {
 
 bool can_move(const Body& body) {
   return body.motion != Motion::fixed;
 }
-
-}  // namespace
-
-// Whether any collider of the one may meet any of the other; links of one articulation never do.
-bool may_meet(const Body& a, const Body& b) {
-  if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
-  if (a.is_link && a.articulation == b.articulation) return false;
-  const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
-  return pushable || a.has_sensor || b.has_sensor;
-}
-
-namespace {
 
 bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const Collider& cb) {
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
@@ -71,46 +49,11 @@ void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
   if (!body.alive || body.first_collider == kNone) {
     bounds[i] = {};
   } else if (body.unbounded) {
-    bounds[i] = bounds_at_pose(i);
+    bounds[i] = bounds_at_pose(bodies[i], colliders);
   } else {
-    bounds[i] = grown(bounds_at_pose(i), desc.contact_slop + travel_of_bounds(body, motions[i], h));
+    bounds[i] = grown(bounds_at_pose(bodies[i], colliders),
+                      desc.contact_slop + travel_of_bounds(body, motions[i], h));
   }
-}
-
-const collide::Bounds& World::Impl::bounds_at_pose(std::uint32_t index) {
-  Body& body = bodies[index];
-  if (body.bounded) return body.bounds;
-  body.bounded = true;
-  if (!collide::empty(body.around_line)) {
-    return body.bounds = moved(body.around_line, body.T.position());
-  }
-  body.bounds =
-      collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
-  if (body.unbounded) {
-    // The bounds of a plane's body enclose those of its colliders, planes included.
-    pose_colliders(index);
-    for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-      body.bounds = merged(body.bounds, colliders[c].bounds);
-    }
-  }
-  return body.bounds;
-}
-
-void World::Impl::pose_colliders(std::uint32_t index) {
-  Body& body = bodies[index];
-  body.wanted = false;
-  if (body.posed) return;
-  body.posed = true;
-  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-    pose_collider(colliders[c]);
-  }
-}
-void World::Impl::pose_collider(Collider& collider) {
-  const Body& body = bodies[collider.body];
-  if (collider.posed_for == body.pose_number) return;
-  collider.posed_for = body.pose_number;
-  collider.T = body.T * collider.T_body_shape;
-  collider.bounds = bounds_of(collider.geometry, collider.T);
 }
 
 double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
@@ -181,8 +124,8 @@ void World::Impl::find_discrete_pairs(double h) {
     if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
     wake(pair.a);
     wake(pair.b);
-    pose_colliders(pair.a);
-    pose_colliders(pair.b);
+    pose_colliders(bodies[pair.a], colliders);
+    pose_colliders(bodies[pair.b], colliders);
     const double margin =
         desc.contact_slop + travel(a, motions[pair.a], h) + travel(b, motions[pair.b], h);
     for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
@@ -277,7 +220,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   wake(other);
   const Body &a = bodies[index], &b = bodies[other];
   const collide::Motion &ma = motions[index], &mb = motions[other];
-  pose_colliders(index);
+  pose_colliders(bodies[index], colliders);
   const double speed = norm(ma.v - mb.v);
   const double wa = norm(ma.w), wb = norm(mb.w);
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
@@ -290,7 +233,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
       Collider& cb = colliders[j];
       if (!empty(cb.around_line) && !overlap(near, moved(cb.around_line, b.T.position()))) continue;
-      pose_collider(cb);
+      pose_collider(b, cb);
       if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(cb)) continue;
       const double separation = swept_separation(ca, cb, margin);

@@ -103,7 +103,7 @@ void World::Impl::find_strays() {
   world_cast.reserve(2 * colliders.size() + 16);  // items and nodes
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].alive || bodies[b].first_collider == kNone) continue;
-    pose_colliders(b);
+    pose_colliders(bodies[b], colliders);
     for (std::uint32_t i = bodies[b].first_collider; i != kNone; i = colliders[i].next) {
       Collider& c = colliders[i];
       c.stray = !holds(finder.enlarged_bounds(c.proxy), c.bounds);
@@ -117,17 +117,17 @@ bool World::Impl::is_asked_for(const Collider& c, const QueryFilter& filter) con
   const bool met = (c.filter.category & filter.collision.mask) != 0 &&
                    (filter.collision.category & c.filter.mask) != 0;
   if (!met || (c.sensor && !filter.sensors)) return false;
-  const BodyId body = body_id(bodies, c.body);
+  const BodyId body = bodies.id(c.body);
   if (std::find(filter.ignored.begin(), filter.ignored.end(), body) != filter.ignored.end()) {
     return false;
   }
-  const auto index = static_cast<std::uint32_t>(&c - colliders.data());
-  return !filter.accepts || filter.accepts(collider_id(colliders, index), body, c.user_data);
+  const auto index = colliders.index_of(c);
+  return !filter.accepts || filter.accepts(colliders.id(index), body, c.user_data);
 }
 
 QueryHit World::Impl::hit_of(const Collider& c, std::uint32_t part) const {
-  const auto index = static_cast<std::uint32_t>(&c - colliders.data());
-  return {collider_id(colliders, index), body_id(bodies, c.body), c.user_data, part};
+  const auto index = colliders.index_of(c);
+  return {colliders.id(index), bodies.id(c.body), c.user_data, part};
 }
 
 bool World::Impl::is_younger(const QueryHit& hit, const QueryHit& other) const {

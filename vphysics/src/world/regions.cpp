@@ -121,8 +121,8 @@ void World::Impl::take_contacts_along(std::uint32_t body) {
     Contact& c = contact_pool[e / 2];
     if (c.place.points == 0 || c.parked) continue;
     const solve::Place left = c.place;
-    const std::uint32_t moved =
-        graph.follow(c.place, end_of(colliders[c.a].body), end_of(colliders[c.b].body));
+    const std::uint32_t moved = graph.follow(c.place, end_of(bodies, colliders[c.a].body),
+                                             end_of(bodies, colliders[c.b].body));
     if (moved != solve::kNoContact) contact_pool[moved].place = left;
   }
 }

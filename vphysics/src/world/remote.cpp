@@ -87,7 +87,7 @@ void World::Impl::make_remote() {
     Vec3 line;
     for (const std::uint32_t b : art.bodies) {
       if (bodies[b].first_collider == kNone) continue;
-      box = merged(box, bounds_at_pose(b));
+      box = merged(box, bounds_at_pose(bodies[b], colliders));
       line = art.line_of(bodies[b].link);
     }
     const Vec3 along = kSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};

@@ -62,7 +62,7 @@ void read(Reader& in, const JointDof& dof, DofState& state) {
   state.drive_impulse = in.number();
 }
 
-void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
+void read(Reader& in, const Colliders& colliders, PairRecord& r) {
   r.key = in.word();
   const std::uint64_t both = in.word(), flags = in.word();
   r.a = static_cast<std::uint32_t>(both >> 32);
@@ -89,7 +89,7 @@ void read(Reader& in, const std::vector<Collider>& colliders, PairRecord& r) {
   }
 }
 
-ColliderId read_id(Reader& in, const std::vector<Collider>& colliders) {
+ColliderId read_id(Reader& in, const Colliders& colliders) {
   const std::uint64_t w = in.word();
   const ColliderId id{static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
   in.check(id.index >= 1 && id.index <= colliders.size() && id.generation >= 1 &&
@@ -97,7 +97,7 @@ ColliderId read_id(Reader& in, const std::vector<Collider>& colliders) {
   return id;
 }
 
-void read(Reader& in, const std::vector<Collider>& colliders, DestroyedPair& pair) {
+void read(Reader& in, const Colliders& colliders, DestroyedPair& pair) {
   pair.a = read_id(in, colliders);
   pair.b = read_id(in, colliders);
   const std::uint64_t sensor = in.word();

@@ -20,10 +20,6 @@ bool World::Impl::may_sleep(const Body& body) const {
          !body.on_link;
 }
 
-bool World::Impl::is_still(const Body& body) const {
-  return body.asleep || body.motion == Motion::fixed;
-}
-
 // f(body) of all that touch it or are joined to it, some perhaps more than once.
 template <class F>
 void World::Impl::for_partners(std::uint32_t index, const F& f) const {
@@ -112,7 +108,7 @@ void World::Impl::park(std::uint32_t index) {
   if (c.parked) return;
   if (c.place.points > 0) {
     const solve::Place left = c.place;
-    const std::uint32_t moved = graph.park(c.place, end_of(a), end_of(b));
+    const std::uint32_t moved = graph.park(c.place, end_of(bodies, a), end_of(bodies, b));
     if (moved != solve::kNoContact) contact_pool[moved].place = left;
     points_in_lanes -= c.count;
   } else {
@@ -129,8 +125,8 @@ void World::Impl::unpark(std::uint32_t index) {
   if (!c.parked) return;
   if (c.place.points > 0) {
     const solve::Place left = c.place;
-    const std::uint32_t moved =
-        graph.unpark(c.place, end_of(colliders[c.a].body), end_of(colliders[c.b].body));
+    const std::uint32_t moved = graph.unpark(c.place, end_of(bodies, colliders[c.a].body),
+                                             end_of(bodies, colliders[c.b].body));
     if (moved != solve::kNoContact) contact_pool[moved].place = left;
     points_in_lanes += c.count;
   } else {

@@ -1,26 +1,60 @@
-// Slots of bodies and colliders, reused after what was in them is destroyed.
+// Slots of bodies, colliders or joints, in order of creation; reused after what was in them is
+// destroyed. Users hold ids: index + 1, and the generation of what is in the slot.
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace vp {
 
-// The first free slot, or a new one.
-template <class Slot>
-std::uint32_t take_slot(std::vector<Slot>& slots, std::vector<std::uint32_t>& free) {
-  std::uint32_t index = static_cast<std::uint32_t>(slots.size());
-  if (free.empty()) {
-    slots.emplace_back();
-  } else {
-    index = free.back();
-    free.pop_back();
+template <class T, class Id>
+class Slots {
+ public:
+  // Null if it does not exist (any more).
+  const T* find(Id id) const {
+    if (id.index == 0 || id.index > slots_.size()) return nullptr;
+    const T& slot = slots_[id.index - 1];
+    return slot.alive && slot.generation == id.generation ? &slot : nullptr;
   }
-  const std::uint32_t generation = slots[index].generation + 1;
-  slots[index] = Slot{};
-  slots[index].generation = generation;
-  slots[index].alive = true;
-  return index;
-}
+  T* find(Id id) { return const_cast<T*>(std::as_const(*this).find(id)); }
+  Id id(std::uint32_t index) const { return {index + 1, slots_[index].generation}; }
+  std::uint32_t index_of(const T& slot) const {
+    return static_cast<std::uint32_t>(&slot - slots_.data());
+  }
+
+  // The first free slot, or a new one.
+  std::uint32_t take() {
+    std::uint32_t index = static_cast<std::uint32_t>(slots_.size());
+    if (free_.empty()) {
+      slots_.emplace_back();
+    } else {
+      index = free_.back();
+      free_.pop_back();
+    }
+    const std::uint32_t generation = slots_[index].generation + 1;
+    slots_[index] = T{};
+    slots_[index].generation = generation;
+    slots_[index].alive = true;
+    return index;
+  }
+  void release(std::uint32_t index) {
+    slots_[index].alive = false;
+    free_.push_back(index);
+  }
+
+  T& operator[](std::size_t index) { return slots_[index]; }
+  const T& operator[](std::size_t index) const { return slots_[index]; }
+  std::size_t size() const { return slots_.size(); }
+  bool empty() const { return slots_.empty(); }
+  auto begin() { return slots_.begin(); }
+  auto end() { return slots_.end(); }
+  auto begin() const { return slots_.begin(); }
+  auto end() const { return slots_.end(); }
+
+ private:
+  std::vector<T> slots_;
+  std::vector<std::uint32_t> free_;
+};
 
 }  // namespace vp

@@ -4,44 +4,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "collide/compound_data.h"
 #include "vphysics/assert.h"
 #include "vphysics/recording.h"
 #include "world/impl.h"
 #include "world/recorded_call.h"
 #include "world/refuse.h"
-#include "world/slots.h"
 #include "world/structure.h"
 #include "world/validate.h"
 
 namespace vp {
-namespace {
-
-// As Collider::size says.
-double size_of(const collide::Geometry& g) {
-  if (collide::is_surface(g)) return 0.0;
-  if (g.kind == collide::Kind::compound) {
-    double least = collide::kFar;
-    for (const collide::Geometry& part : g.compound->geometries) {
-      least = std::min(least, size_of(part));
-    }
-    return least;
-  }
-  const collide::Bounds own = bounds_of(g, SE3{});
-  const Vec3 extents = own.upper - own.lower;
-  return 0.5 * std::min({extents.x, extents.y, extents.z});
-}
-
-}  // namespace
-
-BodyId body_id(const std::vector<Body>& bodies, std::uint32_t index) {
-  return {index + 1, bodies[index].generation};
-}
-
-ColliderId collider_id(const std::vector<Collider>& colliders, std::uint32_t index) {
-  return {index + 1, colliders[index].generation};
-}
-
 World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   VP_ASSERT(!problem_with(desc));
   impl_->given_desc = desc;
@@ -67,19 +38,6 @@ World& World::operator=(World&& other) noexcept {
   return *this;
 }
 
-const Body* World::Impl::find(BodyId id) const {
-  if (id.index == 0 || id.index > bodies.size()) return nullptr;
-  const Body& body = bodies[id.index - 1];
-  return body.alive && body.generation == id.generation ? &body : nullptr;
-}
-Body* World::Impl::find(BodyId id) {
-  return const_cast<Body*>(std::as_const(*this).find(id));
-}
-
-Vec3 World::Impl::reference_point(const Body& body) const {
-  return body.motion == Motion::dynamic && !body.is_link ? body.T * body.centre : body.T.position();
-}
-
 Vec3 World::Impl::centre_of_mass(const Body& body) {
   if (!body.is_link) return reference_point(body);
   Articulation& art = articulations[body.articulation];
@@ -89,15 +47,9 @@ Vec3 World::Impl::centre_of_mass(const Body& body) {
   return inertia.mass() > 0.0 ? T * inertia.centre_of_mass() : T.position();
 }
 
-void World::Impl::place(Body& body, const Vec3& reference, const Mat3& R) {
-  const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
-  body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
-  body.moved();
-}
-
 Expected<BodyId> World::create_body(const BodyDesc& desc) {
   if (auto problem = problem_with(desc)) return refuse("create_body: " + *problem);
-  const std::uint32_t index = take_slot(impl_->bodies, impl_->free_bodies);
+  const std::uint32_t index = impl_->bodies.take();
   Body& body = impl_->bodies[index];
   body.motion = desc.motion;
   body.wants_continuous = desc.continuous;
@@ -115,7 +67,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   Structure structure(impl_->structure);
   structure.add(0x100u + index);
   structure.add(desc);
-  const BodyId id = body_id(impl_->bodies, index);
+  const BodyId id = impl_->bodies.id(index);
   impl_->lists_are_stale = true;
   if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
   if (impl_->recorder) impl_->log({calls::CreateBody{desc}});
@@ -127,8 +79,8 @@ void World::Impl::drop_contacts(std::uint32_t index) {
   std::erase_if(records, [&](const PairRecord& r) {
     if (r.a != index && r.b != index) return false;
     if (r.touching) {
-      destroyed_pairs.push_back({collider_id(colliders, r.a), collider_id(colliders, r.b),
-                                 colliders[r.a].sensor || colliders[r.b].sensor});
+      destroyed_pairs.push_back(
+          {colliders.id(r.a), colliders.id(r.b), colliders[r.a].sensor || colliders[r.b].sensor});
     }
     return true;
   });
@@ -141,8 +93,7 @@ void World::Impl::drop_contacts(std::uint32_t index) {
     next = c.next[e % 2];  // behind a whole come no parts of it
     if (c.is_part() || (c.a != index && c.b != index)) continue;
     if (c.touching) {
-      destroyed_pairs.push_back(
-          {collider_id(colliders, c.a), collider_id(colliders, c.b), c.sensor});
+      destroyed_pairs.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
       c.touching = false;
     }
     finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
@@ -155,9 +106,8 @@ void World::Impl::release_collider(std::uint32_t index) {
   drop_contacts(index);
   Collider& collider = colliders[index];
   finder.remove(collider.proxy);
-  collider.alive = false;
-  colliders[index].shape = HalfSpace{};
-  free_colliders.push_back(index);
+  collider.shape = HalfSpace{};
+  colliders.release(index);
 }
 
 Expected<void> World::destroy_body(BodyId id) {
@@ -169,61 +119,21 @@ Expected<void> World::destroy_body(BodyId id) {
   }
   while (body->first_joint != kNone) impl_->remove_joint(body->first_joint / 2);
   impl_->remove_load(id.index - 1);
-  body->alive = false;
   body->w = body->v = {};
   body->prescribed = {};
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;
   impl_->lists_are_stale = true;
-  impl_->free_bodies.push_back(id.index - 1);
+  impl_->bodies.release(id.index - 1);
   Structure(impl_->structure).add(0x200u + id.index);
   if (impl_->recorder) impl_->log({calls::DestroyBody{id}});
   return {};
 }
 
-namespace {
-
-// Of all places to which a turn about its z takes a box, that axis being the unit vector `line` in
-// the outer frame: of a cylinder. Empty if there is no such line.
-collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
-  if (line == Vec3{}) return {};
-  const double x = std::max(-box.lower.x, box.upper.x), y = std::max(-box.lower.y, box.upper.y);
-  const double radius = std::sqrt(x * x + y * y);
-  const double half = 0.5 * (box.upper.z - box.lower.z), middle = 0.5 * (box.upper.z + box.lower.z);
-  const auto extent = [&](double u) {
-    return std::fabs(u) * half + radius * std::sqrt(std::max(0.0, 1.0 - u * u));
-  };
-  const Vec3 extents{extent(line.x), extent(line.y), extent(line.z)};
-  return collide::grown({middle * line - extents, middle * line + extents}, 1e-12 * radius);
-}
-
-}  // namespace
-
-// Adds it to what its body has of all its colliders.
 void World::Impl::note_collider(std::uint32_t index) {
-  Collider& c = colliders[index];
-  Body& body = bodies[c.body];
-  body.categories |= c.filter.category;
-  body.masks |= c.filter.mask;
-  body.has_sensor |= c.sensor;
-  if (std::holds_alternative<HalfSpace>(c.shape)) {
-    body.unbounded = true;
-    return;
-  }
-  const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
-  c.centre = 0.5 * (local.lower + local.upper);
-  c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
-                                                      : 0.5 * norm(local.upper - local.lower);
-  body.local = merged(body.local, local);
-  c.size = size_of(c.geometry);
-  body.reach = reach_of(body);
-  if (body.is_link) {
-    const Articulation& art = articulations[body.articulation];
-    const Vec3 line = art.line_of(body.link);
-    c.around_line = bounds_around(line, local);
-    body.around_line = bounds_around(line, body.local);
-  }
-  body.least_size = std::min(body.least_size, c.size);
+  Body& body = bodies[colliders[index].body];
+  vp::note_collider(body, colliders[index],
+                    body.is_link ? articulations[body.articulation].line_of(body.link) : Vec3{});
 }
 
 Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
@@ -249,7 +159,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
       return refuse("add_collider: with it, " + *problem);
     }
   }
-  const std::uint32_t index = take_slot(impl_->colliders, impl_->free_colliders);
+  const std::uint32_t index = impl_->colliders.take();
   Collider& c = impl_->colliders[index];
   c.body = body_handle.index - 1;
   c.sensor = desc.sensor;
@@ -277,7 +187,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   structure.add(body_handle.index);
   structure.add(desc);
   if (impl_->recorder) impl_->log({calls::AddCollider{body_handle, desc}});
-  return collider_id(impl_->colliders, index);
+  return impl_->colliders.id(index);
 }
 
 bool World::contains(BodyId id) const {
@@ -305,7 +215,7 @@ se3 World::velocity(BodyId id) const {
     const se3 V = art.link_velocity(body->link, T.position());
     return {T.unrotate(V.w), T.unrotate(V.v)};
   }
-  const Vec3 v = body->v + cross(body->w, body->T.position() - impl_->reference_point(*body));
+  const Vec3 v = body->v + cross(body->w, body->T.position() - reference_point(*body));
   return {body->T.unrotate(body->w), body->T.unrotate(v)};
 }
 
@@ -330,7 +240,7 @@ Expected<void> World::set_velocity_world(BodyId id, const VelocityWorld& velocit
     return refuse("set_velocity_world: every entry must be finite and at most 1e9");
   }
   const SE3& T = body->T;
-  const Vec3 from = T.position() - impl_->reference_point(*body);
+  const Vec3 from = T.position() - reference_point(*body);
   return set_velocity(id, {T.unrotate(velocity.angular),
                            T.unrotate(velocity.linear + cross(velocity.angular, from))});
 }
@@ -392,7 +302,7 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
     if (!art.apply_impulse(body->link, impulse, point)) return refuse(kTooMuch);
     impl_->follow(art);
   } else {
-    const Vec3 moment = cross(point - impl_->reference_point(*body), impulse);
+    const Vec3 moment = cross(point - reference_point(*body), impulse);
     const Vec3 v = body->v + (1.0 / body->mass) * impulse;
     const Vec3 w = body->w + rotated(body->T.rotation(), body->inverse_central) * moment;
     if (!nearly_in_range(v) || !nearly_in_range(w)) return refuse(kTooMuch);

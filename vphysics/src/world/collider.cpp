@@ -1,0 +1,114 @@
+#include "world/collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collide/compound_data.h"
+
+namespace vp {
+namespace {
+
+// As Collider::size says.
+double size_of(const collide::Geometry& g) {
+  if (collide::is_surface(g)) return 0.0;
+  if (g.kind == collide::Kind::compound) {
+    double least = collide::kFar;
+    for (const collide::Geometry& part : g.compound->geometries) {
+      least = std::min(least, size_of(part));
+    }
+    return least;
+  }
+  const collide::Bounds own = bounds_of(g, SE3{});
+  const Vec3 extents = own.upper - own.lower;
+  return 0.5 * std::min({extents.x, extents.y, extents.z});
+}
+
+// Of all places to which a turn about its z takes a box, that axis being the unit vector `line` in
+// the outer frame: of a cylinder. Empty if there is no such line.
+collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
+  if (line == Vec3{}) return {};
+  const double x = std::max(-box.lower.x, box.upper.x), y = std::max(-box.lower.y, box.upper.y);
+  const double radius = std::sqrt(x * x + y * y);
+  const double half = 0.5 * (box.upper.z - box.lower.z), middle = 0.5 * (box.upper.z + box.lower.z);
+  const auto extent = [&](double u) {
+    return std::fabs(u) * half + radius * std::sqrt(std::max(0.0, 1.0 - u * u));
+  };
+  const Vec3 extents{extent(line.x), extent(line.y), extent(line.z)};
+  return collide::grown({middle * line - extents, middle * line + extents}, 1e-12 * radius);
+}
+
+}  // namespace
+
+const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
+  if (body.bounded) return body.bounds;
+  body.bounded = true;
+  if (!collide::empty(body.around_line)) {
+    return body.bounds = moved(body.around_line, body.T.position());
+  }
+  body.bounds =
+      collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
+  if (body.unbounded) {
+    // The bounds of a plane's body enclose those of its colliders, planes included.
+    pose_colliders(body, colliders);
+    for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+      body.bounds = merged(body.bounds, colliders[c].bounds);
+    }
+  }
+  return body.bounds;
+}
+
+void pose_colliders(Body& body, Colliders& colliders) {
+  body.wanted = false;
+  if (body.posed) return;
+  body.posed = true;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    pose_collider(body, colliders[c]);
+  }
+}
+void pose_collider(const Body& body, Collider& collider) {
+  if (collider.posed_for == body.pose_number) return;
+  collider.posed_for = body.pose_number;
+  collider.T = body.T * collider.T_body_shape;
+  collider.bounds = bounds_of(collider.geometry, collider.T);
+}
+
+void note_collider(Body& body, Collider& c, const Vec3& line) {
+  body.categories |= c.filter.category;
+  body.masks |= c.filter.mask;
+  body.has_sensor |= c.sensor;
+  if (std::holds_alternative<HalfSpace>(c.shape)) {
+    body.unbounded = true;
+    return;
+  }
+  const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
+  c.centre = 0.5 * (local.lower + local.upper);
+  c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
+                                                      : 0.5 * norm(local.upper - local.lower);
+  body.local = merged(body.local, local);
+  c.size = size_of(c.geometry);
+  body.reach = reach_of(body);
+  if (body.is_link) {
+    c.around_line = bounds_around(line, local);
+    body.around_line = bounds_around(line, body.local);
+  }
+  body.least_size = std::min(body.least_size, c.size);
+}
+
+ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_t j) {
+  if (colliders[i].serial > colliders[j].serial) std::swap(i, j);
+  return {(std::uint64_t{colliders[i].serial} << 32) | colliders[j].serial, i, j};
+}
+
+bool should_meet(const Collider& a, const Collider& b) {
+  return (a.filter.category & b.filter.mask) && (b.filter.category & a.filter.mask) &&
+         !(a.sensor && b.sensor);
+}
+
+Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b) {
+  const Collider& smaller = a.radius <= b.radius ? a : b;
+  const bool turns = smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kEndless;
+  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0,
+          smaller.geometry.kind == collide::Kind::compound};
+}
+
+}  // namespace vp

@@ -1,0 +1,18 @@
+// How fast contacts and joints take out their errors.
+#pragma once
+
+namespace vp {
+
+// Share of a penetration that a sub-step pushes out, the fastest that velocities push, and the
+// fastest with what moves the bodies themselves [m/s of things of a metre]. A body of more contacts
+// than kCrowd shares both. In short sub-steps velocities push out kSmallDepth [m of such things] at
+// once, which may be what single precision leaves.
+inline constexpr double kPush = 0.1;
+inline constexpr double kFastestPush = 0.25;
+inline constexpr double kFastestShift = 3.0;
+inline constexpr double kCrowd = 6.0;
+inline constexpr double kSmallDepth = 1e-3;
+// How fast joints take out their errors [m/s of things of a metre].
+inline constexpr double kFastestJoint = 3.0;
+
+}  // namespace vp
