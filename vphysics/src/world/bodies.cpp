@@ -8,7 +8,6 @@
 #include "solve/row_vector.h"
 #include "world/free_turn.h"
 #include "world/impl.h"
-#include "world/parallel.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -114,7 +113,7 @@ solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
 void World::Impl::list_bodies() {
   if (!lists_are_stale) return;
   lists_are_stale = false;
-  candidates_are_stale = true;
+  swept_body_pairs.forget();
   movers.clear();
   link_bodies.clear();
   some_are_continuous = some_are_not = some_sleep = false;
@@ -130,9 +129,9 @@ void World::Impl::list_bodies() {
       (body.continuous ? some_are_continuous : some_are_not) = true;
     }
   }
-  sort_movers_by_region();
+  regions.sort(bodies, movers);
   list_remote_articulations();
-  list_discrete_filters();
+  discrete_body_pairs.list_filters(bodies);
   reserve_link_rows();
 }
 
@@ -183,7 +182,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
     const Velocity a = acceleration_of(body);
     put(row.rate, a.v);
     const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
-    put(row.rate + 3, is_torqued(body) ? gyroscopic + a.w : gyroscopic);
+    put(row.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
   std::copy_n(way, 6, start_ways[index].begin());
   const float* v = row.velocity;
@@ -229,7 +228,7 @@ void World::Impl::start_way_anew(std::uint32_t index) {
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
   mover_news.resize(movers.size());
-  in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = movers[k];
       Body& body = bodies[i];
@@ -285,7 +284,7 @@ bool World::Impl::leave_untouched(std::uint32_t index, double dt) {
   Body& body = bodies[index];
   solve::BodyRow& row = body_rows[index + 1];
   if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
-  if (is_torqued(body)) return false;
+  if (loads.is_torqued(body)) return false;
   if (hardly_turns(body.w, dt)) return false;
   const float h = static_cast<float>(dt / sub_steps_taken);
   float w[3];
@@ -312,7 +311,7 @@ Velocity World::Impl::settle(std::uint32_t index, double dt) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps_taken);
     const Vec3 v = body.v, w = body.w;
     const Velocity a = acceleration_of(body);
-    const bool torqued = is_torqued(body);
+    const bool torqued = loads.is_torqued(body);
     body.v = (v + dt * a.v) * (1.0 / (1.0 + dt * body.linear_damping));
     if (torqued) body.w += dt * a.w;
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
@@ -406,7 +405,7 @@ void World::Impl::jumped(std::uint32_t index) {
   mark_contacts_stale(index);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
-  candidates_are_stale = true;
+  swept_body_pairs.forget();
   pose_colliders(bodies[index], colliders);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);

@@ -74,7 +74,7 @@ std::optional<std::string> World::Impl::problem_with_mass(const Body& body, cons
   if (!is_slow_enough(V, inertia.centre_of_mass())) {
     return "the centre of mass would move faster than 1e9 m/s";
   }
-  if (!can_bear_load(body, inertia, body.T)) return kUnbearable;
+  if (!loads.can_bear(body, inertia, body.T)) return kUnbearable;
   return std::nullopt;
 }
 
@@ -90,10 +90,7 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   if (body.motion != Motion::dynamic) return;
   body.w = body.T.rotate(V.w);
   body.v = body.T.rotate(V.v + cross(V.w, body.centre));
-  if (body.load != kNone) {
-    BodyLoad& load = loads[body.load];
-    load.torque += cross(before - reference_point(body), load.force);
-  }
+  loads.take_arm(body, before - reference_point(body));
   mark_contacts_stale(index);
 }
 
@@ -169,7 +166,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
                                 const std::optional<Inertia>& inertia, const se3& V) {
   Body& body = bodies[index];
   wake_all_about(index);
-  remove_load(index);
+  loads.remove(bodies, index);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     drop_contacts(c);
     finder.remove(colliders[c].proxy);

@@ -11,8 +11,8 @@ void World::Impl::ContactState::clear() {
   parked_near_.clear();
   points_in_lanes_ = 0;
   graph_.clear();
-  region_axes_.clear();
-  region_age_ = 0.0;
+  regions_.axes.clear();
+  regions_.age = 0.0;
 }
 
 void World::Impl::ContactState::read(Reader& in) {
@@ -202,11 +202,11 @@ void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> 
 void World::Impl::ContactState::read_regions(Reader& in) {
   const std::uint32_t count = in.index(kMostRegions + 1);
   in.check(count == 0 || (std::has_single_bit(count) && count > 1));
-  region_age_ = in.number();
-  in.check(region_age_ >= 0.0);
+  regions_.age = in.number();
+  in.check(regions_.age >= 0.0);
   if (!in.ok() || count == 0) return;
-  region_axes_.resize(count);
-  for (std::uint8_t& axis : region_axes_) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
+  regions_.axes.resize(count);
+  for (std::uint8_t& axis : regions_.axes) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
   for (OfBody& body : bodies_) body.region = static_cast<std::uint16_t>(in.index(count + 1));
   if (in.ok()) graph_.set_regions(std::size_t{count} + 1);
 }
@@ -272,9 +272,8 @@ void World::Impl::ContactState::adopt() {
   }
   if (world_.graph.regions() != graph_.regions()) world_.lists_are_stale = true;
   std::swap(world_.graph, graph_);
-  world_.region_count = static_cast<std::uint16_t>(world_.graph.regions() - 1);
-  world_.region_axes.swap(region_axes_);
-  world_.region_age = region_age_;
+  regions_.count = static_cast<std::uint16_t>(world_.graph.regions() - 1);
+  std::swap(world_.regions.state, regions_);
 }
 
 }  // namespace vp

@@ -60,8 +60,7 @@ class World::Impl::ContactState {
   // parts of its whole.
   std::vector<std::uint8_t> seen_;
   solve::ContactGraph graph_;
-  std::vector<std::uint8_t> region_axes_;
-  double region_age_ = 0.0;
+  Regions::State regions_;
 };
 
 namespace contact_flags {
@@ -128,10 +127,10 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
     }
   }
-  sink.word(region_count);
-  put(sink, region_age);
-  for (const std::uint8_t axis : region_axes) sink.word(axis);
-  if (region_count > 0) {
+  sink.word(regions.state.count);
+  put(sink, regions.state.age);
+  for (const std::uint8_t axis : regions.state.axes) sink.word(axis);
+  if (regions.state.count > 0) {
     for (const Body& body : bodies) sink.word(body.region);
   }
   const auto write_lanes = [&](const auto& colour, int index) {

@@ -201,20 +201,6 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
 }
 
-void World::Impl::emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
-                       const Vec3& normal, double approach, double impulse, double time) {
-  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  add_event({kind, a.sensor || b.sensor, colliders.id(pair.a), colliders.id(pair.b), a.user_data,
-             b.user_data, point, normal, approach, impulse, time});
-}
-
-// In order of time: only sensors swept between two impacts are found out of it.
-void World::Impl::add_event(const ContactEvent& event) {
-  auto place = events.end();
-  while (place != events.begin() && std::prev(place)->time > event.time) --place;
-  events.insert(place, event);
-}
-
 // A pair's manifolds follow one another; together they make its events, at the deepest point.
 void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solved, double time) {
   for (std::size_t first = 0, end = 0; first < solved.size(); first = end) {
@@ -239,8 +225,11 @@ void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solv
     PairRecord& record = record_of(pair);
     const bool known = record.touching || touches(records_of(records, pair.key));
     record.touching = true;
-    if (!known) emit(ContactEvent::Kind::begin, pair, point, normal, approach, impulse, time);
-    if (hits) emit(ContactEvent::Kind::hit, pair, point, normal, approach, impulse, time);
+    if (!known)
+      events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, approach, impulse,
+                  time);
+    if (hits)
+      events.emit(colliders, ContactEvent::Kind::hit, pair, point, normal, approach, impulse, time);
   }
 }
 
@@ -249,7 +238,8 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
   PairRecord& record = record_of(pair);
   const bool known = record.touching || touches(records_of(records, pair.key));
   record.touching = true;
-  if (!known) emit(ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
+  if (!known)
+    events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
 }
 
 // Swept bodies report a sensor even if they are through it within the step.
@@ -291,34 +281,14 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
   }
 }
 
-void World::Impl::report_ends_of_destroyed() {
-  const auto user_data = [&](ColliderId id) {
-    const Collider& c = colliders[id.index - 1];
-    return c.alive && c.generation == id.generation ? c.user_data : 0;
-  };
-  for (const DestroyedPair& pair : destroyed_pairs) {
-    add_event({ContactEvent::Kind::end,
-               pair.sensor,
-               pair.a,
-               pair.b,
-               user_data(pair.a),
-               user_data(pair.b),
-               {},
-               {},
-               0.0,
-               0.0,
-               0.0});
-  }
-  destroyed_pairs.clear();
-}
-
 // What touched in the last step and does no more. It may meet again later in this one.
 void World::Impl::report_ends() {
   for (PairRecord& last : records) {
     if (!last.touching) continue;
     if (touches(records_of(next_records, last.key))) continue;
     last.touching = false;
-    emit(ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0, 0.0);
+    events.emit(colliders, ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0,
+                0.0);
   }
 }
 

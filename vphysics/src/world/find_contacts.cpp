@@ -13,7 +13,6 @@
 
 #include "solve/row_vector.h"
 #include "world/impl.h"
-#include "world/runs.h"
 
 namespace vp {
 namespace {
@@ -322,21 +321,24 @@ void World::Impl::mark_contacts_stale(std::uint32_t body) {
 
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
-  (void)number_blocks();
-  for_parts([&](const auto& pass, const auto& part, std::size_t first) {
-    pass.find_moved(part, step, static_cast<float>(kTurn), lane_bits.data() + first);
+  const ContactRuns runs = contact_runs();
+  std::vector<std::uint32_t>& found = block_words.words;
+  (void)runs.number();
+  runs.for_parts([&](const auto& pass, const auto& part, std::size_t first) {
+    pass.find_moved(part, step, static_cast<float>(kTurn), found.data() + first);
   });
   std::size_t next = 0;
-  for_runs([&](const auto&, const auto&, const auto& blocks) {
-    for (const auto& block : blocks) mark_stale_lanes(block.contact, lane_bits[next++]);
+  runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
+    for (const auto& block : blocks) mark_stale_lanes(block.contact, found[next++]);
   });
   const std::span<solve::NearBlock> blocks = near_list.blocks();
-  lane_bits.resize(std::max(lane_bits.size(), blocks.size()));
-  in_parallel(blocks.size(), kBodyGrain / solve::kLanes, [&](std::size_t begin, std::size_t end) {
-    solve::passes().find_closer(blocks.data() + begin, end - begin, body_rows.data(), step,
-                                lane_bits.data() + begin);
-  });
-  for (std::size_t b = 0; b < blocks.size(); ++b) mark_stale_lanes(blocks[b].contact, lane_bits[b]);
+  found.resize(std::max(found.size(), blocks.size()));
+  workers.in_parallel(blocks.size(), kBodyGrain / solve::kLanes,
+                      [&](std::size_t begin, std::size_t end) {
+                        solve::passes().find_closer(blocks.data() + begin, end - begin,
+                                                    body_rows.data(), step, found.data() + begin);
+                      });
+  for (std::size_t b = 0; b < blocks.size(); ++b) mark_stale_lanes(blocks[b].contact, found[b]);
 }
 
 void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits) {
@@ -396,10 +398,10 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
     looked.push_back({index, {}, 0.0, 0.0, 0.0, false});
     for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
   }
-  in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
   });
-  in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
   });
 }

@@ -16,11 +16,10 @@
 
 namespace vp {
 
-// Of a dynamic body that is no link; w is 0 where no torque acts.
-Velocity World::Impl::acceleration_of(const Body& body) const {
-  Velocity a{{}, body.gravity_scale * desc.gravity};
+Velocity BodyLoads::acceleration(const Body& body, const Vec3& gravity) const {
+  Velocity a{{}, body.gravity_scale * gravity};
   if (body.load == kNone) return a;
-  const BodyLoad& load = loads[body.load];
+  const BodyLoad& load = loads_[body.load];
   a.v += body.inverse_mass * load.force;
   if (is_torqued(body)) {
     a.w = rotated(body.T.rotation(), body.inverse_central) * load.torque;
@@ -33,38 +32,47 @@ bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& to
   return in_range((kLongestStep * body.inverse_mass) * force) && in_range(kLongestStep * w);
 }
 
-// What is on it, if it had that inertia and that pose: it may have been applied before.
-bool World::Impl::can_bear_load(const Body& body, const Inertia& inertia, const SE3& T) const {
+bool BodyLoads::can_bear(const Body& body, const Inertia& inertia, const SE3& T) const {
   if (body.load == kNone) return true;
-  const BodyLoad& load = loads[body.load];
+  const BodyLoad& load = loads_[body.load];
   Body changed = body;
   set_mass(changed, inertia);
   const Vec3 arm = T.rotate(body.centre - changed.centre);
-  return can_bear(changed, T.rotation(), load.force, load.torque + cross(arm, load.force));
+  return vp::can_bear(changed, T.rotation(), load.force, load.torque + cross(arm, load.force));
 }
 
-void World::Impl::set_load(std::uint32_t index, const Vec3& force, const Vec3& torque) {
+void BodyLoads::set(Bodies& bodies, std::uint32_t index, const Vec3& force, const Vec3& torque) {
   Body& body = bodies[index];
   if (body.load == kNone) {
-    body.load = static_cast<std::uint32_t>(loads.size());
-    loads.push_back({index, {}, {}});
+    body.load = static_cast<std::uint32_t>(loads_.size());
+    loads_.push_back({index, {}, {}});
   }
-  loads[body.load].force = force;
-  loads[body.load].torque = torque;
+  loads_[body.load].force = force;
+  loads_[body.load].torque = torque;
 }
 
-void World::Impl::remove_load(std::uint32_t index) {
+void BodyLoads::take_arm(const Body& body, const Vec3& arm) {
+  if (body.load == kNone) return;
+  BodyLoad& load = loads_[body.load];
+  load.torque += cross(arm, load.force);
+}
+
+void BodyLoads::remove(Bodies& bodies, std::uint32_t index) {
   const std::uint32_t load = bodies[index].load;
   if (load == kNone) return;
   bodies[index].load = kNone;
-  loads[load] = loads.back();
-  loads.pop_back();
-  if (load < loads.size()) bodies[loads[load].body].load = load;
+  loads_[load] = loads_.back();
+  loads_.pop_back();
+  if (load < loads_.size()) bodies[loads_[load].body].load = load;
+}
+
+void BodyLoads::clear(Bodies& bodies) {
+  for (const BodyLoad& load : loads_) bodies[load.body].load = kNone;
+  loads_.clear();
 }
 
 void World::Impl::clear_loads() {
-  for (const BodyLoad& load : loads) bodies[load.body].load = kNone;
-  loads.clear();
+  loads.clear(bodies);
   for (Articulation& art : articulations) art.clear_loads();
 }
 
@@ -79,9 +87,9 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
     const dse3 before = art.load(body.link);
     F += before.f;
     M += before.m;
-  } else if (body.load != kNone) {
-    F += loads[body.load].force;
-    M += loads[body.load].torque;
+  } else if (const BodyLoad* before = loads.of(body)) {
+    F += before->force;
+    M += before->torque;
   }
   const bool good =
       body.is_link ? in_range(F) && in_range(M) : can_bear(body, body.T.rotation(), F, M);
@@ -96,7 +104,7 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
     art.set_load(body.link, {M, F});
   } else {
     wake(index);
-    set_load(index, F, M);
+    loads.set(bodies, index, F, M);
   }
   return {};
 }

@@ -26,10 +26,16 @@
 #include "world/body.h"
 #include "world/collider.h"
 #include "world/contact.h"
+#include "world/events.h"
+#include "world/impact_pairs.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
+#include "world/loads.h"
 #include "world/observed_stage.h"
 #include "world/pair_record.h"
+#include "world/parallel.h"
+#include "world/regions.h"
+#include "world/runs.h"
 #include "world/solver_limits.h"
 
 namespace vp {
@@ -49,13 +55,6 @@ struct PartNews {
   Vec3 point, normal;
 };
 
-// Forces and torques that the user has put on a body for the next step; world frame, about its
-// centre of mass.
-struct BodyLoad {
-  std::uint32_t body = 0;
-  Vec3 force, torque;
-};
-
 // What the narrow phase has found of a contact.
 struct Looked {
   std::uint32_t contact;
@@ -65,23 +64,22 @@ struct Looked {
   bool by_part;  // of a compound: each part within its own margin
 };
 
-inline constexpr std::size_t kMostRegions = 4096;
-inline constexpr std::uint8_t kNoAxis = 3;  // of a halving that has not been
-// Where a body is, on a grid.
-struct RegionKey {
-  std::int32_t at[3];
-  std::uint32_t body;
-};
-
 struct RecordedCall;
+
+// What sub-steps remember from step to step.
+struct SubStepState {
+  double length = 0.0;          // of that whose impulses are in lanes and joints, 0: none yet [s]
+  double push_length = 0.0;     // that the push is made for [s]
+  bool position_error = false;  // the last step ended with one, of contacts or of joints
+};
 
 enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
 struct World::Impl {
   WorldDesc given_desc;
-  WorldDesc desc;                           // the same, its lengths and speeds in metres
-  double speed_unit = 1.0;                  // what a speed of things of a metre counts
-  std::shared_ptr<Jobs> jobs;               // none: all is done by who calls step()
+  WorldDesc desc;           // the same, its lengths and speeds in metres
+  double speed_unit = 1.0;  // what a speed of things of a metre counts
+  Workers workers;
   std::shared_ptr<StageObserver> observer;  // or null
   Bodies bodies;
   Colliders colliders;
@@ -91,8 +89,7 @@ struct World::Impl {
   std::uint32_t next_serial = 1;
   std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
   std::vector<PairRecord> records;  // sorted by key and part
-  std::vector<DestroyedPair> destroyed_pairs;
-  std::vector<BodyLoad> loads;  // of bodies that are no links, for the next step
+  BodyLoads loads;
 
   collide::PairFinder finder;
   std::vector<Contact> contact_pool;
@@ -102,16 +99,10 @@ struct World::Impl {
   // Those marked as stale, in no order, and with others that are not any more.
   std::vector<std::uint32_t> stale_contacts;
   std::uint32_t points_in_lanes = 0;
-  // Of sub-steps: that of the impulses in lanes and joints, 0: none yet; that of the push [s].
-  double sub_step_before = 0.0, push_length = 0.0;
-  bool position_error_before = false;  // the last step ended with one, of contacts or of joints
+  SubStepState sub_step_state;
   solve::ContactGraph graph;
   solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
-  // Regions but kBetween: a power of two, or none; along which axis each halving went, by its
-  // number (regions.cpp); how long ago that was [s].
-  std::uint16_t region_count = 0;
-  std::vector<std::uint8_t> region_axes;
-  double region_age = 0.0;
+  Regions regions;
 
   // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
   // or colliders come or go.
@@ -119,13 +110,10 @@ struct World::Impl {
   bool some_are_continuous = false, some_are_not = false;  // of the movers
   bool some_sleep = false;
   bool lists_are_stale = true;
-  // The same movers by region, and where each region's begin.
-  std::vector<std::uint32_t> movers_by_region, first_of_region;
-
   std::shared_ptr<Recorder> recorder;  // or null
 
   // --- of the last step
-  std::vector<ContactEvent> events;
+  Events events;
   StepCounters counters;
   int sub_steps_taken = 0;
   std::vector<StepContact> step_contacts;  // but those of lanes
@@ -144,26 +132,14 @@ struct World::Impl {
   bool impact_bodies_are_stale = true;
   // Bodies have come or gone: what drift and forced have of others than those is not 0.
   bool impact_scratch_is_stale = true;
-  // Union over what meets links, or sensors that continuous bodies carry (find_discrete_pairs()).
-  std::uint32_t discrete_categories = 0, discrete_masks = 0;
-
-  // Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
-  // both are within the kept ones; what never meets by its filters is left out. They outlast steps,
-  // but decide nothing: what is near enough is found among them anew in every round.
-  std::vector<collide::IndexPair> candidates;
-  std::vector<collide::Bounds> kept_bounds;
-  std::vector<std::uint8_t> sweeps;  // of each body: it is continuous
-  collide::BroadPhase candidate_phase;
-  // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
-  // is fixed are as old.
-  bool candidates_are_stale = true;
+  SweptBodyPairs swept_body_pairs;
+  DiscreteBodyPairs discrete_body_pairs;
 
   // --- of restore(); kept for its capacity
   struct Incoming;
   std::shared_ptr<Incoming> incoming;  // none before the first
 
   // --- scratch of a step; kept for its capacity
-  std::vector<std::uint32_t> leavers;  // of their kept bounds
   std::vector<collide::ProxyPair> new_pairs;
   std::vector<std::uint64_t> stale_bits;
   std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
@@ -173,13 +149,9 @@ struct World::Impl {
   bool finds_contacts = false;
   std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
   double dt_now = 0.0;                     // of the step that is going on; 0: none is
-  std::vector<std::uint32_t> lane_bits;
-  std::atomic<bool> some_are_too_deep = false;  // of contacts, and
-  bool some_are_far_open = false;               // of joints, when the sub-steps end
-  bool some_joints_are_far = false;             // JointPasses::Run::some_far
-  std::vector<std::size_t> first_block;         // of each region's, among lane_bits
-  std::vector<RegionKey> region_keys;
-  std::vector<std::uint32_t> changed_regions, region_ends;
+  BlockWords block_words;
+  bool some_are_far_open = false;         // of joints, when the sub-steps end
+  bool some_joints_are_far = false;       // JointPasses::Run::some_far
   solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
   std::vector<std::uint8_t> mover_news;   // of each mover: it needs more than its own row
   std::vector<Looked> looked;
@@ -190,15 +162,13 @@ struct World::Impl {
   std::vector<std::uint32_t> active_joints, joined_bodies;
   solve::LargeVector<solve::Gone> joint_ways;  // by row: of what is joined
   StepStatus status;
-  collide::BroadPhase broad_phase;
-  std::vector<collide::Bounds> bounds, discrete_bounds;
-  std::vector<std::uint8_t> movable, held;
+  std::vector<collide::Bounds> bounds;
+  std::vector<std::uint8_t> held;
   std::vector<std::uint8_t> in_contact;  // of the last solve of the stage of impacts
   std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
   std::vector<collide::Motion> motions;
   std::vector<Velocity> forced;  // what the step's forces added
   std::vector<solve::SolverBody> solver_bodies;
-  std::vector<collide::IndexPair> body_pairs;
   std::vector<ColliderPair> discrete_pairs;
   std::vector<SweptPair> swept_pairs;
   std::vector<solve::ContactConstraint> discrete_contacts, contacts;
@@ -249,14 +219,10 @@ struct World::Impl {
   void summarize_colliders(std::uint32_t body);
 
   // forces.cpp
-  Velocity acceleration_of(const Body& body) const;
-  bool is_torqued(const Body& body) const {
-    return body.load != kNone && !(loads[body.load].torque == Vec3{});
+  Velocity acceleration_of(const Body& body) const {
+    return loads.acceleration(body, desc.gravity);
   }
   Expected<void> add_load(const char* call, BodyId id, const Vec3& force, const Vec3& torque);
-  bool can_bear_load(const Body& body, const Inertia& inertia, const SE3& T) const;
-  void set_load(std::uint32_t body, const Vec3& force, const Vec3& torque);
-  void remove_load(std::uint32_t body);
   void clear_loads();
 
   // articulations.cpp
@@ -414,39 +380,15 @@ struct World::Impl {
   void remove_parts(std::uint32_t whole);
   void forget_part(std::uint32_t part);
 
-  // regions.cpp
   void divide_into_regions(double dt);
-  void assign_regions();
-  void halve(std::span<RegionKey> keys, std::size_t node);
-  void set_region(std::uint32_t body, std::uint16_t region);
   void take_contacts_along(std::uint32_t body);
-  void sort_movers_by_region();
 
   // sub_steps.cpp
-  class SubSteps;
   void run_sub_steps(double dt);
   int sub_steps_in(double dt) const;
-  void rescale_impulses(double h);
   void take_sub_steps(double dt, int count);
-  void strike(const SubSteps& steps, std::size_t blocks);
-  std::size_t number_blocks();
-  void note_position_errors();
 
-  // runs.h
-  template <class F>
-  void for_runs_of(std::size_t region, const F& f);
-  template <class F>
-  void for_runs(const F& f);
-  template <class F>
-  void for_regions(const F& f) const;
-  template <class F>
-  void everywhere(const F& f) const;
-  template <class F>
-  void for_parts_of(std::size_t region, const F& f);
-  template <class F>
-  void for_parts(const F& f);
-  template <class F>
-  void in_parallel(std::size_t count, std::size_t grain, const F& f) const;
+  ContactRuns contact_runs() { return {graph, body_rows.data(), workers, block_words}; }
 
   // touches.cpp
   void report_news();
@@ -457,15 +399,10 @@ struct World::Impl {
   bool touches_in_parts(const Contact& whole) const;
 
   // pairs.cpp
+  BodyWays body_ways() const { return {bodies, motions, bounds}; }
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);
-  void list_discrete_filters();
-  bool keep_discrete_bounds();
   void find_discrete_pairs(double h);
-  void keep_bounds(std::uint32_t body, double h);
-  void list_candidates(double h);
-  void find_candidates_of(std::uint32_t body);
-  void refresh_candidates(double h);
   void find_swept_pairs(double h);
   bool swept(const Collider& a, const Collider& b) const;
   bool is_swept(const Collider& collider) const;
@@ -490,12 +427,8 @@ struct World::Impl {
   void note_contacts(std::span<const solve::ContactConstraint> solved);
   void remember_impulses(std::span<const solve::ContactConstraint> solved, double scale);
   void report_ends();
-  void report_ends_of_destroyed();
   void report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal, double time);
   void report_swept_sensors(double h, double time);
-  void emit(ContactEvent::Kind kind, const ColliderPair& pair, const Vec3& point,
-            const Vec3& normal, double approach, double impulse, double time);
-  void add_event(const ContactEvent& event);
 
   class Drawing;  // debug_draw.cpp
 
@@ -527,13 +460,6 @@ struct World::Impl {
   template <class Sink>
   void write(Sink& sink) const;
 };
-
-// Whether the longest step leaves a body that is no link and turned by R, from rest, within 1e9 m/s
-// and rad/s.
-bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
-inline constexpr const char* kUnbearable =
-    "the forces that it has for the next step would then make it faster than 1e9 m/s or rad/s; "
-    "apply them afterwards";
 
 // Mixes a word into a digest.
 inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {

@@ -6,7 +6,6 @@
 
 #include "solve/row_vector.h"
 #include "world/impl.h"
-#include "world/parallel.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -154,7 +153,7 @@ void World::Impl::for_joint_runs(const F& f) {
     if (run.alone) {
       part(0, run.blocks.size());
     } else {
-      in_parallel(run.blocks.size(), kBlockGrain, part);
+      workers.in_parallel(run.blocks.size(), kBlockGrain, part);
     }
   });
 }
@@ -249,7 +248,7 @@ void World::Impl::evaluate_joints(solve::RowsBlock& block) {
 
 void World::Impl::prepare_joints() {
   if (active_joints.empty()) return;
-  in_parallel(joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     solve::joint_passes().find_gone(body_rows.data(), start_ways.data(),
                                     joined_bodies.data() + begin, end - begin, joint_ways.data());
   });

@@ -1,7 +1,6 @@
 // Joints between bodies: who is joined, and their part of a step.
 #include "vphysics/assert.h"
 #include "world/impl.h"
-#include "world/parallel.h"
 #include "world/recorded_call.h"
 #include "world/refuse.h"
 #include "world/structure.h"

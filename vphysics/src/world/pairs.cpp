@@ -4,38 +4,16 @@
 #include "world/impl.h"
 
 namespace vp {
-
 namespace {
-
-bool can_move(const Body& body) {
-  return body.motion != Motion::fixed;
-}
 
 bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const Collider& cb) {
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
 }
 
-// How much larger than what a body may reach its kept bounds are: contact slops, for who is pushed
-// a little, and ways of a step, so that they hold for some steps. Each candidate costs a comparison
-// in every round.
-constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
-// So many look for others one by one, each among all bodies; more, and all are sorted.
-constexpr std::size_t kFewLeavers = 6;
-
-// No point of the body moves farther than this within h.
-double travel(const Body& body, const collide::Motion& m, double h) {
-  if (!can_move(body)) return 0.0;
-  return (norm(m.v) + norm(m.w) * body.reach) * h;
-}
-// The same of the body's own bounds: where they hold however it turns, turning does not count.
-double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
-  return collide::empty(body.around_line) ? travel(body, m, h) : norm(m.v) * h;
-}
-
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
-  if (!candidates_are_stale) {
+  if (!swept_body_pairs.stale()) {
     for (const std::uint32_t i : impact_bodies()) refresh_bounds_of(i, h);
     return;
   }
@@ -45,7 +23,6 @@ void World::Impl::refresh_bounds(double h) {
 }
 void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
   const Body& body = bodies[i];
-  movable[i] = body.alive && can_move(body);
   if (!body.alive || body.first_collider == kNone) {
     bounds[i] = {};
   } else if (body.unbounded) {
@@ -70,52 +47,10 @@ bool World::Impl::swept(const Collider& a, const Collider& b) const {
   return is_swept(a) || is_swept(b);
 }
 
-namespace {
-
-bool meets_discretely(const Body& body) {
-  return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
-}
-
-}  // namespace
-
-void World::Impl::list_discrete_filters() {
-  discrete_categories = discrete_masks = 0;
-  for (const Body& body : bodies) {
-    if (!meets_discretely(body)) continue;
-    discrete_categories |= body.categories;
-    discrete_masks |= body.masks;
-  }
-}
-
-// Bounds of what may meet a link, or a sensor that a continuous body carries, the others' empty;
-// false if there are no two.
-bool World::Impl::keep_discrete_bounds() {
-  const std::uint32_t categories = discrete_categories, masks = discrete_masks;
-  if ((categories & masks) == 0) return false;
-  collide::Bounds around;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (meets_discretely(body) && (body.is_link || body.continuous))
-      around = merged(around, bounds[i]);
-  }
-  int meeting = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    const bool meets = meets_discretely(body) && (body.categories & masks) &&
-                       (body.masks & categories) && overlap(bounds[i], around);
-    discrete_bounds[i] = meets ? bounds[i] : collide::Bounds{};
-    meeting += meets ? 1 : 0;
-  }
-  return meeting > 1;
-}
-
 // Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
-  body_pairs.clear();
   discrete_pairs.clear();
-  if (!keep_discrete_bounds()) return;
-  broad_phase.find_pairs(discrete_bounds, movable, body_pairs);
-  for (const collide::IndexPair& pair : body_pairs) {
+  for (const collide::IndexPair& pair : discrete_body_pairs.find(body_ways())) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
     if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
@@ -244,60 +179,16 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   }
 }
 
-void World::Impl::keep_bounds(std::uint32_t index, double h) {
-  const collide::Bounds& now = bounds[index];
-  const double margin = kCandidateSlops * desc.contact_slop +
-                        kCandidateSteps * travel_of_bounds(bodies[index], motions[index], h);
-  kept_bounds[index] = collide::empty(now) ? now : grown(now, margin);
-}
-
-void World::Impl::list_candidates(double h) {
-  candidates_are_stale = false;
-  kept_bounds.resize(bodies.size());
-  sweeps.resize(bodies.size());
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    sweeps[i] = bodies[i].alive && bodies[i].continuous;
-    keep_bounds(i, h);
-  }
-  candidates.clear();
-  candidate_phase.find_pairs(kept_bounds, sweeps, candidates);
-  std::erase_if(candidates, [this](const collide::IndexPair& p) {
-    return !may_meet(bodies[p.a], bodies[p.b]);
-  });
-}
-
-void World::Impl::find_candidates_of(std::uint32_t index) {
-  std::erase_if(candidates,
-                [index](const collide::IndexPair& p) { return p.a == index || p.b == index; });
-  for (std::uint32_t j = 0; j < bodies.size(); ++j) {
-    if (j == index || !(sweeps[index] || sweeps[j]) || collide::empty(kept_bounds[j])) continue;
-    if (!overlap(kept_bounds[index], kept_bounds[j]) || !may_meet(bodies[index], bodies[j]))
-      continue;
-    candidates.push_back({std::min(index, j), std::max(index, j)});
-  }
-}
-
-// Who has left its kept bounds looks for others anew, alone or, if many have, with all.
-void World::Impl::refresh_candidates(double h) {
-  if (candidates_are_stale) return list_candidates(h);
-  leavers.clear();
-  for (const std::uint32_t i : impact_bodies()) {
-    if (!holds(kept_bounds[i], bounds[i])) leavers.push_back(i);
-  }
-  if (leavers.size() > kFewLeavers + bodies.size() / 64) return list_candidates(h);
-  for (const std::uint32_t i : leavers) keep_bounds(i, h);
-  for (const std::uint32_t i : leavers) find_candidates_of(i);
-}
-
 void World::Impl::find_swept_pairs(double h) {
   swept_pairs.clear();
-  refresh_candidates(h);
   // Two continuous bodies meet once, in the order of their slots, but for sensors: those that are
   // not swept are found by what the other sweeps.
-  for (const collide::IndexPair& p : candidates) {
+  for (const collide::IndexPair& p :
+       swept_body_pairs.find(body_ways(), impact_bodies(), desc.contact_slop, h)) {
     if (!overlap(bounds[p.a], bounds[p.b])) continue;
-    if (sweeps[p.a]) add_swept_pairs(p.a, p.b, h);
-    if (sweeps[p.b] && (!sweeps[p.a] || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
+    const bool a = swept_body_pairs.sweeps(p.a), b = swept_body_pairs.sweeps(p.b);
+    if (a) add_swept_pairs(p.a, p.b, h);
+    if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
   }
   std::sort(swept_pairs.begin(), swept_pairs.end(),
             [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });

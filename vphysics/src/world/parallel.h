@@ -2,24 +2,31 @@
 // matter.
 #pragma once
 
-#include "world/impl.h"
+#include <cstddef>
+#include <memory>
+
+#include "vphysics/jobs.h"
 
 namespace vp {
 
 inline constexpr std::size_t kBodyGrain = 256;  // bodies: some microseconds
 
-// f(begin, end) of parts of [0, count).
-template <class F>
-void World::Impl::in_parallel(std::size_t count, std::size_t grain, const F& f) const {
-  if (!jobs || count < 2 * grain) {
-    if (count > 0) f(std::size_t{0}, count);
-    return;
+struct Workers {
+  std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
+
+  // f(begin, end) of parts of [0, count).
+  template <class F>
+  void in_parallel(std::size_t count, std::size_t grain, const F& f) const {
+    if (!jobs || count < 2 * grain) {
+      if (count > 0) f(std::size_t{0}, count);
+      return;
+    }
+    jobs->run(count, grain,
+              {[](void* data, std::size_t begin, std::size_t end) {
+                 (*static_cast<const F*>(data))(begin, end);
+               },
+               const_cast<F*>(&f)});
   }
-  jobs->run(count, grain,
-            {[](void* data, std::size_t begin, std::size_t end) {
-               (*static_cast<const F*>(data))(begin, end);
-             },
-             const_cast<F*>(&f)});
-}
+};
 
 }  // namespace vp

@@ -174,8 +174,7 @@ struct World::Impl::Incoming {
   void read_loads(Reader& in);
 
   Impl& world;
-  double sub_step_before = 0.0, push_length = 0.0;
-  bool position_error_before = false;
+  SubStepState sub_steps;
   std::vector<BodyState> bodies;  // that are no links
   std::vector<double> q;          // of all articulations, one after the other, and so:
   std::vector<DofState> dofs;
@@ -202,10 +201,10 @@ const char* World::Impl::Incoming::read(Reader& in) {
   const std::size_t count = in.count(kRecord), destroyed_count = in.count(kPair);
   if (!in.ok()) return "restore: more contacts announced than bytes follow";
 
-  sub_step_before = in.bounded();
-  push_length = in.bounded();
-  in.check(sub_step_before >= 0.0 && push_length >= 0.0);
-  position_error_before = in.index(2) != 0;
+  sub_steps.length = in.bounded();
+  sub_steps.push_length = in.bounded();
+  in.check(sub_steps.length >= 0.0 && sub_steps.push_length >= 0.0);
+  sub_steps.position_error = in.index(2) != 0;
   bodies.clear();
   for (const Body& body : world.bodies) {
     if (!body.is_link) vp::read(in, bodies.emplace_back());
@@ -321,7 +320,7 @@ void World::Impl::adopt(Incoming& from) {
     if (joint.alive) vp::adopt(joint, *joint_state++);
   }
   clear_loads();
-  for (const BodyLoad& load : from.loads) set_load(load.body, load.force, load.torque);
+  for (const BodyLoad& load : from.loads) loads.set(bodies, load.body, load.force, load.torque);
   auto link_load = from.link_loads.cbegin();
   auto joint_load = from.joint_loads.cbegin();
   for (const std::uint32_t a : from.loaded) {
@@ -331,12 +330,10 @@ void World::Impl::adopt(Incoming& from) {
     for (std::size_t i = 0; i < art.v.size(); ++i) art.set_joint_load(i, *joint_load++);
   }
   from.contacts.adopt();
-  sub_step_before = from.sub_step_before;
-  push_length = from.push_length;
-  position_error_before = from.position_error_before;
+  sub_step_state = from.sub_steps;
   ready_for_queries = false;
   records.swap(from.records);
-  destroyed_pairs.swap(from.destroyed_pairs);
+  events.destroyed.swap(from.destroyed_pairs);
   events.clear();
   step_contacts.clear();
   counters = {};

@@ -116,10 +116,10 @@ void World::Impl::write(Sink& sink) const {
   sink.word(bodies.size());
   sink.word(articulations.size());
   sink.word(records.size());
-  sink.word(destroyed_pairs.size());
-  put(sink, sub_step_before);
-  put(sink, push_length);
-  sink.word(position_error_before ? 1 : 0);
+  sink.word(events.destroyed.size());
+  put(sink, sub_step_state.length);
+  put(sink, sub_step_state.push_length);
+  sink.word(sub_step_state.position_error ? 1 : 0);
   for (const Body& body : bodies) {
     if (body.is_link) continue;
     const Mat3& R = body.T.rotation();
@@ -140,7 +140,7 @@ void World::Impl::write(Sink& sink) const {
     }
   }
   for (const PairRecord& record : records) put(sink, record);
-  for (const DestroyedPair& pair : destroyed_pairs) put(sink, pair);
+  for (const DestroyedPair& pair : events.destroyed) put(sink, pair);
   for (const BodyJoint& joint : joints) {
     if (joint.alive) put(sink, joint);
   }
@@ -148,14 +148,14 @@ void World::Impl::write(Sink& sink) const {
   const auto loaded = static_cast<std::uint64_t>(
       std::count_if(articulations.begin(), articulations.end(),
                     [](const Articulation& art) { return art.is_loaded(); }));
-  if (loads.empty() && loaded == 0) return;
-  sink.word(loads.size());
+  if (loads.all().empty() && loaded == 0) return;
+  sink.word(loads.all().size());
   for (const Body& body : bodies) {
-    if (body.load == kNone) continue;
-    const BodyLoad& load = loads[body.load];
-    sink.word(load.body);
-    put(sink, load.force);
-    put(sink, load.torque);
+    const BodyLoad* load = loads.of(body);
+    if (!load) continue;
+    sink.word(load->body);
+    put(sink, load->force);
+    put(sink, load->torque);
   }
   sink.word(loaded);
   for (std::size_t a = 0; a < articulations.size(); ++a) {

@@ -12,7 +12,6 @@
 #include "vphysics/recording.h"
 #include "world/free_turn.h"
 #include "world/impl.h"
-#include "world/parallel.h"
 #include "world/refuse.h"
 #include "world/validate.h"
 
@@ -48,7 +47,7 @@ void World::Impl::begin_step(double dt) {
   step_contacts.clear();
   next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
-  const std::size_t room = 64 + 2 * colliders.size() + destroyed_pairs.size();
+  const std::size_t room = 64 + 2 * colliders.size() + events.destroyed.size();
   events.reserve(room);
   records.reserve(room);
   next_records.reserve(room);
@@ -70,28 +69,47 @@ void World::Impl::begin_step(double dt) {
   body_rows.resize(n + 1);
   graph.resize(n + 1);
   divide_into_regions(dt);
-  lane_bits.reserve(room / solve::kLanes + 2 * solve::kColours * graph.regions());
+  block_words.words.reserve(room / solve::kLanes + 2 * solve::kColours * graph.regions());
   if (!movers.empty()) graph.reserve(movers.size());
   start_ways.resize(n);
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
   active_joints.reserve(joints.size());
-  report_ends_of_destroyed();
+  events.report_destroyed(colliders);
   finds_contacts = has_contacts_to_find();
   if (some_are_not) load_rows(dt);
   if (finds_contacts) update_bounds_of_links(dt);
+}
+
+void World::Impl::divide_into_regions(double dt) {
+  const std::size_t before = regions.state.count;
+  if (!regions.divide(bodies, movers, static_cast<std::size_t>(desc.region_bodies), dt)) return;
+  graph.set_regions(std::max<std::size_t>(before, regions.state.count) + 1);
+  for (const std::uint32_t i : regions.changed()) take_contacts_along(i);
+  graph.set_regions(std::size_t{regions.state.count} + 1);
+  regions.sort(bodies, movers);
+}
+
+void World::Impl::take_contacts_along(std::uint32_t body) {
+  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
+    Contact& c = contact_pool[e / 2];
+    if (c.place.points == 0 || c.parked) continue;
+    const solve::Place left = c.place;
+    const std::uint32_t moved = graph.follow(c.place, end_of(bodies, colliders[c.a].body),
+                                             end_of(bodies, colliders[c.b].body));
+    if (moved != solve::kNoContact) contact_pool[moved].place = left;
+  }
 }
 
 void World::Impl::begin_impact_stage() {
   // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
   // whenever it comes, allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
-  const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + destroyed_pairs.size();
-  body_pairs.reserve(room);
+  const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + events.destroyed.size();
+  swept_body_pairs.reserve(n, room);
+  discrete_body_pairs.reserve(n, room);
   discrete_pairs.reserve(room);
   swept_pairs.reserve(room);
-  candidates.reserve(room);
-  leavers.reserve(n);
   discrete_contacts.reserve(room);
   contacts.reserve(room);
   link_contacts.reserve(room);
@@ -99,8 +117,6 @@ void World::Impl::begin_impact_stage() {
   manifolds.reserve(kManifoldsOfPair);
   bodies_on_links.reserve(n);
   bounds.resize(n);
-  discrete_bounds.resize(n);
-  movable.resize(n);
   motions.resize(n);
   solver_bodies.resize(n);
   start_poses.resize(n);
@@ -134,7 +150,7 @@ void World::Impl::integrate_forces(double dt) {
     if (body.is_link) continue;
     const Velocity a = acceleration_of(body);
     body.v += dt * a.v;
-    if (is_torqued(body)) body.w += dt * a.w;
+    if (loads.is_torqued(body)) body.w += dt * a.w;
     body.v *= 1.0 / (1.0 + dt * body.linear_damping);
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
   }
@@ -215,7 +231,7 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
 // contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
-  if (!candidates_are_stale) {
+  if (!swept_body_pairs.stale()) {
     for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
     return;
   }
@@ -271,7 +287,7 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
 
 // Where nothing is left to be met: to the end of the step in one go.
 void World::Impl::advance_all(double dt) {
-  in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Body& body = bodies[movers[k]];
       const bool led = body.motion == Motion::dynamic && body.by_rows();
@@ -474,11 +490,11 @@ void World::Impl::count_contacts() {
     });
   }
   counters.colours = static_cast<std::uint32_t>(colours.size());
-  counters.regions = region_count;
+  counters.regions = regions.state.count;
   if (colours.has(solve::kLastColour)) status.colour_limit = true;
   counters.pairs += counters.manifolds + near_list.size();
   counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
-  counters.events = static_cast<std::uint32_t>(events.size());
+  counters.events = static_cast<std::uint32_t>(events.all().size());
 }
 
 void World::Impl::finish_step() {

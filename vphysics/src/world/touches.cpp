@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "world/impl.h"
-#include "world/runs.h"
 
 namespace vp {
 namespace {
@@ -27,15 +26,16 @@ void World::Impl::report_touch(std::uint32_t index, bool loaded) {
   c.touching = loaded;
   const ColliderPair pair{c.key, c.a, c.b};
   const auto kind = loaded ? ContactEvent::Kind::begin : ContactEvent::Kind::end;
-  emit(kind, pair, loaded && c.count > 0 ? c.position[0] : Vec3{}, {}, 0.0, 0.0, 0.0);
+  events.emit(colliders, kind, pair, loaded && c.count > 0 ? c.position[0] : Vec3{}, {}, 0.0, 0.0,
+              0.0);
 }
 
 void World::Impl::report_news() {
   counters.contacts += points_in_lanes;
   std::size_t next = 0;
-  for_runs([&](const auto&, const auto&, auto& blocks) {
+  contact_runs().for_runs([&](const auto&, const auto&, auto& blocks) {
     for (auto& block : blocks) {
-      const std::uint32_t found = lane_bits[next++];
+      const std::uint32_t found = block_words.words[next++];
       for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
         report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
@@ -72,7 +72,7 @@ void World::Impl::report_news_of_parts() {
     }
     const ColliderPair pair{whole.key, whole.a, whole.b};
     const auto tell = [&](ContactEvent::Kind kind) {
-      emit(kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
+      events.emit(colliders, kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
     };
     if (!whole.touching) tell(ContactEvent::Kind::begin);
     whole.touching = true;
@@ -109,7 +109,8 @@ void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool load
   }
   const ColliderPair pair{c.key, c.a, c.b};
   const auto tell = [&](ContactEvent::Kind kind) {
-    emit(kind, pair, c.position[0], normal_of(block, lane), closing, impulse, 0.0);
+    events.emit(colliders, kind, pair, c.position[0], normal_of(block, lane), closing, impulse,
+                0.0);
   };
   if (!c.touching) tell(ContactEvent::Kind::begin);
   c.touching = true;

@@ -79,7 +79,7 @@ void World::Impl::drop_contacts(std::uint32_t index) {
   std::erase_if(records, [&](const PairRecord& r) {
     if (r.a != index && r.b != index) return false;
     if (r.touching) {
-      destroyed_pairs.push_back(
+      events.destroyed.push_back(
           {colliders.id(r.a), colliders.id(r.b), colliders[r.a].sensor || colliders[r.b].sensor});
     }
     return true;
@@ -93,7 +93,7 @@ void World::Impl::drop_contacts(std::uint32_t index) {
     next = c.next[e % 2];  // behind a whole come no parts of it
     if (c.is_part() || (c.a != index && c.b != index)) continue;
     if (c.touching) {
-      destroyed_pairs.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
+      events.destroyed.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
       c.touching = false;
     }
     finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
@@ -118,7 +118,7 @@ Expected<void> World::destroy_body(BodyId id) {
     impl_->release_collider(c);
   }
   while (body->first_joint != kNone) impl_->remove_joint(body->first_joint / 2);
-  impl_->remove_load(id.index - 1);
+  impl_->loads.remove(impl_->bodies, id.index - 1);
   body->w = body->v = {};
   body->prescribed = {};
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
@@ -250,7 +250,7 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   if (!body) return stale("set_pose", "the body");
   if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
   if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
-  if (!impl_->can_bear_load(*body, inertia(id), T)) {
+  if (!impl_->loads.can_bear(*body, inertia(id), T)) {
     return refuse(std::string("set_pose: ") + kUnbearable);
   }
   body->T = SE3(orthonormalized(T.rotation()), T.position());
@@ -315,7 +315,7 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
 }
 
 void World::set_jobs(std::shared_ptr<Jobs> jobs) {
-  impl_->jobs = std::move(jobs);
+  impl_->workers.jobs = std::move(jobs);
 }
 
 void World::observe_stages(std::shared_ptr<StageObserver> observer) {
@@ -323,7 +323,7 @@ void World::observe_stages(std::shared_ptr<StageObserver> observer) {
 }
 
 std::span<const ContactEvent> World::contact_events() const {
-  return impl_->events;
+  return impl_->events.all();
 }
 const StepCounters& World::counters() const {
   return impl_->counters;

@@ -1,0 +1,41 @@
+#include "world/events.h"
+
+namespace vp {
+
+void Events::emit(const Colliders& colliders, ContactEvent::Kind kind, const ColliderPair& pair,
+                  const Vec3& point, const Vec3& normal, double approach, double impulse,
+                  double time) {
+  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
+  add({kind, a.sensor || b.sensor, colliders.id(pair.a), colliders.id(pair.b), a.user_data,
+       b.user_data, point, normal, approach, impulse, time});
+}
+
+// In order of time: only sensors swept between two impacts are found out of it.
+void Events::add(const ContactEvent& event) {
+  auto place = events_.end();
+  while (place != events_.begin() && std::prev(place)->time > event.time) --place;
+  events_.insert(place, event);
+}
+
+void Events::report_destroyed(const Colliders& colliders) {
+  const auto user_data = [&](ColliderId id) {
+    const Collider* c = colliders.find(id);
+    return c ? c->user_data : 0;
+  };
+  for (const DestroyedPair& pair : destroyed) {
+    add({ContactEvent::Kind::end,
+         pair.sensor,
+         pair.a,
+         pair.b,
+         user_data(pair.a),
+         user_data(pair.b),
+         {},
+         {},
+         0.0,
+         0.0,
+         0.0});
+  }
+  destroyed.clear();
+}
+
+}  // namespace vp

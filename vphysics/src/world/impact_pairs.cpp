@@ -1,0 +1,135 @@
+#include "world/impact_pairs.h"
+
+#include <algorithm>
+
+namespace vp {
+namespace {
+
+// How much larger than what a body may reach its kept bounds are: contact slops, for who is pushed
+// a little, and ways of a step, so that they hold for some steps. Each candidate costs a comparison
+// in every round.
+constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
+// So many look for others one by one, each among all bodies; more, and all are sorted.
+constexpr std::size_t kFewLeavers = 6;
+
+bool meets_discretely(const Body& body) {
+  return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
+}
+
+}  // namespace
+
+double travel(const Body& body, const collide::Motion& m, double h) {
+  if (body.motion == Motion::fixed) return 0.0;
+  return (norm(m.v) + norm(m.w) * body.reach) * h;
+}
+double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
+  return collide::empty(body.around_line) ? travel(body, m, h) : norm(m.v) * h;
+}
+
+// --- swept ---------------------------------------------------------------------------------------
+
+void SweptBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
+  pairs_.reserve(pairs);
+  leavers_.reserve(bodies);
+}
+
+void SweptBodyPairs::keep_bounds(const BodyWays& ways, std::uint32_t index, double slop, double h) {
+  const collide::Bounds& now = ways.bounds[index];
+  const double margin =
+      kCandidateSlops * slop +
+      kCandidateSteps * travel_of_bounds(ways.bodies[index], ways.motions[index], h);
+  kept_bounds_[index] = collide::empty(now) ? now : grown(now, margin);
+}
+
+void SweptBodyPairs::find_all(const BodyWays& ways, double slop, double h) {
+  const Bodies& bodies = ways.bodies;
+  stale_ = false;
+  kept_bounds_.resize(bodies.size());
+  sweeps_.resize(bodies.size());
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    sweeps_[i] = bodies[i].alive && bodies[i].continuous;
+    keep_bounds(ways, i, slop, h);
+  }
+  pairs_.clear();
+  broad_phase_.find_pairs(kept_bounds_, sweeps_, pairs_);
+  std::erase_if(pairs_, [&bodies](const collide::IndexPair& p) {
+    return !may_meet(bodies[p.a], bodies[p.b]);
+  });
+}
+
+void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
+  std::erase_if(pairs_,
+                [index](const collide::IndexPair& p) { return p.a == index || p.b == index; });
+  for (std::uint32_t j = 0; j < bodies.size(); ++j) {
+    if (j == index || !(sweeps_[index] || sweeps_[j]) || collide::empty(kept_bounds_[j])) continue;
+    if (!overlap(kept_bounds_[index], kept_bounds_[j]) || !may_meet(bodies[index], bodies[j]))
+      continue;
+    pairs_.push_back({std::min(index, j), std::max(index, j)});
+  }
+}
+
+// Who has left its kept bounds looks for others again, alone or, if many have, with all.
+std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyWays& ways,
+                                                         std::span<const std::uint32_t> moving,
+                                                         double slop, double h) {
+  leavers_.clear();
+  if (!stale_) {
+    for (const std::uint32_t i : moving) {
+      if (!holds(kept_bounds_[i], ways.bounds[i])) leavers_.push_back(i);
+    }
+  }
+  if (stale_ || leavers_.size() > kFewLeavers + ways.bodies.size() / 64) {
+    find_all(ways, slop, h);
+    return pairs_;
+  }
+  for (const std::uint32_t i : leavers_) keep_bounds(ways, i, slop, h);
+  for (const std::uint32_t i : leavers_) find_of(ways.bodies, i);
+  return pairs_;
+}
+
+// --- discrete ------------------------------------------------------------------------------------
+
+void DiscreteBodyPairs::list_filters(const Bodies& bodies) {
+  categories_ = masks_ = 0;
+  for (const Body& body : bodies) {
+    if (!meets_discretely(body)) continue;
+    categories_ |= body.categories;
+    masks_ |= body.masks;
+  }
+}
+
+void DiscreteBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
+  pairs_.reserve(pairs);
+  bounds_.resize(bodies);
+  movable_.resize(bodies);
+}
+
+// Bounds of what may be in a pair, the others' empty; false if there are no two.
+bool DiscreteBodyPairs::find_bounds(const BodyWays& ways) {
+  if ((categories_ & masks_) == 0) return false;
+  const Bodies& bodies = ways.bodies;
+  collide::Bounds around;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (meets_discretely(body) && (body.is_link || body.continuous))
+      around = merged(around, ways.bounds[i]);
+  }
+  int meeting = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const bool meets = meets_discretely(body) && (body.categories & masks_) &&
+                       (body.masks & categories_) && overlap(ways.bounds[i], around);
+    bounds_[i] = meets ? ways.bounds[i] : collide::Bounds{};
+    movable_[i] = body.alive && body.motion != Motion::fixed;
+    meeting += meets ? 1 : 0;
+  }
+  return meeting > 1;
+}
+
+std::span<const collide::IndexPair> DiscreteBodyPairs::find(const BodyWays& ways) {
+  pairs_.clear();
+  if (find_bounds(ways)) broad_phase_.find_pairs(bounds_, movable_, pairs_);
+  return pairs_;
+}
+
+}  // namespace vp

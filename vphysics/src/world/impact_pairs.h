@@ -1,0 +1,74 @@
+// Which bodies may meet in the stage of impacts: pairs of which one is swept, and the others.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/broad_phase.h"
+#include "collide/sweep.h"
+#include "world/body.h"
+
+namespace vp {
+
+// No point of the body moves farther than this within h.
+double travel(const Body& body, const collide::Motion& motion, double h);
+// The same of the body's own bounds: where they hold however it turns, turning does not count.
+double travel_of_bounds(const Body& body, const collide::Motion& motion, double h);
+
+// Of each body its motion for the rest of the step, and bounds of all that it passes.
+struct BodyWays {
+  const Bodies& bodies;
+  std::span<const collide::Motion> motions;
+  std::span<const collide::Bounds> bounds;
+};
+
+// Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
+// both are within the kept ones; what never meets by its filters is left out. They outlast steps,
+// but decide nothing: what is near enough is found among them anew in every round.
+class SweptBodyPairs {
+ public:
+  // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
+  // is fixed are as old.
+  void forget() { stale_ = true; }
+  bool stale() const { return stale_; }
+  void reserve(std::size_t bodies, std::size_t pairs);
+
+  // moving: all whose bounds may have changed, ascending.
+  std::span<const collide::IndexPair> find(const BodyWays& ways,
+                                           std::span<const std::uint32_t> moving, double slop,
+                                           double h);
+  bool sweeps(std::uint32_t body) const { return sweeps_[body] != 0; }
+
+ private:
+  void keep_bounds(const BodyWays& ways, std::uint32_t body, double slop, double h);
+  void find_all(const BodyWays& ways, double slop, double h);
+  void find_of(const Bodies& bodies, std::uint32_t body);
+
+  bool stale_ = true;
+  std::vector<collide::IndexPair> pairs_;
+  std::vector<collide::Bounds> kept_bounds_;
+  std::vector<std::uint8_t> sweeps_;  // of each body: it is continuous
+  collide::BroadPhase broad_phase_;
+  std::vector<std::uint32_t> leavers_;  // of their kept bounds; scratch
+};
+
+// Pairs in which one is a link, or carries a sensor and is continuous.
+class DiscreteBodyPairs {
+ public:
+  // Bodies or colliders have come or gone.
+  void list_filters(const Bodies& bodies);
+  void reserve(std::size_t bodies, std::size_t pairs);
+  std::span<const collide::IndexPair> find(const BodyWays& ways);
+
+ private:
+  bool find_bounds(const BodyWays& ways);
+
+  std::uint32_t categories_ = 0, masks_ = 0;  // union over all that may be in a pair
+  collide::BroadPhase broad_phase_;
+  std::vector<collide::Bounds> bounds_;
+  std::vector<std::uint8_t> movable_;
+  std::vector<collide::IndexPair> pairs_;
+};
+
+}  // namespace vp

@@ -1,0 +1,49 @@
+// Forces and torques that the user has put on bodies for the next step (forces.cpp).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "world/body.h"
+
+namespace vp {
+
+// World frame; the torque is about the body's centre of mass.
+struct BodyLoad {
+  std::uint32_t body = 0;
+  Vec3 force, torque;
+};
+
+// Of bodies that are no links: an articulation has its own.
+class BodyLoads {
+ public:
+  std::span<const BodyLoad> all() const { return loads_; }
+  const BodyLoad* of(const Body& body) const {
+    return body.load == kNone ? nullptr : &loads_[body.load];
+  }
+  bool is_torqued(const Body& body) const {
+    return body.load != kNone && !(loads_[body.load].torque == Vec3{});
+  }
+  // Of a dynamic body that is no link, by gravity and its load; w is 0 where no torque acts.
+  Velocity acceleration(const Body& body, const Vec3& gravity) const;
+  // Whether it would bear its load if it had that inertia and that pose.
+  bool can_bear(const Body& body, const Inertia& inertia, const SE3& T) const;
+
+  void set(Bodies& bodies, std::uint32_t body, const Vec3& force, const Vec3& torque);
+  // The body's centre of mass has gone by -arm.
+  void take_arm(const Body& body, const Vec3& arm);
+  void remove(Bodies& bodies, std::uint32_t body);
+  void clear(Bodies& bodies);
+
+ private:
+  std::vector<BodyLoad> loads_;
+};
+
+// Whether the longest step leaves a body that is no link and turned by R, from rest, within 1e9 m/s
+// and rad/s.
+bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
+inline constexpr const char* kUnbearable =
+    "the forces that it has for the next step would then make it faster than 1e9 m/s or rad/s; "
+    "apply them afterwards";
+
+}  // namespace vp
