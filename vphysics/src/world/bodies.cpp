@@ -200,29 +200,23 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
 // has been used of it.
 void World::Impl::start_way_anew(std::uint32_t index) {
   const auto for_near = [&](const auto& f) {
-    for (std::uint32_t e = bodies[index].first_edge; e != kNone;
-         e = contact_pool[e / 2].next[e % 2]) {
-      const Contact& c = contact_pool[e / 2];
-      if (!c.stale && !c.parked && !c.of_link && c.place.points == 0) f(e / 2);
-    }
+    contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
+      if (!c.stale && !c.parked && !c.of_link && c.place.points == 0) f(contact, c);
+    });
   };
-  for_near([&](std::uint32_t contact) { use_clearance(contact_pool[contact]); });
+  for_near([&](std::uint32_t, const Contact& c) { contact_store.use_clearance(c, body_set); });
   std::fill_n(body_rows[index + 1].way, 6, 0.0f);
   std::fill_n(start_ways[index].begin(), 6, 0.0f);
   std::fill_n(bodies[index].bounded_at, 6, 1e9f);
-  for_near([&](std::uint32_t contact) {
-    const Contact& c = contact_pool[contact];
-    const float left =
-        near_list.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)];
-    if (left > 0.0f) return set_clearance(c, static_cast<double>(left));
-    reset_near(c);
-    mark_stale(contact);
+  for_near([&](std::uint32_t contact, const Contact& c) {
+    const double left = contact_store.clearance(c);
+    if (left > 0.0) return contact_store.set_clearance(c, left, body_set);
+    contact_store.reset_near(c, body_set);
+    contact_store.mark_stale(contact);
   });
-  for (std::uint32_t e = bodies[index].first_edge; e != kNone;
-       e = contact_pool[e / 2].next[e % 2]) {
-    const Contact& c = contact_pool[e / 2];
-    if (c.place.points > 0 || c.sensor || c.of_link || c.parked) mark_stale(e / 2);
-  }
+  contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
+    if (c.place.points > 0 || c.sensor || c.of_link || c.parked) contact_store.mark_stale(contact);
+  });
 }
 
 void World::Impl::load_rows(double dt) {
@@ -245,7 +239,7 @@ void World::Impl::load_rows(double dt) {
     if (mover_news[k] == 0) continue;
     const std::uint32_t i = movers[k];
     if ((mover_news[k] & kFar) != 0) start_way_anew(i);
-    if ((mover_news[k] & kPulled) != 0) mark_contacts_stale(i);
+    if ((mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
 }
@@ -380,20 +374,17 @@ bool World::Impl::advance_by_row(std::uint32_t index, double dt) {
 
 // What its lanes hold is no good to start from.
 void World::Impl::forget_contacts(std::uint32_t body) {
-  std::uint32_t next = kNone;
-  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = next) {
-    const Contact& c = contact_pool[e / 2];
-    next = c.next[e % 2];
-    mark_stale(e / 2);
+  contact_store.for_each_of(bodies[body], [&](std::uint32_t index, const Contact& c) {
+    contact_store.mark_stale(index);
     if (c.is_part()) {
-      forget_part(e / 2);
+      contact_store.forget_part(index, body_set);
     } else if (c.place.points > 0) {
-      take_out_of_lane(e / 2);
-      set_near(e / 2, 0.0);
+      contact_store.take_out_of_lane(index, body_set);
+      contact_store.set_near(index, 0.0, body_set);
     } else if (!c.parked) {
-      reset_near(c);
+      contact_store.reset_near(c, body_set);
     }
-  }
+  });
 }
 
 // Put elsewhere by the user.
@@ -402,7 +393,7 @@ void World::Impl::jumped(std::uint32_t index) {
   Body& body = bodies[index];
   wake(index);
   wake_neighbours(index);
-  mark_contacts_stale(index);
+  contact_store.mark_stale_of(bodies[index]);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
   swept_body_pairs.forget();

@@ -91,7 +91,7 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   body.w = body.T.rotate(V.w);
   body.v = body.T.rotate(V.v + cross(V.w, body.centre));
   loads.take_arm(body, before - reference_point(body));
-  mark_contacts_stale(index);
+  contact_store.mark_stale_of(bodies[index]);
 }
 
 // Of a dynamic body that takes its mass from its colliders; they have changed.
@@ -266,7 +266,7 @@ Expected<void> World::set_material(ColliderId id, const Material& material) {
   if (auto problem = problem_with(material)) return refuse("set_material: " + *problem);
   c->material = material;
   impl_->wake_all_about(c->body);
-  impl_->mark_contacts_stale(c->body);
+  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
   Structure structure(impl_->structure);
   structure.add(word_of(Change::material, id.index));
   for (const double x : {material.friction, material.restitution, material.rolling_friction,
@@ -285,7 +285,7 @@ Expected<void> World::set_surface_velocity(ColliderId id, const Vec3& velocity) 
   }
   c->surface_velocity = velocity;
   impl_->wake_all_about(c->body);
-  impl_->mark_contacts_stale(c->body);
+  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
   Structure structure(impl_->structure);
   structure.add(word_of(Change::surface_velocity, id.index));
   structure.add(velocity);
@@ -300,7 +300,7 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   c->filter = filter;
   impl_->wake_all_about(c->body);
   if (!body.continuous) impl_->finder.set_filter(c->proxy, filter.category, filter.mask);
-  impl_->mark_contacts_stale(c->body);  // some may be no more
+  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);  // some may be no more
   body.categories = body.masks = 0;
   for (std::uint32_t i = body.first_collider; i != kNone; i = impl_->colliders[i].next) {
     body.categories |= impl_->colliders[i].filter.category;
@@ -351,7 +351,7 @@ void World::Impl::take_collider_off(std::uint32_t index) {
   if (body.last_collider == index) body.last_collider = previous;
   summarize_colliders(owner);
   update_mass(owner);
-  mark_contacts_stale(owner);
+  contact_store.mark_stale_of(bodies[owner]);
   body.moved();
   lists_are_stale = true;
 }

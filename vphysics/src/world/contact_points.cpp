@@ -61,16 +61,15 @@ void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
   if (!body) return;
   const Impl& world = *impl_;
   const bool stepped = world.sub_steps_taken > 0;
-  for (std::uint32_t e = stepped ? body->first_edge : kNone; e != kNone;
-       e = world.contact_pool[e / 2].next[e % 2]) {
-    const Contact& c = world.contact_pool[e / 2];
-    if (!c.touching || c.sensor || c.place.points == 0) continue;
+  impl_->contact_store.for_each_of(*body, [&](std::uint32_t, const Contact& c) {
+    if (!stepped || !c.touching || c.sensor || c.place.points == 0) return;
+    const bool of_a = world.colliders[c.a].body == id.index - 1;
     if (c.place.points == 1) {
-      world.add_points_of(c, world.graph.block<1>(c.place), e % 2 == 0, points);
+      world.add_points_of(c, world.contact_store.graph.block<1>(c.place), of_a, points);
     } else {
-      world.add_points_of(c, world.graph.block<4>(c.place), e % 2 == 0, points);
+      world.add_points_of(c, world.contact_store.graph.block<4>(c.place), of_a, points);
     }
-  }
+  });
   for (const StepContact& c : world.step_contacts) {
     const Collider *a = world.find(c.a), *b = world.find(c.b);
     if (!a || !b) continue;

@@ -5,12 +5,7 @@
 namespace vp {
 
 void World::Impl::ContactState::clear() {
-  pool_.clear();
-  free_.clear();
-  near_.clear();
-  parked_near_.clear();
-  points_in_lanes_ = 0;
-  graph_.clear();
+  contacts_.clear();
   regions_.axes.clear();
   regions_.age = 0.0;
 }
@@ -28,28 +23,29 @@ void World::Impl::ContactState::read(Reader& in) {
   }
   read_pool(in);
   for (std::uint32_t i = 0; i < bodies_.size() && in.ok(); ++i) read_edges(in, i);
-  for (std::size_t i = 0; i < pool_.size(); ++i) in.check(!pool_[i].alive || (seen_[i] & 3u) == 3u);
+  for (std::size_t i = 0; i < contacts_.pool.size(); ++i)
+    in.check(!contacts_.pool[i].alive || (seen_[i] & 3u) == 3u);
   if (!in.ok()) return;
   const std::size_t free = in.count(1);
   for (std::size_t i = 0; i < free && in.ok(); ++i) {
-    const std::uint32_t c = in.index(pool_.size());
+    const std::uint32_t c = in.index(contacts_.pool.size());
     if (!in.ok()) return;
-    in.check(!pool_[c].alive && seen_[c] == 0);
+    in.check(!contacts_.pool[c].alive && seen_[c] == 0);
     seen_[c] = 8;
-    free_.push_back(c);
+    contacts_.free.push_back(c);
   }
-  read_near(in, near_, false);
-  read_near(in, parked_near_, true);
-  graph_.resize(world_.bodies.size() + 1);
+  read_near(in, contacts_.near, false);
+  read_near(in, contacts_.parked_near, true);
+  contacts_.graph.resize(world_.bodies.size() + 1);
   read_regions(in);
-  for (std::size_t region = 0; region < graph_.regions(); ++region) {
+  for (std::size_t region = 0; region < contacts_.graph.regions(); ++region) {
     for (int c = 0; c <= solve::kParked && in.ok(); ++c) {
       read_lanes<1>(in, region, c);
       read_lanes<4>(in, region, c);
     }
   }
-  for (std::size_t i = 0; i < pool_.size(); ++i) {
-    in.check((seen_[i] & 15u) == (pool_[i].alive ? 7u : 8u));
+  for (std::size_t i = 0; i < contacts_.pool.size(); ++i) {
+    in.check((seen_[i] & 15u) == (contacts_.pool[i].alive ? 7u : 8u));
   }
 }
 
@@ -68,9 +64,9 @@ void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
 
 void World::Impl::ContactState::read_pool(Reader& in) {
   using namespace contact_flags;
-  pool_.resize(in.count(1));
-  seen_.assign(pool_.size(), 0);
-  for (Contact& c : pool_) {
+  contacts_.pool.resize(in.count(1));
+  seen_.assign(contacts_.pool.size(), 0);
+  for (Contact& c : contacts_.pool) {
     if (!in.ok()) return;
     const std::uint64_t flags = in.word();
     const std::uint64_t kinds = flags & (kHasParts | kIsPart);
@@ -89,20 +85,21 @@ void World::Impl::ContactState::read_pool(Reader& in) {
 
 // Each part is in the chain of its whole, once.
 void World::Impl::ContactState::check_parts(Reader& in) {
-  for (std::uint32_t i = 0; i < pool_.size() && in.ok(); ++i) {
-    const Contact& whole = pool_[i];
+  for (std::uint32_t i = 0; i < contacts_.pool.size() && in.ok(); ++i) {
+    const Contact& whole = contacts_.pool[i];
     if (!whole.alive || !whole.has_parts) continue;
-    for (std::uint32_t p = whole.first_part; p != kNone && in.ok(); p = pool_[p].next_part) {
-      in.check(p < pool_.size());
+    for (std::uint32_t p = whole.first_part; p != kNone && in.ok();
+         p = contacts_.pool[p].next_part) {
+      in.check(p < contacts_.pool.size());
       if (!in.ok()) return;
-      const Contact& part = pool_[p];
+      const Contact& part = contacts_.pool[p];
       in.check(part.alive && part.whole == i && part.key == whole.key && seen_[p] == 0 &&
                !whole.sensor && !whole.of_link);
       seen_[p] = 16;
     }
   }
-  for (std::size_t i = 0; i < pool_.size(); ++i) {
-    in.check((seen_[i] & 16u) != 0 || !pool_[i].alive || !pool_[i].is_part());
+  for (std::size_t i = 0; i < contacts_.pool.size(); ++i) {
+    in.check((seen_[i] & 16u) != 0 || !contacts_.pool[i].alive || !contacts_.pool[i].is_part());
   }
 }
 
@@ -136,7 +133,7 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_par
     c.next_part = chain.low;
     c.sub_a = subs.high;
     c.sub_b = subs.low;
-    in.check(c.whole < pool_.size() && c.sub_a < number_of_parts(a.geometry) &&
+    in.check(c.whole < contacts_.pool.size() && c.sub_a < number_of_parts(a.geometry) &&
              c.sub_b < number_of_parts(b.geometry));
   }
   const std::uint64_t count = in.word();
@@ -159,9 +156,9 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
   const std::size_t count = in.count(1);
   std::uint32_t previous = kNone;
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    const std::uint32_t e = in.index(2 * pool_.size());
+    const std::uint32_t e = in.index(2 * contacts_.pool.size());
     if (!in.ok()) return;
-    Contact& c = pool_[e / 2];
+    Contact& c = contacts_.pool[e / 2];
     const auto side = static_cast<std::uint8_t>(1u << (e % 2));
     const bool own = c.alive && world_.colliders[e % 2 == 0 ? c.a : c.b].body == body;
     in.check(own && (seen_[e / 2] & side) == 0);
@@ -170,7 +167,8 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
     seen_[e / 2] = static_cast<std::uint8_t>(seen_[e / 2] | side);
     c.previous[e % 2] = previous;
     c.next[e % 2] = kNone;
-    (previous == kNone ? bodies_[body].first_edge : pool_[previous / 2].next[previous % 2]) = e;
+    (previous == kNone ? bodies_[body].first_edge
+                       : contacts_.pool[previous / 2].next[previous % 2]) = e;
     previous = e;
   }
 }
@@ -178,9 +176,9 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
 void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
   const std::size_t count = in.count(1);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
-    const std::uint32_t index = in.index(pool_.size());
+    const std::uint32_t index = in.index(contacts_.pool.size());
     if (!in.ok()) return;
-    Contact& c = pool_[index];
+    Contact& c = contacts_.pool[index];
     in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
@@ -208,7 +206,7 @@ void World::Impl::ContactState::read_regions(Reader& in) {
   regions_.axes.resize(count);
   for (std::uint8_t& axis : regions_.axes) axis = static_cast<std::uint8_t>(in.index(kNoAxis + 1));
   for (OfBody& body : bodies_) body.region = static_cast<std::uint16_t>(in.index(count + 1));
-  if (in.ok()) graph_.set_regions(std::size_t{count} + 1);
+  if (in.ok()) contacts_.graph.set_regions(std::size_t{count} + 1);
 }
 
 solve::ContactGraph::End World::Impl::ContactState::end_of(std::uint32_t body) const {
@@ -222,24 +220,24 @@ void World::Impl::ContactState::read_lanes(Reader& in, std::size_t region, int c
   constexpr std::size_t kFields = solve::kFieldsOf<P>;
   const std::size_t lanes = in.count(1 + kFields / 2);
   for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
-    const std::uint32_t index = in.index(pool_.size());
+    const std::uint32_t index = in.index(contacts_.pool.size());
     if (!in.ok()) return;
-    Contact& c = pool_[index];
+    Contact& c = contacts_.pool[index];
     in.check(c.alive && c.count > 0 && c.count <= P && (seen_[index] & 4u) == 0);
     if (!in.ok()) return;
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     const std::uint32_t a = world_.colliders[c.a].body, b = world_.colliders[c.b].body;
-    in.check(graph_.append(index, end_of(a), end_of(b), P, colour, c.place) &&
+    in.check(contacts_.graph.append(index, end_of(a), end_of(b), P, colour, c.place) &&
              c.place.region == region);
     if (!in.ok()) return;
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
     const int lane = solve::ContactGraph::lane(c.place);
-    graph_.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
-    graph_.block<P>(c.place).active.lane[lane] = 1.0f;
-    read_fields(in, solve::fields_of(graph_.block<P>(c.place)), lane);
+    contacts_.graph.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
+    contacts_.graph.block<P>(c.place).active.lane[lane] = 1.0f;
+    read_fields(in, solve::fields_of(contacts_.graph.block<P>(c.place)), lane);
     c.parked = colour == solve::kParked;
-    if (!c.parked) points_in_lanes_ += c.count;
+    if (!c.parked) contacts_.points += c.count;
   }
 }
 
@@ -260,19 +258,15 @@ void World::Impl::ContactState::adopt() {
     std::copy_n(from.way, 6, world_.body_rows[i + 1].way);
     std::copy_n(from.bounded_at, 6, body.bounded_at);
   }
-  world_.contact_pool.swap(pool_);
-  world_.free_contacts.swap(free_);
-  std::swap(world_.near_list, near_);
-  std::swap(world_.parked_near, parked_near_);
-  world_.points_in_lanes = points_in_lanes_;
-  world_.stale_contacts.clear();
-  for (std::uint32_t i = 0; i < world_.contact_pool.size(); ++i) {
-    const Contact& c = world_.contact_pool[i];
-    if (c.alive && c.stale && !c.parked) world_.stale_contacts.push_back(i);
+  for (std::uint32_t i = 0; i < contacts_.pool.size(); ++i) {
+    const Contact& c = contacts_.pool[i];
+    if (c.alive && c.stale && !c.parked) contacts_.stale.push_back(i);
   }
-  if (world_.graph.regions() != graph_.regions()) world_.lists_are_stale = true;
-  std::swap(world_.graph, graph_);
-  regions_.count = static_cast<std::uint16_t>(world_.graph.regions() - 1);
+  if (world_.contact_store.graph.regions() != contacts_.graph.regions()) {
+    world_.lists_are_stale = true;
+  }
+  std::swap(world_.contact_store, contacts_);
+  regions_.count = static_cast<std::uint16_t>(world_.contact_store.graph.regions() - 1);
   std::swap(world_.regions.state, regions_);
 }
 

@@ -52,14 +52,10 @@ class World::Impl::ContactState {
 
   World::Impl& world_;
   std::vector<OfBody> bodies_;
-  std::vector<Contact> pool_;
-  std::vector<std::uint32_t> free_;
-  solve::NearList near_, parked_near_;
-  std::uint32_t points_in_lanes_ = 0;
+  ContactStore contacts_;
   // Of each contact what was found: 1, 2: its sides; 4: near or in a lane; 8: free; 16: of the
   // parts of its whole.
   std::vector<std::uint8_t> seen_;
-  solve::ContactGraph graph_;
   Regions::State regions_;
 };
 
@@ -79,8 +75,8 @@ void World::Impl::write_contacts(Sink& sink) const {
     put(sink, body.rest_time);
     for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
   }
-  sink.word(contact_pool.size());
-  for (const Contact& c : contact_pool) {
+  sink.word(contact_store.pool.size());
+  for (const Contact& c : contact_store.pool) {
     using namespace contact_flags;
     const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
                                 (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
@@ -107,20 +103,21 @@ void World::Impl::write_contacts(Sink& sink) const {
   for (const Body& body : bodies) {
     std::uint64_t count = 0;
     const auto for_edges = [&](const auto& f) {
-      for (std::uint32_t e = body.first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) f(e);
+      for (std::uint32_t e = body.first_edge; e != kNone; e = contact_store.pool[e / 2].next[e % 2])
+        f(e);
     };
     for_edges([&](std::uint32_t) { ++count; });
     sink.word(count);
     for_edges([&](std::uint32_t e) { sink.word(e); });
   }
-  sink.word(free_contacts.size());
-  for (const std::uint32_t c : free_contacts) sink.word(c);
+  sink.word(contact_store.free.size());
+  for (const std::uint32_t c : contact_store.free) sink.word(c);
   const auto write_fields = [&sink](const auto& fields, int lane) {
     for (std::size_t f = 0; f < fields.size(); f += 2) {
       put_two(sink, fields[f].lane[lane], f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
     }
   };
-  for (const solve::NearList* list : {&near_list, &parked_near}) {
+  for (const solve::NearList* list : {&contact_store.near, &contact_store.parked_near}) {
     sink.word(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
       sink.word(list->block(i).contact.lane[solve::NearList::lane(i)]);
@@ -142,10 +139,10 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(block), lane);
     }
   };
-  for (std::size_t region = 0; region < graph.regions(); ++region) {
+  for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
     for (int c = 0; c <= solve::kParked; ++c) {
-      write_lanes(graph.of<1>(region, c), c);
-      write_lanes(graph.of<4>(region, c), c);
+      write_lanes(contact_store.graph.of<1>(region, c), c);
+      write_lanes(contact_store.graph.of<4>(region, c), c);
     }
   }
 }

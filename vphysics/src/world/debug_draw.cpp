@@ -78,12 +78,12 @@ class World::Impl::Drawing {
       }
     }
     if (!(options_.contacts || options_.normals || options_.impulses)) return;
-    for (const Contact& c : world_.contact_pool) {
+    for (const Contact& c : world_.contact_store.pool) {
       if (!c.alive || !c.touching || c.place.points == 0) continue;
       if (c.place.points == 1) {
-        draw_contact(c, world_.graph.block<1>(c.place));
+        draw_contact(c, world_.contact_store.graph.block<1>(c.place));
       } else {
-        draw_contact(c, world_.graph.block<4>(c.place));
+        draw_contact(c, world_.contact_store.graph.block<4>(c.place));
       }
     }
     for (const PairRecord& record : world_.records) draw_record(record);

@@ -10,6 +10,13 @@ void Events::emit(const Colliders& colliders, ContactEvent::Kind kind, const Col
        b.user_data, point, normal, approach, impulse, time});
 }
 
+void Events::touch(const Colliders& colliders, Contact& c, bool touching) {
+  c.touching = touching;
+  const auto kind = touching ? ContactEvent::Kind::begin : ContactEvent::Kind::end;
+  emit(colliders, kind, {c.key, c.a, c.b}, touching && c.count > 0 ? c.position[0] : Vec3{}, {},
+       0.0, 0.0, 0.0);
+}
+
 // In order of time: only sensors swept between two impacts are found out of it.
 void Events::add(const ContactEvent& event) {
   auto place = events_.end();

@@ -5,12 +5,21 @@
 #include <vector>
 
 #include "world/collider.h"
+#include "world/contact.h"
 #include "world/pair_record.h"
 
 namespace vp {
 
+// Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
+struct PartNews {
+  std::uint32_t whole, part;
+  double closing, impulse;
+  Vec3 point, normal;
+};
+
 class Events {
  public:
+  std::vector<PartNews> news_of_parts;  // of this step: one event for each whole (touches.cpp)
   // Pairs that touched when one of the two was destroyed; the next step reports their ends.
   std::vector<DestroyedPair> destroyed;
 
@@ -19,6 +28,8 @@ class Events {
   void reserve(std::size_t count) { events_.reserve(count); }
   void emit(const Colliders& colliders, ContactEvent::Kind kind, const ColliderPair& pair,
             const Vec3& point, const Vec3& normal, double approach, double impulse, double time);
+  // A contact of the sub-stepped solver begins or ends to touch.
+  void touch(const Colliders& colliders, Contact& contact, bool touching);
   void report_destroyed(const Colliders& colliders);
 
  private:

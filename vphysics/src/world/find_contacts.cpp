@@ -25,7 +25,6 @@ constexpr double kTurn = 0.01;
 // An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
 // way of a step is found by the step after. What a stronger one adds is searched for.
 constexpr double kBornePull = 50.0;
-constexpr double kNeverMeets = 1e30;    // a clearance [m]
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
 Vec3 at(const solve::Field3& f, int lane) {
@@ -50,13 +49,6 @@ double smaller_size(const Collider& a, const Collider& b) {
 struct Held {
   std::array<float, collide::kMaxPoints> normal{};
   Vec3 friction, moment;
-};
-
-// What one of the two has gone by: at the centre of the ball in which they meet, and how far that
-// may be off.
-struct Gone {
-  Vec3 displacement, turn;
-  double bow;
 };
 
 template <int P>
@@ -93,8 +85,8 @@ float impulse_of(const Contact& contact, const Held& impulses, const collide::Ma
 // Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
 // put elsewhere since the last step, and by links.
 bool World::Impl::has_contacts_to_find() const {
-  return some_are_not ||
-         (some_sleep && (finder.has_moved() || !stale_contacts.empty() || !link_bodies.empty()));
+  return some_are_not || (some_sleep && (finder.has_moved() || !contact_store.stale.empty() ||
+                                         !link_bodies.empty()));
 }
 
 void World::Impl::find_contacts(double dt) {
@@ -119,7 +111,7 @@ bool World::Impl::has_parted(const Contact& c) const {
   return !finder.should_pair(colliders[c.a].proxy, colliders[c.b].proxy);
 }
 void World::Impl::drop_contact(std::uint32_t index) {
-  const Contact& c = contact_pool[index];
+  const Contact& c = contact_store[index];
   finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
   remove_contact(index);
 }
@@ -131,13 +123,9 @@ void World::Impl::drop_parted_link_contacts() {
   for (const std::uint32_t proxy : finder.moved()) {
     if (!finder.exists(proxy)) continue;
     const std::uint32_t collider = finder.user(proxy);
-    std::uint32_t next = kNone;
-    for (std::uint32_t e = bodies[colliders[collider].body].first_edge; e != kNone; e = next) {
-      const Contact& c = contact_pool[e / 2];
-      next = c.next[e % 2];
-      if (!c.of_link || (c.a != collider && c.b != collider)) continue;
-      if (has_parted(c)) drop_contact(e / 2);
-    }
+    contact_store.for_each_of(bodies[colliders[collider].body], [&](std::uint32_t i, Contact& c) {
+      if (c.of_link && (c.a == collider || c.b == collider) && has_parted(c)) drop_contact(i);
+    });
   }
 }
 
@@ -155,113 +143,17 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.sensor = sensor;
   c.of_link = body_a.is_link || body_b.is_link;
   c.has_parts = has_parts(a.geometry, b.geometry);
-  const std::uint32_t index = new_contact(c);
-  if (!c.of_link) mark_stale(index);
-  set_near(index, 0.0);
-  reset_near(contact_pool[index]);
+  const std::uint32_t index = contact_store.add(c, body_set);
+  if (!c.of_link) contact_store.mark_stale(index);
+  contact_store.set_near(index, 0.0, body_set);
+  contact_store.reset_near(contact_store[index], body_set);
 }
 
-// In a slot of the pool and in its bodies' lists.
-std::uint32_t World::Impl::new_contact(const Contact& contact) {
-  std::uint32_t index = static_cast<std::uint32_t>(contact_pool.size());
-  if (free_contacts.empty()) {
-    contact_pool.emplace_back();
-  } else {
-    index = free_contacts.back();
-    free_contacts.pop_back();
-  }
-  Contact& c = contact_pool[index];
-  c = contact;
-  c.alive = true;
-  for (const int side : {0, 1}) {
-    Body& body = bodies[colliders[side == 0 ? c.a : c.b].body];
-    const std::uint32_t edge = 2 * index + static_cast<std::uint32_t>(side);
-    c.next[side] = body.first_edge;
-    c.previous[side] = kNone;
-    if (body.first_edge != kNone)
-      contact_pool[body.first_edge / 2].previous[body.first_edge % 2] = edge;
-    body.first_edge = edge;
-  }
-  return index;
-}
-
+// An end is reported; the finder's pair stays.
 void World::Impl::remove_contact(std::uint32_t index) {
-  Contact& c = contact_pool[index];
-  if (c.touching && !c.is_part()) report_touch(index, false);
-  if (c.has_parts) remove_parts(index);
-  if (c.place.points > 0) {
-    take_out_of_lane(index);
-  } else {
-    unset_near(index);
-  }
-  for (const int side : {0, 1}) {
-    Body& body = bodies[colliders[side == 0 ? c.a : c.b].body];
-    const std::uint32_t next = c.next[side], previous = c.previous[side];
-    if (next != kNone) contact_pool[next / 2].previous[next % 2] = previous;
-    (previous != kNone ? contact_pool[previous / 2].next[previous % 2] : body.first_edge) = next;
-  }
-  c.alive = false;
-  free_contacts.push_back(index);
-}
-
-void World::Impl::set_near(std::uint32_t index, double clearance) {
-  Contact& c = contact_pool[index];
-  const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
-  c.near_index = near_list.add(index, end_of(bodies, a).row, end_of(bodies, b).row);
-  set_clearance(c, clearance);
-}
-
-// It has been looked at where its bodies are now.
-void World::Impl::set_clearance(const Contact& c, double clearance) {
-  solve::NearBlock& block = near_list.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
-  const auto store = [&](solve::Field3& to, const Vec3& v) {
-    to.x.lane[lane] = static_cast<float>(v.x);
-    to.y.lane[lane] = static_cast<float>(v.y);
-    to.z.lane[lane] = static_cast<float>(v.z);
-  };
-  const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const Vicinity at = vicinity_of(bodies, a, b);
-  const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
-                           solve::Field3& turn, solve::Field3& arm) {
-    const float* way = body_rows[row].way;
-    store(x, vector_of(way));
-    store(turn, vector_of(way + 3));
-    store(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
-  };
-  put_end(block.a.lane[lane], bodies[a.body], block.x_a, block.turn_a, block.arm_a);
-  put_end(block.b.lane[lane], bodies[b.body], block.x_b, block.turn_b, block.arm_b);
-  block.clearance.lane[lane] = static_cast<float>(clearance);
-  block.radius.lane[lane] = static_cast<float>(at.radius);
-}
-
-// Of what is to be looked at; of a link, elsewhere.
-void World::Impl::reset_near(const Contact& c) {
-  set_clearance(c, c.of_link ? kNeverMeets : 0.0);
-}
-
-void World::Impl::unset_near(std::uint32_t index) {
-  const std::uint32_t place = contact_pool[index].near_index;
-  const std::uint32_t moved = (contact_pool[index].parked ? parked_near : near_list).remove(place);
-  if (moved != solve::kNoContact) contact_pool[moved].near_index = place;
-}
-
-// Takes from it how far the two have gone against each other since they were looked at, as
-// find_closer counts it.
-void World::Impl::use_clearance(const Contact& c) {
-  solve::NearBlock& block = near_list.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
-  const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
-                        const solve::Field3& turn, const solve::Field3& arm) {
-    const float* way = body_rows[rows.lane[lane]].way;
-    const Vec3 r = at(arm, lane), by = vector_of(way + 3) - at(turn, lane);
-    return Gone{vector_of(way) - at(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
-  };
-  const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
-  const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
-  const double turned = static_cast<double>(block.radius.lane[lane]) * norm(b.turn - a.turn);
-  block.clearance.lane[lane] -=
-      static_cast<float>(norm(b.displacement - a.displacement) + turned + a.bow + b.bow);
+  Contact& c = contact_store[index];
+  if (c.touching && !c.is_part()) events.touch(colliders, c, false);
+  contact_store.remove(index, body_set);
 }
 
 // What gravity and forces add to the body's velocity on the mean of a step, if that is more than
@@ -306,19 +198,6 @@ double World::Impl::approach(const Collider& a, const Collider& b, double dt) co
                   dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
 }
 
-// Of a part, the whole.
-void World::Impl::mark_stale(std::uint32_t contact) {
-  if (contact_pool[contact].is_part()) contact = contact_pool[contact].whole;
-  contact_pool[contact].stale = true;
-  stale_contacts.push_back(contact);
-}
-
-void World::Impl::mark_contacts_stale(std::uint32_t body) {
-  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
-    mark_stale(e / 2);
-  }
-}
-
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
   const ContactRuns runs = contact_runs();
@@ -331,7 +210,7 @@ void World::Impl::find_stale_contacts(double dt) {
   runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
     for (const auto& block : blocks) mark_stale_lanes(block.contact, found[next++]);
   });
-  const std::span<solve::NearBlock> blocks = near_list.blocks();
+  const std::span<solve::NearBlock> blocks = contact_store.near.blocks();
   found.resize(std::max(found.size(), blocks.size()));
   workers.in_parallel(blocks.size(), kBodyGrain / solve::kLanes,
                       [&](std::size_t begin, std::size_t end) {
@@ -344,7 +223,7 @@ void World::Impl::find_stale_contacts(double dt) {
 void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = of.lane[std::countr_zero(bits)];
-    if (contact != solve::kNoContact) mark_stale(contact);
+    if (contact != solve::kNoContact) contact_store.mark_stale(contact);
   }
 }
 
@@ -358,37 +237,22 @@ void World::Impl::want_posed(std::uint32_t index) {
 // In the order of their slots; then those that these have woken.
 void World::Impl::look_at_stale_contacts(double dt) {
   look_again.clear();
-  for (bool first = true; first || !stale_contacts.empty(); first = false) {
+  for (bool first = true; first || !contact_store.stale.empty(); first = false) {
     find_manifolds_of_stale(dt, first);
     const auto stage = in(Stage::lanes);
     for (const Looked& found : looked) take_over(found);
   }
-  stale_contacts.swap(look_again);
-}
-
-// The stale ones become those looked at, ascending, each once: by a bit for each of the pool.
-void World::Impl::order_stale_contacts() {
-  stale_bits.resize(contact_pool.capacity() / 64 + 1);
-  for (const std::uint32_t i : stale_contacts) stale_bits[i / 64] |= std::uint64_t{1} << (i % 64);
-  stale_contacts.clear();
-  looked_at_contacts.clear();
-  const std::size_t words = contact_pool.size() / 64 + 1;
-  for (std::size_t w = 0; w < words; ++w) {
-    for (std::uint64_t left = std::exchange(stale_bits[w], 0); left != 0; left &= left - 1) {
-      looked_at_contacts.push_back(static_cast<std::uint32_t>(64 * w) +
-                                   static_cast<std::uint32_t>(std::countr_zero(left)));
-    }
-  }
+  contact_store.stale.swap(look_again);
 }
 
 void World::Impl::find_manifolds_of_stale(double dt, bool first) {
   const auto stage = in(Stage::narrow_phase);
   if (first) find_stale_contacts(dt);
-  order_stale_contacts();
+  contact_store.take_stale(looked_at_contacts);
   looked.clear();
   to_pose.clear();
   for (const std::uint32_t index : looked_at_contacts) {
-    const Contact& c = contact_pool[index];
+    const Contact& c = contact_store[index];
     if (!c.alive || !c.stale || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
     if (has_parted(c)) {
@@ -416,7 +280,7 @@ void World::Impl::note_limits_of_surfaces() {
 
 // The narrow phase, for one. What has parts is looked at when it is taken over.
 void World::Impl::look_at(Looked& found, double dt) {
-  Contact& c = contact_pool[found.contact];
+  Contact& c = contact_store[found.contact];
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const double leeway = kSlide * smaller_size(a, b);
   found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
@@ -440,52 +304,42 @@ void World::Impl::look_at(Looked& found, double dt) {
 void World::Impl::take_over(const Looked& found) {
   const std::uint32_t index = found.contact;
   const bool apart = found.clearance >= kNeverMeets;
-  contact_pool[index].stale = false;
+  contact_store[index].stale = false;
   if (!apart) ++counters.looked_at;
   note_limits(found.manifold);
-  if (contact_pool[index].has_parts) {
+  if (contact_store[index].has_parts) {
     if (apart) {
-      remove_parts(index);
+      contact_store.remove_parts(index, body_set);
     } else {
       find_parts(found);
     }
-  } else if (contact_pool[index].sensor) {
+  } else if (contact_store[index].sensor) {
     const bool meets = found.manifold.count > 0;
-    if (meets != contact_pool[index].touching) report_touch(index, meets);
+    if (meets != contact_store[index].touching)
+      events.touch(colliders, contact_store[index], meets);
   } else if (found.manifold.count > 0) {
     put_in_lane(index, found.manifold);
     return;
   }
-  Contact& c = contact_pool[index];  // the pool may have grown
+  Contact& c = contact_store[index];  // the pool may have grown
   if (c.sensor) {
     c.stale = true;
   } else if (!c.has_parts || apart) {
-    if (c.touching) report_touch(index, false);
+    if (c.touching) events.touch(colliders, c, false);
     if (c.place.points > 0) {
-      take_out_of_lane(index);
-      set_near(index, found.clearance);
+      contact_store.take_out_of_lane(index, body_set);
+      contact_store.set_near(index, found.clearance, body_set);
     } else {
-      set_clearance(c, found.clearance);
+      contact_store.set_clearance(c, found.clearance, body_set);
     }
   }
-  park(index);  // has no points: if nothing awake may change it
+  contact_store.park(index, body_set);  // has no points: if nothing awake may change it
   if (c.sensor && !c.parked) look_again.push_back(index);  // in the next step
 }
 
-void World::Impl::take_out_of_lane(std::uint32_t index) {
-  Contact& c = contact_pool[index];
-  const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
-  const std::uint32_t moved = graph.remove(c.place, end_of(bodies, a), end_of(bodies, b));
-  if (moved != solve::kNoContact) contact_pool[moved].place = c.place;
-  c.place = {};
-  if (!c.parked) points_in_lanes -= c.count;
-  c.count = 0;
-  --bodies[a].lanes;
-  --bodies[b].lanes;
-}
-
 void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
-  Contact& c = contact_pool[index];
+  Contact& c = contact_store[index];
+  solve::ContactGraph& graph = contact_store.graph;
   ++manifolds_renewed;
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const auto end_a = end_of(bodies, a.body), end_b = end_of(bodies, b.body);
@@ -493,10 +347,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   wake(b.body);
   Held impulses;
   if (c.place.points == 0) {
-    if (!c.is_part()) unset_near(index);
-    c.place = graph.add(index, end_a, end_b, points_of(c, a, b));
-    ++bodies[a.body].lanes;
-    ++bodies[b.body].lanes;
+    contact_store.put_in_lane(index, points_of(c, a, b), body_set);
   } else {
     impulses = c.place.points == 1
                    ? held_in(graph.block<1>(c.place), solve::ContactGraph::lane(c.place))
@@ -523,7 +374,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   n.old_friction = impulses.friction;
   n.old_moment = impulses.moment;
   n.slid_limit = leeway;
-  points_in_lanes += static_cast<std::uint32_t>(n.count) - c.count;
+  contact_store.points += static_cast<std::uint32_t>(n.count) - c.count;
   c.count = static_cast<std::uint8_t>(n.count);
   for (int i = 0; i < n.count; ++i) {
     c.feature[i] = m.points[i].feature;

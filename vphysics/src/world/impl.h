@@ -25,9 +25,10 @@
 #include "world/articulation.h"
 #include "world/body.h"
 #include "world/collider.h"
-#include "world/contact.h"
+#include "world/contact_store.h"
 #include "world/events.h"
 #include "world/impact_pairs.h"
+#include "world/islands.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
 #include "world/loads.h"
@@ -48,13 +49,6 @@ struct SweptPair {
   double separation;
 };
 
-// Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
-struct PartNews {
-  std::uint32_t whole, part;
-  double closing, impulse;
-  Vec3 point, normal;
-};
-
 // What the narrow phase has found of a contact.
 struct Looked {
   std::uint32_t contact;
@@ -65,6 +59,12 @@ struct Looked {
 };
 
 struct RecordedCall;
+
+class Query;
+struct QueryScratch {
+  std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
+  collide::CastScratch cast;
+};
 
 // What sub-steps remember from step to step.
 struct SubStepState {
@@ -92,16 +92,11 @@ struct World::Impl {
   BodyLoads loads;
 
   collide::PairFinder finder;
-  std::vector<Contact> contact_pool;
-  std::vector<std::uint32_t> free_contacts;
-  solve::NearList near_list;    // those that have no points
-  solve::NearList parked_near;  // and those of them that are of bodies asleep
-  // Those marked as stale, in no order, and with others that are not any more.
-  std::vector<std::uint32_t> stale_contacts;
-  std::uint32_t points_in_lanes = 0;
-  SubStepState sub_step_state;
-  solve::ContactGraph graph;
   solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
+  const BodySet body_set{bodies, colliders, body_rows};
+  ContactStore contact_store;
+  SubStepState sub_step_state;
+  Islands islands;
   Regions regions;
 
   // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
@@ -119,9 +114,8 @@ struct World::Impl {
   std::vector<StepContact> step_contacts;  // but those of lanes
 
   // --- of queries
-  bool ready_for_queries = false;     // nothing has moved since find_strays()
-  std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
-  collide::CastScratch world_cast;
+  bool ready_for_queries = false;  // nothing has moved since find_strays()
+  QueryScratch queries;
   collide::PartsScratch parts_scratch;
 
   std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
@@ -141,10 +135,7 @@ struct World::Impl {
 
   // --- scratch of a step; kept for its capacity
   std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint64_t> stale_bits;
-  std::vector<std::uint32_t> looked_at_contacts, look_again, body_stack, woken;
-  std::vector<std::uint32_t> drowsy;  // bodies that have been at rest for long enough in this step
-  std::uint64_t islands_found = 0;
+  std::vector<std::uint32_t> looked_at_contacts, look_again;
   std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
   bool finds_contacts = false;
   std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
@@ -183,7 +174,6 @@ struct World::Impl {
   std::vector<collide::SubManifold> manifolds;
   std::vector<collide::KnownPart> known_parts;
   std::vector<std::uint32_t> old_parts, claimed_parts;
-  std::vector<PartNews> part_news;
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -318,7 +308,6 @@ struct World::Impl {
   bool has_contacts_to_find() const;
   void find_contacts(double dt);
   void find_new_contacts();
-  std::uint32_t new_contact(const Contact& contact);
   void find_stale_contacts(double dt);
   void drop_parted_link_contacts();
   bool has_parted(const Contact& contact) const;
@@ -328,20 +317,11 @@ struct World::Impl {
   void look_at(Looked& looked, double dt);
   void take_over(const Looked& looked);
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
-  void take_out_of_lane(std::uint32_t contact);
-  void set_near(std::uint32_t contact, double clearance);
-  void set_clearance(const Contact& contact, double clearance);
-  void reset_near(const Contact& contact);
-  void use_clearance(const Contact& contact);
-  void unset_near(std::uint32_t contact);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   void want_posed(std::uint32_t body);
   Velocity pull_of(const Body& body, double dt) const;
   double approach(const Collider& a, const Collider& b, double dt) const;
-  void mark_stale(std::uint32_t contact);
-  void mark_contacts_stale(std::uint32_t body);
   void look_at_stale_contacts(double dt);
-  void order_stale_contacts();
   void find_manifolds_of_stale(double dt, bool first);
 
   // link_contacts.cpp
@@ -359,17 +339,10 @@ struct World::Impl {
   void store_bodies_on_links();
 
   // sleep.cpp
-  void watch(std::uint32_t body, double dt);
+  Bonds bonds() { return {bodies, colliders, contact_store, joints}; }
   void send_to_sleep();
-  bool find_resting_island(std::uint32_t body, std::uint64_t first);
-  bool is_drowsy(const Body& body) const;
-  bool may_sleep(const Body& body) const;
   void wake(std::uint32_t body);
   void wake_neighbours(std::uint32_t body);
-  void park(std::uint32_t contact);
-  void unpark(std::uint32_t contact);
-  template <class F>
-  void for_partners(std::uint32_t body, const F& f) const;
 
   void note_limits(const collide::Manifold& manifold);
   void note_limits_of_surfaces();
@@ -377,26 +350,20 @@ struct World::Impl {
   // part_contacts.cpp
   void find_parts(const Looked& look);
   std::uint32_t claim_part(const collide::SubManifold& found);
-  void remove_parts(std::uint32_t whole);
-  void forget_part(std::uint32_t part);
 
   void divide_into_regions(double dt);
-  void take_contacts_along(std::uint32_t body);
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
   int sub_steps_in(double dt) const;
   void take_sub_steps(double dt, int count);
 
-  ContactRuns contact_runs() { return {graph, body_rows.data(), workers, block_words}; }
+  ContactRuns contact_runs() {
+    return {contact_store.graph, body_rows.data(), workers, block_words};
+  }
 
   // touches.cpp
   void report_news();
-  template <int P>
-  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded);
-  void report_touch(std::uint32_t contact, bool loaded);
-  void report_news_of_parts();
-  bool touches_in_parts(const Contact& whole) const;
 
   // pairs.cpp
   BodyWays body_ways() const { return {bodies, motions, bounds}; }
@@ -439,18 +406,7 @@ struct World::Impl {
 
   // queries.cpp
   void find_strays();
-  bool is_asked_for(const Collider& collider, const QueryFilter& filter) const;
-  QueryHit hit_of(const Collider& collider, std::uint32_t part) const;
-  template <class F>
-  void for_swept(const collide::Sweep& sweep, const QueryFilter& filter, const F& meet);
-  template <class F>
-  void for_ray_hits(const Vec3& origin, const Vec3& unit, double limit, const QueryFilter& filter,
-                    const F& hit);
-  template <class F>
-  void for_cast_hits(const collide::MovingShape& moving, const QueryFilter& filter, const F& hit);
-  std::optional<NearestHit> nearest(const collide::Geometry& shape, const SE3& T, double limit,
-                                    const QueryFilter& filter);
-  bool is_younger(const QueryHit& hit, const QueryHit& other) const;
+  Query query(const QueryFilter& filter);
 
   // snapshot.cpp, restore.cpp, contact_state.h
   class ContactState;

@@ -41,7 +41,7 @@ void World::Impl::remove_joint(std::uint32_t index) {
     if (next != kNone) joints[next / 2].previous[next % 2] = previous;
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
   }
-  mark_contacts_stale(joint.a);
+  contact_store.mark_stale_of(bodies[joint.a]);
   joint.law.user.reset();
   joints.release(index);
 }
@@ -87,7 +87,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   impl_->link_joint(index);
   impl_->wake(joint.a);
   impl_->wake(joint.b);
-  impl_->mark_contacts_stale(joint.a);
+  impl_->contact_store.mark_stale_of(impl_->bodies[joint.a]);
   Structure structure(impl_->structure);
   structure.add(0x500u + index);
   structure.add(a_id.index);

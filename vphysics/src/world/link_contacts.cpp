@@ -22,7 +22,7 @@ void World::Impl::find_bodies_on_links() {
     return body.is_link ? &articulations[body.articulation] : nullptr;
   };
   const auto meets_link = [](const Contact& c) { return c.alive && c.of_link && !c.sensor; };
-  for (const Contact& c : contact_pool) {
+  for (const Contact& c : contact_store.pool) {
     if (!meets_link(c)) continue;
     for (const auto& [mine, other] : {std::pair{c.a, c.b}, std::pair{c.b, c.a}}) {
       Articulation* art = articulation_of(bodies[colliders[other].body]);
@@ -38,7 +38,7 @@ void World::Impl::find_bodies_on_links() {
   }
   for (bool again = !bodies_on_links.empty(); again;) {
     again = false;
-    for (const Contact& c : contact_pool) {
+    for (const Contact& c : contact_store.pool) {
       if (!meets_link(c)) continue;
       Articulation* a = articulation_of(bodies[colliders[c.a].body]);
       Articulation* b = articulation_of(bodies[colliders[c.b].body]);
@@ -56,7 +56,7 @@ bool World::Impl::in_sub_steps(const Body& a, const Body& b) const {
 
 void World::Impl::find_link_contacts(double dt, int sub_steps) {
   discrete_pairs.clear();
-  for (const Contact& c : contact_pool) {
+  for (const Contact& c : contact_store.pool) {
     if (!c.alive || !c.of_link || c.sensor) continue;
     const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
     if (in_sub_steps(a, b) && !a.continuous && !b.continuous) {

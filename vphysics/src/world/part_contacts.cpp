@@ -32,16 +32,16 @@ void put_deepest_first(collide::Manifold& m) {
 
 void World::Impl::find_parts(const Looked& look) {
   const std::uint32_t index = look.contact;
-  const Collider &a = colliders[contact_pool[index].a], &b = colliders[contact_pool[index].b];
-  const std::uint32_t first = contact_pool[index].first_part;
-  if (first != kNone && contact_pool[first].parked) {
+  const Collider &a = colliders[contact_store[index].a], &b = colliders[contact_store[index].b];
+  const std::uint32_t first = contact_store[index].first_part;
+  if (first != kNone && contact_store[first].parked) {
     wake(a.body);
     wake(b.body);
   }
   known_parts.clear();
   old_parts.clear();
-  for (std::uint32_t p = first; p != kNone; p = contact_pool[p].next_part) {
-    const Contact& part = contact_pool[p];
+  for (std::uint32_t p = first; p != kNone; p = contact_store[p].next_part) {
+    const Contact& part = contact_store[p];
     known_parts.push_back({part.sub_a, part.sub_b, part.cache});
     old_parts.push_back(p);
   }
@@ -53,11 +53,12 @@ void World::Impl::find_parts(const Looked& look) {
                                       dt_now * (body_b.w - body_a.w), about);
   find_manifolds(a.geometry, a.T, b.geometry, b.T,
                  look.by_part ? by_part : collide::SearchMargin(look.margin),
-                 contact_pool[index].cache, known_parts, manifold_scratch, manifolds);
+                 contact_store[index].cache, known_parts, manifold_scratch, manifolds);
   for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
-  if (contact_pool[index].sensor) {
+  if (contact_store[index].sensor) {
     const bool touches = !manifolds.empty();
-    if (touches != contact_pool[index].touching) report_touch(index, touches);
+    if (touches != contact_store[index].touching)
+      events.touch(colliders, contact_store[index], touches);
     return;
   }
   double clearance = look.clearance;
@@ -66,11 +67,11 @@ void World::Impl::find_parts(const Looked& look) {
                          distance_of_parts(a.geometry, a.T, b.geometry, b.T, parts_scratch.cast) -
                              desc.contact_slop);
   }
-  set_clearance(contact_pool[index], clearance);
+  contact_store.set_clearance(contact_store[index], clearance, body_set);
   claimed_parts.clear();
   for (const collide::SubManifold& found : manifolds) claimed_parts.push_back(claim_part(found));
   for (const std::uint32_t p : old_parts) {
-    if (p != kNone) remove_contact(p);
+    if (p != kNone) contact_store.remove(p, body_set);
   }
   std::uint32_t last = kNone;
   for (std::size_t k = 0; k < manifolds.size(); ++k) {
@@ -78,29 +79,29 @@ void World::Impl::find_parts(const Looked& look) {
     std::uint32_t p = claimed_parts[k];
     if (p == kNone) {
       Contact part;
-      part.key = contact_pool[index].key;
-      part.a = contact_pool[index].a;
-      part.b = contact_pool[index].b;
+      part.key = contact_store[index].key;
+      part.a = contact_store[index].a;
+      part.b = contact_store[index].b;
       part.whole = index;
       part.stale = false;
       part.sub_a = found.sub_a;
       part.sub_b = found.sub_b;
-      p = new_contact(part);
+      p = contact_store.add(part, body_set);
     }
-    Contact& part = contact_pool[p];
+    Contact& part = contact_store[p];
     part.sub_a = found.sub_a;
     part.sub_b = found.sub_b;
     part.cache = found.cache;
     part.next_part = kNone;
-    (last == kNone ? contact_pool[index].first_part : contact_pool[last].next_part) = p;
+    (last == kNone ? contact_store[index].first_part : contact_store[last].next_part) = p;
     last = p;
     put_deepest_first(found.manifold);
     put_in_lane(p, found.manifold);
   }
-  if (last == kNone) contact_pool[index].first_part = kNone;
-  const Contact& whole = contact_pool[index];
-  if (whole.touching && !touches_in_parts(whole))
-    part_news.push_back({index, kNone, 0.0, 0.0, {}, {}});
+  if (last == kNone) contact_store[index].first_part = kNone;
+  const Contact& whole = contact_store[index];
+  if (whole.touching && !contact_store.touches_in_parts(whole))
+    events.news_of_parts.push_back({index, kNone, 0.0, 0.0, {}, {}});
 }
 
 // Of the old parts that are left and have nearly the normal: that of the same triangle, or else
@@ -110,15 +111,16 @@ std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
   double most = kSameNormal;
   for (std::uint32_t& p : old_parts) {
     if (p == kNone) continue;
-    const Contact& part = contact_pool[p];
+    const Contact& part = contact_store[p];
     const auto on_surface = [&](std::uint32_t collider) {
       return is_surface(colliders[collider].geometry);
     };
     const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
     if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
     const int lane = solve::ContactGraph::lane(part.place);
-    const Vec3 normal = part.place.points == 1 ? normal_in(graph.block<1>(part.place), lane)
-                                               : normal_in(graph.block<4>(part.place), lane);
+    const Vec3 normal = part.place.points == 1
+                            ? normal_in(contact_store.graph.block<1>(part.place), lane)
+                            : normal_in(contact_store.graph.block<4>(part.place), lane);
     double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
     for (int i = 0; i < found.manifold.count; ++i) {
       const std::uint32_t* end = part.feature + part.count;
@@ -132,25 +134,6 @@ std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
   const std::uint32_t claimed = *best;
   *best = kNone;
   return claimed;
-}
-
-void World::Impl::remove_parts(std::uint32_t index) {
-  std::uint32_t next = kNone;
-  for (std::uint32_t p = contact_pool[index].first_part; p != kNone; p = next) {
-    next = contact_pool[p].next_part;
-    remove_contact(p);
-  }
-  contact_pool[index].first_part = kNone;
-}
-
-// One of several: the whole has to be looked at anew.
-void World::Impl::forget_part(std::uint32_t index) {
-  Contact& whole = contact_pool[contact_pool[index].whole];
-  mark_stale(index);
-  std::uint32_t* link = &whole.first_part;
-  while (*link != index) link = &contact_pool[*link].next_part;
-  *link = contact_pool[index].next_part;
-  remove_contact(index);
 }
 
 }  // namespace vp

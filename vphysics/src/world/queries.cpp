@@ -92,85 +92,156 @@ collide::Sweep sweep_of(const collide::MovingShape& m) {
 
 }  // namespace
 
-// --- candidates ----------------------------------------------------------------------------------
+// One query; the colliders are posed and the strays are known.
+class Query {
+ public:
+  Query(const Bodies& bodies, const Colliders& colliders, const collide::PairFinder& finder,
+        QueryScratch& scratch, collide::PartsScratch& parts, const QueryFilter& filter)
+      : bodies_(bodies),
+        colliders_(colliders),
+        finder_(finder),
+        scratch_(scratch),
+        parts_(parts),
+        filter_(filter) {}
+
+  // meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
+  template <class F>
+  void for_swept(const collide::Sweep& sweep, const F& meet) {
+    double limit = 1.0;
+    const collide::LaneSweep lanes(sweep);
+    for (const std::uint32_t i : scratch_.strays) {
+      float entry = 0.0f;
+      const Collider& c = colliders_[i];
+      if (lanes.meets(rounded_outwards(c.bounds), limit, entry) && is_asked_for(c)) {
+        limit = meet(c);
+      }
+    }
+    finder_.cast(sweep, limit, scratch_.cast, [&](std::uint32_t proxy, float) {
+      const Collider& c = colliders_[finder_.user(proxy)];
+      if (!c.stray && is_asked_for(c)) limit = meet(c);
+      return limit;
+    });
+  }
+
+  // hit(RayHit) for each collider; it returns the distance up to which to go on.
+  template <class F>
+  void for_ray_hits(const Vec3& origin, const Vec3& unit, double limit, const F& hit) {
+    const double whole = limit;
+    for_swept({{origin, origin}, limit * unit}, [&](const Collider& c) {
+      const collide::Ray ray{inverse_times(c.T, origin), c.T.unrotate(unit)};
+      collide::RayEntry entry{};
+      if (cast_ray(c.geometry, ray, whole, parts_.cast, entry)) {
+        limit = hit(RayHit{hit_of(c, entry.part), entry.distance, origin + entry.distance * unit,
+                           c.T.rotate(entry.normal)});
+      }
+      return whole > 0.0 ? limit / whole : 1.0;
+    });
+  }
+
+  // hit(ShapeHit) for each collider; it returns the fraction up to which to go on.
+  template <class F>
+  void for_cast_hits(const collide::MovingShape& shape, const F& hit) {
+    double limit = 1.0;
+    for_swept(sweep_of(shape), [&](const Collider& c) {
+      const double sizes =
+          core_reach(*shape.shape) + (is_convex_body(c.geometry) ? core_reach(c.geometry) : 0.0);
+      const collide::ImpactQuery query{
+          shape, {&c.geometry, c.T, {c.T.position(), {}, {}}}, 1.0, kTouch + kTouchShare * sizes};
+      collide::PartsImpact impact{};
+      if (first_impact(query, 0.0, parts_, impact)) {
+        limit = hit(ShapeHit{hit_of(c, impact.part_b), impact.time, impact.points.distance,
+                             impact.points.on_b, -impact.points.normal});
+      }
+      return limit;
+    });
+  }
+
+  std::optional<NearestHit> nearest(const collide::Geometry& shape, const SE3& T, double limit) {
+    std::optional<NearestHit> best;
+    const auto consider = [&](const Collider& c) {
+      collide::NearestParts found;
+      if (!is_asked_for(c) || !nearest_parts(shape, T, c.geometry, c.T, limit, parts_, found)) {
+        return;
+      }
+      const collide::ClosestPoints& p = found.points;
+      const NearestHit hit{hit_of(c, found.part_b), p.distance, p.on_a, p.on_b, -p.normal};
+      if (best && (hit.distance > best->distance ||
+                   (hit.distance == best->distance && !is_younger(*best, hit)))) {
+        return;
+      }
+      best = hit;
+      limit = std::min(limit, std::max(0.0, hit.distance));
+    };
+    const collide::Bounds box = bounds_of(shape, T);
+    for (const std::uint32_t i : scratch_.strays) {
+      const collide::FloatBounds around = rounded_outwards(colliders_[i].bounds);
+      if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) <= limit) {
+        consider(colliders_[i]);
+      }
+    }
+    finder_.nearest(box, limit, scratch_.cast, [&](std::uint32_t proxy, float) {
+      const Collider& c = colliders_[finder_.user(proxy)];
+      if (!c.stray) consider(c);
+      return limit;
+    });
+    return best;
+  }
+
+  QueryHit hit_of(const Collider& c, std::uint32_t part) const {
+    const auto index = colliders_.index_of(c);
+    return {colliders_.id(index), bodies_.id(c.body), c.user_data, part};
+  }
+
+  bool is_younger(const QueryHit& hit, const QueryHit& other) const {
+    return colliders_[hit.collider.index - 1].serial > colliders_[other.collider.index - 1].serial;
+  }
+
+ private:
+  bool is_asked_for(const Collider& c) const {
+    const bool met = (c.filter.category & filter_.collision.mask) != 0 &&
+                     (filter_.collision.category & c.filter.mask) != 0;
+    if (!met || (c.sensor && !filter_.sensors)) return false;
+    const BodyId body = bodies_.id(c.body);
+    if (std::find(filter_.ignored.begin(), filter_.ignored.end(), body) != filter_.ignored.end()) {
+      return false;
+    }
+    const auto index = colliders_.index_of(c);
+    return !filter_.accepts || filter_.accepts(colliders_.id(index), body, c.user_data);
+  }
+
+  const Bodies& bodies_;
+  const Colliders& colliders_;
+  const collide::PairFinder& finder_;
+  QueryScratch& scratch_;
+  collide::PartsScratch& parts_;
+  const QueryFilter& filter_;
+};
 
 void World::Impl::find_strays() {
   if (ready_for_queries) return;
   look_at_all();
   ready_for_queries = true;
-  strays.clear();
-  strays.reserve(colliders.size());
-  world_cast.reserve(2 * colliders.size() + 16);  // items and nodes
+  queries.strays.clear();
+  queries.strays.reserve(colliders.size());
+  queries.cast.reserve(2 * colliders.size() + 16);  // items and nodes
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].alive || bodies[b].first_collider == kNone) continue;
     pose_colliders(bodies[b], colliders);
     for (std::uint32_t i = bodies[b].first_collider; i != kNone; i = colliders[i].next) {
       Collider& c = colliders[i];
       c.stray = !holds(finder.enlarged_bounds(c.proxy), c.bounds);
-      if (c.stray) strays.push_back(i);
+      if (c.stray) queries.strays.push_back(i);
     }
   }
   finder.refresh();
 }
 
-bool World::Impl::is_asked_for(const Collider& c, const QueryFilter& filter) const {
-  const bool met = (c.filter.category & filter.collision.mask) != 0 &&
-                   (filter.collision.category & c.filter.mask) != 0;
-  if (!met || (c.sensor && !filter.sensors)) return false;
-  const BodyId body = bodies.id(c.body);
-  if (std::find(filter.ignored.begin(), filter.ignored.end(), body) != filter.ignored.end()) {
-    return false;
-  }
-  const auto index = colliders.index_of(c);
-  return !filter.accepts || filter.accepts(colliders.id(index), body, c.user_data);
-}
-
-QueryHit World::Impl::hit_of(const Collider& c, std::uint32_t part) const {
-  const auto index = colliders.index_of(c);
-  return {colliders.id(index), bodies.id(c.body), c.user_data, part};
-}
-
-bool World::Impl::is_younger(const QueryHit& hit, const QueryHit& other) const {
-  return colliders[hit.collider.index - 1].serial > colliders[other.collider.index - 1].serial;
-}
-
-// meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
-template <class F>
-void World::Impl::for_swept(const collide::Sweep& sweep, const QueryFilter& filter, const F& meet) {
+Query World::Impl::query(const QueryFilter& filter) {
   find_strays();
-  double limit = 1.0;
-  const collide::LaneSweep lanes(sweep);
-  for (const std::uint32_t i : strays) {
-    float entry = 0.0f;
-    const Collider& c = colliders[i];
-    if (lanes.meets(rounded_outwards(c.bounds), limit, entry) && is_asked_for(c, filter)) {
-      limit = meet(c);
-    }
-  }
-  finder.cast(sweep, limit, world_cast, [&](std::uint32_t proxy, float) {
-    const Collider& c = colliders[finder.user(proxy)];
-    if (!c.stray && is_asked_for(c, filter)) limit = meet(c);
-    return limit;
-  });
+  return {bodies, colliders, finder, queries, parts_scratch, filter};
 }
 
 // --- rays ----------------------------------------------------------------------------------------
-
-// hit(RayHit) for each collider; it returns the distance up to which to go on.
-template <class F>
-void World::Impl::for_ray_hits(const Vec3& origin, const Vec3& unit, double limit,
-                               const QueryFilter& filter, const F& hit) {
-  const double whole = limit;
-  for_swept({{origin, origin}, limit * unit}, filter, [&](const Collider& c) {
-    const collide::Ray ray{inverse_times(c.T, origin), c.T.unrotate(unit)};
-    collide::RayEntry entry{};
-    if (cast_ray(c.geometry, ray, whole, parts_scratch.cast, entry)) {
-      limit = hit(RayHit{hit_of(c, entry.part), entry.distance, origin + entry.distance * unit,
-                         c.T.rotate(entry.normal)});
-    }
-    return whole > 0.0 ? limit / whole : 1.0;
-  });
-}
 
 Expected<std::optional<RayHit>> World::ray_cast(const Vec3& origin, const Vec3& direction,
                                                 double max_distance,
@@ -179,14 +250,15 @@ Expected<std::optional<RayHit>> World::ray_cast(const Vec3& origin, const Vec3& 
     return tl::make_unexpected(*problem);
   }
   std::optional<RayHit> first;
-  impl_->for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance, filter,
-                      [&](const RayHit& hit) {
-                        if (!first || hit.distance < first->distance ||
-                            (hit.distance == first->distance && impl_->is_younger(*first, hit))) {
-                          first = hit;
-                        }
-                        return first->distance;
-                      });
+  Query query = impl_->query(filter);
+  query.for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance,
+                     [&](const RayHit& hit) {
+                       if (!first || hit.distance < first->distance ||
+                           (hit.distance == first->distance && query.is_younger(*first, hit))) {
+                         first = hit;
+                       }
+                       return first->distance;
+                     });
   return first;
 }
 
@@ -196,37 +268,19 @@ Expected<void> World::ray_cast_all(const Vec3& origin, const Vec3& direction, do
     return tl::make_unexpected(*problem);
   }
   const auto begin = static_cast<std::ptrdiff_t>(hits.size());
-  impl_->for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance, filter,
-                      [&](const RayHit& hit) {
-                        hits.push_back(hit);
-                        return max_distance;
-                      });
+  Query query = impl_->query(filter);
+  query.for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance,
+                     [&](const RayHit& hit) {
+                       hits.push_back(hit);
+                       return max_distance;
+                     });
   std::sort(hits.begin() + begin, hits.end(), [&](const RayHit& a, const RayHit& b) {
-    return a.distance < b.distance || (a.distance == b.distance && impl_->is_younger(b, a));
+    return a.distance < b.distance || (a.distance == b.distance && query.is_younger(b, a));
   });
   return {};
 }
 
 // --- casts ---------------------------------------------------------------------------------------
-
-// hit(ShapeHit) for each collider; it returns the fraction up to which to go on.
-template <class F>
-void World::Impl::for_cast_hits(const collide::MovingShape& shape, const QueryFilter& filter,
-                                const F& hit) {
-  double limit = 1.0;
-  for_swept(sweep_of(shape), filter, [&](const Collider& c) {
-    const double sizes =
-        core_reach(*shape.shape) + (is_convex_body(c.geometry) ? core_reach(c.geometry) : 0.0);
-    const collide::ImpactQuery query{
-        shape, {&c.geometry, c.T, {c.T.position(), {}, {}}}, 1.0, kTouch + kTouchShare * sizes};
-    collide::PartsImpact impact{};
-    if (first_impact(query, 0.0, parts_scratch, impact)) {
-      limit = hit(ShapeHit{hit_of(c, impact.part_b), impact.time, impact.points.distance,
-                           impact.points.on_b, -impact.points.normal});
-    }
-    return limit;
-  });
-}
 
 Expected<std::optional<ShapeHit>> World::shape_cast(const Shape& shape, const SE3& T,
                                                     const CastMotion& motion,
@@ -236,9 +290,10 @@ Expected<std::optional<ShapeHit>> World::shape_cast(const Shape& shape, const SE
   }
   std::optional<ShapeHit> first;
   const collide::Geometry geometry = collide::make_geometry(shape);
-  impl_->for_cast_hits(moving(geometry, proper(T), motion), filter, [&](const ShapeHit& hit) {
+  Query query = impl_->query(filter);
+  query.for_cast_hits(moving(geometry, proper(T), motion), [&](const ShapeHit& hit) {
     if (!first || hit.fraction < first->fraction ||
-        (hit.fraction == first->fraction && impl_->is_younger(*first, hit))) {
+        (hit.fraction == first->fraction && query.is_younger(*first, hit))) {
       first = hit;
     }
     return first->fraction;
@@ -253,12 +308,13 @@ Expected<void> World::shape_cast_all(const Shape& shape, const SE3& T, const Cas
   }
   const auto begin = static_cast<std::ptrdiff_t>(hits.size());
   const collide::Geometry geometry = collide::make_geometry(shape);
-  impl_->for_cast_hits(moving(geometry, proper(T), motion), filter, [&](const ShapeHit& hit) {
+  Query query = impl_->query(filter);
+  query.for_cast_hits(moving(geometry, proper(T), motion), [&](const ShapeHit& hit) {
     hits.push_back(hit);
     return 1.0;
   });
   std::sort(hits.begin() + begin, hits.end(), [&](const ShapeHit& a, const ShapeHit& b) {
-    return a.fraction < b.fraction || (a.fraction == b.fraction && impl_->is_younger(b, a));
+    return a.fraction < b.fraction || (a.fraction == b.fraction && query.is_younger(b, a));
   });
   return {};
 }
@@ -273,9 +329,10 @@ Expected<void> World::overlapping(const Shape& shape, const SE3& T_world_shape,
   const auto begin = static_cast<std::ptrdiff_t>(found.size());
   const collide::Geometry geometry = collide::make_geometry(shape);
   const SE3 T = proper(T_world_shape);
-  impl_->for_swept({bounds_of(geometry, T), {}}, filter, [&](const Collider& c) {
+  Query query = impl_->query(filter);
+  query.for_swept({bounds_of(geometry, T), {}}, [&](const Collider& c) {
     if (parts_touch(geometry, T, c.geometry, c.T, impl_->parts_scratch)) {
-      found.push_back(impl_->hit_of(c, 0).collider);
+      found.push_back(query.hit_of(c, 0).collider);
     }
     return 1.0;
   });
@@ -283,40 +340,6 @@ Expected<void> World::overlapping(const Shape& shape, const SE3& T_world_shape,
     return impl_->colliders[a.index - 1].serial < impl_->colliders[b.index - 1].serial;
   });
   return {};
-}
-
-std::optional<NearestHit> World::Impl::nearest(const collide::Geometry& shape, const SE3& T,
-                                               double limit, const QueryFilter& filter) {
-  find_strays();
-  std::optional<NearestHit> best;
-  const auto consider = [&](const Collider& c) {
-    collide::NearestParts found;
-    if (!is_asked_for(c, filter) ||
-        !nearest_parts(shape, T, c.geometry, c.T, limit, parts_scratch, found)) {
-      return;
-    }
-    const collide::ClosestPoints& p = found.points;
-    const NearestHit hit{hit_of(c, found.part_b), p.distance, p.on_a, p.on_b, -p.normal};
-    if (best && (hit.distance > best->distance ||
-                 (hit.distance == best->distance && !is_younger(*best, hit)))) {
-      return;
-    }
-    best = hit;
-    limit = std::min(limit, std::max(0.0, hit.distance));
-  };
-  const collide::Bounds box = bounds_of(shape, T);
-  for (const std::uint32_t i : strays) {
-    const collide::FloatBounds around = rounded_outwards(colliders[i].bounds);
-    if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) <= limit) {
-      consider(colliders[i]);
-    }
-  }
-  finder.nearest(box, limit, world_cast, [&](std::uint32_t proxy, float) {
-    const Collider& c = colliders[finder.user(proxy)];
-    if (!c.stray) consider(c);
-    return limit;
-  });
-  return best;
 }
 
 Expected<std::optional<NearestHit>> World::nearest(const Shape& shape, const SE3& T,
@@ -328,7 +351,7 @@ Expected<std::optional<NearestHit>> World::nearest(const Shape& shape, const SE3
   if (!in_range(max_distance) || max_distance < 0.0) {
     return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
   }
-  return impl_->nearest(collide::make_geometry(shape), proper(T), max_distance, filter);
+  return impl_->query(filter).nearest(collide::make_geometry(shape), proper(T), max_distance);
 }
 
 Expected<std::optional<NearestHit>> World::nearest(const Vec3& point, double max_distance,
@@ -337,7 +360,7 @@ Expected<std::optional<NearestHit>> World::nearest(const Vec3& point, double max
   if (!in_range(max_distance) || max_distance < 0.0) {
     return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
   }
-  return impl_->nearest({}, SE3(point), max_distance, filter);  // a sphere of no radius
+  return impl_->query(filter).nearest({}, SE3(point), max_distance);  // a sphere of no radius
 }
 
 }  // namespace vp

@@ -51,26 +51,24 @@ void World::Impl::begin_step(double dt) {
   events.reserve(room);
   records.reserve(room);
   next_records.reserve(room);
-  contact_pool.reserve(room);
-  for (auto* list : {&free_contacts, &stale_contacts, &looked_at_contacts, &look_again})
-    list->reserve(std::max(room, contact_pool.capacity()));  // parts have contacts of their own
+  contact_store.reserve(room);
+  for (auto* list : {&looked_at_contacts, &look_again})
+    list->reserve(contact_store.stale.capacity());
   looked.reserve(std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
   to_pose.reserve(n);
   lost_bodies.reserve(n);
-  near_list.reserve(room);
-  body_stack.reserve(n);
-  woken.reserve(n);
-  drowsy.reserve(n);
+  islands.reserve(n);
   for (const std::uint32_t i : bodies_on_links) bodies[i].on_link = false;
   bodies_on_links.clear();
   for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
   new_pairs.reserve(room);
   body_rows.resize(n + 1);
-  graph.resize(n + 1);
+  contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
-  block_words.words.reserve(room / solve::kLanes + 2 * solve::kColours * graph.regions());
-  if (!movers.empty()) graph.reserve(movers.size());
+  block_words.words.reserve(room / solve::kLanes +
+                            2 * solve::kColours * contact_store.graph.regions());
+  if (!movers.empty()) contact_store.graph.reserve(movers.size());
   start_ways.resize(n);
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
@@ -84,21 +82,10 @@ void World::Impl::begin_step(double dt) {
 void World::Impl::divide_into_regions(double dt) {
   const std::size_t before = regions.state.count;
   if (!regions.divide(bodies, movers, static_cast<std::size_t>(desc.region_bodies), dt)) return;
-  graph.set_regions(std::max<std::size_t>(before, regions.state.count) + 1);
-  for (const std::uint32_t i : regions.changed()) take_contacts_along(i);
-  graph.set_regions(std::size_t{regions.state.count} + 1);
+  contact_store.graph.set_regions(std::max<std::size_t>(before, regions.state.count) + 1);
+  for (const std::uint32_t i : regions.changed()) contact_store.follow_region(bodies[i], body_set);
+  contact_store.graph.set_regions(std::size_t{regions.state.count} + 1);
   regions.sort(bodies, movers);
-}
-
-void World::Impl::take_contacts_along(std::uint32_t body) {
-  for (std::uint32_t e = bodies[body].first_edge; e != kNone; e = contact_pool[e / 2].next[e % 2]) {
-    Contact& c = contact_pool[e / 2];
-    if (c.place.points == 0 || c.parked) continue;
-    const solve::Place left = c.place;
-    const std::uint32_t moved = graph.follow(c.place, end_of(bodies, colliders[c.a].body),
-                                             end_of(bodies, colliders[c.b].body));
-    if (moved != solve::kNoContact) contact_pool[moved].place = left;
-  }
 }
 
 void World::Impl::begin_impact_stage() {
@@ -483,16 +470,17 @@ void World::Impl::count_contacts() {
   note_limits_of_surfaces();
   counters.triangles = manifold_scratch.looked_at;
   solve::ColourSet colours;
-  for (std::size_t region = 0; region < graph.regions(); ++region) {
-    colours.insert(graph.colours_in_use(region));
-    graph.colours_in_use(region).for_each([&](int c) {
-      counters.manifolds += graph.of<1>(region, c).lanes + graph.of<4>(region, c).lanes;
+  for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
+    colours.insert(contact_store.graph.colours_in_use(region));
+    contact_store.graph.colours_in_use(region).for_each([&](int c) {
+      counters.manifolds +=
+          contact_store.graph.of<1>(region, c).lanes + contact_store.graph.of<4>(region, c).lanes;
     });
   }
   counters.colours = static_cast<std::uint32_t>(colours.size());
   counters.regions = regions.state.count;
   if (colours.has(solve::kLastColour)) status.colour_limit = true;
-  counters.pairs += counters.manifolds + near_list.size();
+  counters.pairs += counters.manifolds + contact_store.near.size();
   counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }
@@ -501,7 +489,6 @@ void World::Impl::finish_step() {
   count_contacts();
   if (desc.sleep_after > 0.0) {
     const auto stage = in(Stage::sleep);
-    for (const std::uint32_t i : movers) watch(i, dt_now);
     send_to_sleep();
   }
   std::erase_if(next_records, [](const PairRecord& r) {

@@ -183,7 +183,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
   const float h = static_cast<float>(dt / n);
   SubStepState& state = sub_step_state;
   const double before = std::exchange(state.length, h);
-  if (before > h) rescale_impulses(graph, joints, h / before);
+  if (before > h) rescale_impulses(contact_store.graph, joints, h / before);
   // What has sunk in longer sub-steps is not thrown out by shorter ones: the push becomes as fast
   // as theirs by and by.
   state.push_length = std::max(static_cast<double>(h), state.push_length - kHurry * dt);

@@ -19,102 +19,95 @@ Vec3 normal_of(const solve::ContactBlock<P>& block, int lane) {
           static_cast<double>(n.z.lane[lane])};
 }
 
+// Turns what the sub-steps have found of contacts into events.
+struct TouchReport {
+  ContactStore& contacts;
+  const Colliders& colliders;
+  Events& events;
+
+  template <int P>
+  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded) {
+    const std::uint32_t index = block.contact.lane[lane];
+    Contact& c = contacts[index];
+    const double closing = static_cast<double>(block.closing.lane[lane]);
+    const double impulse = impulse_of(block, lane);
+    block.given.lane[lane] += block.impact.lane[lane];  // for contacts_of()
+    block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
+    block.touches.lane[lane] = loaded ? 1 : 0;
+    if (c.is_part()) {
+      c.touching = loaded;
+      events.news_of_parts.push_back(
+          {c.whole, index, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
+      return;
+    }
+    if (!loaded) {
+      if (c.touching) events.touch(colliders, c, false);
+      return;
+    }
+    const ColliderPair pair{c.key, c.a, c.b};
+    const auto tell = [&](ContactEvent::Kind kind) {
+      events.emit(colliders, kind, pair, c.position[0], normal_of(block, lane), closing, impulse,
+                  0.0);
+    };
+    if (!c.touching) tell(ContactEvent::Kind::begin);
+    c.touching = true;
+    if (closing > 0.0) tell(ContactEvent::Kind::hit);
+  }
+
+  // One event for the whole: the impulses of the parts that have news add up, the largest tells
+  // where.
+  void report_parts() {
+    std::vector<PartNews>& news = events.news_of_parts;
+    std::sort(news.begin(), news.end(), [](const PartNews& a, const PartNews& b) {
+      return a.whole != b.whole ? a.whole < b.whole : a.part < b.part;
+    });
+    for (std::size_t k = 0; k < news.size();) {
+      PartNews sum = news[k];
+      double most = sum.impulse;
+      for (++k; k < news.size() && news[k].whole == sum.whole; ++k) {
+        const PartNews& other = news[k];
+        if (other.impulse > most) {
+          most = other.impulse;
+          sum.point = other.point;
+          sum.normal = other.normal;
+        }
+        sum.impulse += other.impulse;
+        sum.closing = std::max(sum.closing, other.closing);
+      }
+      Contact& whole = contacts[sum.whole];
+      const bool touches = contacts.touches_in_parts(whole);
+      if (!touches) {
+        if (whole.touching) events.touch(colliders, whole, false);
+        continue;
+      }
+      const ColliderPair pair{whole.key, whole.a, whole.b};
+      const auto tell = [&](ContactEvent::Kind kind) {
+        events.emit(colliders, kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
+      };
+      if (!whole.touching) tell(ContactEvent::Kind::begin);
+      whole.touching = true;
+      if (sum.closing > 0.0) tell(ContactEvent::Kind::hit);
+    }
+    news.clear();
+  }
+};
+
 }  // namespace
 
-void World::Impl::report_touch(std::uint32_t index, bool loaded) {
-  Contact& c = contact_pool[index];
-  c.touching = loaded;
-  const ColliderPair pair{c.key, c.a, c.b};
-  const auto kind = loaded ? ContactEvent::Kind::begin : ContactEvent::Kind::end;
-  events.emit(colliders, kind, pair, loaded && c.count > 0 ? c.position[0] : Vec3{}, {}, 0.0, 0.0,
-              0.0);
-}
-
 void World::Impl::report_news() {
-  counters.contacts += points_in_lanes;
+  counters.contacts += contact_store.points;
+  TouchReport report{contact_store, colliders, events};
   std::size_t next = 0;
   contact_runs().for_runs([&](const auto&, const auto&, auto& blocks) {
     for (auto& block : blocks) {
       const std::uint32_t found = block_words.words[next++];
       for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
-        report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
+        report.report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
       }
     }
   });
-  report_news_of_parts();
-}
-
-// One event for the whole: the impulses of the parts that have news add up, the largest tells
-// where.
-void World::Impl::report_news_of_parts() {
-  std::sort(part_news.begin(), part_news.end(), [](const PartNews& a, const PartNews& b) {
-    return a.whole != b.whole ? a.whole < b.whole : a.part < b.part;
-  });
-  for (std::size_t k = 0; k < part_news.size();) {
-    PartNews sum = part_news[k];
-    double most = sum.impulse;
-    for (++k; k < part_news.size() && part_news[k].whole == sum.whole; ++k) {
-      const PartNews& other = part_news[k];
-      if (other.impulse > most) {
-        most = other.impulse;
-        sum.point = other.point;
-        sum.normal = other.normal;
-      }
-      sum.impulse += other.impulse;
-      sum.closing = std::max(sum.closing, other.closing);
-    }
-    Contact& whole = contact_pool[sum.whole];
-    const bool touches = touches_in_parts(whole);
-    if (!touches) {
-      if (whole.touching) report_touch(sum.whole, false);
-      continue;
-    }
-    const ColliderPair pair{whole.key, whole.a, whole.b};
-    const auto tell = [&](ContactEvent::Kind kind) {
-      events.emit(colliders, kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
-    };
-    if (!whole.touching) tell(ContactEvent::Kind::begin);
-    whole.touching = true;
-    if (sum.closing > 0.0) tell(ContactEvent::Kind::hit);
-  }
-  part_news.clear();
-}
-
-bool World::Impl::touches_in_parts(const Contact& whole) const {
-  for (std::uint32_t p = whole.first_part; p != kNone; p = contact_pool[p].next_part) {
-    if (contact_pool[p].touching) return true;
-  }
-  return false;
-}
-
-template <int P>
-void World::Impl::report_lane(solve::ContactBlock<P>& block, int lane, bool loaded) {
-  const std::uint32_t index = block.contact.lane[lane];
-  Contact& c = contact_pool[index];
-  const double closing = static_cast<double>(block.closing.lane[lane]);
-  const double impulse = impulse_of(block, lane);
-  block.given.lane[lane] += block.impact.lane[lane];  // for contacts_of()
-  block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
-  block.touches.lane[lane] = loaded ? 1 : 0;
-  if (c.is_part()) {
-    c.touching = loaded;
-    part_news.push_back(
-        {c.whole, index, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
-    return;
-  }
-  if (!loaded) {
-    if (c.touching) report_touch(index, false);
-    return;
-  }
-  const ColliderPair pair{c.key, c.a, c.b};
-  const auto tell = [&](ContactEvent::Kind kind) {
-    events.emit(colliders, kind, pair, c.position[0], normal_of(block, lane), closing, impulse,
-                0.0);
-  };
-  if (!c.touching) tell(ContactEvent::Kind::begin);
-  c.touching = true;
-  if (closing > 0.0) tell(ContactEvent::Kind::hit);
+  report.report_parts();
 }
 
 }  // namespace vp

@@ -87,18 +87,15 @@ void World::Impl::drop_contacts(std::uint32_t index) {
   const Collider& collider = colliders[index];
   wake(collider.body);
   wake_neighbours(collider.body);
-  std::uint32_t next = kNone;
-  for (std::uint32_t e = bodies[collider.body].first_edge; e != kNone; e = next) {
-    Contact& c = contact_pool[e / 2];
-    next = c.next[e % 2];  // behind a whole come no parts of it
-    if (c.is_part() || (c.a != index && c.b != index)) continue;
+  contact_store.for_each_of(bodies[collider.body], [&](std::uint32_t contact, Contact& c) {
+    if (c.is_part() || (c.a != index && c.b != index))
+      return;  // behind a whole come no parts of it
     if (c.touching) {
       events.destroyed.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
       c.touching = false;
     }
-    finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
-    remove_contact(e / 2);
-  }
+    drop_contact(contact);
+  });
   ready_for_queries = false;
 }
 

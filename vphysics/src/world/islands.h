@@ -1,0 +1,54 @@
+// Islands: bodies that hang together by contacts and joints. They fall asleep together, and wake
+// together.
+//
+// A body is drowsy when it has been slow for sleep_after. As soon as it is, and then each
+// sleep_after, it asks: all that it hangs together with is gone through, and if all of it is
+// drowsy, it falls asleep. If not, those that were gone through stay drowsy, and ask again after as
+// long: so one body is gone through about once in that time, and the last one that becomes drowsy
+// finds the others so.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "world/contact_store.h"
+#include "world/joint.h"
+
+namespace vp {
+
+// What holds bodies together.
+struct Bonds {
+  Bodies& bodies;
+  const Colliders& colliders;
+  ContactStore& contacts;
+  const Joints& joints;
+};
+
+class Islands {
+ public:
+  void reserve(std::size_t bodies);
+  // Counts for how long a body has been slow, at the end of a step.
+  void watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt);
+  // f(island) of each that rests, of all watched since the last time; f puts it to sleep.
+  template <class F>
+  void find_resting(const Bonds& bonds, double sleep_after, const F& f) {
+    const std::uint64_t first = found_ + 1;
+    for (const std::uint32_t seed : drowsy_) {
+      if (bonds.bodies[seed].island >= first) continue;  // asleep, or gone through in vain
+      if (rests(bonds, seed, first, sleep_after)) f(std::span<const std::uint32_t>(island_));
+    }
+    drowsy_.clear();
+  }
+  // A body that is asleep wakes with all that it hangs together with. Returns all of these.
+  std::span<const std::uint32_t> wake(const Bonds& bonds, std::uint32_t body);
+
+ private:
+  bool rests(const Bonds& bonds, std::uint32_t seed, std::uint64_t first, double sleep_after);
+
+  std::uint64_t found_ = 0;
+  std::vector<std::uint32_t> drowsy_;  // bodies that ask in this step
+  std::vector<std::uint32_t> island_, woken_;
+};
+
+}  // namespace vp
