@@ -110,26 +110,31 @@ solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
   return {body + 1, b.motion == Motion::dynamic, b.region};
 }
 
-void World::Impl::list_bodies() {
-  if (!lists_are_stale) return;
-  lists_are_stale = false;
-  swept_body_pairs.forget();
+bool BodyLists::refresh(const Bodies& bodies) {
+  if (!stale_) return false;
+  stale_ = false;
   movers.clear();
-  link_bodies.clear();
-  some_are_continuous = some_are_not = some_sleep = false;
+  links.clear();
+  some_continuous = some_sub_stepped = some_sleep = false;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (!body.alive) continue;
     if (body.is_link) {
-      if (body.first_collider != kNone) link_bodies.push_back(i);
+      if (body.first_collider != kNone) links.push_back(i);
     } else if (body.asleep) {
       some_sleep = true;
     } else if (body.motion != Motion::fixed) {
       movers.push_back(i);
-      (body.continuous ? some_are_continuous : some_are_not) = true;
+      (body.continuous ? some_continuous : some_sub_stepped) = true;
     }
   }
-  regions.sort(bodies, movers);
+  return true;
+}
+
+void World::Impl::list_bodies() {
+  if (!lists.refresh(bodies)) return;
+  swept_body_pairs.forget();
+  regions.sort(bodies, lists.movers);
   list_remote_articulations();
   discrete_body_pairs.list_filters(bodies);
   reserve_link_rows();
@@ -161,7 +166,7 @@ bool World::Impl::load_row(std::uint32_t index, double dt) {
   row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
   row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
   if (pushed && (body.linear_damping > 0.0 || body.angular_damping > 0.0)) {
-    const double h = dt / sub_steps_in(dt);
+    const double h = dt / sub_steps_in(desc, speed_unit, dt);
     row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
     row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
   }
@@ -221,23 +226,23 @@ void World::Impl::start_way_anew(std::uint32_t index) {
 
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
-  mover_news.resize(movers.size());
-  workers.in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  mover_news.resize(lists.movers.size());
+  workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = movers[k];
+      const std::uint32_t i = lists.movers[k];
       Body& body = bodies[i];
       if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
       const bool far = load_row(i, dt);
       const bool stays = joins_sub_steps(body) &&
                          stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
-      const bool pulled = !(pull_of(body, dt) == Velocity{});
+      const bool pulled = !(approach_in(dt).pull_of(body) == Velocity{});
       mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
                                                 (far || !stays ? kLeaves : 0));
     }
   });
-  for (std::size_t k = 0; k < movers.size(); ++k) {
+  for (std::size_t k = 0; k < lists.movers.size(); ++k) {
     if (mover_news[k] == 0) continue;
-    const std::uint32_t i = movers[k];
+    const std::uint32_t i = lists.movers[k];
     if ((mover_news[k] & kFar) != 0) start_way_anew(i);
     if ((mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
@@ -245,14 +250,14 @@ void World::Impl::load_rows(double dt) {
 }
 
 void World::Impl::update_bounds_of_links(double dt) {
-  for (const std::uint32_t i : link_bodies) update_bounds(i, dt, false);
+  for (const std::uint32_t i : lists.links) update_bounds(i, dt, false);
 }
 
 // Gives the broad phase the bounds of what may have left its enlarged ones.
 void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
   pose_colliders(bodies[index], colliders);
-  const Velocity pull = pull_of(body, dt);
+  const Velocity pull = approach_in(dt).pull_of(body);
   const double turn = dt * (norm(body.w) + norm(pull.w));
   const Vec3 reference = reference_point(body);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
@@ -339,7 +344,7 @@ void World::Impl::forget_lost_bodies() {
   }
   for (const std::uint32_t i : lost_bodies) {
     forget_contacts(i);
-    forget_joints(i);
+    forget_joints(bodies[i], joints);
   }
   lost_bodies.clear();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "collide/bounds.h"
 #include "solve/contact_graph.h"
@@ -87,6 +88,23 @@ struct alignas(64) Body {
 };
 
 using Bodies = Slots<Body, BodyId>;
+
+// Which bodies a step goes through, ascending.
+class BodyLists {
+ public:
+  std::vector<std::uint32_t> movers;  // that are awake and not fixed, but links
+  std::vector<std::uint32_t> links;   // with colliders
+  bool some_continuous = false, some_sub_stepped = false;  // of the movers
+  bool some_sleep = false;
+
+  // Bodies or colliders have come or gone, fallen asleep or woken.
+  void forget() { stale_ = true; }
+  // False: they are as before.
+  bool refresh(const Bodies& bodies);
+
+ private:
+  bool stale_ = true;
+};
 
 // Whether it takes part in the sub-stepped solver.
 inline bool joins_sub_steps(const Body& body) {

@@ -171,7 +171,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
     drop_contacts(c);
     finder.remove(colliders[c].proxy);
   }
-  forget_joints(index);
+  forget_joints(bodies[index], joints);
   body.motion = motion;
   body.continuous = body.wants_continuous && motion == Motion::dynamic;
   body.rested = false;
@@ -188,7 +188,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   if (index + 1 < body_rows.size()) body_rows[index + 1] = {};
   std::fill_n(body.bounded_at, 6, 1e9f);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) add_proxy(c);
-  lists_are_stale = true;
+  lists.forget();
 }
 
 Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
@@ -307,7 +307,7 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
     body.masks |= impl_->colliders[i].filter.mask;
   }
   impl_->ready_for_queries = false;
-  impl_->lists_are_stale = true;
+  impl_->lists.forget();
   Structure structure(impl_->structure);
   structure.add(word_of(Change::filter, id.index));
   structure.add(std::uint64_t{filter.category} << 32 | filter.mask);
@@ -353,7 +353,7 @@ void World::Impl::take_collider_off(std::uint32_t index) {
   update_mass(owner);
   contact_store.mark_stale_of(bodies[owner]);
   body.moved();
-  lists_are_stale = true;
+  lists.forget();
 }
 
 // What a body has of all its colliders.
@@ -390,7 +390,7 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   }
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);
-  impl_->lists_are_stale = true;
+  impl_->lists.forget();
   impl_->impact_bodies_are_stale = true;
   Structure structure(impl_->structure);
   structure.add(word_of(Change::destroyed_articulation, id.index));

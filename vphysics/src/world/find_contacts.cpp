@@ -22,9 +22,6 @@ namespace {
 // by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
-// An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
-// way of a step is found by the step after. What a stronger one adds is searched for.
-constexpr double kBornePull = 50.0;
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
 Vec3 at(const solve::Field3& f, int lane) {
@@ -80,13 +77,43 @@ float impulse_of(const Contact& contact, const Held& impulses, const collide::Ma
   return nearest;
 }
 
+struct NarrowPhaseInput {
+  const Bodies& bodies;
+  const Colliders& colliders;
+  const Joints& joints;
+  Approach approach;
+  double slop;
+};
+
+// The narrow phase, for one. What has parts is looked at when it is taken over.
+void find_manifold_of(Contact& c, Looked& found, const NarrowPhaseInput& in) {
+  const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
+  const double leeway = kSlide * smaller_size(a, b);
+  found.margin_at_rest = c.sensor ? 0.0 : in.slop + leeway;
+  found.margin = c.sensor ? 0.0 : found.margin_at_rest + in.approach.of(a, b);
+  // The slower parts of a compound that is the smaller one are looked for within less.
+  found.by_part = c.has_parts && vicinity_of(in.bodies, a, b).of_compound &&
+                  in.approach.pull_of(in.bodies[a.body]) == Velocity{} &&
+                  in.approach.pull_of(in.bodies[b.body]) == Velocity{};
+  found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - in.slop;
+  found.manifold.count = 0;
+  if (keeps_apart(in.bodies, in.joints, a.body, b.body)) {
+    found.clearance = kNeverMeets;
+  } else if (!c.has_parts) {
+    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
+    if (found.manifold.count == 0)
+      found.clearance = std::max(found.clearance, found.manifold.apart_by_at_least - in.slop);
+  }
+}
+
 }  // namespace
 
 // Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
 // put elsewhere since the last step, and by links.
 bool World::Impl::has_contacts_to_find() const {
-  return some_are_not || (some_sleep && (finder.has_moved() || !contact_store.stale.empty() ||
-                                         !link_bodies.empty()));
+  return lists.some_sub_stepped ||
+         (lists.some_sleep &&
+          (finder.has_moved() || !contact_store.stale.empty() || !lists.links.empty()));
 }
 
 void World::Impl::find_contacts(double dt) {
@@ -100,9 +127,9 @@ void World::Impl::find_contacts(double dt) {
 }
 
 void World::Impl::find_new_contacts() {
-  new_pairs.clear();
-  finder.update(new_pairs);
-  for (const collide::ProxyPair& pair : new_pairs) {
+  narrow.new_pairs.clear();
+  finder.update(narrow.new_pairs);
+  for (const collide::ProxyPair& pair : narrow.new_pairs) {
     add_contact_pair(finder.user(pair.a), finder.user(pair.b));
   }
 }
@@ -119,7 +146,7 @@ void World::Impl::drop_contact(std::uint32_t index) {
 // Contacts of links are looked at elsewhere; all others are dropped when they are looked at and
 // their enlarged bounds have parted, so that until then nothing is gone through for it.
 void World::Impl::drop_parted_link_contacts() {
-  if (link_bodies.empty()) return;
+  if (lists.links.empty()) return;
   for (const std::uint32_t proxy : finder.moved()) {
     if (!finder.exists(proxy)) continue;
     const std::uint32_t collider = finder.user(proxy);
@@ -156,48 +183,6 @@ void World::Impl::remove_contact(std::uint32_t index) {
   contact_store.remove(index, body_set);
 }
 
-// What gravity and forces add to the body's velocity on the mean of a step, if that is more than
-// margins bear; else nothing, and the next step finds it by its velocity.
-Velocity World::Impl::pull_of(const Body& body, double dt) const {
-  if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
-  const Velocity a = acceleration_of(body);
-  if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
-  const double most = norm(a.v) + body.reach * norm(a.w);
-  if (most <= kBornePull || dt * dt * most <= desc.contact_slop) return {};
-  const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(dt));
-  return {mean * a.w, mean * a.v};
-}
-
-// The two close in by no more within dt [m], as long as neither turns far: where they meet they
-// move at the velocities that they have there. And by no more than the balls around both do, and
-// what rotation moves within these.
-double World::Impl::approach(const Collider& a, const Collider& b, double dt) const {
-  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
-  const auto velocity = [&](const Body& body, const Vec3& at) {
-    return body.v + cross(body.w, at - reference_point(body));
-  };
-  const Velocity pull_a = pull_of(body_a, dt), pull_b = pull_of(body_b, dt);
-  // Of what is within that radius of a point of the body.
-  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at, double radius) {
-    if (pull == Velocity{}) return 0.0;
-    return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
-  };
-  const Vicinity at = vicinity_of(bodies, a, b);
-  const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
-                          at.radius * norm(body_b.w - body_a.w) +
-                          pulled(body_a, pull_a, at.centre, at.radius) +
-                          pulled(body_b, pull_b, at.centre, at.radius);
-  const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
-    const double turn = dt * (norm(body.w) + norm(pull.w));
-    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
-  };
-  const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
-  const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
-                       pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
-  return std::min(dt * together,
-                  dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
-}
-
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
   const ContactRuns runs = contact_runs();
@@ -227,31 +212,26 @@ void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bi
   }
 }
 
-void World::Impl::want_posed(std::uint32_t index) {
-  Body& body = bodies[index];
-  if (body.posed || body.wanted) return;
-  body.wanted = true;
-  to_pose.push_back(index);
-}
-
 // In the order of their slots; then those that these have woken.
 void World::Impl::look_at_stale_contacts(double dt) {
-  look_again.clear();
+  narrow.look_again.clear();
   for (bool first = true; first || !contact_store.stale.empty(); first = false) {
     find_manifolds_of_stale(dt, first);
     const auto stage = in(Stage::lanes);
-    for (const Looked& found : looked) take_over(found);
+    for (const Looked& found : narrow.looked) take_over(found);
   }
-  contact_store.stale.swap(look_again);
+  contact_store.stale.swap(narrow.look_again);
 }
 
 void World::Impl::find_manifolds_of_stale(double dt, bool first) {
   const auto stage = in(Stage::narrow_phase);
   if (first) find_stale_contacts(dt);
-  contact_store.take_stale(looked_at_contacts);
+  contact_store.take_stale(narrow.stale);
+  std::vector<Looked>& looked = narrow.looked;
+  std::vector<std::uint32_t>& to_pose = narrow.to_pose;
   looked.clear();
   to_pose.clear();
-  for (const std::uint32_t index : looked_at_contacts) {
+  for (const std::uint32_t index : narrow.stale) {
     const Contact& c = contact_store[index];
     if (!c.alive || !c.stale || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
@@ -260,13 +240,21 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
       continue;
     }
     looked.push_back({index, {}, 0.0, 0.0, 0.0, false});
-    for (const std::uint32_t collider : {c.a, c.b}) want_posed(colliders[collider].body);
+    for (const std::uint32_t collider : {c.a, c.b}) {
+      Body& body = bodies[colliders[collider].body];
+      if (body.posed || body.wanted) continue;
+      body.wanted = true;
+      to_pose.push_back(colliders[collider].body);
+    }
   }
   workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
   });
+  const NarrowPhaseInput input{bodies, colliders, joints, approach_in(dt), desc.contact_slop};
   workers.in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) look_at(looked[k], dt);
+    for (std::size_t k = begin; k < end; ++k) {
+      find_manifold_of(contact_store[looked[k].contact], looked[k], input);
+    }
   });
 }
 
@@ -276,29 +264,6 @@ void World::Impl::note_limits(const collide::Manifold& manifold) {
 void World::Impl::note_limits_of_surfaces() {
   status.manifold_limit |= manifold_scratch.crowded;
   status.distance_limit |= manifold_scratch.rough;
-}
-
-// The narrow phase, for one. What has parts is looked at when it is taken over.
-void World::Impl::look_at(Looked& found, double dt) {
-  Contact& c = contact_store[found.contact];
-  const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const double leeway = kSlide * smaller_size(a, b);
-  found.margin_at_rest = c.sensor ? 0.0 : desc.contact_slop + leeway;
-  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach(a, b, dt);
-  // The slower parts of a compound that is the smaller one are looked for within less.
-  found.by_part = c.has_parts && vicinity_of(bodies, a, b).of_compound &&
-                  pull_of(bodies[a.body], dt) == Velocity{} &&
-                  pull_of(bodies[b.body], dt) == Velocity{};
-  found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - desc.contact_slop;
-  found.manifold.count = 0;
-  if (keeps_apart(a.body, b.body)) {
-    found.clearance = kNeverMeets;
-  } else if (!c.has_parts) {
-    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
-    if (found.manifold.count == 0)
-      found.clearance =
-          std::max(found.clearance, found.manifold.apart_by_at_least - desc.contact_slop);
-  }
 }
 
 void World::Impl::take_over(const Looked& found) {
@@ -334,13 +299,13 @@ void World::Impl::take_over(const Looked& found) {
     }
   }
   contact_store.park(index, body_set);  // has no points: if nothing awake may change it
-  if (c.sensor && !c.parked) look_again.push_back(index);  // in the next step
+  if (c.sensor && !c.parked) narrow.look_again.push_back(index);  // in the next step
 }
 
 void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   Contact& c = contact_store[index];
   solve::ContactGraph& graph = contact_store.graph;
-  ++manifolds_renewed;
+  ++narrow.renewed;
   const Collider &a = colliders[c.a], &b = colliders[c.b];
   const auto end_a = end_of(bodies, a.body), end_b = end_of(bodies, b.body);
   wake(a.body);

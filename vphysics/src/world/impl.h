@@ -22,6 +22,7 @@
 #include "solve/passes.h"
 #include "vphysics/jobs.h"
 #include "vphysics/world.h"
+#include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
 #include "world/collider.h"
@@ -30,8 +31,9 @@
 #include "world/impact_pairs.h"
 #include "world/islands.h"
 #include "world/joint.h"
-#include "world/joint_runs.h"
+#include "world/joint_steps.h"
 #include "world/loads.h"
+#include "world/narrow_phase.h"
 #include "world/observed_stage.h"
 #include "world/pair_record.h"
 #include "world/parallel.h"
@@ -47,15 +49,6 @@ struct SweptPair {
   bool swept_is_a;
   bool sensor;
   double separation;
-};
-
-// What the narrow phase has found of a contact.
-struct Looked {
-  std::uint32_t contact;
-  collide::Manifold manifold;
-  // Within which it was looked for, and would be if nothing moved; free of contact for so far [m].
-  double margin, margin_at_rest, clearance;
-  bool by_part;  // of a compound: each part within its own margin
 };
 
 struct RecordedCall;
@@ -99,12 +92,7 @@ struct World::Impl {
   Islands islands;
   Regions regions;
 
-  // Bodies that move and are no links, and links with colliders; ascending. Made anew when bodies
-  // or colliders come or go.
-  std::vector<std::uint32_t> movers, link_bodies;
-  bool some_are_continuous = false, some_are_not = false;  // of the movers
-  bool some_sleep = false;
-  bool lists_are_stale = true;
+  BodyLists lists;
   std::shared_ptr<Recorder> recorder;  // or null
 
   // --- of the last step
@@ -134,24 +122,16 @@ struct World::Impl {
   std::shared_ptr<Incoming> incoming;  // none before the first
 
   // --- scratch of a step; kept for its capacity
-  std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint32_t> looked_at_contacts, look_again;
-  std::uint32_t manifolds_renewed = 0;  // put into lanes in this step
+  NarrowPhaseScratch narrow;
   bool finds_contacts = false;
   std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
   double dt_now = 0.0;                     // of the step that is going on; 0: none is
   BlockWords block_words;
-  bool some_are_far_open = false;         // of joints, when the sub-steps end
-  bool some_joints_are_far = false;       // JointPasses::Run::some_far
   solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
   std::vector<std::uint8_t> mover_news;   // of each mover: it needs more than its own row
-  std::vector<Looked> looked;
-  std::vector<std::uint32_t> to_pose;
-  std::vector<Velocity> drift;  // mean velocity over the step less that at its end
+  std::vector<Velocity> drift;            // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
-  JointRuns joint_runs;
-  std::vector<std::uint32_t> active_joints, joined_bodies;
-  solve::LargeVector<solve::Gone> joint_ways;  // by row: of what is joined
+  JointScratch joint_scratch;
   StepStatus status;
   std::vector<collide::Bounds> bounds;
   std::vector<std::uint8_t> held;
@@ -172,8 +152,6 @@ struct World::Impl {
   std::vector<SE3> start_poses;
   collide::ManifoldScratch manifold_scratch;
   std::vector<collide::SubManifold> manifolds;
-  std::vector<collide::KnownPart> known_parts;
-  std::vector<std::uint32_t> old_parts, claimed_parts;
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -282,27 +260,7 @@ struct World::Impl {
   void jumped(std::uint32_t body);
 
   // joints.cpp
-  BodyPlace place_of(std::uint32_t body) const;
-  BodyPlace place_within_step(std::uint32_t body) const;
-  bool keeps_apart(std::uint32_t a, std::uint32_t b) const;
-  void link_joint(std::uint32_t joint);
   void remove_joint(std::uint32_t joint);
-  void forget_joints(std::uint32_t body);
-
-  // joint_steps.cpp
-  bool is_active(const BodyJoint& joint) const;
-  template <class F>
-  void for_joint_runs(const F& f);
-  void begin_joints(double h);
-  void fill_joint(std::uint32_t joint);
-  void prepare_joints();
-  void evaluate_joints(solve::RowsBlock& block);
-  void warm_start_joints();
-  void solve_joints(double h, int round);
-  void relax_joints(double h);
-  void end_joints(double dt);
-  template <class BLOCK>
-  bool is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const;
 
   // find_contacts.cpp
   bool has_contacts_to_find() const;
@@ -314,13 +272,10 @@ struct World::Impl {
   void drop_contact(std::uint32_t contact);
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void remove_contact(std::uint32_t contact);
-  void look_at(Looked& looked, double dt);
   void take_over(const Looked& looked);
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
   void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
-  void want_posed(std::uint32_t body);
-  Velocity pull_of(const Body& body, double dt) const;
-  double approach(const Collider& a, const Collider& b, double dt) const;
+  Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void look_at_stale_contacts(double dt);
   void find_manifolds_of_stale(double dt, bool first);
 
@@ -355,7 +310,6 @@ struct World::Impl {
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
-  int sub_steps_in(double dt) const;
   void take_sub_steps(double dt, int count);
 
   ContactRuns contact_runs() {

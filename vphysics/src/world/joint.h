@@ -8,6 +8,7 @@
 #include "solve/joint_block.h"
 #include "vphysics/lie.h"
 #include "vphysics/world.h"
+#include "world/body.h"
 #include "world/slots.h"
 
 namespace vp {
@@ -17,6 +18,9 @@ struct BodyPlace {
   SE3 T;
   Vec3 centre;  // reference point, world frame
 };
+inline BodyPlace place_of(const Body& body) {
+  return {body.T, reference_point(body)};
+}
 
 // What all kinds are made into.
 struct JointLaw {
@@ -86,6 +90,13 @@ struct BodyJoint {
 };
 
 using Joints = Slots<BodyJoint, JointId>;
+
+// Into the lists of its bodies.
+void link_joint(Bodies& bodies, Joints& joints, std::uint32_t joint);
+// Whether a joint keeps the colliders of two bodies from meeting.
+bool keeps_apart(const Bodies& bodies, const Joints& joints, std::uint32_t a, std::uint32_t b);
+// What a body's joints have to start from is no good.
+void forget_joints(const Body& body, Joints& joints);
 
 // The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
 void lay_out(BodyJoint& joint, double h);

@@ -1,11 +1,12 @@
-// Joints between bodies: their part of a step. Impulses go into lanes when its sub-steps begin, and
-// come back when they have ended.
+#include "world/joint_steps.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "solve/passes.h"
 #include "solve/row_vector.h"
-#include "world/impl.h"
+#include "world/solver_limits.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -135,41 +136,42 @@ const auto& passes_for(const JointRun<solve::RowsBlock>&) {
 }  // namespace
 
 // What is asleep keeps its impulses.
-bool World::Impl::is_active(const BodyJoint& joint) const {
-  return joint.alive && !(is_still(bodies[joint.a]) && is_still(bodies[joint.b]));
+bool JointSteps::is_active(const BodyJoint& joint) const {
+  return joint.alive && !(is_still(context_.bodies[joint.a]) && is_still(context_.bodies[joint.b]));
 }
 
 // f(passes, run of blocks): of a colour side by side, but for blocks that share bodies.
 template <class F>
-void World::Impl::for_joint_runs(const F& f) {
-  joint_runs.for_each([&](auto& run) {
+void JointSteps::for_runs(const F& f) {
+  scratch_.runs.for_each([&](auto& run) {
     const auto& passes = passes_for(run);
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
-      f(passes,
-        Run{run.blocks.data() + begin, end - begin, &run.form, body_rows.data(), joint_ways.data(),
-            static_cast<float>(kFastestJoint * speed_unit), some_joints_are_far});
+      f(passes, Run{run.blocks.data() + begin, end - begin, &run.form, context_.rows.data(),
+                    scratch_.ways.data(), static_cast<float>(kFastestJoint * context_.speed_unit),
+                    some_are_far_});
     };
     if (run.alone) {
       part(0, run.blocks.size());
     } else {
-      workers.in_parallel(run.blocks.size(), kBlockGrain, part);
+      context_.workers.in_parallel(run.blocks.size(), kBlockGrain, part);
     }
   });
 }
 
-void World::Impl::fill_joint(std::uint32_t index) {
-  BodyJoint& joint = joints[index];
+void JointSteps::fill(std::uint32_t index) {
+  BodyJoint& joint = context_.joints[index];
   const solve::JointForm form = form_of(joint);
-  const auto a = end_of(bodies, joint.a), b = end_of(bodies, joint.b);
+  const auto a = end_of(context_.bodies, joint.a), b = end_of(context_.bodies, joint.b);
   const auto add = [&]<class BLOCK>() {
-    return joint_runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
+    return scratch_.runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
   };
   if (joint.law.form != JointLaw::Form::axes) {
     const auto [block, lane] = add.operator()<solve::RowsBlock>();
     return fill_rows(block, lane, joint, 0.0);
   }
-  const BodyPlace at_a = place_of(joint.a), at_b = place_of(joint.b);
+  const BodyPlace at_a = place_of(context_.bodies[joint.a]),
+                  at_b = place_of(context_.bodies[joint.b]);
   if (joint.holds_point() && form.rows == 0) {
     const auto [block, lane] = add.operator()<solve::BallBlock>();
     return fill_point(block.point, lane, joint, at_a, at_b);
@@ -190,47 +192,53 @@ void World::Impl::fill_joint(std::uint32_t index) {
   }
 }
 
-void World::Impl::begin_joints(double h) {
-  active_joints.clear();
-  joined_bodies.clear();
+JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, double h)
+    : context_(context), scratch_(scratch), h_(h) {
+  const Bodies& bodies = context_.bodies;
+  Joints& joints = context_.joints;
+  scratch_.active.clear();
+  scratch_.joined_bodies.clear();
   if (joints.empty()) return;
-  joint_runs.clear(body_rows.size());
+  scratch_.runs.clear(context_.rows.size());
   for (std::uint32_t i = 0; i < joints.size(); ++i) {
     BodyJoint& joint = joints[i];
     if (!is_active(joint)) continue;
-    active_joints.push_back(i);
+    scratch_.active.push_back(i);
     if (joint.laid_out_for != h) lay_out(joint, h);
     joint.laid_out_for = h;
-    fill_joint(i);
+    fill(i);
   }
-  if (active_joints.empty()) return;
-  joint_ways.resize(body_rows.size(), solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
+  if (empty()) return;
+  scratch_.ways.resize(context_.rows.size(), solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone && bodies[i].motion != Motion::fixed)
-      joined_bodies.push_back(i);
+      scratch_.joined_bodies.push_back(i);
   }
-  for_joint_runs([](const auto& passes, const auto& run) { passes.load_inertias(run); });
-  prepare_joints();
+  for_runs([](const auto& passes, const auto& run) { passes.load_inertias(run); });
+  prepare();
 }
 
-// Bodies that joints hold where their rows' ways have taken them since the step began.
-BodyPlace World::Impl::place_within_step(std::uint32_t index) const {
-  const Body& body = bodies[index];
-  if (body.motion == Motion::fixed) return place_of(index);
-  const float *way = body_rows[index + 1].way, *start = start_ways[index].data();
+BodyPlace place_within_step(const Body& body, const solve::BodyRow& row,
+                            const std::array<float, 6>& start_way) {
+  if (body.motion == Motion::fixed) return place_of(body);
+  const float *way = row.way, *start = start_way.data();
   const auto since = [&](int i) { return vector_of(way + i) - vector_of(start + i); };
   const Vec3 centre = reference_point(body) + since(0);
   const Mat3 R = turned(body.T.rotation(), since(3));
   const bool at_centre = body.motion == Motion::dynamic;
   return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
 }
+BodyPlace JointSteps::place_within_step(std::uint32_t body) const {
+  return vp::place_within_step(context_.bodies[body], context_.rows[body + 1],
+                               context_.start_ways[body]);
+}
 
 // Of rows that are not found in lanes.
-void World::Impl::evaluate_joints(solve::RowsBlock& block) {
+void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   JointMeasure found;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldRow) return;  // empty
-    BodyJoint& joint = joints[block.joint.lane[lane]];
+    BodyJoint& joint = context_.joints[block.joint.lane[lane]];
     const BodyPlace b = place_within_step(joint.b);
     evaluate(joint, place_within_step(joint.a), b, found);
     for (int i = 0; i < joint.count; ++i) {
@@ -246,42 +254,43 @@ void World::Impl::evaluate_joints(solve::RowsBlock& block) {
   }
 }
 
-void World::Impl::prepare_joints() {
-  if (active_joints.empty()) return;
-  workers.in_parallel(joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    solve::joint_passes().find_gone(body_rows.data(), start_ways.data(),
-                                    joined_bodies.data() + begin, end - begin, joint_ways.data());
-  });
+void JointSteps::prepare() {
+  if (empty()) return;
+  context_.workers.in_parallel(
+      scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+        solve::joint_passes().find_gone(context_.rows.data(), context_.start_ways.data(),
+                                        scratch_.joined_bodies.data() + begin, end - begin,
+                                        scratch_.ways.data());
+      });
   std::atomic<bool> far = false;
-  for_joint_runs([&](const auto& passes, const auto& run) {
+  for_runs([&](const auto& passes, const auto& run) {
     if constexpr (std::is_same_v<decltype(run.blocks), solve::RowsBlock*>) {
-      for (std::size_t i = 0; i < run.count; ++i) evaluate_joints(run.blocks[i]);
+      for (std::size_t i = 0; i < run.count; ++i) evaluate_rows(run.blocks[i]);
     }
     if (passes.prepare(run)) far.store(true, std::memory_order_relaxed);
   });
-  some_joints_are_far = far;
+  some_are_far_ = far;
 }
-void World::Impl::warm_start_joints() {
-  if (active_joints.empty()) return;
-  for_joint_runs([](const auto& passes, const auto& run) { passes.warm_start(run); });
+void JointSteps::warm_start() {
+  if (empty()) return;
+  for_runs([](const auto& passes, const auto& run) { passes.warm_start(run); });
 }
-void World::Impl::solve_joints(double h, int round) {
-  if (active_joints.empty()) return;
-  for_joint_runs([&](const auto& passes, const auto& run) {
-    (round == 0 ? passes.push_first : passes.push_again)(run, static_cast<float>(h));
+void JointSteps::solve(int round) {
+  if (empty()) return;
+  for_runs([&](const auto& passes, const auto& run) {
+    (round == 0 ? passes.push_first : passes.push_again)(run, static_cast<float>(h_));
   });
 }
-void World::Impl::relax_joints(double h) {
-  if (active_joints.empty()) return;
-  for_joint_runs(
-      [&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h)); });
+void JointSteps::relax() {
+  if (empty()) return;
+  for_runs([&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
 }
 
 // Whether it is open by more than kOpen of the smaller body's radius or by kTurnedOff, of what it
 // holds hard. Only errors too large to be taken out at once are looked at; those of a gear and of a
 // user's constraint have no size to be compared with.
 template <class BLOCK>
-bool World::Impl::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
+bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
   constexpr double kOpen = 0.5, kTurnedOff = 0.2;
   constexpr float kAtLimit = 0.999f;
   if (joint.law.form == JointLaw::Form::gear || joint.law.form == JointLaw::Form::user)
@@ -291,7 +300,7 @@ bool World::Impl::is_far_open(const BodyJoint& joint, const BLOCK& block, int la
   };
   double size = 1e30;
   const auto find_size = [&](std::uint32_t index, const SE3& T_body_joint) {
-    const Body& body = bodies[index];
+    const Body& body = context_.bodies[index];
     if (body.motion != Motion::dynamic) return;
     size = std::min(size, std::max(body.reach, norm(T_body_joint.position() - body.centre)));
   };
@@ -300,7 +309,7 @@ bool World::Impl::is_far_open(const BodyJoint& joint, const BLOCK& block, int la
     find_size(joint.b, joint.T_b_joint);
     return gap > kOpen * size;
   };
-  const double fastest = kFastestJoint * speed_unit;
+  const double fastest = kFastestJoint * context_.speed_unit;
   constexpr int kPoint = BLOCK::kPointRows;
   if (kPoint > 0 && joint.rows[0].relaxes &&
       (exceeds(0, fastest) || exceeds(1, fastest) || exceeds(2, fastest))) {
@@ -318,18 +327,17 @@ bool World::Impl::is_far_open(const BodyJoint& joint, const BLOCK& block, int la
   return false;
 }
 
-void World::Impl::end_joints(double dt) {
-  some_are_far_open = false;
-  if (active_joints.empty()) return;
-  joint_runs.for_each([&](const auto& run) {
+bool JointSteps::end(double dt) {
+  if (empty()) return false;
+  bool some_are_far_open = false;
+  scratch_.runs.for_each([&](const auto& run) {
     const std::uint32_t each = run.alone ? 1 : std::uint32_t{kLanes};
     for (std::uint32_t i = 0; i < run.lanes; ++i) {
       const auto& block = run.blocks[i / each];
       const int lane = static_cast<int>(i % each);
-      BodyJoint& joint = joints[block.joint.lane[lane]];
+      BodyJoint& joint = context_.joints[block.joint.lane[lane]];
       take_rows(block, lane, joint);
-      if (some_joints_are_far && !some_are_far_open)
-        some_are_far_open = is_far_open(joint, block, lane);
+      if (some_are_far_ && !some_are_far_open) some_are_far_open = is_far_open(joint, block, lane);
       joint.force *= 1.0 / dt;
       joint.torque *= 1.0 / dt;
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
@@ -338,6 +346,7 @@ void World::Impl::end_joints(double dt) {
       }
     }
   });
+  return some_are_far_open;
 }
 
 }  // namespace vp

@@ -8,11 +8,7 @@
 
 namespace vp {
 
-BodyPlace World::Impl::place_of(std::uint32_t body) const {
-  return {bodies[body].T, reference_point(bodies[body])};
-}
-
-bool World::Impl::keeps_apart(std::uint32_t a, std::uint32_t b) const {
+bool keeps_apart(const Bodies& bodies, const Joints& joints, std::uint32_t a, std::uint32_t b) {
   for (std::uint32_t e = bodies[a].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
     const BodyJoint& joint = joints[e / 2];
     if (!joint.collide && (joint.a == b || joint.b == b)) return true;
@@ -20,7 +16,7 @@ bool World::Impl::keeps_apart(std::uint32_t a, std::uint32_t b) const {
   return false;
 }
 
-void World::Impl::link_joint(std::uint32_t index) {
+void link_joint(Bodies& bodies, Joints& joints, std::uint32_t index) {
   BodyJoint& joint = joints[index];
   for (const int side : {0, 1}) {
     Body& body = bodies[side == 0 ? joint.a : joint.b];
@@ -84,7 +80,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   joint.start[0] = impl_->bodies[joint.a].T;
   joint.start[1] = impl_->bodies[joint.b].T;
   joint.turned[0] = first_turn(joint.law);
-  impl_->link_joint(index);
+  link_joint(impl_->bodies, impl_->joints, index);
   impl_->wake(joint.a);
   impl_->wake(joint.b);
   impl_->contact_store.mark_stale_of(impl_->bodies[joint.a]);
@@ -125,8 +121,8 @@ double World::joint_coordinate(JointId id) const {
   const BodyJoint* joint = impl_->find(id);
   VP_ASSERT(joint && joint->main >= 0 && "joint_coordinate: name an axis, or an id that exists");
   if (!joint || joint->main < 0) return 0.0;
-  return number_or_zero(
-      coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b), joint->main));
+  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
+                                   place_of(impl_->bodies[joint->b]), joint->main));
 }
 
 double World::joint_coordinate(JointId id, JointAxis axis) const {
@@ -134,8 +130,8 @@ double World::joint_coordinate(JointId id, JointAxis axis) const {
   const bool has = joint && joint->law.form == JointLaw::Form::axes && axis <= JointAxis::turn_z;
   VP_ASSERT(has && "joint_coordinate: no such joint, or it has no axes");
   if (!has) return 0.0;
-  return number_or_zero(coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b),
-                                   static_cast<int>(axis)));
+  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
+                                   place_of(impl_->bodies[joint->b]), static_cast<int>(axis)));
 }
 
 double World::joint_residual(JointId id, int row) const {
@@ -143,8 +139,8 @@ double World::joint_residual(JointId id, int row) const {
   const bool has = joint && joint->law.form == JointLaw::Form::user && row >= 0;
   VP_ASSERT(has && "joint_residual: no such joint, or not a UserConstraint");
   if (!has) return 0.0;
-  return number_or_zero(
-      coordinate(*joint, impl_->place_of(joint->a), impl_->place_of(joint->b), row));
+  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
+                                   place_of(impl_->bodies[joint->b]), row));
 }
 
 namespace {
@@ -196,8 +192,8 @@ JointForce World::joint_force(JointId id) const {
   return {joint->force, joint->torque};
 }
 
-void World::Impl::forget_joints(std::uint32_t body) {
-  for (std::uint32_t e = bodies[body].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
+void forget_joints(const Body& body, Joints& joints) {
+  for (std::uint32_t e = body.first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
     for (BodyJointRow& row : joints[e / 2].rows) row.impulse = row.stop = 0.0;
   }
 }

@@ -70,7 +70,7 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
     pose_colliders(bodies[i], colliders);
     pose_colliders(bodies[j], colliders);
-    const double closing = approach(colliders[pair.a], colliders[pair.b], dt);
+    const double closing = approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + closing)) {
       add_contact(pair, found.manifold, part++, false, true, link_contacts);
@@ -150,7 +150,8 @@ void World::Impl::begin_links(double h) {
 solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, double h) const {
   const Body& body = bodies[index];
   const bool stands = body.is_link || body.motion == Motion::fixed;
-  const Vec3 at = stands ? reference_point(body) : place_within_step(index).centre;
+  const Vec3 at = stands ? reference_point(body)
+                         : place_within_step(body, body_rows[index + 1], start_ways[index]).centre;
   solve::SolverBody s = solver_body(index, at);
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);

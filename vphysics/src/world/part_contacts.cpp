@@ -38,12 +38,12 @@ void World::Impl::find_parts(const Looked& look) {
     wake(a.body);
     wake(b.body);
   }
-  known_parts.clear();
-  old_parts.clear();
+  narrow.known_parts.clear();
+  narrow.old_parts.clear();
   for (std::uint32_t p = first; p != kNone; p = contact_store[p].next_part) {
     const Contact& part = contact_store[p];
-    known_parts.push_back({part.sub_a, part.sub_b, part.cache});
-    old_parts.push_back(p);
+    narrow.known_parts.push_back({part.sub_a, part.sub_b, part.cache});
+    narrow.old_parts.push_back(p);
   }
   manifolds.clear();
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
@@ -53,7 +53,7 @@ void World::Impl::find_parts(const Looked& look) {
                                       dt_now * (body_b.w - body_a.w), about);
   find_manifolds(a.geometry, a.T, b.geometry, b.T,
                  look.by_part ? by_part : collide::SearchMargin(look.margin),
-                 contact_store[index].cache, known_parts, manifold_scratch, manifolds);
+                 contact_store[index].cache, narrow.known_parts, manifold_scratch, manifolds);
   for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
   if (contact_store[index].sensor) {
     const bool touches = !manifolds.empty();
@@ -68,15 +68,16 @@ void World::Impl::find_parts(const Looked& look) {
                              desc.contact_slop);
   }
   contact_store.set_clearance(contact_store[index], clearance, body_set);
-  claimed_parts.clear();
-  for (const collide::SubManifold& found : manifolds) claimed_parts.push_back(claim_part(found));
-  for (const std::uint32_t p : old_parts) {
+  narrow.claimed_parts.clear();
+  for (const collide::SubManifold& found : manifolds)
+    narrow.claimed_parts.push_back(claim_part(found));
+  for (const std::uint32_t p : narrow.old_parts) {
     if (p != kNone) contact_store.remove(p, body_set);
   }
   std::uint32_t last = kNone;
   for (std::size_t k = 0; k < manifolds.size(); ++k) {
     collide::SubManifold& found = manifolds[k];
-    std::uint32_t p = claimed_parts[k];
+    std::uint32_t p = narrow.claimed_parts[k];
     if (p == kNone) {
       Contact part;
       part.key = contact_store[index].key;
@@ -109,7 +110,7 @@ void World::Impl::find_parts(const Looked& look) {
 std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
   std::uint32_t* best = nullptr;
   double most = kSameNormal;
-  for (std::uint32_t& p : old_parts) {
+  for (std::uint32_t& p : narrow.old_parts) {
     if (p == kNone) continue;
     const Contact& part = contact_store[p];
     const auto on_surface = [&](std::uint32_t collider) {

@@ -49,7 +49,8 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
 }
 
 void World::Impl::list_remote_articulations() {
-  const bool few = !some_are_not && desc.sleep_after <= 0.0 && movers.size() <= kFewMovers;
+  const bool few =
+      !lists.some_sub_stepped && desc.sleep_after <= 0.0 && lists.movers.size() <= kFewMovers;
   remote_bodies.assign(bodies.size(), 0);
   impact_bodies_are_stale = impact_scratch_is_stale = true;
   for (Articulation& art : articulations) {
@@ -60,7 +61,7 @@ void World::Impl::list_remote_articulations() {
 }
 
 bool World::Impl::is_near_mover(const collide::Bounds& box) const {
-  return std::any_of(movers.begin(), movers.end(),
+  return std::any_of(lists.movers.begin(), lists.movers.end(),
                      [&](std::uint32_t m) { return overlap(box, bounds[m]); });
 }
 

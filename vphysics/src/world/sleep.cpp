@@ -89,7 +89,7 @@ std::span<const std::uint32_t> Islands::wake(const Bonds& bonds, std::uint32_t s
 }
 
 void World::Impl::send_to_sleep() {
-  for (const std::uint32_t i : movers) islands.watch(bodies[i], i, desc, dt_now);
+  for (const std::uint32_t i : lists.movers) islands.watch(bodies[i], i, desc, dt_now);
   islands.find_resting(bonds(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
     for (const std::uint32_t i : island) {
       Body& body = bodies[i];
@@ -102,7 +102,7 @@ void World::Impl::send_to_sleep() {
         contact_store.park(contact, body_set);
       });
     }
-    lists_are_stale = true;
+    lists.forget();
   });
 }
 
@@ -116,7 +116,7 @@ void World::Impl::wake(std::uint32_t seed) {
       contact_store.unpark(contact, body_set);
     });
   }
-  lists_are_stale = true;
+  lists.forget();
 }
 
 void World::Impl::wake_neighbours(std::uint32_t index) {

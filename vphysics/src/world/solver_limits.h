@@ -1,5 +1,7 @@
-// How fast contacts and joints take out their errors.
+// How fast contacts and joints take out their errors, and in how many sub-steps.
 #pragma once
+
+#include "vphysics/world.h"
 
 namespace vp {
 
@@ -14,5 +16,7 @@ inline constexpr double kCrowd = 6.0;
 inline constexpr double kSmallDepth = 1e-3;
 // How fast joints take out their errors [m/s of things of a metre].
 inline constexpr double kFastestJoint = 3.0;
+
+int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt);
 
 }  // namespace vp

@@ -42,7 +42,7 @@ void World::Impl::begin_step(double dt) {
   counters = {};
   manifold_scratch.looked_at = 0;
   manifold_scratch.crowded = manifold_scratch.rough = false;
-  manifolds_renewed = 0;
+  narrow.renewed = 0;
   events.clear();
   step_contacts.clear();
   next_records.clear();
@@ -52,40 +52,42 @@ void World::Impl::begin_step(double dt) {
   records.reserve(room);
   next_records.reserve(room);
   contact_store.reserve(room);
-  for (auto* list : {&looked_at_contacts, &look_again})
+  for (auto* list : {&narrow.stale, &narrow.look_again})
     list->reserve(contact_store.stale.capacity());
-  looked.reserve(std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
-  to_pose.reserve(n);
+  narrow.looked.reserve(
+      std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
+  narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   islands.reserve(n);
   for (const std::uint32_t i : bodies_on_links) bodies[i].on_link = false;
   bodies_on_links.clear();
   for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
-  new_pairs.reserve(room);
+  narrow.new_pairs.reserve(room);
   body_rows.resize(n + 1);
   contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
   block_words.words.reserve(room / solve::kLanes +
                             2 * solve::kColours * contact_store.graph.regions());
-  if (!movers.empty()) contact_store.graph.reserve(movers.size());
+  if (!lists.movers.empty()) contact_store.graph.reserve(lists.movers.size());
   start_ways.resize(n);
   gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
-  active_joints.reserve(joints.size());
+  joint_scratch.active.reserve(joints.size());
   events.report_destroyed(colliders);
   finds_contacts = has_contacts_to_find();
-  if (some_are_not) load_rows(dt);
+  if (lists.some_sub_stepped) load_rows(dt);
   if (finds_contacts) update_bounds_of_links(dt);
 }
 
 void World::Impl::divide_into_regions(double dt) {
   const std::size_t before = regions.state.count;
-  if (!regions.divide(bodies, movers, static_cast<std::size_t>(desc.region_bodies), dt)) return;
+  if (!regions.divide(bodies, lists.movers, static_cast<std::size_t>(desc.region_bodies), dt))
+    return;
   contact_store.graph.set_regions(std::max<std::size_t>(before, regions.state.count) + 1);
   for (const std::uint32_t i : regions.changed()) contact_store.follow_region(bodies[i], body_set);
   contact_store.graph.set_regions(std::size_t{regions.state.count} + 1);
-  regions.sort(bodies, movers);
+  regions.sort(bodies, lists.movers);
 }
 
 void World::Impl::begin_impact_stage() {
@@ -161,7 +163,7 @@ bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   body.T = start;
   body.moved();
   start_way_anew(index);
-  forget_joints(index);
+  forget_joints(bodies[index], joints);
   return true;
 }
 
@@ -274,16 +276,16 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
 
 // Where nothing is left to be met: to the end of the step in one go.
 void World::Impl::advance_all(double dt) {
-  workers.in_parallel(movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Body& body = bodies[movers[k]];
+      const Body& body = bodies[lists.movers[k]];
       const bool led = body.motion == Motion::dynamic && body.by_rows();
-      mover_news[k] = led && advance_by_row(movers[k], dt) ? 0 : 1;
+      mover_news[k] = led && advance_by_row(lists.movers[k], dt) ? 0 : 1;
     }
   });
-  for (std::size_t k = 0; k < movers.size(); ++k) {
+  for (std::size_t k = 0; k < lists.movers.size(); ++k) {
     if (mover_news[k] == 0) continue;
-    const std::uint32_t i = movers[k];
+    const std::uint32_t i = lists.movers[k];
     Body& body = bodies[i];
     const SE3 start = body.T;
     const Velocity more = body.motion == Motion::dynamic ? settle(i, dt) : Velocity{};
@@ -397,7 +399,7 @@ void World::Impl::take_back_forces(double h) {
 
 // Impacts in the order of time are for continuous bodies and for what meets links.
 bool World::Impl::has_impact_stage() const {
-  return articulations.size() > free_articulations.size() || some_are_continuous;
+  return articulations.size() > free_articulations.size() || lists.some_continuous;
 }
 
 void World::Impl::run(double dt) {
@@ -405,8 +407,8 @@ void World::Impl::run(double dt) {
     find_contacts(dt);
     list_bodies();  // some may have been woken
   }
-  mover_news.resize(movers.size());
-  counters.awake = static_cast<std::uint32_t>(movers.size());
+  mover_news.resize(lists.movers.size());
+  counters.awake = static_cast<std::uint32_t>(lists.movers.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {
     const auto stage = in(Stage::advance);
@@ -420,7 +422,7 @@ void World::Impl::run(double dt) {
 void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   integrate_forces(dt);
-  for (const std::uint32_t i : movers) {
+  for (const std::uint32_t i : lists.movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
       drift[i] = settle(i, dt);
       if (bodies[i].by_rows()) continue;
@@ -481,7 +483,7 @@ void World::Impl::count_contacts() {
   counters.regions = regions.state.count;
   if (colours.has(solve::kLastColour)) status.colour_limit = true;
   counters.pairs += counters.manifolds + contact_store.near.size();
-  counters.recycled = counters.manifolds - std::min(counters.manifolds, manifolds_renewed);
+  counters.recycled = counters.manifolds - std::min(counters.manifolds, narrow.renewed);
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }
 

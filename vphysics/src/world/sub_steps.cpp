@@ -160,15 +160,15 @@ class SubSteps {
 
 // Errors grow with the square of the sub-step, so longer steps have shorter shares: 2 sub-steps at
 // 1 kHz, 5 at 240 Hz, 9 at 60 Hz. What is smaller falls by its own size sooner, by the root.
-int World::Impl::sub_steps_in(double dt) const {
+int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt) {
   if (desc.sub_steps > 0) return desc.sub_steps;
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(dt / (0.00026 * speed_unit)))));
 }
 
 void World::Impl::run_sub_steps(double dt) {
-  const int n = sub_steps_in(dt);
+  const int n = sub_steps_in(desc, speed_unit, dt);
   sub_steps_taken = n;
-  if (!some_are_not) {
+  if (!lists.some_sub_stepped) {
     sub_step_state.position_error = false;
     return;
   }
@@ -200,10 +200,11 @@ void World::Impl::take_sub_steps(double dt, int n) {
        .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
        .h = h,
        .reach = static_cast<float>(speed_unit)});
-  begin_joints(h);
+  JointSteps joint_steps({bodies, joints, body_rows, start_ways, workers, speed_unit},
+                         joint_scratch, h);
   const bool links = !bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
-  const bool contacts_alone = !links && active_joints.empty();
+  const bool contacts_alone = !links && joint_steps.empty();
   // What contacts gave in one sub-step is given again in the next as a whole, by body, unless
   // joints and links have a share in it: these turn within the step.
   const bool repeats = contacts_alone && n > 1;
@@ -215,7 +216,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
     counters.bounce_rounds += static_cast<std::uint32_t>(bounces);
     status.bounce_limit |= bounces == kStrikes;
     if (links) begin_links(h);
-    warm_start_joints();
+    joint_steps.warm_start();
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
         k == 0 ? steps.keep_velocities(region) : steps.repeat_gains(region);
@@ -233,20 +234,20 @@ void World::Impl::take_sub_steps(double dt, int n) {
       steps.move_and_relax(solve::kBetween, last);
     } else {
       for (int round = 0; round < kRounds; ++round) {
-        solve_joints(h, round);
+        joint_steps.solve(round);
         runs.everywhere([&](std::size_t region) { steps.push(region, round); });
         if (links) solve_links(h);
       }
       if (links) move_links(h);
       runs.everywhere([&](std::size_t region) { steps.move(region); });
-      prepare_joints();
-      relax_joints(h);
+      joint_steps.prepare();
+      joint_steps.relax();
       runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
       if (links) relax_links(h);
     }
     steps.go_on();
   }
-  end_joints(dt);
+  const bool some_are_far_open = joint_steps.end(dt);
   // What is pushed out within a step of its beginning is no trouble.
   const bool error = steps.some_too_deep() || some_are_far_open;
   const bool error_before = std::exchange(state.position_error, error);

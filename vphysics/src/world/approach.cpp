@@ -1,0 +1,53 @@
+#include "world/approach.h"
+
+#include <algorithm>
+
+#include "world/solver_limits.h"
+
+namespace vp {
+namespace {
+
+// An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
+// way of a step is found by the step after. What a stronger one adds is searched for.
+constexpr double kBornePull = 50.0;
+
+}  // namespace
+
+Velocity Approach::pull_of(const Body& body) const {
+  if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
+  const Velocity a = loads_.acceleration(body, desc_.gravity);
+  if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
+  const double most = norm(a.v) + body.reach * norm(a.w);
+  if (most <= kBornePull || dt_ * dt_ * most <= desc_.contact_slop) return {};
+  const double mean = 0.5 * dt_ * (1.0 + 1.0 / sub_steps_in(desc_, speed_unit_, dt_));
+  return {mean * a.w, mean * a.v};
+}
+
+double Approach::of(const Collider& a, const Collider& b) const {
+  const Body &body_a = bodies_[a.body], &body_b = bodies_[b.body];
+  const auto velocity = [&](const Body& body, const Vec3& at) {
+    return body.v + cross(body.w, at - reference_point(body));
+  };
+  const Velocity pull_a = pull_of(body_a), pull_b = pull_of(body_b);
+  // Of what is within that radius of a point of the body.
+  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at, double radius) {
+    if (pull == Velocity{}) return 0.0;
+    return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
+  };
+  const Vicinity at = vicinity_of(bodies_, a, b);
+  const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
+                          at.radius * norm(body_b.w - body_a.w) +
+                          pulled(body_a, pull_a, at.centre, at.radius) +
+                          pulled(body_b, pull_b, at.centre, at.radius);
+  const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
+    const double turn = dt_ * (norm(body.w) + norm(pull.w));
+    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
+  };
+  const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
+  const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
+                       pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
+  return std::min(dt_ * together,
+                  dt_ * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
+}
+
+}  // namespace vp

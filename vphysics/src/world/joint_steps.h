@@ -1,0 +1,66 @@
+// Joints between bodies: their part of the sub-steps of a step. Impulses go into lanes when these
+// begin, and come back when they have ended.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solve/body_row.h"
+#include "solve/large_pages.h"
+#include "world/body.h"
+#include "world/joint.h"
+#include "world/joint_runs.h"
+#include "world/parallel.h"
+
+namespace vp {
+
+struct JointContext {
+  const Bodies& bodies;
+  Joints& joints;
+  std::span<solve::BodyRow> rows;
+  std::span<const std::array<float, 6>> start_ways;  // of each body
+  const Workers& workers;
+  double speed_unit;
+};
+
+// Kept for its capacity.
+struct JointScratch {
+  JointRuns runs;
+  std::vector<std::uint32_t> active, joined_bodies;
+  solve::LargeVector<solve::Gone> ways;  // by row: of what is joined
+};
+
+// Where a body's row has taken it since the step began.
+BodyPlace place_within_step(const Body& body, const solve::BodyRow& row,
+                            const std::array<float, 6>& start_way);
+
+class JointSteps {
+ public:
+  JointSteps(const JointContext& context, JointScratch& scratch, double h);
+  bool empty() const { return scratch_.active.empty(); }
+  void prepare();
+  void warm_start();
+  void solve(int round);
+  void relax();
+  // Takes the impulses back. Returns whether one is far open.
+  bool end(double dt);
+
+ private:
+  bool is_active(const BodyJoint& joint) const;
+  BodyPlace place_within_step(std::uint32_t body) const;
+  template <class F>
+  void for_runs(const F& f);
+  void fill(std::uint32_t joint);
+  void evaluate_rows(solve::RowsBlock& block);
+  template <class BLOCK>
+  bool is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const;
+
+  const JointContext context_;
+  JointScratch& scratch_;
+  const double h_;
+  bool some_are_far_ = false;  // JointPasses::Run::some_far
+};
+
+}  // namespace vp

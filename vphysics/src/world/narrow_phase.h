@@ -1,0 +1,33 @@
+// What the narrow phase finds of contacts, and what it works with.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collide/manifolds.h"
+#include "collide/pair_finder.h"
+
+namespace vp {
+
+// What the narrow phase has found of a contact.
+struct Looked {
+  std::uint32_t contact;
+  collide::Manifold manifold;
+  // Within which it was looked for, and would be if nothing moved; free of contact for so far [m].
+  double margin, margin_at_rest, clearance;
+  bool by_part;  // of a compound: each part within its own margin
+};
+
+// Kept for its capacity.
+struct NarrowPhaseScratch {
+  std::vector<collide::ProxyPair> new_pairs;
+  std::vector<std::uint32_t> stale, look_again;  // contacts: in this round, in the next step
+  std::vector<std::uint32_t> to_pose;            // bodies
+  std::vector<Looked> looked;
+  std::uint32_t renewed = 0;  // manifolds put into lanes in this step
+  // Of a contact with parts (part_contacts.cpp).
+  std::vector<collide::KnownPart> known_parts;
+  std::vector<std::uint32_t> old_parts, claimed_parts;
+};
+
+}  // namespace vp
