@@ -15,16 +15,16 @@ constexpr double kBornePull = 50.0;
 
 Velocity Approach::pull_of(const Body& body) const {
   if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
-  const Velocity a = loads_.acceleration(body, desc_.gravity);
+  const Velocity a = loads.acceleration(body, desc.gravity);
   if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
   const double most = norm(a.v) + body.reach * norm(a.w);
-  if (most <= kBornePull || dt_ * dt_ * most <= desc_.contact_slop) return {};
-  const double mean = 0.5 * dt_ * (1.0 + 1.0 / sub_steps_in(desc_, speed_unit_, dt_));
+  if (most <= kBornePull || dt * dt * most <= desc.contact_slop) return {};
+  const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(desc, speed_unit, dt));
   return {mean * a.w, mean * a.v};
 }
 
 double Approach::of(const Collider& a, const Collider& b) const {
-  const Body &body_a = bodies_[a.body], &body_b = bodies_[b.body];
+  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const auto velocity = [&](const Body& body, const Vec3& at) {
     return body.v + cross(body.w, at - reference_point(body));
   };
@@ -34,20 +34,20 @@ double Approach::of(const Collider& a, const Collider& b) const {
     if (pull == Velocity{}) return 0.0;
     return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
   };
-  const Vicinity at = vicinity_of(bodies_, a, b);
+  const Vicinity at = vicinity_of(bodies, a, b);
   const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
                           at.radius * norm(body_b.w - body_a.w) +
                           pulled(body_a, pull_a, at.centre, at.radius) +
                           pulled(body_b, pull_b, at.centre, at.radius);
   const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
-    const double turn = dt_ * (norm(body.w) + norm(pull.w));
+    const double turn = dt * (norm(body.w) + norm(pull.w));
     return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
   };
   const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
   const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
                        pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
-  return std::min(dt_ * together,
-                  dt_ * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
+  return std::min(dt * together,
+                  dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
 }
 
 }  // namespace vp

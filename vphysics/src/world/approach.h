@@ -7,12 +7,11 @@
 
 namespace vp {
 
-class Approach {
- public:
-  // desc: its lengths in metres.
-  Approach(const Bodies& bodies, const BodyLoads& loads, const WorldDesc& desc, double speed_unit,
-           double dt)
-      : bodies_(bodies), loads_(loads), desc_(desc), speed_unit_(speed_unit), dt_(dt) {}
+struct Approach {
+  const Bodies& bodies;
+  const BodyLoads& loads;
+  const WorldDesc& desc;  // its lengths in metres
+  double speed_unit, dt;
 
   // What gravity and forces add to the body's velocity on the mean of the step, if that is more
   // than margins bear; else nothing, and the next step finds it by its velocity.
@@ -21,12 +20,6 @@ class Approach {
   // velocities that they have there. And by no more than the balls around both do, and what
   // rotation moves within these.
   double of(const Collider& a, const Collider& b) const;
-
- private:
-  const Bodies& bodies_;
-  const BodyLoads& loads_;
-  const WorldDesc& desc_;
-  double speed_unit_, dt_;
 };
 
 }  // namespace vp

@@ -153,9 +153,8 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
     return refuse("set_motion: the body moves faster than 1e9 m/s or rad/s; slow it down first");
   }
   impl_->change_motion(index, motion, inertia, V);
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::motion, id.index));
-  structure.add(static_cast<std::uint64_t>(motion));
+  Structure(impl_->structure)
+      .add(word_of(Change::motion, id.index), static_cast<std::uint64_t>(motion));
   if (impl_->recorder) impl_->log({calls::SetMotion{id, motion}});
   return {};
 }
@@ -199,9 +198,7 @@ Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
   }
   body->mass_from_colliders = false;
   impl_->change_mass(id.index - 1, inertia);
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::inertia, id.index));
-  structure.add(inertia);
+  Structure(impl_->structure).add(word_of(Change::inertia, id.index), inertia);
   if (impl_->recorder) impl_->log({calls::SetInertia{id, inertia}});
   return {};
 }
@@ -215,10 +212,7 @@ Expected<void> World::set_damping(BodyId id, double linear, double angular) {
   impl_->wake(id.index - 1);
   body->linear_damping = linear;
   body->angular_damping = angular;
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::damping, id.index));
-  structure.add(linear);
-  structure.add(angular);
+  Structure(impl_->structure).add(word_of(Change::damping, id.index), linear, angular);
   if (impl_->recorder) impl_->log({calls::SetDamping{id, linear, angular}});
   return {};
 }
@@ -231,9 +225,7 @@ Expected<void> World::set_gravity_scale(BodyId id, double scale) {
   }
   impl_->wake(id.index - 1);
   body->gravity_scale = scale;
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::gravity_scale, id.index));
-  structure.add(scale);
+  Structure(impl_->structure).add(word_of(Change::gravity_scale, id.index), scale);
   if (impl_->recorder) impl_->log({calls::SetGravityScale{id, scale}});
   return {};
 }
@@ -243,9 +235,8 @@ Expected<void> World::set_allow_sleep(BodyId id, bool allow) {
   if (!body) return impl_->no_body_to_change("set_allow_sleep", id);
   impl_->wake(id.index - 1);
   body->allow_sleep = allow;
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::allow_sleep, id.index));
-  structure.add(static_cast<std::uint64_t>(allow));
+  Structure(impl_->structure)
+      .add(word_of(Change::allow_sleep, id.index), static_cast<std::uint64_t>(allow));
   if (impl_->recorder) impl_->log({calls::SetAllowSleep{id, allow}});
   return {};
 }
@@ -267,12 +258,9 @@ Expected<void> World::set_material(ColliderId id, const Material& material) {
   c->material = material;
   impl_->wake_all_about(c->body);
   impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::material, id.index));
-  for (const double x : {material.friction, material.restitution, material.rolling_friction,
-                         material.spinning_friction}) {
-    structure.add(x);
-  }
+  Structure(impl_->structure)
+      .add(word_of(Change::material, id.index), material.friction, material.restitution,
+           material.rolling_friction, material.spinning_friction);
   if (impl_->recorder) impl_->log({calls::SetMaterial{id, material}});
   return {};
 }
@@ -286,9 +274,7 @@ Expected<void> World::set_surface_velocity(ColliderId id, const Vec3& velocity) 
   c->surface_velocity = velocity;
   impl_->wake_all_about(c->body);
   impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::surface_velocity, id.index));
-  structure.add(velocity);
+  Structure(impl_->structure).add(word_of(Change::surface_velocity, id.index), velocity);
   if (impl_->recorder) impl_->log({calls::SetSurfaceVelocity{id, velocity}});
   return {};
 }
@@ -308,9 +294,8 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   }
   impl_->ready_for_queries = false;
   impl_->lists.forget();
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::filter, id.index));
-  structure.add(std::uint64_t{filter.category} << 32 | filter.mask);
+  Structure(impl_->structure)
+      .add(word_of(Change::filter, id.index), std::uint64_t{filter.category} << 32 | filter.mask);
   if (impl_->recorder) impl_->log({calls::SetFilter{id, filter}});
   return {};
 }
@@ -334,8 +319,7 @@ Expected<void> World::remove_collider(ColliderId id) {
     }
   }
   impl_->take_collider_off(id.index - 1);
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::removed_collider, id.index));
+  Structure(impl_->structure).add(word_of(Change::removed_collider, id.index));
   if (impl_->recorder) impl_->log({calls::RemoveCollider{id}});
   return {};
 }
@@ -392,8 +376,7 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   impl_->free_articulations.push_back(id.index - 1);
   impl_->lists.forget();
   impl_->impact_bodies_are_stale = true;
-  Structure structure(impl_->structure);
-  structure.add(word_of(Change::destroyed_articulation, id.index));
+  Structure(impl_->structure).add(word_of(Change::destroyed_articulation, id.index));
   if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});
   return {};
 }

@@ -2,26 +2,19 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "collide/bounds.h"
-#include "collide/broad_phase.h"
 #include "collide/manifolds.h"
 #include "collide/pair_finder.h"
 #include "collide/shape_query.h"
 #include "collide/sweep.h"
-#include "solve/contact_graph.h"
 #include "solve/contact_lane.h"
 #include "solve/contact_solver.h"
-#include "solve/large_pages.h"
-#include "solve/passes.h"
-#include "vphysics/jobs.h"
-#include "vphysics/world.h"
 #include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
@@ -53,7 +46,7 @@ struct SweptPair {
 
 struct RecordedCall;
 
-class Query;
+struct Query;
 struct QueryScratch {
   std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
   collide::CastScratch cast;

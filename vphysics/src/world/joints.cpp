@@ -84,11 +84,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   impl_->wake(joint.a);
   impl_->wake(joint.b);
   impl_->contact_store.mark_stale_of(impl_->bodies[joint.a]);
-  Structure structure(impl_->structure);
-  structure.add(0x500u + index);
-  structure.add(a_id.index);
-  structure.add(b_id.index);
-  structure.add(desc);
+  Structure(impl_->structure).add(0x500u + index, a_id.index, b_id.index, desc);
   if (impl_->recorder) impl_->log({calls::CreateJoint{a_id, b_id, desc}});
   return JointId{index + 1, joint.generation};
 }

@@ -56,9 +56,7 @@ Expected<void> World::set_mass_from_colliders(BodyId id) {
     return refuse("set_mass_from_colliders: " + *problem);
   }
   impl_->change_mass(id.index - 1, sum);
-  Structure structure(impl_->structure);
-  structure.add(0x700u + id.index);
-  structure.add(sum);
+  Structure(impl_->structure).add(0x700u + id.index, sum);
   if (impl_->recorder) impl_->log({calls::SetMassFromColliders{id}});
   return {};
 }

@@ -93,31 +93,28 @@ collide::Sweep sweep_of(const collide::MovingShape& m) {
 }  // namespace
 
 // One query; the colliders are posed and the strays are known.
-class Query {
- public:
-  Query(const Bodies& bodies, const Colliders& colliders, const collide::PairFinder& finder,
-        QueryScratch& scratch, collide::PartsScratch& parts, const QueryFilter& filter)
-      : bodies_(bodies),
-        colliders_(colliders),
-        finder_(finder),
-        scratch_(scratch),
-        parts_(parts),
-        filter_(filter) {}
+struct Query {
+  const Bodies& bodies;
+  const Colliders& colliders;
+  const collide::PairFinder& finder;
+  QueryScratch& scratch;
+  collide::PartsScratch& parts;
+  const QueryFilter& filter;
 
   // meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
   template <class F>
   void for_swept(const collide::Sweep& sweep, const F& meet) {
     double limit = 1.0;
     const collide::LaneSweep lanes(sweep);
-    for (const std::uint32_t i : scratch_.strays) {
+    for (const std::uint32_t i : scratch.strays) {
       float entry = 0.0f;
-      const Collider& c = colliders_[i];
+      const Collider& c = colliders[i];
       if (lanes.meets(rounded_outwards(c.bounds), limit, entry) && is_asked_for(c)) {
         limit = meet(c);
       }
     }
-    finder_.cast(sweep, limit, scratch_.cast, [&](std::uint32_t proxy, float) {
-      const Collider& c = colliders_[finder_.user(proxy)];
+    finder.cast(sweep, limit, scratch.cast, [&](std::uint32_t proxy, float) {
+      const Collider& c = colliders[finder.user(proxy)];
       if (!c.stray && is_asked_for(c)) limit = meet(c);
       return limit;
     });
@@ -130,7 +127,7 @@ class Query {
     for_swept({{origin, origin}, limit * unit}, [&](const Collider& c) {
       const collide::Ray ray{inverse_times(c.T, origin), c.T.unrotate(unit)};
       collide::RayEntry entry{};
-      if (cast_ray(c.geometry, ray, whole, parts_.cast, entry)) {
+      if (cast_ray(c.geometry, ray, whole, parts.cast, entry)) {
         limit = hit(RayHit{hit_of(c, entry.part), entry.distance, origin + entry.distance * unit,
                            c.T.rotate(entry.normal)});
       }
@@ -148,7 +145,7 @@ class Query {
       const collide::ImpactQuery query{
           shape, {&c.geometry, c.T, {c.T.position(), {}, {}}}, 1.0, kTouch + kTouchShare * sizes};
       collide::PartsImpact impact{};
-      if (first_impact(query, 0.0, parts_, impact)) {
+      if (first_impact(query, 0.0, parts, impact)) {
         limit = hit(ShapeHit{hit_of(c, impact.part_b), impact.time, impact.points.distance,
                              impact.points.on_b, -impact.points.normal});
       }
@@ -160,7 +157,7 @@ class Query {
     std::optional<NearestHit> best;
     const auto consider = [&](const Collider& c) {
       collide::NearestParts found;
-      if (!is_asked_for(c) || !nearest_parts(shape, T, c.geometry, c.T, limit, parts_, found)) {
+      if (!is_asked_for(c) || !nearest_parts(shape, T, c.geometry, c.T, limit, parts, found)) {
         return;
       }
       const collide::ClosestPoints& p = found.points;
@@ -173,14 +170,14 @@ class Query {
       limit = std::min(limit, std::max(0.0, hit.distance));
     };
     const collide::Bounds box = bounds_of(shape, T);
-    for (const std::uint32_t i : scratch_.strays) {
-      const collide::FloatBounds around = rounded_outwards(colliders_[i].bounds);
+    for (const std::uint32_t i : scratch.strays) {
+      const collide::FloatBounds around = rounded_outwards(colliders[i].bounds);
       if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) <= limit) {
-        consider(colliders_[i]);
+        consider(colliders[i]);
       }
     }
-    finder_.nearest(box, limit, scratch_.cast, [&](std::uint32_t proxy, float) {
-      const Collider& c = colliders_[finder_.user(proxy)];
+    finder.nearest(box, limit, scratch.cast, [&](std::uint32_t proxy, float) {
+      const Collider& c = colliders[finder.user(proxy)];
       if (!c.stray) consider(c);
       return limit;
     });
@@ -188,33 +185,25 @@ class Query {
   }
 
   QueryHit hit_of(const Collider& c, std::uint32_t part) const {
-    const auto index = colliders_.index_of(c);
-    return {colliders_.id(index), bodies_.id(c.body), c.user_data, part};
+    const auto index = colliders.index_of(c);
+    return {colliders.id(index), bodies.id(c.body), c.user_data, part};
   }
 
   bool is_younger(const QueryHit& hit, const QueryHit& other) const {
-    return colliders_[hit.collider.index - 1].serial > colliders_[other.collider.index - 1].serial;
+    return colliders[hit.collider.index - 1].serial > colliders[other.collider.index - 1].serial;
   }
 
- private:
   bool is_asked_for(const Collider& c) const {
-    const bool met = (c.filter.category & filter_.collision.mask) != 0 &&
-                     (filter_.collision.category & c.filter.mask) != 0;
-    if (!met || (c.sensor && !filter_.sensors)) return false;
-    const BodyId body = bodies_.id(c.body);
-    if (std::find(filter_.ignored.begin(), filter_.ignored.end(), body) != filter_.ignored.end()) {
+    const bool met = (c.filter.category & filter.collision.mask) != 0 &&
+                     (filter.collision.category & c.filter.mask) != 0;
+    if (!met || (c.sensor && !filter.sensors)) return false;
+    const BodyId body = bodies.id(c.body);
+    if (std::find(filter.ignored.begin(), filter.ignored.end(), body) != filter.ignored.end()) {
       return false;
     }
-    const auto index = colliders_.index_of(c);
-    return !filter_.accepts || filter_.accepts(colliders_.id(index), body, c.user_data);
+    const auto index = colliders.index_of(c);
+    return !filter.accepts || filter.accepts(colliders.id(index), body, c.user_data);
   }
-
-  const Bodies& bodies_;
-  const Colliders& colliders_;
-  const collide::PairFinder& finder_;
-  QueryScratch& scratch_;
-  collide::PartsScratch& parts_;
-  const QueryFilter& filter_;
 };
 
 void World::Impl::find_strays() {

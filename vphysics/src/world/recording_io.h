@@ -1,5 +1,5 @@
-// What a recording consists of, each thing described once for writing and reading: fields(io, x)
-// hands each of x's fields to io.
+// What a recording consists of, each thing described once for writing and reading:
+// Fields<Io>::of(io, x) hands each of x's fields to io.
 //
 //   header    magic, format (8 bytes each), settings of the world, digest of its structure, whether
 //   a
@@ -235,327 +235,175 @@ class Reader {
   bool ok_ = true;
 };
 
-// --- values --------------------------------------------------------------------------------------
+template <class Io>
+struct Fields {
+  // --- values
 
-template <class Io>
-void fields(Io& io, Field<Io, Vec3> a) {
-  io(a.x, a.y, a.z);
-}
-template <class Io>
-void fields(Io& io, Field<Io, se3> V) {
-  io(V.w, V.v);
-}
-template <class Io>
-void fields(Io& io, Field<Io, SE3> T) {
-  Mat3 R = T.rotation();
-  Vec3 p = T.position();
-  io(R.cx, R.cy, R.cz, p);
-  if constexpr (Io::kReads) T = SE3(R, p);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Inertia> J) {
-  double mass = J.mass();
-  Vec3 h = J.first_moment();
-  Sym3 I = J.rotational();
-  io(mass, h, I.xx, I.yy, I.zz, I.xy, I.yz, I.zx);
-  if constexpr (Io::kReads) J = Inertia(mass, h, I);
-}
-
-// --- descriptions --------------------------------------------------------------------------------
-
-template <class Io>
-void fields(Io& io, Field<Io, WorldDesc> d) {
-  auto iterations = static_cast<std::uint32_t>(d.velocity_iterations);
-  auto sub_steps = static_cast<std::uint32_t>(d.sub_steps);
-  auto impacts = static_cast<std::uint32_t>(d.max_impacts_per_step);
-  auto region_bodies = static_cast<std::uint32_t>(d.region_bodies);
-  io(d.gravity, d.restitution_threshold, d.contact_slop, iterations, sub_steps, impacts,
-     d.sleep_after, d.sleep_speed, region_bodies, d.length_unit);
-  if constexpr (Io::kReads) {
-    d.velocity_iterations = static_cast<int>(iterations);
-    d.sub_steps = static_cast<int>(sub_steps);
-    d.max_impacts_per_step = static_cast<int>(impacts);
-    d.region_bodies = static_cast<int>(region_bodies);
+  static void of(Io& io, Field<Io, Vec3> a) { io(a.x, a.y, a.z); }
+  static void of(Io& io, Field<Io, se3> V) { io(V.w, V.v); }
+  static void of(Io& io, Field<Io, SE3> T) {
+    Mat3 R = T.rotation();
+    Vec3 p = T.position();
+    io(R.cx, R.cy, R.cz, p);
+    if constexpr (Io::kReads) T = SE3(R, p);
   }
-}
-template <class Io>
-void fields(Io& io, Field<Io, BodyDesc> d) {
-  io(d.motion, d.T_world_body, d.velocity, d.inertia, d.linear_damping, d.angular_damping);
-  // What came later is behind flags, so that bodies without it are written as before.
-  constexpr std::uint8_t kContinuous = 1, kScaled = 2, kSleepless = 4;
-  if constexpr (Io::kReads) {
-    const std::uint8_t flags = io.byte();
-    io.check(flags <= (kContinuous | kScaled | kSleepless));
-    d.continuous = (flags & kContinuous) != 0;
-    d.allow_sleep = (flags & kSleepless) == 0;
-    d.gravity_scale = 1.0;
-    if ((flags & kScaled) != 0) io(d.gravity_scale);
-  } else {
-    const bool scaled = d.gravity_scale != 1.0;
-    io.byte(static_cast<std::uint8_t>((d.continuous ? kContinuous : 0) | (scaled ? kScaled : 0) |
-                                      (d.allow_sleep ? 0 : kSleepless)));
-    if (scaled) io(d.gravity_scale);
+  static void of(Io& io, Field<Io, Inertia> J) {
+    double mass = J.mass();
+    Vec3 h = J.first_moment();
+    Sym3 I = J.rotational();
+    io(mass, h, I.xx, I.yy, I.zz, I.xy, I.yz, I.zx);
+    if constexpr (Io::kReads) J = Inertia(mass, h, I);
   }
-  io(d.user_data);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Sphere> s) {
-  io(s.radius);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Box> s) {
-  io(s.half_extents);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Capsule> s) {
-  io(s.radius, s.half_length);
-}
-template <class Io>
-void fields(Io&, Field<Io, HalfSpace>) {}
-template <class Io>
-void fields(Io& io, Field<Io, Cylinder> s) {
-  io(s.radius, s.half_length);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Cone> s) {
-  io(s.radius, s.half_height);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Material> m) {
-  io(m.friction, m.restitution, m.rolling_friction, m.spinning_friction);
-}
-template <class Io>
-void fields(Io& io, Field<Io, ColliderDesc> d) {
-  io(d.shape, d.T_body_shape, d.material, d.filter.category, d.filter.mask, d.sensor, d.user_data,
-     d.surface_velocity, d.density);
-}
-template <class Io>
-void fields(Io& io, Field<Io, JointDrive> d) {
-  io(d.position, d.velocity, d.stiffness, d.damping, d.max_force);
-}
 
-// Joints of articulations.
-template <class Io>
-void fields(Io&, Field<Io, FixedJoint>) {}
-template <class Io>
-void fields(Io& io, Field<Io, RevoluteJoint> j) {
-  io(j.axis);
-}
-template <class Io>
-void fields(Io& io, Field<Io, PrismaticJoint> j) {
-  io(j.axis);
-}
-template <class Io>
-void fields(Io& io, Field<Io, HelicalJoint> j) {
-  io(j.axis, j.pitch);
-}
-template <class Io>
-void fields(Io& io, Field<Io, CylindricalJoint> j) {
-  io(j.axis);
-}
-template <class Io>
-void fields(Io& io, Field<Io, UniversalJoint> j) {
-  io(j.first, j.second);
-}
-template <class Io>
-void fields(Io&, Field<Io, PlanarJoint>) {}
-template <class Io>
-void fields(Io&, Field<Io, BallJoint>) {}
-template <class Io>
-void fields(Io&, Field<Io, FreeJoint>) {}
-template <class Io>
-void fields(Io& io, Field<Io, JointForces> f) {
-  io(f.lower, f.upper, f.limit_stiffness, f.limit_damping, f.stiffness, f.rest, f.friction,
-     f.motor_limit);
-}
-// Names are the user's, and not the world's.
-template <class Io>
-void fields(Io& io, Field<Io, LinkSpec> link) {
-  // The top bit, which no parent's number has: the inertia is taken as stated.
-  auto behind = static_cast<std::uint32_t>(link.parent + 1) |
-                static_cast<std::uint32_t>(link.inertia_as_stated) << 31;
-  io(behind, link.joint, link.T_parent_joint, link.inertia, link.armature, link.damping,
-     link.forces);
-  if constexpr (Io::kReads) {
-    link.parent = static_cast<int>(behind & 0x7fffffffu) - 1;
-    link.inertia_as_stated = behind >> 31 != 0;
+  // --- descriptions
+
+  static void of(Io& io, Field<Io, WorldDesc> d) {
+    auto iterations = static_cast<std::uint32_t>(d.velocity_iterations);
+    auto sub_steps = static_cast<std::uint32_t>(d.sub_steps);
+    auto impacts = static_cast<std::uint32_t>(d.max_impacts_per_step);
+    auto region_bodies = static_cast<std::uint32_t>(d.region_bodies);
+    io(d.gravity, d.restitution_threshold, d.contact_slop, iterations, sub_steps, impacts,
+       d.sleep_after, d.sleep_speed, region_bodies, d.length_unit);
+    if constexpr (Io::kReads) {
+      d.velocity_iterations = static_cast<int>(iterations);
+      d.sub_steps = static_cast<int>(sub_steps);
+      d.max_impacts_per_step = static_cast<int>(impacts);
+      d.region_bodies = static_cast<int>(region_bodies);
+    }
   }
-}
+  static void of(Io& io, Field<Io, BodyDesc> d) {
+    io(d.motion, d.T_world_body, d.velocity, d.inertia, d.linear_damping, d.angular_damping);
+    // What came later is behind flags, so that bodies without it are written as before.
+    constexpr std::uint8_t kContinuous = 1, kScaled = 2, kSleepless = 4;
+    if constexpr (Io::kReads) {
+      const std::uint8_t flags = io.byte();
+      io.check(flags <= (kContinuous | kScaled | kSleepless));
+      d.continuous = (flags & kContinuous) != 0;
+      d.allow_sleep = (flags & kSleepless) == 0;
+      d.gravity_scale = 1.0;
+      if ((flags & kScaled) != 0) io(d.gravity_scale);
+    } else {
+      const bool scaled = d.gravity_scale != 1.0;
+      io.byte(static_cast<std::uint8_t>((d.continuous ? kContinuous : 0) | (scaled ? kScaled : 0) |
+                                        (d.allow_sleep ? 0 : kSleepless)));
+      if (scaled) io(d.gravity_scale);
+    }
+    io(d.user_data);
+  }
+  static void of(Io& io, Field<Io, Sphere> s) { io(s.radius); }
+  static void of(Io& io, Field<Io, Box> s) { io(s.half_extents); }
+  static void of(Io& io, Field<Io, Capsule> s) { io(s.radius, s.half_length); }
+  static void of(Io&, Field<Io, HalfSpace>) {}
+  static void of(Io& io, Field<Io, Cylinder> s) { io(s.radius, s.half_length); }
+  static void of(Io& io, Field<Io, Cone> s) { io(s.radius, s.half_height); }
+  static void of(Io& io, Field<Io, Material> m) {
+    io(m.friction, m.restitution, m.rolling_friction, m.spinning_friction);
+  }
+  static void of(Io& io, Field<Io, ColliderDesc> d) {
+    io(d.shape, d.T_body_shape, d.material, d.filter.category, d.filter.mask, d.sensor, d.user_data,
+       d.surface_velocity, d.density);
+  }
+  static void of(Io& io, Field<Io, JointDrive> d) {
+    io(d.position, d.velocity, d.stiffness, d.damping, d.max_force);
+  }
 
-// Joints between bodies.
-template <class Io>
-void fields(Io&, Field<Io, BallSocket>) {}
-template <class Io>
-void fields(Io& io, Field<Io, Hinge> j) {
-  io(j.lower, j.upper, j.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Slider> j) {
-  io(j.lower, j.upper, j.drive);
-}
-template <class Io>
-void fields(Io&, Field<Io, Weld>) {}
-template <class Io>
-void fields(Io& io, Field<Io, Distance> j) {
-  io(j.least, j.most);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Spring> j) {
-  io(j.length, j.stiffness, j.damping);
-}
-template <class Io>
-void fields(Io& io, Field<Io, ConeTwist> j) {
-  io(j.swing_x, j.swing_y, j.lower, j.upper, j.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, AxisDesc> a) {
-  io(a.motion, a.lower, a.upper, a.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, SixDof> j) {
-  for (auto& axis : j.axes) io(axis);
-}
-template <class Io>
-void fields(Io& io, Field<Io, Gear> j) {
-  io(j.ratio, j.slides_a, j.slides_b);
-}
-template <class Io>
-void fields(Io& io, Field<Io, JointDesc> d) {
-  io(d.kind, d.T_a_joint, d.T_b_joint, d.collide, d.frequency, d.damping_ratio);
-}
+  // Joints of articulations.
+  static void of(Io&, Field<Io, FixedJoint>) {}
+  static void of(Io& io, Field<Io, RevoluteJoint> j) { io(j.axis); }
+  static void of(Io& io, Field<Io, PrismaticJoint> j) { io(j.axis); }
+  static void of(Io& io, Field<Io, HelicalJoint> j) { io(j.axis, j.pitch); }
+  static void of(Io& io, Field<Io, CylindricalJoint> j) { io(j.axis); }
+  static void of(Io& io, Field<Io, UniversalJoint> j) { io(j.first, j.second); }
+  static void of(Io&, Field<Io, PlanarJoint>) {}
+  static void of(Io&, Field<Io, BallJoint>) {}
+  static void of(Io&, Field<Io, FreeJoint>) {}
+  static void of(Io& io, Field<Io, JointForces> f) {
+    io(f.lower, f.upper, f.limit_stiffness, f.limit_damping, f.stiffness, f.rest, f.friction,
+       f.motor_limit);
+  }
+  // Names are the user's, and not the world's.
+  static void of(Io& io, Field<Io, LinkSpec> link) {
+    // The top bit, which no parent's number has: the inertia is taken as stated.
+    auto behind = static_cast<std::uint32_t>(link.parent + 1) |
+                  static_cast<std::uint32_t>(link.inertia_as_stated) << 31;
+    io(behind, link.joint, link.T_parent_joint, link.inertia, link.armature, link.damping,
+       link.forces);
+    if constexpr (Io::kReads) {
+      link.parent = static_cast<int>(behind & 0x7fffffffu) - 1;
+      link.inertia_as_stated = behind >> 31 != 0;
+    }
+  }
 
-// --- calls ---------------------------------------------------------------------------------------
+  // Joints between bodies.
+  static void of(Io&, Field<Io, BallSocket>) {}
+  static void of(Io& io, Field<Io, Hinge> j) { io(j.lower, j.upper, j.drive); }
+  static void of(Io& io, Field<Io, Slider> j) { io(j.lower, j.upper, j.drive); }
+  static void of(Io&, Field<Io, Weld>) {}
+  static void of(Io& io, Field<Io, Distance> j) { io(j.least, j.most); }
+  static void of(Io& io, Field<Io, Spring> j) { io(j.length, j.stiffness, j.damping); }
+  static void of(Io& io, Field<Io, ConeTwist> j) {
+    io(j.swing_x, j.swing_y, j.lower, j.upper, j.drive);
+  }
+  static void of(Io& io, Field<Io, AxisDesc> a) { io(a.motion, a.lower, a.upper, a.drive); }
+  static void of(Io& io, Field<Io, SixDof> j) {
+    for (auto& axis : j.axes) io(axis);
+  }
+  static void of(Io& io, Field<Io, Gear> j) { io(j.ratio, j.slides_a, j.slides_b); }
+  static void of(Io& io, Field<Io, JointDesc> d) {
+    io(d.kind, d.T_a_joint, d.T_b_joint, d.collide, d.frequency, d.damping_ratio);
+  }
 
-template <class Io>
-void fields(Io& io, Field<Io, calls::CreateBody> c) {
-  io(c.desc);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::DestroyBody> c) {
-  io(c.body);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::AddCollider> c) {
-  io(c.body, c.desc);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::CreateArticulation> c) {
-  io(c.links);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::CreateJoint> c) {
-  io(c.a, c.b, c.desc);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::DestroyJoint> c) {
-  io(c.joint);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetPose> c) {
-  io(c.body, c.T_world_body);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetVelocity> c) {
-  io(c.body, c.velocity);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::ApplyImpulse> c) {
-  io(c.body, c.impulse, c.point);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetJointStates> c) {
-  io(c.articulation, c.coordinates, c.velocities);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetJointState> c) {
-  io(c.articulation, c.link, c.dof, c.position, c.velocity);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetLinkDrive> c) {
-  io(c.articulation, c.link, c.dof, c.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetJointDrive> c) {
-  io(c.joint, c.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetAxisDrive> c) {
-  io(c.joint, c.axis, c.drive);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::Restore> c) {
-  io(c.snapshot);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::Wake> c) {
-  io(c.body);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetMassFromColliders> c) {
-  io(c.body);
-}
+  // --- calls
 
-template <class Io>
-void fields(Io& io, Field<Io, calls::ApplyForce> c) {
-  io(c.body, c.force, c.point);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::ApplyTorque> c) {
-  io(c.body, c.torque);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::ApplyJointForce> c) {
-  io(c.articulation, c.link, c.dof, c.force);
-}
-
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetMotion> c) {
-  io(c.body, c.motion);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetInertia> c) {
-  io(c.body, c.inertia);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetDamping> c) {
-  io(c.body, c.linear, c.angular);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetGravityScale> c) {
-  io(c.body, c.scale);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetAllowSleep> c) {
-  io(c.body, c.allow);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetMaterial> c) {
-  io(c.collider, c.material);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetFilter> c) {
-  io(c.collider, c.filter.category, c.filter.mask);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::SetSurfaceVelocity> c) {
-  io(c.collider, c.velocity);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::RemoveCollider> c) {
-  io(c.collider);
-}
-template <class Io>
-void fields(Io& io, Field<Io, calls::DestroyArticulation> c) {
-  io(c.articulation);
-}
+  static void of(Io& io, Field<Io, calls::CreateBody> c) { io(c.desc); }
+  static void of(Io& io, Field<Io, calls::DestroyBody> c) { io(c.body); }
+  static void of(Io& io, Field<Io, calls::AddCollider> c) { io(c.body, c.desc); }
+  static void of(Io& io, Field<Io, calls::CreateArticulation> c) { io(c.links); }
+  static void of(Io& io, Field<Io, calls::CreateJoint> c) { io(c.a, c.b, c.desc); }
+  static void of(Io& io, Field<Io, calls::DestroyJoint> c) { io(c.joint); }
+  static void of(Io& io, Field<Io, calls::SetPose> c) { io(c.body, c.T_world_body); }
+  static void of(Io& io, Field<Io, calls::SetVelocity> c) { io(c.body, c.velocity); }
+  static void of(Io& io, Field<Io, calls::ApplyImpulse> c) { io(c.body, c.impulse, c.point); }
+  static void of(Io& io, Field<Io, calls::SetJointStates> c) {
+    io(c.articulation, c.coordinates, c.velocities);
+  }
+  static void of(Io& io, Field<Io, calls::SetJointState> c) {
+    io(c.articulation, c.link, c.dof, c.position, c.velocity);
+  }
+  static void of(Io& io, Field<Io, calls::SetLinkDrive> c) {
+    io(c.articulation, c.link, c.dof, c.drive);
+  }
+  static void of(Io& io, Field<Io, calls::SetJointDrive> c) { io(c.joint, c.drive); }
+  static void of(Io& io, Field<Io, calls::SetAxisDrive> c) { io(c.joint, c.axis, c.drive); }
+  static void of(Io& io, Field<Io, calls::Restore> c) { io(c.snapshot); }
+  static void of(Io& io, Field<Io, calls::Wake> c) { io(c.body); }
+  static void of(Io& io, Field<Io, calls::SetMassFromColliders> c) { io(c.body); }
+  static void of(Io& io, Field<Io, calls::ApplyForce> c) { io(c.body, c.force, c.point); }
+  static void of(Io& io, Field<Io, calls::ApplyTorque> c) { io(c.body, c.torque); }
+  static void of(Io& io, Field<Io, calls::ApplyJointForce> c) {
+    io(c.articulation, c.link, c.dof, c.force);
+  }
+  static void of(Io& io, Field<Io, calls::SetMotion> c) { io(c.body, c.motion); }
+  static void of(Io& io, Field<Io, calls::SetInertia> c) { io(c.body, c.inertia); }
+  static void of(Io& io, Field<Io, calls::SetDamping> c) { io(c.body, c.linear, c.angular); }
+  static void of(Io& io, Field<Io, calls::SetGravityScale> c) { io(c.body, c.scale); }
+  static void of(Io& io, Field<Io, calls::SetAllowSleep> c) { io(c.body, c.allow); }
+  static void of(Io& io, Field<Io, calls::SetMaterial> c) { io(c.collider, c.material); }
+  static void of(Io& io, Field<Io, calls::SetFilter> c) {
+    io(c.collider, c.filter.category, c.filter.mask);
+  }
+  static void of(Io& io, Field<Io, calls::SetSurfaceVelocity> c) { io(c.collider, c.velocity); }
+  static void of(Io& io, Field<Io, calls::RemoveCollider> c) { io(c.collider); }
+  static void of(Io& io, Field<Io, calls::DestroyArticulation> c) { io(c.articulation); }
+};
 
 template <class T>
 void Writer::one(const T& x) {
-  fields(*this, x);
+  Fields<Writer>::of(*this, x);
 }
 template <class T>
 void Reader::one(T& x) {
-  fields(*this, x);
+  Fields<Reader>::of(*this, x);
 }
 
 inline void Writer::one(const Shape& shape) {
@@ -563,7 +411,7 @@ inline void Writer::one(const Shape& shape) {
   if (shape.index() >= kCarriedShapes) return part(parts_.shapes, shape);
   std::visit(
       [this]<class S>(const S& s) {
-        if constexpr (requires { fields(*this, s); }) fields(*this, s);
+        if constexpr (requires { Fields<Writer>::of(*this, s); }) Fields<Writer>::of(*this, s);
       },
       shape);
 }
@@ -576,7 +424,7 @@ inline void Reader::one(Shape& shape) {
     return check(shape.index() == kind);
   }
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (void)((I == kind && (fields(*this, shape.template emplace<I>()), true)) || ...);
+    (void)((I == kind && (Fields<Reader>::of(*this, shape.template emplace<I>()), true)) || ...);
   }
   (std::make_index_sequence<kCarriedShapes>());
 }

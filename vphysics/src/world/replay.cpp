@@ -36,90 +36,71 @@ Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links) {
 // Does a call; what it returns is of no interest unless it is refused.
 class Doer {
  public:
+  using Done = Expected<void>;
   explicit Doer(World& world) : world_(world) {}
-  Expected<void> operator()(const calls::CreateBody& c) { return only(world_.create_body(c.desc)); }
-  Expected<void> operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
-  Expected<void> operator()(const calls::AddCollider& c) {
-    return only(world_.add_collider(c.body, c.desc));
-  }
-  Expected<void> operator()(const calls::CreateArticulation& c) {
+  Done operator()(const calls::CreateBody& c) { return only(world_.create_body(c.desc)); }
+  Done operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
+  Done operator()(const calls::AddCollider& c) { return only(world_.add_collider(c.body, c.desc)); }
+  Done operator()(const calls::CreateArticulation& c) {
     const auto desc = articulation_of(c.links);
     if (!desc) return tl::make_unexpected(desc.error());
     return only(world_.create_articulation(*desc));
   }
-  Expected<void> operator()(const calls::CreateJoint& c) {
+  Done operator()(const calls::CreateJoint& c) {
     return only(world_.create_joint(c.a, c.b, c.desc));
   }
-  Expected<void> operator()(const calls::DestroyJoint& c) { return world_.destroy_joint(c.joint); }
-  Expected<void> operator()(const calls::SetPose& c) {
-    return world_.set_pose(c.body, c.T_world_body);
-  }
-  Expected<void> operator()(const calls::SetVelocity& c) {
-    return world_.set_velocity(c.body, c.velocity);
-  }
-  Expected<void> operator()(const calls::ApplyImpulse& c) {
+  Done operator()(const calls::DestroyJoint& c) { return world_.destroy_joint(c.joint); }
+  Done operator()(const calls::SetPose& c) { return world_.set_pose(c.body, c.T_world_body); }
+  Done operator()(const calls::SetVelocity& c) { return world_.set_velocity(c.body, c.velocity); }
+  Done operator()(const calls::ApplyImpulse& c) {
     return world_.apply_impulse(c.body, c.impulse, c.point);
   }
-  Expected<void> operator()(const calls::SetJointStates& c) {
+  Done operator()(const calls::SetJointStates& c) {
     return world_.set_joint_states(c.articulation, c.coordinates, c.velocities);
   }
-  Expected<void> operator()(const calls::SetJointState& c) {
+  Done operator()(const calls::SetJointState& c) {
     return world_.set_joint_state(c.articulation, static_cast<int>(c.link), static_cast<int>(c.dof),
                                   c.position, c.velocity);
   }
-  Expected<void> operator()(const calls::SetLinkDrive& c) {
+  Done operator()(const calls::SetLinkDrive& c) {
     return world_.set_drive(c.articulation, static_cast<int>(c.link), static_cast<int>(c.dof),
                             c.drive);
   }
-  Expected<void> operator()(const calls::SetJointDrive& c) {
-    return world_.set_drive(c.joint, c.drive);
-  }
-  Expected<void> operator()(const calls::SetAxisDrive& c) {
+  Done operator()(const calls::SetJointDrive& c) { return world_.set_drive(c.joint, c.drive); }
+  Done operator()(const calls::SetAxisDrive& c) {
     return world_.set_drive(c.joint, c.axis, c.drive);
   }
-  Expected<void> operator()(const calls::Restore& c) { return world_.restore(c.snapshot); }
-  Expected<void> operator()(const calls::Wake& c) { return world_.wake(c.body); }
-  Expected<void> operator()(const calls::SetMassFromColliders& c) {
+  Done operator()(const calls::Restore& c) { return world_.restore(c.snapshot); }
+  Done operator()(const calls::Wake& c) { return world_.wake(c.body); }
+  Done operator()(const calls::SetMassFromColliders& c) {
     return world_.set_mass_from_colliders(c.body);
   }
-  Expected<void> operator()(const calls::ApplyForce& c) {
+  Done operator()(const calls::ApplyForce& c) {
     return world_.apply_force(c.body, c.force, c.point);
   }
-  Expected<void> operator()(const calls::ApplyTorque& c) {
-    return world_.apply_torque(c.body, c.torque);
-  }
-  Expected<void> operator()(const calls::ApplyJointForce& c) {
+  Done operator()(const calls::ApplyTorque& c) { return world_.apply_torque(c.body, c.torque); }
+  Done operator()(const calls::ApplyJointForce& c) {
     return world_.apply_joint_force(c.articulation, static_cast<int>(c.link),
                                     static_cast<int>(c.dof), c.force);
   }
-  Expected<void> operator()(const calls::SetMotion& c) {
-    return world_.set_motion(c.body, c.motion);
-  }
-  Expected<void> operator()(const calls::SetInertia& c) {
-    return world_.set_inertia(c.body, c.inertia);
-  }
-  Expected<void> operator()(const calls::SetDamping& c) {
+  Done operator()(const calls::SetMotion& c) { return world_.set_motion(c.body, c.motion); }
+  Done operator()(const calls::SetInertia& c) { return world_.set_inertia(c.body, c.inertia); }
+  Done operator()(const calls::SetDamping& c) {
     return world_.set_damping(c.body, c.linear, c.angular);
   }
-  Expected<void> operator()(const calls::SetGravityScale& c) {
+  Done operator()(const calls::SetGravityScale& c) {
     return world_.set_gravity_scale(c.body, c.scale);
   }
-  Expected<void> operator()(const calls::SetAllowSleep& c) {
-    return world_.set_allow_sleep(c.body, c.allow);
-  }
-  Expected<void> operator()(const calls::SetMaterial& c) {
+  Done operator()(const calls::SetAllowSleep& c) { return world_.set_allow_sleep(c.body, c.allow); }
+  Done operator()(const calls::SetMaterial& c) {
     return world_.set_material(c.collider, c.material);
   }
-  Expected<void> operator()(const calls::SetFilter& c) {
-    return world_.set_filter(c.collider, c.filter);
-  }
-  Expected<void> operator()(const calls::SetSurfaceVelocity& c) {
+  Done operator()(const calls::SetFilter& c) { return world_.set_filter(c.collider, c.filter); }
+  Done operator()(const calls::SetSurfaceVelocity& c) {
     return world_.set_surface_velocity(c.collider, c.velocity);
   }
-  Expected<void> operator()(const calls::RemoveCollider& c) {
-    return world_.remove_collider(c.collider);
-  }
-  Expected<void> operator()(const calls::DestroyArticulation& c) {
+  Done operator()(const calls::RemoveCollider& c) { return world_.remove_collider(c.collider); }
+  Done operator()(const calls::DestroyArticulation& c) {
     return world_.destroy_articulation(c.articulation);
   }
 

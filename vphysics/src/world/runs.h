@@ -18,13 +18,13 @@ struct BlockWords {
   std::vector<std::size_t> first;
 };
 
-class ContactRuns {
- public:
-  ContactRuns(solve::ContactGraph& graph, solve::BodyRow* rows, const Workers& workers,
-              BlockWords& blocks)
-      : graph_(graph), rows_(rows), workers_(workers), blocks_(blocks) {}
+struct ContactRuns {
+  solve::ContactGraph& graph;
+  solve::BodyRow* rows;
+  const Workers& workers;
+  BlockWords& block_words;
 
-  std::uint32_t* words() const { return blocks_.words.data(); }
+  std::uint32_t* words() const { return block_words.words.data(); }
 
   // f(passes of the kind, run of lanes, its blocks), one colour after the other.
   template <class F>
@@ -35,12 +35,12 @@ class ContactRuns {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       const bool last = index == solve::kLastColour;
       f(passes,
-        Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes}, rows_},
+        Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes}, rows},
         colour.blocks);
     };
-    graph_.colours_in_use(region).for_each([&](int c) {
-      one_run(pass.one, graph_.of<1>(region, c), c);
-      one_run(pass.four, graph_.of<4>(region, c), c);
+    graph.colours_in_use(region).for_each([&](int c) {
+      one_run(pass.one, graph.of<1>(region, c), c);
+      one_run(pass.four, graph.of<4>(region, c), c);
     });
   }
 
@@ -53,7 +53,7 @@ class ContactRuns {
   // f(region) of all but kBetween, side by side: no body but the fixed world is of two.
   template <class F>
   void for_regions(const F& f) const {
-    workers_.in_parallel(regions(), 1, [&](std::size_t begin, std::size_t end) {
+    workers.in_parallel(regions(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t region = begin + 1; region <= end; ++region) f(region);
     });
   }
@@ -64,7 +64,7 @@ class ContactRuns {
   template <class F>
   void for_parts_of(std::size_t region, const F& f) const {
     constexpr std::size_t kGrain = 8;  // blocks: some microseconds
-    std::size_t first = blocks_.first[region];
+    std::size_t first = block_words.first[region];
     for_runs_of(region, [&](const auto& passes, const auto& run, const auto& blocks) {
       const auto part_of = [&](std::size_t begin, std::size_t end) {
         auto part = run;
@@ -75,7 +75,7 @@ class ContactRuns {
         f(passes, part, first + begin);
       };
       if (region == solve::kBetween && run.stride > 1) {
-        workers_.in_parallel(blocks.size(), kGrain, part_of);
+        workers.in_parallel(blocks.size(), kGrain, part_of);
       } else {
         part_of(0, blocks.size());
       }
@@ -97,25 +97,20 @@ class ContactRuns {
 
   // Numbers the blocks of all regions and colours. Returns how many there are.
   std::size_t number() const {
-    blocks_.first.resize(graph_.regions());
+    block_words.first.resize(graph.regions());
     std::size_t count = 0;
     const auto number = [&](std::size_t region) {
-      blocks_.first[region] = count;
+      block_words.first[region] = count;
       for_runs_of(region, [&](const auto&, const auto&, const auto& b) { count += b.size(); });
     };
     for (std::size_t region = 1; region <= regions(); ++region) number(region);
     number(solve::kBetween);
-    blocks_.words.resize(std::max(blocks_.words.size(), count));
+    block_words.words.resize(std::max(block_words.words.size(), count));
     return count;
   }
 
  private:
-  std::size_t regions() const { return graph_.regions() - 1; }  // but kBetween
-
-  solve::ContactGraph& graph_;
-  solve::BodyRow* rows_;
-  const Workers& workers_;
-  BlockWords& blocks_;
+  std::size_t regions() const { return graph.regions() - 1; }  // but kBetween
 };
 
 }  // namespace vp

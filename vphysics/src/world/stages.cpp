@@ -1,31 +1,16 @@
 #include "vphysics/stages.h"
 
+#include <cstddef>
+#include <iterator>
+
 namespace vp {
 
 const char* name_of(Stage stage) {
-  switch (stage) {
-    case Stage::prepare:
-      return "prepare";
-    case Stage::broad_phase:
-      return "broad phase";
-    case Stage::narrow_phase:
-      return "narrow phase";
-    case Stage::lanes:
-      return "lanes";
-    case Stage::sub_steps:
-      return "sub-steps";
-    case Stage::report:
-      return "report";
-    case Stage::forces:
-      return "forces";
-    case Stage::impacts:
-      return "impacts";
-    case Stage::advance:
-      return "advance";
-    case Stage::sleep:
-      return "sleep";
-  }
-  return "";
+  constexpr const char* kNames[] = {"prepare",   "broad phase", "narrow phase", "lanes",
+                                    "sub-steps", "report",      "forces",       "impacts",
+                                    "advance",   "sleep"};
+  const auto index = static_cast<std::size_t>(stage);
+  return index < std::size(kNames) ? kNames[index] : "";
 }
 
 void StageClock::begin(Stage) {

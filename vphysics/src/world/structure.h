@@ -22,6 +22,13 @@ class Structure {
   void add(T word) {
     digest_ = mixed(digest_, word);
   }
+  // One after the other.
+  template <class A, class B, class... MORE>
+  void add(const A& a, const B& b, const MORE&... more) {
+    add(a);
+    add(b);
+    (add(more), ...);
+  }
   void add(double x) { add(std::bit_cast<std::uint64_t>(x)); }
   void add(const Vec3& a) {
     for (const double x : {a.x, a.y, a.z}) add(x);
@@ -32,17 +39,14 @@ class Structure {
   }
   void add(const Inertia& J) {
     const Sym3& I = J.rotational();
-    add(J.mass());
-    add(J.first_moment());
+    add(J.mass(), J.first_moment());
     for (const double x : {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx}) add(x);
   }
   void add(const WorldDesc& desc) {
-    add(desc.gravity);
-    add(desc.restitution_threshold);
-    add(desc.contact_slop);
-    add(static_cast<std::uint64_t>(desc.velocity_iterations));
-    add(static_cast<std::uint64_t>(desc.sub_steps));
-    add(static_cast<std::uint64_t>(desc.max_impacts_per_step));
+    add(desc.gravity, desc.restitution_threshold, desc.contact_slop,
+        static_cast<std::uint64_t>(desc.velocity_iterations),
+        static_cast<std::uint64_t>(desc.sub_steps),
+        static_cast<std::uint64_t>(desc.max_impacts_per_step));
     const WorldDesc usual;
     add_unless(usual.sleep_after, 'a', desc.sleep_after);
     add_unless(usual.sleep_speed, 'z', desc.sleep_speed);
@@ -51,25 +55,19 @@ class Structure {
     add_unless(usual.length_unit, 'l', desc.length_unit);
   }
   void add(const BodyDesc& desc) {
-    add(static_cast<std::uint64_t>(desc.motion));
-    add(static_cast<std::uint64_t>(desc.continuous));
-    add(desc.inertia);
-    add(desc.linear_damping);
-    add(desc.angular_damping);
+    add(static_cast<std::uint64_t>(desc.motion), static_cast<std::uint64_t>(desc.continuous),
+        desc.inertia, desc.linear_damping, desc.angular_damping);
     const BodyDesc usual;
     add_unless(usual.gravity_scale, 'w', desc.gravity_scale);
     add_unless(std::uint64_t{1}, 'p', static_cast<std::uint64_t>(desc.allow_sleep));
   }
   void add(const ColliderDesc& desc) {
-    add(desc.shape);
-    add(desc.T_body_shape);
+    add(desc.shape, desc.T_body_shape);
     for (const double x :
          {desc.material.friction, desc.material.restitution, desc.material.rolling_friction}) {
       add(x);
     }
-    add(desc.filter.category);
-    add(desc.filter.mask);
-    add(static_cast<std::uint64_t>(desc.sensor));
+    add(desc.filter.category, desc.filter.mask, static_cast<std::uint64_t>(desc.sensor));
     // What came later counts only where it is used, so that worlds without it keep their digest.
     const ColliderDesc usual;
     add_unless(usual.material.spinning_friction, 'n', desc.material.spinning_friction);
@@ -83,14 +81,11 @@ class Structure {
     } else if (const auto* b = std::get_if<Box>(&shape)) {
       add(b->half_extents);
     } else if (const auto* c = std::get_if<Capsule>(&shape)) {
-      add(c->radius);
-      add(c->half_length);
+      add(c->radius, c->half_length);
     } else if (const auto* y = std::get_if<Cylinder>(&shape)) {
-      add(y->radius);
-      add(y->half_length);
+      add(y->radius, y->half_length);
     } else if (const auto* k = std::get_if<Cone>(&shape)) {
-      add(k->radius);
-      add(k->half_height);
+      add(k->radius, k->half_height);
     } else {
       add_built(shape);
     }
@@ -106,15 +101,13 @@ class Structure {
     } else if (const auto* compound = std::get_if<Compound>(&shape)) {
       add(static_cast<std::uint64_t>(compound->parts().size()));
       for (const CompoundPart& part : compound->parts()) {
-        add(part.shape);
-        add(part.T_compound_part);
+        add(part.shape, part.T_compound_part);
       }
     }
   }
   void add(const TriangleMesh& mesh) {
-    add(static_cast<std::uint64_t>(mesh.two_sided()));
-    add(mesh.scale());
-    add(static_cast<std::uint64_t>(mesh.vertices().size()));
+    add(static_cast<std::uint64_t>(mesh.two_sided()), mesh.scale(),
+        static_cast<std::uint64_t>(mesh.vertices().size()));
     for (const Vec3& v : mesh.vertices()) add(v);
     add(static_cast<std::uint64_t>(mesh.triangles().size()));
     for (const TriangleMesh::Triangle& t : mesh.triangles()) {
@@ -125,8 +118,7 @@ class Structure {
     add(std::uint64_t{field.columns()} << 32 | field.rows());
     for (std::uint32_t j = 0; j < field.rows(); ++j) {
       for (std::uint32_t i = 0; i < field.columns(); ++i) {
-        add(field.sample(i, j));
-        add(static_cast<std::uint64_t>(field.is_hole(i, j)));
+        add(field.sample(i, j), static_cast<std::uint64_t>(field.is_hole(i, j)));
       }
     }
   }
@@ -142,11 +134,8 @@ class Structure {
   void add(const JointDesc& desc) {
     add(static_cast<std::uint64_t>(desc.kind.index()));
     std::visit([this](const auto& kind) { add_kind(kind); }, desc.kind);
-    add(desc.T_a_joint);
-    add(desc.T_b_joint);
-    add(static_cast<std::uint64_t>(desc.collide));
-    add(desc.frequency);
-    add(desc.damping_ratio);
+    add(desc.T_a_joint, desc.T_b_joint, static_cast<std::uint64_t>(desc.collide), desc.frequency,
+        desc.damping_ratio);
   }
   void add(const ArticulationDesc& desc) {
     const Model& model = desc.model;
@@ -154,13 +143,9 @@ class Structure {
     for (int l = 0; l < model.links(); ++l) {
       const LinkSpec& link = model.link(l);
       const int parent = link.parent + 1;  // the world: 0
-      add(static_cast<std::uint64_t>(parent));
-      add(static_cast<std::uint64_t>(link.joint.index()));
+      add(static_cast<std::uint64_t>(parent), static_cast<std::uint64_t>(link.joint.index()));
       std::visit([this](const auto& joint) { add_joint(joint); }, link.joint);
-      add(link.T_parent_joint);
-      add(link.inertia);
-      add(link.armature);
-      add(link.damping);
+      add(link.T_parent_joint, link.inertia, link.armature, link.damping);
       for (const JointForces& f : link.forces) {
         for (const double x : {f.lower, f.upper, f.limit_stiffness, f.limit_damping, f.stiffness,
                                f.rest, f.friction, f.motor_limit}) {
@@ -174,8 +159,7 @@ class Structure {
   template <class T>
   void add_unless(const T& usual, char name, const T& value) {
     if (value == usual) return;
-    add(static_cast<std::uint64_t>(name));
-    add(value);
+    add(static_cast<std::uint64_t>(name), value);
   }
   void add_kind(const auto&) {}  // the others have no constants
   void add_kind(const Hinge& j) { add_limits(j.lower, j.upper); }
@@ -195,9 +179,7 @@ class Structure {
     }
   }
   void add_kind(const Gear& j) {
-    add(j.ratio);
-    add(static_cast<std::uint64_t>(j.slides_a));
-    add(static_cast<std::uint64_t>(j.slides_b));
+    add(j.ratio, static_cast<std::uint64_t>(j.slides_a), static_cast<std::uint64_t>(j.slides_b));
   }
   void add_kind(const UserConstraint& j) {
     const int rows = j.constraint->rows();
@@ -210,21 +192,12 @@ class Structure {
     }
     for (const double x : j.constraint->constants()) add(x);
   }
-  void add_limits(double lower, double upper) {
-    add(lower);
-    add(upper);
-  }
+  void add_limits(double lower, double upper) { add(lower, upper); }
   void add_joint(const RevoluteJoint& j) { add(j.axis); }
   void add_joint(const PrismaticJoint& j) { add(j.axis); }
-  void add_joint(const HelicalJoint& j) {
-    add(j.axis);
-    add(j.pitch);
-  }
+  void add_joint(const HelicalJoint& j) { add(j.axis, j.pitch); }
   void add_joint(const CylindricalJoint& j) { add(j.axis); }
-  void add_joint(const UniversalJoint& j) {
-    add(j.first);
-    add(j.second);
-  }
+  void add_joint(const UniversalJoint& j) { add(j.first, j.second); }
   // What a user's joint is made of only its owner knows; two of its poses and subspaces tell most.
   void add_joint(const std::shared_ptr<const UserJoint>& j) {
     const auto n = static_cast<std::size_t>(j->degrees_of_freedom());
@@ -242,10 +215,7 @@ class Structure {
     }
   }
   void add_joint(const auto&) {}  // the others have no constants
-  void add(const se3& V) {
-    add(V.w);
-    add(V.v);
-  }
+  void add(const se3& V) { add(V.w, V.v); }
 
   std::uint64_t& digest_;
 };

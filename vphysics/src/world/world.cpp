@@ -64,9 +64,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   if (!body.mass_from_colliders) set_mass(body, desc.inertia);
   impl_->update_mass(index);
   if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
-  Structure structure(impl_->structure);
-  structure.add(0x100u + index);
-  structure.add(desc);
+  Structure(impl_->structure).add(0x100u + index, desc);
   const BodyId id = impl_->bodies.id(index);
   impl_->lists.forget();
   if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
@@ -179,10 +177,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   impl_->lists.forget();
   impl_->wake(c.body);
   impl_->add_proxy(index);
-  Structure structure(impl_->structure);
-  structure.add(0x300u + index);
-  structure.add(body_handle.index);
-  structure.add(desc);
+  Structure(impl_->structure).add(0x300u + index, body_handle.index, desc);
   if (impl_->recorder) impl_->log({calls::AddCollider{body_handle, desc}});
   return impl_->colliders.id(index);
 }
