@@ -4,19 +4,9 @@
 // divided it among the points; their friction is that of the last sub-step, scaled alike.
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/lane_fields.h"
 
 namespace vp {
-namespace {
-
-Vec3 at(const solve::Field3& f, int lane) {
-  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
-          static_cast<double>(f.z.lane[lane])};
-}
-double at(const solve::Field& f, int lane) {
-  return static_cast<double>(f.lane[lane]);
-}
-
-}  // namespace
 
 // Of the impulses that solve() has left.
 void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
@@ -36,15 +26,15 @@ template <int P>
 void World::Impl::add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool of_a,
                                 std::vector<ContactPoint>& points) const {
   const int lane = solve::ContactGraph::lane(c.place);
-  const double sign = of_a ? -1.0 : 1.0, all = at(block.given, lane);
+  const double sign = of_a ? -1.0 : 1.0, all = get(block.given, lane);
   double last = 0.0;
-  for (int i = 0; i < c.count; ++i) last += at(block.impulse[i], lane);
-  const Vec3 n = at(block.normal, lane), t = at(block.tangent, lane);
+  for (int i = 0; i < c.count; ++i) last += get(block.impulse[i], lane);
+  const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane);
   const Vec3 friction =
-      at(block.tangent_impulse[0], lane) * t + at(block.tangent_impulse[1], lane) * cross(n, t);
+      get(block.tangent_impulse[0], lane) * t + get(block.tangent_impulse[1], lane) * cross(n, t);
   const double scale = last > 0.0 ? all / last : 0.0;
   for (int i = 0; i < c.count; ++i) {
-    const double share = last > 0.0 ? at(block.impulse[i], lane) / last : 1.0 / c.count;
+    const double share = last > 0.0 ? get(block.impulse[i], lane) / last : 1.0 / c.count;
     ContactPoint& p = points.emplace_back();
     p.collider = colliders.id(of_a ? c.a : c.b);
     p.other = colliders.id(of_a ? c.b : c.a);

@@ -4,13 +4,13 @@
 
 namespace vp {
 
-void World::Impl::ContactState::clear() {
+void ContactState::clear() {
   contacts_.clear();
   regions_.axes.clear();
   regions_.age = 0.0;
 }
 
-void World::Impl::ContactState::read(Reader& in) {
+void ContactState::read(Reader& in) {
   clear();
   world_.finder.read(in);
   in.check(world_.finder.incoming_fits());
@@ -49,7 +49,7 @@ void World::Impl::ContactState::read(Reader& in) {
   }
 }
 
-void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
+void ContactState::read_body(Reader& in, OfBody& body) {
   const std::uint64_t flags = in.word();
   in.check(flags <= 3);
   body.rested = (flags & 1u) != 0;
@@ -62,7 +62,7 @@ void World::Impl::ContactState::read_body(Reader& in, OfBody& body) {
   }
 }
 
-void World::Impl::ContactState::read_pool(Reader& in) {
+void ContactState::read_pool(Reader& in) {
   using namespace contact_flags;
   contacts_.pool.resize(in.count(1));
   seen_.assign(contacts_.pool.size(), 0);
@@ -84,7 +84,7 @@ void World::Impl::ContactState::read_pool(Reader& in) {
 }
 
 // Each part is in the chain of its whole, once.
-void World::Impl::ContactState::check_parts(Reader& in) {
+void ContactState::check_parts(Reader& in) {
   for (std::uint32_t i = 0; i < contacts_.pool.size() && in.ok(); ++i) {
     const Contact& whole = contacts_.pool[i];
     if (!whole.alive || !whole.has_parts) continue;
@@ -103,7 +103,7 @@ void World::Impl::ContactState::check_parts(Reader& in) {
   }
 }
 
-void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
+void ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   const Colliders& all = world_.colliders;
   c.key = in.word();
   const Reader::Two both = in.two();
@@ -152,7 +152,7 @@ void World::Impl::ContactState::read_contact(Reader& in, Contact& c, bool is_par
 }
 
 // In their order, each contact's sides once.
-void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
+void ContactState::read_edges(Reader& in, std::uint32_t body) {
   const std::size_t count = in.count(1);
   std::uint32_t previous = kNone;
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
@@ -173,7 +173,7 @@ void World::Impl::ContactState::read_edges(Reader& in, std::uint32_t body) {
   }
 }
 
-void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
+void ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
   const std::size_t count = in.count(1);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
     const std::uint32_t index = in.index(contacts_.pool.size());
@@ -189,7 +189,7 @@ void World::Impl::ContactState::read_near(Reader& in, solve::NearList& near, boo
   }
 }
 
-void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> fields, int lane) {
+void ContactState::read_fields(Reader& in, std::span<solve::Field> fields, int lane) {
   for (std::size_t f = 0; f < fields.size(); f += 2) {
     const Reader::TwoFloats both = in.two_floats();
     fields[f].lane[lane] = both.high;
@@ -197,7 +197,7 @@ void World::Impl::ContactState::read_fields(Reader& in, std::span<solve::Field> 
   }
 }
 
-void World::Impl::ContactState::read_regions(Reader& in) {
+void ContactState::read_regions(Reader& in) {
   const std::uint32_t count = in.index(kMostRegions + 1);
   in.check(count == 0 || (std::has_single_bit(count) && count > 1));
   regions_.age = in.number();
@@ -209,14 +209,14 @@ void World::Impl::ContactState::read_regions(Reader& in) {
   if (in.ok()) contacts_.graph.set_regions(std::size_t{count} + 1);
 }
 
-solve::ContactGraph::End World::Impl::ContactState::end_of(std::uint32_t body) const {
+solve::ContactGraph::End ContactState::end_of(std::uint32_t body) const {
   solve::ContactGraph::End end = vp::end_of(world_.bodies, body);
   end.region = bodies_[body].region;
   return end;
 }
 
 template <int P>
-void World::Impl::ContactState::read_lanes(Reader& in, std::size_t region, int colour) {
+void ContactState::read_lanes(Reader& in, std::size_t region, int colour) {
   constexpr std::size_t kFields = solve::kFieldsOf<P>;
   const std::size_t lanes = in.count(1 + kFields / 2);
   for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
@@ -241,7 +241,7 @@ void World::Impl::ContactState::read_lanes(Reader& in, std::size_t region, int c
   }
 }
 
-void World::Impl::ContactState::adopt() {
+void ContactState::adopt() {
   world_.finder.adopt();
   world_.body_rows.resize(bodies_.size() + 1);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -262,12 +262,12 @@ void World::Impl::ContactState::adopt() {
     const Contact& c = contacts_.pool[i];
     if (c.alive && c.stale && !c.parked) contacts_.stale.push_back(i);
   }
-  if (world_.contact_store.graph.regions() != contacts_.graph.regions()) {
+  if (world_.contacts.graph.regions() != contacts_.graph.regions()) {
     world_.lists.forget();
   }
-  std::swap(world_.contact_store, contacts_);
-  regions_.count = static_cast<std::uint16_t>(world_.contact_store.graph.regions() - 1);
-  std::swap(world_.regions.state, regions_);
+  std::swap(world_.contacts, contacts_);
+  regions_.count = static_cast<std::uint16_t>(world_.contacts.graph.regions() - 1);
+  std::swap(world_.regions, regions_);
 }
 
 }  // namespace vp

@@ -22,9 +22,9 @@
 namespace vp {
 
 // Read from bytes, checked, and not yet the world's. Kept for its memory: adopt() swaps.
-class World::Impl::ContactState {
+class ContactState {
  public:
-  explicit ContactState(World::Impl& world) : world_(world) {}
+  explicit ContactState(const ContactData& world) : world_(world) {}
   void read(Reader& in);
   // Precondition: the reader was ok after read().
   void adopt();
@@ -50,7 +50,7 @@ class World::Impl::ContactState {
   template <int P>
   void read_lanes(Reader& in, std::size_t region, int colour);
 
-  World::Impl& world_;
+  const ContactData world_;
   std::vector<OfBody> bodies_;
   ContactStore contacts_;
   // Of each contact what was found: 1, 2: its sides; 4: near or in a lane; 8: free; 16: of the
@@ -65,18 +65,18 @@ inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kStale = 
 }
 
 template <class Sink>
-void World::Impl::write_contacts(Sink& sink) const {
-  finder.write(sink);
+void write_contacts(Sink& sink, const ContactData& world) {
+  world.finder.write(sink);
   static const solve::BodyRow kNoRow{};
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    const solve::BodyRow& row = i + 1 < body_rows.size() ? body_rows[i + 1] : kNoRow;
+  for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+    const Body& body = world.bodies[i];
+    const solve::BodyRow& row = i + 1 < world.body_rows.size() ? world.body_rows[i + 1] : kNoRow;
     sink.word((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
     put(sink, body.rest_time);
     for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
   }
-  sink.word(contact_store.pool.size());
-  for (const Contact& c : contact_store.pool) {
+  sink.word(world.contacts.pool.size());
+  for (const Contact& c : world.contacts.pool) {
     using namespace contact_flags;
     const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
                                 (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
@@ -100,35 +100,36 @@ void World::Impl::write_contacts(Sink& sink) const {
       put(sink, c.position[i]);
     }
   }
-  for (const Body& body : bodies) {
+  for (const Body& body : world.bodies) {
     std::uint64_t count = 0;
     const auto for_edges = [&](const auto& f) {
-      for (std::uint32_t e = body.first_edge; e != kNone; e = contact_store.pool[e / 2].next[e % 2])
+      for (std::uint32_t e = body.first_edge; e != kNone;
+           e = world.contacts.pool[e / 2].next[e % 2])
         f(e);
     };
     for_edges([&](std::uint32_t) { ++count; });
     sink.word(count);
     for_edges([&](std::uint32_t e) { sink.word(e); });
   }
-  sink.word(contact_store.free.size());
-  for (const std::uint32_t c : contact_store.free) sink.word(c);
+  sink.word(world.contacts.free.size());
+  for (const std::uint32_t c : world.contacts.free) sink.word(c);
   const auto write_fields = [&sink](const auto& fields, int lane) {
     for (std::size_t f = 0; f < fields.size(); f += 2) {
       put_two(sink, fields[f].lane[lane], f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
     }
   };
-  for (const solve::NearList* list : {&contact_store.near, &contact_store.parked_near}) {
+  for (const solve::NearList* list : {&world.contacts.near, &world.contacts.parked_near}) {
     sink.word(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
       sink.word(list->block(i).contact.lane[solve::NearList::lane(i)]);
       write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
     }
   }
-  sink.word(regions.state.count);
-  put(sink, regions.state.age);
-  for (const std::uint8_t axis : regions.state.axes) sink.word(axis);
-  if (regions.state.count > 0) {
-    for (const Body& body : bodies) sink.word(body.region);
+  sink.word(world.regions.count);
+  put(sink, world.regions.age);
+  for (const std::uint8_t axis : world.regions.axes) sink.word(axis);
+  if (world.regions.count > 0) {
+    for (const Body& body : world.bodies) sink.word(body.region);
   }
   const auto write_lanes = [&](const auto& colour, int index) {
     sink.word(colour.lanes);
@@ -139,10 +140,10 @@ void World::Impl::write_contacts(Sink& sink) const {
       write_fields(solve::fields_of(block), lane);
     }
   };
-  for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
+  for (std::size_t region = 0; region < world.contacts.graph.regions(); ++region) {
     for (int c = 0; c <= solve::kParked; ++c) {
-      write_lanes(contact_store.graph.of<1>(region, c), c);
-      write_lanes(contact_store.graph.of<4>(region, c), c);
+      write_lanes(world.contacts.graph.of<1>(region, c), c);
+      write_lanes(world.contacts.graph.of<4>(region, c), c);
     }
   }
 }

@@ -5,14 +5,10 @@
 #include <utility>
 
 #include "solve/row_vector.h"
+#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
-
-Vec3 at(const solve::Field3& f, int lane) {
-  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
-          static_cast<double>(f.z.lane[lane])};
-}
 
 // What one of the two has gone by: at the centre of the ball in which they meet, and how far that
 // may be off.
@@ -149,19 +145,14 @@ void ContactStore::set_near(std::uint32_t index, double clearance, const BodySet
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
   solve::NearBlock& block = near.block(c.near_index);
   const int lane = solve::NearList::lane(c.near_index);
-  const auto store = [&](solve::Field3& to, const Vec3& v) {
-    to.x.lane[lane] = static_cast<float>(v.x);
-    to.y.lane[lane] = static_cast<float>(v.y);
-    to.z.lane[lane] = static_cast<float>(v.z);
-  };
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
   const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
                            solve::Field3& turn, solve::Field3& arm) {
     const float* way = on.rows[row].way;
-    store(x, vector_of(way));
-    store(turn, vector_of(way + 3));
-    store(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
+    put(x, lane, vector_of(way));
+    put(turn, lane, vector_of(way + 3));
+    put(arm, lane, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
   };
   put_end(block.a.lane[lane], on.bodies[a.body], block.x_a, block.turn_a, block.arm_a);
   put_end(block.b.lane[lane], on.bodies[b.body], block.x_b, block.turn_b, block.arm_b);
@@ -193,8 +184,8 @@ void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
                         const solve::Field3& turn, const solve::Field3& arm) {
     const float* way = on.rows[rows.lane[lane]].way;
-    const Vec3 r = at(arm, lane), by = vector_of(way + 3) - at(turn, lane);
-    return Gone{vector_of(way) - at(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+    const Vec3 r = get(arm, lane), by = vector_of(way + 3) - get(turn, lane);
+    return Gone{vector_of(way) - get(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
   };
   const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
   const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);

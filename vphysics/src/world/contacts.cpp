@@ -244,9 +244,10 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
 
 // Swept bodies report a sensor even if they are through it within the step.
 void World::Impl::report_swept_sensors(double h, double time) {
+  const ImpactTimes times = impact_times();
   for (const SweptPair& swept : swept_pairs) {
     if (!swept.sensor) continue;
-    const double t = swept.separation <= swept_tolerance() ? 0.0 : time_until(swept, 0.0, h);
+    const double t = swept.separation <= times.tolerance() ? 0.0 : times.until(swept, 0.0, h);
     if (t < 0.0) continue;
     const Collider& c = colliders[swept.swept_is_a ? swept.pair.a : swept.pair.b];
     const Vec3 centre = c.T.position() + t * motions[c.body].v;

@@ -6,6 +6,7 @@
 
 #include "solve/row_vector.h"
 #include "world/impl.h"
+#include "world/lane_fields.h"
 #include "world/refuse.h"
 #include "world/validate.h"
 #include "world/wires.h"
@@ -19,11 +20,6 @@ DebugMark mark_of(const Body& body, const Collider& collider) {
   if (collider.sensor) return DebugMark::sensor;
   if (body.motion == Motion::fixed) return DebugMark::fixed_shape;
   return body.motion == Motion::kinematic ? DebugMark::kinematic_shape : DebugMark::dynamic_shape;
-}
-
-Vec3 lane_of(const solve::Field3& f, int lane) {
-  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
-          static_cast<double>(f.z.lane[lane])};
 }
 
 // The axes that a joint turns about or slides along, in its frame.
@@ -182,14 +178,14 @@ class World::Impl::Drawing {
     const std::uint32_t body = with_b ? body_b : body_a;
     const Vec3 centre = reference_point(world_.bodies[body]);
     const Vec3 turn = vector_of(world_.body_rows[body + 1].way + 3) -
-                      lane_of(with_b ? block.turned_b : block.turned_a, lane);
+                      get(with_b ? block.turned_b : block.turned_a, lane);
     const Mat3 R = turned(Mat3::identity(), turn);
     Vec3 middle;
     for (int i = 0; i < c.count; ++i) middle += (1.0 / c.count) * c.position[i];
-    Vec3 grip = lane_of(block.grip, lane);
-    if (with_b) grip += lane_of(block.d, lane);
+    Vec3 grip = get(block.grip, lane);
+    if (with_b) grip += get(block.d, lane);
 
-    const Vec3 n = lane_of(block.normal, lane), t = lane_of(block.tangent, lane);
+    const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane);
     const auto value = [lane](const solve::Field& f) { return static_cast<double>(f.lane[lane]); };
     const double steps = world_.sub_steps_taken, share = 1.0 / c.count;
     const Vec3 friction =

@@ -13,6 +13,7 @@
 
 #include "solve/row_vector.h"
 #include "world/impl.h"
+#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
@@ -23,11 +24,6 @@ namespace {
 constexpr double kSlide = 0.01;
 constexpr double kTurn = 0.01;
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
-
-Vec3 at(const solve::Field3& f, int lane) {
-  return {static_cast<double>(f.x.lane[lane]), static_cast<double>(f.y.lane[lane]),
-          static_cast<double>(f.z.lane[lane])};
-}
 
 // A ball touches anything convex at one point.
 int points_of(const Contact& c, const Collider& a, const Collider& b) {
@@ -53,11 +49,11 @@ Held held_in(const solve::ContactBlock<P>& block, int lane) {
   Held impulses;
   for (int i = 0; i < P; ++i)
     impulses.normal[static_cast<std::size_t>(i)] = block.impulse[i].lane[lane];
-  const Vec3 n = at(block.normal, lane), t = at(block.tangent, lane), b = cross(n, t);
-  const auto number = [&](const solve::Field& f) { return static_cast<double>(f.lane[lane]); };
-  impulses.friction = number(block.tangent_impulse[0]) * t + number(block.tangent_impulse[1]) * b;
-  impulses.moment = number(block.twist_impulse) * n + number(block.roll_impulse[0]) * t +
-                    number(block.roll_impulse[1]) * b;
+  const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane), b = cross(n, t);
+  impulses.friction =
+      get(block.tangent_impulse[0], lane) * t + get(block.tangent_impulse[1], lane) * b;
+  impulses.moment = get(block.twist_impulse, lane) * n + get(block.roll_impulse[0], lane) * t +
+                    get(block.roll_impulse[1], lane) * b;
   return impulses;
 }
 

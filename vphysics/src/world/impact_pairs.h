@@ -1,4 +1,5 @@
-// Which bodies may meet in the stage of impacts: pairs of which one is swept, and the others.
+// Which bodies may meet in the stage of impacts: pairs of which one is swept, and the others. When
+// the colliders of swept pairs meet.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +7,10 @@
 #include <vector>
 
 #include "collide/broad_phase.h"
+#include "collide/manifolds.h"
+#include "collide/shape_query.h"
 #include "collide/sweep.h"
-#include "world/body.h"
+#include "world/collider.h"
 
 namespace vp {
 
@@ -69,6 +72,32 @@ class DiscreteBodyPairs {
   std::vector<collide::Bounds> bounds_;
   std::vector<std::uint8_t> movable_;
   std::vector<collide::IndexPair> pairs_;
+};
+
+// A pair in which the one is swept against the other; separation is that of now.
+struct SweptPair {
+  ColliderPair pair;
+  bool swept_is_a;
+  bool sensor;
+  double separation;
+};
+
+// Times of impact (pairs.cpp).
+struct ImpactTimes {
+  const Colliders& colliders;
+  std::span<const collide::Motion> motions;  // of each body
+  double slop;
+  collide::PartsScratch& parts;
+
+  double tolerance() const { return 0.05 * slop; }
+  // Until the separation comes down to target; negative: not within h.
+  double until(const SweptPair& pair, double target, double h) const;
+  // Of shapes with parts it is known only as far as they touch: what is farther apart is as far as
+  // the margin.
+  double separation(const Collider& moving, const Collider& other, double margin,
+                    collide::ManifoldScratch& scratch,
+                    std::vector<collide::SubManifold>& manifolds) const;
+  collide::SweepQuery sweep_query(const SweptPair& pair, double h) const;
 };
 
 }  // namespace vp

@@ -36,15 +36,18 @@
 
 namespace vp {
 
-// A pair in which the one is swept against the other; separation is that of now.
-struct SweptPair {
-  ColliderPair pair;
-  bool swept_is_a;
-  bool sensor;
-  double separation;
-};
-
 struct RecordedCall;
+
+// What contact_state.h writes and reads.
+struct ContactData {
+  Bodies& bodies;
+  Colliders& colliders;
+  solve::LargeVector<solve::BodyRow>& body_rows;
+  collide::PairFinder& finder;
+  ContactStore& contacts;
+  Regions::State& regions;
+  BodyLists& lists;
+};
 
 struct Query;
 struct QueryScratch {
@@ -314,18 +317,13 @@ struct World::Impl {
 
   // pairs.cpp
   BodyWays body_ways() const { return {bodies, motions, bounds}; }
+  ImpactTimes impact_times() { return {colliders, motions, desc.contact_slop, parts_scratch}; }
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);
   void find_discrete_pairs(double h);
   void find_swept_pairs(double h);
-  bool swept(const Collider& a, const Collider& b) const;
-  bool is_swept(const Collider& collider) const;
   void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
-  double swept_tolerance() const { return 0.05 * desc.contact_slop; }
-  double time_until(const SweptPair& pair, double target, double h);
-  collide::SweepQuery sweep_query(const SweptPair& pair, double h) const;
   double discrete_margin(const ColliderPair& pair, double h) const;
-  double swept_separation(const Collider& ball, const Collider& other, double margin);
 
   // contacts.cpp
   PairRecord& record_of(const ColliderPair& pair, std::uint32_t part = 0);
@@ -356,12 +354,12 @@ struct World::Impl {
   Query query(const QueryFilter& filter);
 
   // snapshot.cpp, restore.cpp, contact_state.h
-  class ContactState;
+  ContactData contact_data() {
+    return {bodies, colliders, body_rows, finder, contact_store, regions.state, lists};
+  }
   void adopt(Incoming& incoming);
   template <class Sink>
-  void write_contacts(Sink& sink) const;
-  template <class Sink>
-  void write(Sink& sink) const;
+  void write(Sink& sink);
 };
 
 // Mixes a word into a digest.

@@ -6,6 +6,7 @@
 
 #include "solve/passes.h"
 #include "solve/row_vector.h"
+#include "world/lane_fields.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
 
@@ -15,21 +16,6 @@ namespace {
 using solve::kLanes;
 
 constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
-
-void put(solve::Field3& field, int lane, const Vec3& v) {
-  field.x.lane[lane] = static_cast<float>(v.x);
-  field.y.lane[lane] = static_cast<float>(v.y);
-  field.z.lane[lane] = static_cast<float>(v.z);
-}
-void put(solve::Field& field, int lane, double x) {
-  field.lane[lane] = static_cast<float>(x);
-}
-double get(const solve::Field& field, int lane) {
-  return static_cast<double>(field.lane[lane]);
-}
-Vec3 get(const solve::Field3& field, int lane) {
-  return {get(field.x, lane), get(field.y, lane), get(field.z, lane)};
-}
 
 // Whole turns of the angle, nearest.
 double turns_of(double angle) {

@@ -10,6 +10,12 @@ bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const 
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
 }
 
+// What a continuous body carries is swept, but for sensors that are no spheres: they look where
+// they are at the start of a step.
+bool is_swept(const Body& body, const Collider& c) {
+  return body.continuous && (!c.sensor || c.geometry.kind == collide::Kind::sphere);
+}
+
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
@@ -38,15 +44,6 @@ double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
   return desc.contact_slop + travel(bodies[a], motions[a], h) + travel(bodies[b], motions[b], h);
 }
 
-// What a continuous body carries is swept, but for sensors that are no spheres: they look where
-// they are at the start of a step.
-bool World::Impl::is_swept(const Collider& c) const {
-  return bodies[c.body].continuous && (!c.sensor || c.geometry.kind == collide::Kind::sphere);
-}
-bool World::Impl::swept(const Collider& a, const Collider& b) const {
-  return is_swept(a) || is_swept(b);
-}
-
 // Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
   discrete_pairs.clear();
@@ -70,7 +67,7 @@ void World::Impl::find_discrete_pairs(double h) {
       for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
         const Collider& cb = colliders[j];
         if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
-        if (continuous && swept(ca, cb)) continue;
+        if (continuous && (is_swept(a, ca) || is_swept(b, cb))) continue;
         if (sensors_only && !ca.sensor && !cb.sensor) continue;
         if (pushable_or_sensed(a, b, ca, cb)) discrete_pairs.push_back(make_pair(colliders, i, j));
       }
@@ -81,7 +78,7 @@ void World::Impl::find_discrete_pairs(double h) {
   counters.pairs += static_cast<std::uint32_t>(discrete_pairs.size());
 }
 
-collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const {
+collide::SweepQuery ImpactTimes::sweep_query(const SweptPair& p, double h) const {
   const Collider& sphere = colliders[p.swept_is_a ? p.pair.a : p.pair.b];
   const Collider& other = colliders[p.swept_is_a ? p.pair.b : p.pair.a];
   return {sphere.T.position(),
@@ -91,30 +88,29 @@ collide::SweepQuery World::Impl::sweep_query(const SweptPair& p, double h) const
           other.T,
           motions[other.body],
           h,
-          swept_tolerance()};
+          tolerance()};
 }
 
-// Until the separation comes down to target; negative: not within h. A sphere has closed forms,
-// which the general way would only find more slowly.
-double World::Impl::time_until(const SweptPair& p, double target, double h) {
+// A sphere has closed forms, which the general way would only find more slowly.
+double ImpactTimes::until(const SweptPair& p, double target, double h) const {
   const Collider &c = colliders[p.swept_is_a ? p.pair.a : p.pair.b],
                  &other = colliders[p.swept_is_a ? p.pair.b : p.pair.a];
   if (c.geometry.kind == collide::Kind::sphere) return time_of_impact(sweep_query(p, h), target);
   const collide::ImpactQuery query{{&c.geometry, c.T, motions[c.body]},
                                    {&other.geometry, other.T, motions[other.body]},
                                    h,
-                                   swept_tolerance()};
+                                   tolerance()};
   // What of a surface has come near but is no contact (inner edges, backs) would hold the body
   // where it is: the solver has nothing that pushes it away.
   const auto near =
       is_surface(other.geometry) ? collide::NearParts::passed : collide::NearParts::met;
   collide::PartsImpact found{};
-  return first_impact(query, target, parts_scratch, found, near) ? found.time : -1.0;
+  return first_impact(query, target, parts, found, near) ? found.time : -1.0;
 }
 
-// Of shapes with parts it is known only as far as they touch: what is farther apart is as far as
-// the margin.
-double World::Impl::swept_separation(const Collider& moving, const Collider& other, double margin) {
+double ImpactTimes::separation(const Collider& moving, const Collider& other, double margin,
+                               collide::ManifoldScratch& scratch,
+                               std::vector<collide::SubManifold>& manifolds) const {
   if (!has_parts(moving.geometry, other.geometry)) {
     if (moving.geometry.kind != collide::Kind::sphere) {
       collide::PairCache fresh;
@@ -126,8 +122,8 @@ double World::Impl::swept_separation(const Collider& moving, const Collider& oth
   double least = margin;
   manifolds.clear();
   collide::PairCache cache;
-  find_manifolds(moving.geometry, moving.T, other.geometry, other.T, desc.contact_slop, cache, {},
-                 manifold_scratch, manifolds);
+  find_manifolds(moving.geometry, moving.T, other.geometry, other.T, slop, cache, {}, scratch,
+                 manifolds);
   for (const collide::SubManifold& found : manifolds) {
     for (int k = 0; k < found.manifold.count; ++k) {
       least = std::min(least, found.manifold.points[k].separation);
@@ -155,12 +151,13 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   wake(other);
   const Body &a = bodies[index], &b = bodies[other];
   const collide::Motion &ma = motions[index], &mb = motions[other];
+  const ImpactTimes times = impact_times();
   pose_colliders(bodies[index], colliders);
   const double speed = norm(ma.v - mb.v);
   const double wa = norm(ma.w), wb = norm(mb.w);
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
     const Collider& ca = colliders[i];
-    if (!is_swept(ca)) continue;
+    if (!is_swept(a, ca)) continue;
     const double own = speed + wa * reach_from(ma.x, ca);
     const double far = reach_from(mb.x, ca) + own * h;
     const double margin = desc.contact_slop + (own + wb * far) * h;
@@ -170,8 +167,8 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
       if (!empty(cb.around_line) && !overlap(near, moved(cb.around_line, b.T.position()))) continue;
       pose_collider(b, cb);
       if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
-      if (b.continuous && other < index && is_swept(cb)) continue;
-      const double separation = swept_separation(ca, cb, margin);
+      if (b.continuous && other < index && is_swept(b, cb)) continue;
+      const double separation = times.separation(ca, cb, margin, manifold_scratch, manifolds);
       if (separation > margin) continue;
       const ColliderPair pair = make_pair(colliders, i, j);
       swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});

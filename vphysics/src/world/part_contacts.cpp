@@ -8,19 +8,13 @@
 #include <utility>
 
 #include "world/impl.h"
+#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
 
 // The normal of a manifold may have turned so far (cosine) to be the same as the last time.
 constexpr double kSameNormal = 0.9;
-
-template <int P>
-Vec3 normal_in(const solve::ContactBlock<P>& block, int lane) {
-  const solve::Field3& n = block.normal;
-  return {static_cast<double>(n.x.lane[lane]), static_cast<double>(n.y.lane[lane]),
-          static_cast<double>(n.z.lane[lane])};
-}
 
 // The deepest point first: it is the one that a lane for a single point takes.
 void put_deepest_first(collide::Manifold& m) {
@@ -120,8 +114,8 @@ std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
     if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
     const int lane = solve::ContactGraph::lane(part.place);
     const Vec3 normal = part.place.points == 1
-                            ? normal_in(contact_store.graph.block<1>(part.place), lane)
-                            : normal_in(contact_store.graph.block<4>(part.place), lane);
+                            ? get(contact_store.graph.block<1>(part.place).normal, lane)
+                            : get(contact_store.graph.block<4>(part.place).normal, lane);
     double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
     for (int i = 0; i < found.manifold.count; ++i) {
       const std::uint32_t* end = part.feature + part.count;

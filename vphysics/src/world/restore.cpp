@@ -165,7 +165,7 @@ std::uint64_t digest_of(std::span<const std::byte> bytes) {
 
 // Read, checked, and not yet the world's.
 struct World::Impl::Incoming {
-  explicit Incoming(Impl& of) : world(of), contacts(of) {}
+  explicit Incoming(Impl& of) : world(of), contacts(of.contact_data()) {}
 
   // The problem, or null.
   const char* read(Reader& in);

@@ -109,7 +109,7 @@ void put(Sink& sink, const BodyJoint& joint) {
 }  // namespace
 
 template <class Sink>
-void World::Impl::write(Sink& sink) const {
+void World::Impl::write(Sink& sink) {
   sink.word(kSnapshotMagic);
   sink.word(kSnapshotFormat);
   sink.word(structure);
@@ -144,7 +144,7 @@ void World::Impl::write(Sink& sink) const {
   for (const BodyJoint& joint : joints) {
     if (joint.alive) put(sink, joint);
   }
-  write_contacts(sink);
+  write_contacts(sink, contact_data());
   const auto loaded = static_cast<std::uint64_t>(
       std::count_if(articulations.begin(), articulations.end(),
                     [](const Articulation& art) { return art.is_loaded(); }));

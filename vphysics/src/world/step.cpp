@@ -341,7 +341,7 @@ double World::Impl::next_impact(double h) {
     const double slop = desc.contact_slop;
     const double target =
         swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-    const double t = time_until(swept, target, first < 0.0 ? h : first);
+    const double t = impact_times().until(swept, target, first < 0.0 ? h : first);
     if (t >= 0.0 && (first < 0.0 || t < first)) first = t;
   }
   return first;
@@ -360,7 +360,7 @@ void World::Impl::hold_what_meets(double h) {
       const double slop = desc.contact_slop;
       const double target =
           swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-      if (time_until(swept, target, h) < 0.0) continue;
+      if (impact_times().until(swept, target, h) < 0.0) continue;
       again = true;
       hold(a);
       hold(b);

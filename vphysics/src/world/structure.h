@@ -76,34 +76,7 @@ class Structure {
   }
   void add(const Shape& shape) {
     add(static_cast<std::uint64_t>(shape.index()));
-    if (const auto* s = std::get_if<Sphere>(&shape)) {
-      add(s->radius);
-    } else if (const auto* b = std::get_if<Box>(&shape)) {
-      add(b->half_extents);
-    } else if (const auto* c = std::get_if<Capsule>(&shape)) {
-      add(c->radius, c->half_length);
-    } else if (const auto* y = std::get_if<Cylinder>(&shape)) {
-      add(y->radius, y->half_length);
-    } else if (const auto* k = std::get_if<Cone>(&shape)) {
-      add(k->radius, k->half_height);
-    } else {
-      add_built(shape);
-    }
-  }
-  // Shapes that are built of points or parts.
-  void add_built(const Shape& shape) {
-    if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
-      add(*hull);
-    } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-      add(*mesh);
-    } else if (const auto* field = std::get_if<HeightField>(&shape)) {
-      add(*field);
-    } else if (const auto* compound = std::get_if<Compound>(&shape)) {
-      add(static_cast<std::uint64_t>(compound->parts().size()));
-      for (const CompoundPart& part : compound->parts()) {
-        add(part.shape, part.T_compound_part);
-      }
-    }
+    std::visit([this](const auto& s) { add_shape(s); }, shape);
   }
   void add(const TriangleMesh& mesh) {
     add(static_cast<std::uint64_t>(mesh.two_sided()), mesh.scale(),
@@ -161,6 +134,17 @@ class Structure {
     if (value == usual) return;
     add(static_cast<std::uint64_t>(name), value);
   }
+  void add_shape(const HalfSpace&) {}
+  void add_shape(const Sphere& s) { add(s.radius); }
+  void add_shape(const Box& s) { add(s.half_extents); }
+  void add_shape(const Capsule& s) { add(s.radius, s.half_length); }
+  void add_shape(const Cylinder& s) { add(s.radius, s.half_length); }
+  void add_shape(const Cone& s) { add(s.radius, s.half_height); }
+  void add_shape(const Compound& s) {
+    add(static_cast<std::uint64_t>(s.parts().size()));
+    for (const CompoundPart& part : s.parts()) add(part.shape, part.T_compound_part);
+  }
+  void add_shape(const auto& built) { add(built); }
   void add_kind(const auto&) {}  // the others have no constants
   void add_kind(const Hinge& j) { add_limits(j.lower, j.upper); }
   void add_kind(const Slider& j) { add_limits(j.lower, j.upper); }

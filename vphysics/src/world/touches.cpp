@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "world/impl.h"
+#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
@@ -10,15 +11,8 @@ namespace {
 // What a lane tells of its contact, but for where.
 template <int P>
 double impulse_of(const solve::ContactBlock<P>& block, int lane) {
-  return static_cast<double>(block.given.lane[lane]) + static_cast<double>(block.impact.lane[lane]);
+  return get(block.given, lane) + get(block.impact, lane);
 }
-template <int P>
-Vec3 normal_of(const solve::ContactBlock<P>& block, int lane) {
-  const solve::Field3& n = block.normal;
-  return {static_cast<double>(n.x.lane[lane]), static_cast<double>(n.y.lane[lane]),
-          static_cast<double>(n.z.lane[lane])};
-}
-
 // Turns what the sub-steps have found of contacts into events.
 struct TouchReport {
   ContactStore& contacts;
@@ -29,15 +23,15 @@ struct TouchReport {
   void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded) {
     const std::uint32_t index = block.contact.lane[lane];
     Contact& c = contacts[index];
-    const double closing = static_cast<double>(block.closing.lane[lane]);
+    const double closing = get(block.closing, lane);
     const double impulse = impulse_of(block, lane);
     block.given.lane[lane] += block.impact.lane[lane];  // for contacts_of()
     block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
     block.touches.lane[lane] = loaded ? 1 : 0;
     if (c.is_part()) {
       c.touching = loaded;
-      events.news_of_parts.push_back(
-          {c.whole, index, closing, loaded ? impulse : 0.0, c.position[0], normal_of(block, lane)});
+      events.news_of_parts.push_back({c.whole, index, closing, loaded ? impulse : 0.0,
+                                      c.position[0], get(block.normal, lane)});
       return;
     }
     if (!loaded) {
@@ -46,7 +40,7 @@ struct TouchReport {
     }
     const ColliderPair pair{c.key, c.a, c.b};
     const auto tell = [&](ContactEvent::Kind kind) {
-      events.emit(colliders, kind, pair, c.position[0], normal_of(block, lane), closing, impulse,
+      events.emit(colliders, kind, pair, c.position[0], get(block.normal, lane), closing, impulse,
                   0.0);
     };
     if (!c.touching) tell(ContactEvent::Kind::begin);
