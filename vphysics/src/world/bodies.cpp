@@ -1,12 +1,8 @@
-// Between bodies and the rows of the sub-stepped solver.
-//
-// A body that no lane holds falls freely: it is moved here, in double. So that it falls as it would
-// in n sub-steps h = dt / n of semi-implicit Euler, it goes by  dt v + a dt^2 (n + 1) / (2 n).
+// What a step does with bodies beside moving them: lists, rows of the solver, enlarged bounds.
 #include <algorithm>
 #include <cmath>
 
 #include "solve/row_vector.h"
-#include "world/free_turn.h"
 #include "world/impl.h"
 #include "world/validate.h"
 
@@ -16,11 +12,6 @@ namespace {
 // An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
 // overlap more neighbours.
 constexpr double kMargin = 0.1;
-// A row's way begins again at zero beyond this [length units], and so many more steps of it, so
-// that single precision tells small steps; and beyond this turn [rad], since turns are added up as
-// vectors.
-constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f, kFarTurn = 0.25f;
-
 // Half a margin of the least collider is within all enlarged bounds (update_bounds). Sums of
 // components, no less than the lengths, will do.
 bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
@@ -36,60 +27,7 @@ collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& way, double m
   return grown(merged(b, end), more);
 }
 
-// The rotation nearest to one that rounding has worn: a step of Newton's method, M (3 - M^T M) / 2,
-// which unlike Gram and Schmidt's way turns nothing.
-Mat3 straightened(const Mat3& M) {
-  const Vec3 &x = M.cx, &y = M.cy, &z = M.cz;
-  const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
-  return {(1.5 - 0.5 * dot(x, x)) * x - xy * y - zx * z,
-          (1.5 - 0.5 * dot(y, y)) * y - xy * x - yz * z,
-          (1.5 - 0.5 * dot(z, z)) * z - zx * x - yz * y};
-}
-
-Mat3 turned_nearly(const Mat3& R, const Vec3& t) {
-  const double tt = dot(t, t);
-  if (tt > 1e-3) return orthonormalized(Exp(t).matrix() * R);
-  const double s = 1.0 - tt * (1.0 / 6.0 - tt * (1.0 / 120.0 - tt * (1.0 / 5040.0)));
-  const double c = 0.5 - tt * (1.0 / 24.0 - tt * (1.0 / 720.0));
-  const Vec3 st = s * t, ct = c * t;
-  const double xy = ct.x * t.y, yz = ct.y * t.z, zx = ct.z * t.x, rest = 1.0 - c * tt;
-  return Mat3{{rest + ct.x * t.x, xy + st.z, zx - st.y},
-              {xy - st.z, rest + ct.y * t.y, yz + st.x},
-              {zx + st.y, yz - st.x, rest + ct.z * t.z}} *
-         R;
-}
-
-// Rounding adds up over thousands of steps; two of its six errors tell when it is enough.
-bool is_worn(const Mat3& R) {
-  constexpr double kWorn = 1e-13;
-  return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kWorn;
-}
-
 }  // namespace
-
-Turned turned_freely(const Body& body, double h, const Vec3& more_w) {
-  const Mat3& R = body.T.rotation();
-  const Vec3 w = transposed_times(R, body.w), L = R * (body.central * w);
-  const Vec3 mean = more_w == Vec3{} ? w : transposed_times(R, body.w + more_w);
-  const FreeTurn turn = free_turn(body.central, body.inverse_central, mean, h);
-  Mat3 next = R * from_quaternion(turn.q);
-  next = straightened(next);
-  // What stays to rounding is the angular momentum of the world's frame.
-  return {next, next * (body.inverse_central * transposed_times(next, L))};
-}
-
-Vec3 rate_at(const Body& body, const Mat3& R) {
-  const Mat3& before = body.T.rotation();
-  const Vec3 was = transposed_times(before, body.w), is = transposed_times(R, body.w);
-  const bool more = dot(is, body.central * is) > dot(was, body.central * was);
-  return more ? R * was : body.w;
-}
-
-// R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
-// exact to rounding for turns of a step; larger ones take the long way.
-Mat3 turned(const Mat3& R, const Vec3& t) {
-  return straightened(turned_nearly(R, t));
-}
 
 void place(Body& body, const Vec3& reference, const Mat3& R) {
   const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
@@ -140,67 +78,6 @@ void World::Impl::list_bodies() {
   reserve_link_rows();
 }
 
-namespace {
-
-// What makes of its rate in dt that of a free body, as seen from the body: where it is in the
-// solver, at the start of the step, its energy stays.
-Vec3 gyroscopic_acceleration(const Body& body, double dt) {
-  if (body.isotropic || hardly_turns(body.w, dt)) return {};
-  const Mat3& R = body.T.rotation();
-  const Vec3 w = transposed_times(R, body.w);
-  const FreeTurn turn = free_turn(body.central, body.inverse_central, w, dt);
-  return R * ((1.0 / dt) * (turn.w - w));
-}
-
-}  // namespace
-
-// True if its way has become so long that it must begin again.
-bool World::Impl::load_row(std::uint32_t index, double dt) {
-  Body& body = bodies[index];
-  body.untouched = false;
-  solve::BodyRow& row = body_rows[index + 1];
-  const bool pushed = body.motion == Motion::dynamic;
-  put(row.velocity, body.v);
-  put(row.velocity + 3, body.w);
-  row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
-  row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
-  row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
-  if (pushed && (body.linear_damping > 0.0 || body.angular_damping > 0.0)) {
-    const double h = dt / sub_steps_in(desc, speed_unit, dt);
-    row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
-    row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
-  }
-  row.way[solve::kCarried] = 0.0f;
-  row.way[solve::kShareLessOne] = 0.0f;
-  if (pushed && body.lanes > kCrowd)
-    row.way[solve::kShareLessOne] =
-        static_cast<float>(kCrowd / static_cast<double>(body.lanes) - 1.0);
-  const float* way = row.way;
-  if (!pushed) {
-    std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
-    std::fill_n(row.inertia, 6, 0.0f);
-  } else {
-    const Sym3 I =
-        body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
-    const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
-    for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
-    const Velocity a = acceleration_of(body);
-    put(row.rate, a.v);
-    const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
-    put(row.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
-  }
-  std::copy_n(way, 6, start_ways[index].begin());
-  const float* v = row.velocity;
-  const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  const float far =
-      kFarWay * static_cast<float>(desc.length_unit) + kFarSteps * static_cast<float>(dt) * speed;
-  const auto beyond = [way](int first, float limit) {
-    return std::any_of(way + first, way + first + 3,
-                       [limit](float x) { return !(std::fabs(x) <= limit); });  // NaN too
-  };
-  return beyond(0, far) || beyond(3, kFarTurn);
-}
-
 // Contacts that have points are looked at again; of the others the clearance becomes less by what
 // has been used of it.
 void World::Impl::start_way_anew(std::uint32_t index) {
@@ -227,15 +104,17 @@ void World::Impl::start_way_anew(std::uint32_t index) {
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
   mover_news.resize(lists.movers.size());
+  const BodyRows step = rows_in(dt);
+  const Approach approach = approach_in(dt);
   workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = lists.movers[k];
       Body& body = bodies[i];
       if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
-      const bool far = load_row(i, dt);
+      const bool far = step.load(body, i);
       const bool stays = joins_sub_steps(body) &&
                          stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
-      const bool pulled = !(approach_in(dt).pull_of(body) == Velocity{});
+      const bool pulled = !(approach.pull_of(body) == Velocity{});
       mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
                                                 (far || !stays ? kLeaves : 0));
     }
@@ -277,59 +156,10 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
 }
 
-// Whether nothing has changed how it turns, though lanes hold it. Then it turns freely, in double,
-// and its way becomes that.
-bool World::Impl::leave_untouched(std::uint32_t index, double dt) {
-  Body& body = bodies[index];
-  solve::BodyRow& row = body_rows[index + 1];
-  if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
-  if (loads.is_torqued(body)) return false;
-  if (hardly_turns(body.w, dt)) return false;
-  const float h = static_cast<float>(dt / sub_steps_taken);
-  float w[3];
-  put(w, body.w);
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < sub_steps_taken; ++k) w[i] += h * row.rate[3 + i];
-    if (w[i] != row.velocity[3 + i]) return false;
-  }
-  const Mat3& R = body.T.rotation();
-  const FreeTurn turn =
-      free_turn(body.central, body.inverse_central, transposed_times(R, body.w), dt);
-  put(row.way + 3, vector_of(start_ways[index].data() + 3) + R * constant_turn(turn));
-  return body.untouched = true;
-}
-
-// After the sub-steps: the velocities of a dynamic body become those of the end of the step.
-// Returns what its mean velocities over the step have more.
 Velocity World::Impl::settle(std::uint32_t index, double dt) {
-  Body& body = bodies[index];
-  solve::BodyRow& row = body_rows[index + 1];
-  body.rested = row.way[solve::kCarried] > 0.0f;
   Velocity more;
-  if (!body.by_rows()) {
-    const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps_taken);
-    const Vec3 v = body.v, w = body.w;
-    const Velocity a = acceleration_of(body);
-    const bool torqued = loads.is_torqued(body);
-    body.v = (v + dt * a.v) * (1.0 / (1.0 + dt * body.linear_damping));
-    if (torqued) body.w += dt * a.w;
-    body.w *= 1.0 / (1.0 + dt * body.angular_damping);
-    more.v = v + half * a.v - body.v;
-    if (torqued) more.w = w + half * a.w - body.w;
-    return more;
-  }
-  const float* start = start_ways[index].data();
-  body.v = vector_of(row.velocity);
-  const double per_step = 1.0 / dt;
-  more.v = per_step * (vector_of(row.way) - vector_of(start)) - body.v;
-  if (!leave_untouched(index, dt)) {
-    body.w = vector_of(row.velocity + 3);
-    more.w = per_step * (vector_of(row.way + 3) - vector_of(start + 3)) - body.w;
-  }
-  if (!in_range(body.v) || !in_range(body.w) || !in_range(more.v) || !in_range(more.w)) {
+  if (!rows_in(dt).settle(bodies[index], index, more)) {
     status.non_finite = true;
-    body.v = body.w = {};
-    more = {};
     lost_bodies.push_back(index);
   }
   return more;
@@ -347,34 +177,6 @@ void World::Impl::forget_lost_bodies() {
     forget_joints(bodies[i], joints);
   }
   lost_bodies.clear();
-}
-
-// The same, and its pose, of a dynamic body that its row leads; false if it flies out of range.
-bool World::Impl::advance_by_row(std::uint32_t index, double dt) {
-  Body& body = bodies[index];
-  const solve::BodyRow& row = body_rows[index + 1];
-  const float* start = start_ways[index].data();
-  const Vec3 v = vector_of(row.velocity), w = vector_of(row.velocity + 3);
-  const Vec3 gone = vector_of(row.way) - vector_of(start),
-             turn = vector_of(row.way + 3) - vector_of(start + 3);
-  const Vec3 x = body.T * body.centre + gone;
-  if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(turn)) return false;
-  body.rested = row.way[solve::kCarried] > 0.0f;
-  body.v = v;
-  Mat3 R;
-  if (leave_untouched(index, dt)) {
-    const Turned free = turned_freely(body, dt);
-    R = free.R;
-    body.w = free.w;
-  } else {
-    R = turned_nearly(body.T.rotation(), turn);
-    if (is_worn(R)) R = straightened(R);
-    body.w = w;
-    if (!body.isotropic && !hardly_turns(w, dt)) body.w = rate_at(body, R);
-  }
-  body.T = SE3(R, x - R * body.centre);
-  body.moved();
-  return true;
 }
 
 // What its lanes hold is no good to start from.

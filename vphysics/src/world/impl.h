@@ -18,6 +18,7 @@
 #include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
+#include "world/body_rows.h"
 #include "world/collider.h"
 #include "world/contact_store.h"
 #include "world/events.h"
@@ -229,7 +230,6 @@ struct World::Impl {
   void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
                     const Vec3& more_w);
   void advance_all(double dt);
-  bool advance_by_row(std::uint32_t body, double dt);
   void apply_corrections();
   void finish_step();
   InStage in(Stage stage) const { return {observer.get(), stage}; }
@@ -243,11 +243,12 @@ struct World::Impl {
 
   // bodies.cpp
   void list_bodies();
+  BodyRows rows_in(double dt) {
+    return {body_rows, start_ways, loads, desc, dt, sub_steps_in(desc, speed_unit, dt)};
+  }
   void load_rows(double dt);
-  bool load_row(std::uint32_t body, double dt);
   void start_way_anew(std::uint32_t body);
   Velocity settle(std::uint32_t body, double dt);
-  bool leave_untouched(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void update_bounds_of_links(double dt);
   void add_proxy(std::uint32_t collider);

@@ -22,52 +22,42 @@ namespace {
 constexpr double kTouch = 1e-9, kTouchShare = 1e-12;
 constexpr double kFullTurn = 6.2832;
 
+std::optional<Error> invalid(const char* call, const char* why) {
+  return Error{Errc::invalid_argument, std::string(call) + ": " + why};
+}
+
 std::optional<Error> problem_with_ray(const char* call, const Vec3& origin, const Vec3& direction,
                                       double distance) {
-  const std::string name(call);
-  if (!in_range(origin))
-    return Error{Errc::invalid_argument, name + ": the origin must be finite and within 1e9 m"};
-  if (!in_range(direction) || !(norm(direction) > 0.0)) {
-    return Error{Errc::invalid_argument,
-                 name + ": the direction must be finite, within 1e9 and not zero"};
-  }
-  if (!in_range(distance) || distance < 0.0) {
-    return Error{Errc::invalid_argument,
-                 name + ": max_distance must be zero or more and at most 1e9 m"};
-  }
+  if (!in_range(origin)) return invalid(call, "the origin must be finite and within 1e9 m");
+  if (!in_range(direction) || !(norm(direction) > 0.0))
+    return invalid(call, "the direction must be finite, within 1e9 and not zero");
+  if (!in_range(distance) || distance < 0.0)
+    return invalid(call, "max_distance must be zero or more and at most 1e9 m");
   return std::nullopt;
 }
 
 std::optional<Error> problem_with_query(const char* call, const Shape& shape, const SE3& T) {
-  const std::string name(call);
-  if (auto problem = problem_with_shape(shape)) {
-    return Error{Errc::invalid_argument, name + ": " + *problem};
-  }
+  if (auto problem = problem_with_shape(shape)) return invalid(call, problem->c_str());
   const bool is_endless = std::holds_alternative<HalfSpace>(shape);
   if (is_endless || std::holds_alternative<TriangleMesh>(shape) ||
       std::holds_alternative<HeightField>(shape)) {
-    return Error{Errc::unsupported,
-                 name + ": the shape must be convex and bounded, or a compound of such shapes"};
+    return Error{
+        Errc::unsupported,
+        std::string(call) + ": the shape must be convex and bounded, or a compound of such shapes"};
   }
-  if (!is_pose(T)) {
-    return Error{Errc::invalid_argument,
-                 name + ": T_world_shape must be a finite rotation and position"};
-  }
+  if (!is_pose(T)) return invalid(call, "T_world_shape must be a finite rotation and position");
   return std::nullopt;
 }
 
 std::optional<Error> problem_with_cast(const char* call, const Shape& shape, const SE3& T,
                                        const CastMotion& motion) {
   if (auto problem = problem_with_query(call, shape, T)) return problem;
-  if (!in_range(motion.translation)) {
-    return Error{Errc::invalid_argument,
-                 std::string(call) + ": the translation must be finite and within 1e9 m"};
-  }
+  if (!in_range(motion.translation))
+    return invalid(call, "the translation must be finite and within 1e9 m");
   if (!in_range(motion.turn) || norm(motion.turn) > kFullTurn) {
-    return Error{Errc::invalid_argument,
-                 std::string(call) +
-                     ": the turn must be finite and no more than one; cast again "
-                     "from where the first one ends"};
+    return invalid(call,
+                   "the turn must be finite and no more than one; cast again from where the first "
+                   "one ends");
   }
   return std::nullopt;
 }
@@ -162,10 +152,7 @@ struct Query {
       }
       const collide::ClosestPoints& p = found.points;
       const NearestHit hit{hit_of(c, found.part_b), p.distance, p.on_a, p.on_b, -p.normal};
-      if (best && (hit.distance > best->distance ||
-                   (hit.distance == best->distance && !is_younger(*best, hit)))) {
-        return;
-      }
+      if (best && !comes_before(hit.distance, hit, best->distance, *best)) return;
       best = hit;
       limit = std::min(limit, std::max(0.0, hit.distance));
     };
@@ -189,8 +176,10 @@ struct Query {
     return {colliders.id(index), bodies.id(c.body), c.user_data, part};
   }
 
-  bool is_younger(const QueryHit& hit, const QueryHit& other) const {
-    return colliders[hit.collider.index - 1].serial > colliders[other.collider.index - 1].serial;
+  // Whether a hit at x comes before another at y; of two at once, that of the older collider.
+  bool comes_before(double x, const QueryHit& hit, double y, const QueryHit& other) const {
+    return x < y || (x == y && colliders[hit.collider.index - 1].serial <
+                                   colliders[other.collider.index - 1].serial);
   }
 
   bool is_asked_for(const Collider& c) const {
@@ -242,10 +231,8 @@ Expected<std::optional<RayHit>> World::ray_cast(const Vec3& origin, const Vec3& 
   Query query = impl_->query(filter);
   query.for_ray_hits(origin, (1.0 / norm(direction)) * direction, max_distance,
                      [&](const RayHit& hit) {
-                       if (!first || hit.distance < first->distance ||
-                           (hit.distance == first->distance && query.is_younger(*first, hit))) {
+                       if (!first || query.comes_before(hit.distance, hit, first->distance, *first))
                          first = hit;
-                       }
                        return first->distance;
                      });
   return first;
@@ -264,7 +251,7 @@ Expected<void> World::ray_cast_all(const Vec3& origin, const Vec3& direction, do
                        return max_distance;
                      });
   std::sort(hits.begin() + begin, hits.end(), [&](const RayHit& a, const RayHit& b) {
-    return a.distance < b.distance || (a.distance == b.distance && query.is_younger(b, a));
+    return query.comes_before(a.distance, a, b.distance, b);
   });
   return {};
 }
@@ -281,10 +268,7 @@ Expected<std::optional<ShapeHit>> World::shape_cast(const Shape& shape, const SE
   const collide::Geometry geometry = collide::make_geometry(shape);
   Query query = impl_->query(filter);
   query.for_cast_hits(moving(geometry, proper(T), motion), [&](const ShapeHit& hit) {
-    if (!first || hit.fraction < first->fraction ||
-        (hit.fraction == first->fraction && query.is_younger(*first, hit))) {
-      first = hit;
-    }
+    if (!first || query.comes_before(hit.fraction, hit, first->fraction, *first)) first = hit;
     return first->fraction;
   });
   return first;
@@ -303,7 +287,7 @@ Expected<void> World::shape_cast_all(const Shape& shape, const SE3& T, const Cas
     return 1.0;
   });
   std::sort(hits.begin() + begin, hits.end(), [&](const ShapeHit& a, const ShapeHit& b) {
-    return a.fraction < b.fraction || (a.fraction == b.fraction && query.is_younger(b, a));
+    return query.comes_before(a.fraction, a, b.fraction, b);
   });
   return {};
 }

@@ -110,8 +110,9 @@ void World::Impl::send_to_sleep() {
 void World::Impl::wake(std::uint32_t seed) {
   bodies[seed].rest_time = 0.0;
   if (!bodies[seed].asleep) return;
+  const BodyRows rows = rows_in(dt_now);
   for (const std::uint32_t i : islands.wake(bonds(), seed)) {
-    if (dt_now > 0.0 && load_row(i, dt_now)) start_way_anew(i);
+    if (dt_now > 0.0 && rows.load(bodies[i], i)) start_way_anew(i);
     contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
       contact_store.unpark(contact, body_set);
     });

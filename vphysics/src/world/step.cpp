@@ -276,11 +276,12 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
 
 // Where nothing is left to be met: to the end of the step in one go.
 void World::Impl::advance_all(double dt) {
+  const BodyRows rows = rows_in(dt);
   workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Body& body = bodies[lists.movers[k]];
+      Body& body = bodies[lists.movers[k]];
       const bool led = body.motion == Motion::dynamic && body.by_rows();
-      mover_news[k] = led && advance_by_row(lists.movers[k], dt) ? 0 : 1;
+      mover_news[k] = led && rows.advance(body, lists.movers[k]) ? 0 : 1;
     }
   });
   for (std::size_t k = 0; k < lists.movers.size(); ++k) {
