@@ -18,8 +18,8 @@ void World::Impl::follow(Articulation& art) {
   if (art.remote) {
     art.remote = false;
     art.refresh();
-    for (const std::uint32_t b : art.bodies) remote_bodies[b] = 0;
-    impact_bodies_are_stale = true;
+    for (const std::uint32_t b : art.bodies) impacts.remote_bodies[b] = 0;
+    impacts.bodies_are_stale = true;
   }
   follow_poses(art);
   follow_velocities(art, false);
@@ -39,7 +39,7 @@ void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
     Body& body = bodies[b];
     if (body.first_collider == kNone) continue;
     const se3 now = art.link_velocity(body.link, body.T.position());
-    if (carrying && !(forced[b] == Velocity{})) carry(b, now.w - body.w, now.v - body.v);
+    if (carrying && !(impacts.forced[b] == Velocity{})) carry(b, now.w - body.w, now.v - body.v);
     body.w = now.w;
     body.v = now.v;
   }
@@ -51,11 +51,11 @@ void World::Impl::reserve_link_rows() {
     deepest = std::max(deepest, art.deepest());
     dofs += art.dofs.size();
   }
-  joint_rows.reserve(kRowsOfDof * dofs);
+  impacts.joint_rows.reserve(kRowsOfDof * dofs);
   constexpr std::size_t kRows = 3 * collide::kMaxPoints + 3;
   const std::size_t size = kContactsReady * 2 * kRows * deepest;
-  if (link_rows.size() < size) link_rows.resize(size);
-  solver_articulations.resize(articulations.size());
+  if (impacts.link_rows.size() < size) impacts.link_rows.resize(size);
+  impacts.solver_articulations.resize(articulations.size());
 }
 
 void World::Impl::integrate_articulations(double dt) {
@@ -150,7 +150,7 @@ class JointRows {
 // Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
 // for them.
 void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
-  joint_rows.clear();
+  impacts.joint_rows.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (!art.alive || (of == JointRowsOf::sub_step && !art.sub_stepped)) continue;
@@ -166,7 +166,7 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
     const bool first =
         of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
-      JointRows rows(joint_rows, a, i, art);
+      JointRows rows(impacts.joint_rows, a, i, art);
       if (first) {
         if (!rows.add_motor(h, art.dofs[i])) art.dofs[i].drive_impulse = 0.0;
         if (art.dofs[i].passive) rows.add_passive(h);
@@ -179,12 +179,12 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
 void World::Impl::begin_solve_articulations() {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
-    if (art.alive && !art.remote) solver_articulations[a] = art.begin_solve();
+    if (art.alive && !art.remote) impacts.solver_articulations[a] = art.begin_solve();
   }
 }
 
 void World::Impl::end_solve_articulations(bool first) {
-  for (solve::JointRow& row : joint_rows) {
+  for (solve::JointRow& row : impacts.joint_rows) {
     if (row.remember) *row.remember = row.impulse;
   }
   for (Articulation& art : articulations) {
@@ -198,7 +198,7 @@ void World::Impl::end_solve_articulations(bool first) {
 
 void World::Impl::advance_articulations(double h) {
   for (Articulation& art : articulations) {
-    if (!art.alive || held[art.bodies.front()]) continue;
+    if (!art.alive || impacts.held[art.bodies.front()]) continue;
     art.advance(h);
     if (stop_if_out_of_range(art)) {
       hold(art.bodies.front());
@@ -223,8 +223,8 @@ bool World::Impl::stop_if_out_of_range(Articulation& art) {
 // A link is held with all of its articulation.
 void World::Impl::hold(std::uint32_t index) {
   const auto stand = [&](std::uint32_t b) {
-    held[b] = 1;
-    motions[b].v = motions[b].w = {};
+    impacts.held[b] = 1;
+    impacts.motions[b].v = impacts.motions[b].w = {};
   };
   if (!bodies[index].is_link) return stand(index);
   for (const std::uint32_t b : articulations[bodies[index].articulation].bodies) stand(b);

@@ -375,7 +375,7 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);
   impl_->lists.forget();
-  impl_->impact_bodies_are_stale = true;
+  impl_->impacts.bodies_are_stale = true;
   Structure(impl_->structure).add(word_of(Change::destroyed_articulation, id.index));
   if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});
   return {};

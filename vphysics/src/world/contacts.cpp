@@ -64,17 +64,17 @@ constexpr double kSamePoint = 20.0;
 
 // This step's record of the pair's manifold of that number.
 PairRecord& World::Impl::record_of(const ColliderPair& pair, std::uint32_t part) {
-  auto it = std::lower_bound(next_records.begin(), next_records.end(), pair.key,
+  auto it = std::lower_bound(impacts.next_records.begin(), impacts.next_records.end(), pair.key,
                              [part](const PairRecord& r, std::uint64_t k) {
                                return r.key < k || (r.key == k && r.part < part);
                              });
-  if (it == next_records.end() || it->key != pair.key || it->part != part) {
+  if (it == impacts.next_records.end() || it->key != pair.key || it->part != part) {
     PairRecord record;
     record.key = pair.key;
     record.a = pair.a;
     record.b = pair.b;
     record.part = part;
-    it = next_records.insert(it, record);
+    it = impacts.next_records.insert(it, record);
   }
   return *it;
 }
@@ -83,11 +83,12 @@ PairRecord& World::Impl::record_of(const ColliderPair& pair, std::uint32_t part)
 std::span<const collide::SubManifold> World::Impl::manifolds_of(const ColliderPair& pair,
                                                                 double margin) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  manifolds.clear();
+  narrow.manifolds.clear();
   collide::PairCache cache;
-  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, manifold_scratch, manifolds);
-  for (const collide::SubManifold& found : manifolds) note_limits(found.manifold);
-  return manifolds;
+  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, narrow.manifold_scratch,
+                 narrow.manifolds);
+  for (const collide::SubManifold& found : narrow.manifolds) note_limits(found.manifold);
+  return narrow.manifolds;
 }
 
 void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold& m,
@@ -107,7 +108,7 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
   set_normal(c, m.normal);
   const Vec3 surface = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
   for (int k = 0; k < 2; ++k) c.surface_speed[k] = dot(surface, c.tangent[k]);
-  const auto last = warm ? records_of(records, pair.key) : std::span<const PairRecord>{};
+  const auto last = warm ? records_of(impacts.records, pair.key) : std::span<const PairRecord>{};
   c.rolling_impulse = rolling_of(last, part);
   for (int i = 0; i < m.count; ++i) {
     solve::ContactPoint& p = c.points[i];
@@ -122,8 +123,8 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
 }
 
 void World::Impl::find_discrete_contacts(double h) {
-  discrete_contacts.clear();
-  for (const ColliderPair& pair : discrete_pairs) {
+  impacts.discrete_contacts.clear();
+  for (const ColliderPair& pair : impacts.discrete_pairs) {
     const bool sensor = colliders[pair.a].sensor || colliders[pair.b].sensor;
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, sensor ? 0.0 : discrete_margin(pair, h))) {
@@ -132,30 +133,30 @@ void World::Impl::find_discrete_contacts(double h) {
         report_sensor(pair, m.points[0].position, m.normal, 0.0);
         break;
       }
-      add_contact(pair, m, part++, false, true, discrete_contacts);
+      add_contact(pair, m, part++, false, true, impacts.discrete_contacts);
     }
   }
 }
 
 void World::Impl::find_swept_contacts(bool warm) {
-  for (const SweptPair& swept : swept_pairs) {
+  for (const SweptPair& swept : impacts.swept_pairs) {
     if (swept.sensor || swept.separation > desc.contact_slop) continue;
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(swept.pair, desc.contact_slop)) {
-      add_contact(swept.pair, found.manifold, part++, true, warm, contacts);
+      add_contact(swept.pair, found.manifold, part++, true, warm, impacts.contacts);
     }
   }
 }
 
 // Takes out of what the forces added what the solve took from it.
 void World::Impl::carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v) {
-  remove_carried(forced[body].w, change_w);
-  remove_carried(forced[body].v, change_v);
+  remove_carried(impacts.forced[body].w, change_w);
+  remove_carried(impacts.forced[body].v, change_v);
 }
 
 void World::Impl::note_touched_articulations() {
   for (Articulation& art : articulations) art.touched = false;
-  for (const solve::ContactConstraint& c : contacts) {
+  for (const solve::ContactConstraint& c : impacts.contacts) {
     for (const std::uint32_t i : {c.a, c.b}) {
       if (bodies[i].is_link) articulations[bodies[i].articulation].touched = true;
     }
@@ -165,7 +166,7 @@ void World::Impl::note_touched_articulations() {
 void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
     // An impact: contacts found at the start of the step take part with fresh impulses.
-    for (solve::ContactConstraint& c : discrete_contacts) {
+    for (solve::ContactConstraint& c : impacts.discrete_contacts) {
       c.rolling_impulse = {};
       for (int i = 0; i < c.count; ++i) {
         c.points[i].normal_impulse = c.points[i].tangent_impulse[0] =
@@ -173,30 +174,31 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
       }
     }
   }
-  contacts.assign(discrete_contacts.begin(), discrete_contacts.end());
+  impacts.contacts.assign(impacts.discrete_contacts.begin(), impacts.discrete_contacts.end());
   find_swept_contacts(first);
-  in_contact.assign(bodies.size(), 0);
-  for (const solve::ContactConstraint& c : contacts) {
-    if (c.swept) in_contact[c.a] = in_contact[c.b] = 1;
+  impacts.in_contact.assign(bodies.size(), 0);
+  for (const solve::ContactConstraint& c : impacts.contacts) {
+    if (c.swept) impacts.in_contact[c.a] = impacts.in_contact[c.b] = 1;
   }
   note_touched_articulations();
   add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
-  if (contacts.empty() && joint_rows.empty()) return;
+  if (impacts.contacts.empty() && impacts.joint_rows.empty()) return;
   refresh_solver_bodies();
   begin_solve_articulations();
-  solve::solve({solver_bodies, contacts, joint_rows, solver_articulations, link_rows, h, dt,
-                desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
+  solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows,
+                impacts.solver_articulations, impacts.link_rows, h, dt, desc.contact_slop,
+                desc.restitution_threshold, desc.velocity_iterations});
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
-    if (first) carry(i, solver_bodies[i].w - body.w, solver_bodies[i].v - body.v);
-    body.w = solver_bodies[i].w;
-    body.v = solver_bodies[i].v;
-    (void)stop_if_out_of_range(i, start_poses[i]);
+    if (first) carry(i, impacts.solver_bodies[i].w - body.w, impacts.solver_bodies[i].v - body.v);
+    body.w = impacts.solver_bodies[i].w;
+    body.v = impacts.solver_bodies[i].v;
+    (void)stop_if_out_of_range(i, impacts.start_poses[i]);
   }
   end_solve_articulations(first);
   apply_corrections();
-  for (const solve::ContactConstraint& c : contacts) {
+  for (const solve::ContactConstraint& c : impacts.contacts) {
     counters.contacts += static_cast<std::uint32_t>(c.count);
   }
 }
@@ -223,7 +225,7 @@ void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solv
     const solve::ContactConstraint& c = solved[first];
     const ColliderPair pair = make_pair(colliders, c.collider_a, c.collider_b);
     PairRecord& record = record_of(pair);
-    const bool known = record.touching || touches(records_of(records, pair.key));
+    const bool known = record.touching || touches(records_of(impacts.records, pair.key));
     record.touching = true;
     if (!known)
       events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, approach, impulse,
@@ -236,7 +238,7 @@ void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solv
 void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal,
                                 double time) {
   PairRecord& record = record_of(pair);
-  const bool known = record.touching || touches(records_of(records, pair.key));
+  const bool known = record.touching || touches(records_of(impacts.records, pair.key));
   record.touching = true;
   if (!known)
     events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
@@ -245,12 +247,12 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
 // Swept bodies report a sensor even if they are through it within the step.
 void World::Impl::report_swept_sensors(double h, double time) {
   const ImpactTimes times = impact_times();
-  for (const SweptPair& swept : swept_pairs) {
+  for (const SweptPair& swept : impacts.swept_pairs) {
     if (!swept.sensor) continue;
     const double t = swept.separation <= times.tolerance() ? 0.0 : times.until(swept, 0.0, h);
     if (t < 0.0) continue;
     const Collider& c = colliders[swept.swept_is_a ? swept.pair.a : swept.pair.b];
-    const Vec3 centre = c.T.position() + t * motions[c.body].v;
+    const Vec3 centre = c.T.position() + t * impacts.motions[c.body].v;
     report_sensor(swept.pair, centre, {0, 0, 0}, time + t);
   }
 }
@@ -284,9 +286,9 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
 
 // What touched in the last step and does no more. It may meet again later in this one.
 void World::Impl::report_ends() {
-  for (PairRecord& last : records) {
+  for (PairRecord& last : impacts.records) {
     if (!last.touching) continue;
-    if (touches(records_of(next_records, last.key))) continue;
+    if (touches(records_of(impacts.next_records, last.key))) continue;
     last.touching = false;
     events.emit(colliders, ContactEvent::Kind::end, {last.key, last.a, last.b}, {}, {}, 0.0, 0.0,
                 0.0);

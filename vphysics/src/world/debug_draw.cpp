@@ -82,7 +82,7 @@ class World::Impl::Drawing {
         draw_contact(c, world_.contact_store.graph.block<4>(c.place));
       }
     }
-    for (const PairRecord& record : world_.records) draw_record(record);
+    for (const PairRecord& record : world_.impacts.records) draw_record(record);
   }
 
  private:

@@ -6,9 +6,15 @@
 
 #include "world/collider.h"
 #include "world/contact.h"
-#include "world/pair_record.h"
 
 namespace vp {
+
+// A pair that touched when one of the two was destroyed; the next step reports its end. user_data
+// is not kept: it is the user's and no snapshot carries it.
+struct DestroyedPair {
+  ColliderId a, b;
+  bool sensor = false;
+};
 
 // Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
 struct PartNews {

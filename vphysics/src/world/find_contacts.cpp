@@ -258,8 +258,8 @@ void World::Impl::note_limits(const collide::Manifold& manifold) {
   status.distance_limit |= manifold.rough;
 }
 void World::Impl::note_limits_of_surfaces() {
-  status.manifold_limit |= manifold_scratch.crowded;
-  status.distance_limit |= manifold_scratch.rough;
+  status.manifold_limit |= narrow.manifold_scratch.crowded;
+  status.distance_limit |= narrow.manifold_scratch.rough;
 }
 
 void World::Impl::take_over(const Looked& found) {

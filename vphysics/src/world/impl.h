@@ -14,7 +14,6 @@
 #include "collide/shape_query.h"
 #include "collide/sweep.h"
 #include "solve/contact_lane.h"
-#include "solve/contact_solver.h"
 #include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
@@ -22,14 +21,13 @@
 #include "world/collider.h"
 #include "world/contact_store.h"
 #include "world/events.h"
-#include "world/impact_pairs.h"
+#include "world/impact_stage.h"
 #include "world/islands.h"
 #include "world/joint.h"
 #include "world/joint_steps.h"
 #include "world/loads.h"
 #include "world/narrow_phase.h"
 #include "world/observed_stage.h"
-#include "world/pair_record.h"
 #include "world/parallel.h"
 #include "world/regions.h"
 #include "world/runs.h"
@@ -77,8 +75,7 @@ struct World::Impl {
   std::vector<std::uint32_t> free_articulations;
   Joints joints;
   std::uint32_t next_serial = 1;
-  std::uint64_t structure = 0;      // digest of all that was created and destroyed (structure.h)
-  std::vector<PairRecord> records;  // sorted by key and part
+  std::uint64_t structure = 0;  // digest of all that was created and destroyed (structure.h)
   BodyLoads loads;
 
   collide::PairFinder finder;
@@ -88,6 +85,7 @@ struct World::Impl {
   SubStepState sub_step_state;
   Islands islands;
   Regions regions;
+  ImpactStage impacts;
 
   BodyLists lists;
   std::shared_ptr<Recorder> recorder;  // or null
@@ -101,18 +99,6 @@ struct World::Impl {
   // --- of queries
   bool ready_for_queries = false;  // nothing has moved since find_strays()
   QueryScratch queries;
-  collide::PartsScratch parts_scratch;
-
-  std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
-  // What the stage of impacts goes through, ascending: all bodies that are not fixed, and links
-  // with colliders, but those of remote articulations. impact_bodies() makes it anew when some of
-  // these have changed.
-  std::vector<std::uint32_t> impact_body_list;
-  bool impact_bodies_are_stale = true;
-  // Bodies have come or gone: what drift and forced have of others than those is not 0.
-  bool impact_scratch_is_stale = true;
-  SweptBodyPairs swept_body_pairs;
-  DiscreteBodyPairs discrete_body_pairs;
 
   // --- of restore(); kept for its capacity
   struct Incoming;
@@ -126,29 +112,9 @@ struct World::Impl {
   BlockWords block_words;
   solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
   std::vector<std::uint8_t> mover_news;   // of each mover: it needs more than its own row
-  std::vector<Velocity> drift;            // mean velocity over the step less that at its end
   std::vector<std::array<float, 6>> start_ways;
   JointScratch joint_scratch;
   StepStatus status;
-  std::vector<collide::Bounds> bounds;
-  std::vector<std::uint8_t> held;
-  std::vector<std::uint8_t> in_contact;  // of the last solve of the stage of impacts
-  std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
-  std::vector<collide::Motion> motions;
-  std::vector<Velocity> forced;  // what the step's forces added
-  std::vector<solve::SolverBody> solver_bodies;
-  std::vector<ColliderPair> discrete_pairs;
-  std::vector<SweptPair> swept_pairs;
-  std::vector<solve::ContactConstraint> discrete_contacts, contacts;
-  std::vector<solve::ContactConstraint> link_contacts;  // in the sub-steps
-  std::vector<std::uint32_t> bodies_on_links;
-  std::vector<solve::JointRow> joint_rows;
-  std::vector<solve::SolverArticulation> solver_articulations;
-  std::vector<double> link_rows;
-  std::vector<PairRecord> next_records;
-  std::vector<SE3> start_poses;
-  collide::ManifoldScratch manifold_scratch;
-  std::vector<collide::SubManifold> manifolds;
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -317,8 +283,10 @@ struct World::Impl {
   void report_news();
 
   // pairs.cpp
-  BodyWays body_ways() const { return {bodies, motions, bounds}; }
-  ImpactTimes impact_times() { return {colliders, motions, desc.contact_slop, parts_scratch}; }
+  BodyWays body_ways() const { return {bodies, impacts.motions, impacts.bounds}; }
+  ImpactTimes impact_times() {
+    return {colliders, impacts.motions, desc.contact_slop, narrow.parts_scratch};
+  }
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);
   void find_discrete_pairs(double h);

@@ -33,10 +33,10 @@ void World::Impl::find_bodies_on_links() {
       if (body.on_link) continue;
       body.on_link = true;
       wake(index);
-      bodies_on_links.push_back(index);
+      impacts.bodies_on_links.push_back(index);
     }
   }
-  for (bool again = !bodies_on_links.empty(); again;) {
+  for (bool again = !impacts.bodies_on_links.empty(); again;) {
     again = false;
     for (const Contact& c : contact_store.pool) {
       if (!meets_link(c)) continue;
@@ -55,30 +55,30 @@ bool World::Impl::in_sub_steps(const Body& a, const Body& b) const {
 }
 
 void World::Impl::find_link_contacts(double dt, int sub_steps) {
-  discrete_pairs.clear();
+  impacts.discrete_pairs.clear();
   for (const Contact& c : contact_store.pool) {
     if (!c.alive || !c.of_link || c.sensor) continue;
     const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
     if (in_sub_steps(a, b) && !a.continuous && !b.continuous) {
-      discrete_pairs.push_back({c.key, c.a, c.b});
+      impacts.discrete_pairs.push_back({c.key, c.a, c.b});
     }
   }
-  std::sort(discrete_pairs.begin(), discrete_pairs.end(),
+  std::sort(impacts.discrete_pairs.begin(), impacts.discrete_pairs.end(),
             [](const ColliderPair& p, const ColliderPair& q) { return p.key < q.key; });
-  link_contacts.clear();
-  for (const ColliderPair& pair : discrete_pairs) {
+  impacts.link_contacts.clear();
+  for (const ColliderPair& pair : impacts.discrete_pairs) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
     pose_colliders(bodies[i], colliders);
     pose_colliders(bodies[j], colliders);
     const double closing = approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + closing)) {
-      add_contact(pair, found.manifold, part++, false, true, link_contacts);
+      add_contact(pair, found.manifold, part++, false, true, impacts.link_contacts);
     }
   }
   // What is remembered is of a whole step.
   const double share = 1.0 / sub_steps;
-  for (solve::ContactConstraint& c : link_contacts) {
+  for (solve::ContactConstraint& c : impacts.link_contacts) {
     c.rolling_impulse *= share;
     for (int i = 0; i < c.count; ++i) {
       c.points[i].normal_impulse *= share;
@@ -91,11 +91,11 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
 }
 
 solve::StepContext World::Impl::link_context(double h) {
-  return {solver_bodies,
-          link_contacts,
-          joint_rows,
-          solver_articulations,
-          link_rows,
+  return {impacts.solver_bodies,
+          impacts.link_contacts,
+          impacts.joint_rows,
+          impacts.solver_articulations,
+          impacts.link_rows,
           h,
           h,
           desc.contact_slop,
@@ -107,15 +107,15 @@ solve::StepContext World::Impl::link_context(double h) {
 
 // Their velocities as the lanes and joints have left them.
 void World::Impl::load_bodies_on_links() {
-  for (const std::uint32_t i : bodies_on_links) {
-    solver_bodies[i].v = vector_of(body_rows[i + 1].velocity);
-    solver_bodies[i].w = vector_of(body_rows[i + 1].velocity + 3);
+  for (const std::uint32_t i : impacts.bodies_on_links) {
+    impacts.solver_bodies[i].v = vector_of(body_rows[i + 1].velocity);
+    impacts.solver_bodies[i].w = vector_of(body_rows[i + 1].velocity + 3);
   }
 }
 void World::Impl::store_bodies_on_links() {
-  for (const std::uint32_t i : bodies_on_links) {
-    put(body_rows[i + 1].velocity, solver_bodies[i].v);
-    put(body_rows[i + 1].velocity + 3, solver_bodies[i].w);
+  for (const std::uint32_t i : impacts.bodies_on_links) {
+    put(body_rows[i + 1].velocity, impacts.solver_bodies[i].v);
+    put(body_rows[i + 1].velocity + 3, impacts.solver_bodies[i].w);
   }
 }
 
@@ -124,7 +124,7 @@ void World::Impl::begin_links(double h) {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (!art.sub_stepped) continue;
-    for (const std::uint32_t b : art.bodies) forced[b] = {bodies[b].w, bodies[b].v};
+    for (const std::uint32_t b : art.bodies) impacts.forced[b] = {bodies[b].w, bodies[b].v};
     bool changed = false;
     if (!art.integrate_forces(h, changed)) {
       status.non_finite = true;
@@ -132,13 +132,14 @@ void World::Impl::begin_links(double h) {
     }
     follow_velocities(art, false);
     for (const std::uint32_t b : art.bodies) {
-      forced[b] = {bodies[b].w - forced[b].w, bodies[b].v - forced[b].v};
+      impacts.forced[b] = {bodies[b].w - impacts.forced[b].w, bodies[b].v - impacts.forced[b].v};
     }
-    solver_articulations[a] = art.begin_solve();
+    impacts.solver_articulations[a] = art.begin_solve();
   }
   add_joint_rows(h, h, JointRowsOf::sub_step);
-  for (const solve::ContactConstraint& c : link_contacts) {
-    for (const std::uint32_t i : {c.a, c.b}) solver_bodies[i] = solver_body_in_sub_step(i, h);
+  for (const solve::ContactConstraint& c : impacts.link_contacts) {
+    for (const std::uint32_t i : {c.a, c.b})
+      impacts.solver_bodies[i] = solver_body_in_sub_step(i, h);
   }
   load_bodies_on_links();
   solve::begin_sub_step(link_context(h));
@@ -186,12 +187,12 @@ void World::Impl::relax_links(double h) {
   load_bodies_on_links();
   solve::relax_sub_step(link_context(h));
   store_bodies_on_links();
-  solve::note_sub_step(link_contacts);
-  for (const solve::ContactConstraint& c : link_contacts) {
+  solve::note_sub_step(impacts.link_contacts);
+  for (const solve::ContactConstraint& c : impacts.link_contacts) {
     if (c.points[0].normal_impulse <= 0.0) continue;
     for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].way[solve::kCarried] = 1.0f;
   }
-  for (solve::JointRow& row : joint_rows) {
+  for (solve::JointRow& row : impacts.joint_rows) {
     if (row.remember) *row.remember = row.impulse;
   }
   for (Articulation& art : articulations) {
@@ -204,9 +205,9 @@ void World::Impl::relax_links(double h) {
 
 // Events, what the next step starts from, and how the articulations have gone.
 void World::Impl::end_links(double dt, int sub_steps) {
-  if (bodies_on_links.empty()) return;
-  remember_impulses(link_contacts, sub_steps);
-  for (solve::ContactConstraint& c : link_contacts) {
+  if (impacts.bodies_on_links.empty()) return;
+  remember_impulses(impacts.link_contacts, sub_steps);
+  for (solve::ContactConstraint& c : impacts.link_contacts) {
     for (int i = 0; i < c.count; ++i) {
       solve::ContactPoint& p = c.points[i];
       const double last = p.normal_impulse;
@@ -217,15 +218,15 @@ void World::Impl::end_links(double dt, int sub_steps) {
     }
     counters.contacts += static_cast<std::uint32_t>(c.count);
   }
-  report_contacts(link_contacts, 0.0);
-  note_contacts(link_contacts);
+  report_contacts(impacts.link_contacts, 0.0);
+  note_contacts(impacts.link_contacts);
   for (Articulation& art : articulations) {
     if (!art.sub_stepped) continue;
     art.end_sub_steps(dt);
     for (const std::uint32_t b : art.bodies) {
       const se3 more = art.drift_of(bodies[b].link, art.T_world_link(bodies[b].link).position());
-      drift[b] = {more.w, more.v};
-      forced[b] = {};
+      impacts.drift[b] = {more.w, more.v};
+      impacts.forced[b] = {};
     }
     art.refresh();
     follow(art);

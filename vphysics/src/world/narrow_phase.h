@@ -6,6 +6,7 @@
 
 #include "collide/manifolds.h"
 #include "collide/pair_finder.h"
+#include "collide/shape_query.h"
 
 namespace vp {
 
@@ -28,6 +29,10 @@ struct NarrowPhaseScratch {
   // Of a contact with parts (part_contacts.cpp).
   std::vector<collide::KnownPart> known_parts;
   std::vector<std::uint32_t> old_parts, claimed_parts;
+  // Of all that look at shapes: the stage of impacts and queries too.
+  std::vector<collide::SubManifold> manifolds;
+  collide::ManifoldScratch manifold_scratch;
+  collide::PartsScratch parts_scratch;
 };
 
 }  // namespace vp

@@ -19,35 +19,36 @@ bool is_swept(const Body& body, const Collider& c) {
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
-  if (!swept_body_pairs.stale()) {
+  if (!impacts.swept_body_pairs.stale()) {
     for (const std::uint32_t i : impact_bodies()) refresh_bounds_of(i, h);
     return;
   }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!remote_bodies[i]) refresh_bounds_of(i, h);
+    if (!impacts.remote_bodies[i]) refresh_bounds_of(i, h);
   }
 }
 void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
   const Body& body = bodies[i];
   if (!body.alive || body.first_collider == kNone) {
-    bounds[i] = {};
+    impacts.bounds[i] = {};
   } else if (body.unbounded) {
-    bounds[i] = bounds_at_pose(bodies[i], colliders);
+    impacts.bounds[i] = bounds_at_pose(bodies[i], colliders);
   } else {
-    bounds[i] = grown(bounds_at_pose(bodies[i], colliders),
-                      desc.contact_slop + travel_of_bounds(body, motions[i], h));
+    impacts.bounds[i] = grown(bounds_at_pose(bodies[i], colliders),
+                              desc.contact_slop + travel_of_bounds(body, impacts.motions[i], h));
   }
 }
 
 double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
   const std::uint32_t a = colliders[pair.a].body, b = colliders[pair.b].body;
-  return desc.contact_slop + travel(bodies[a], motions[a], h) + travel(bodies[b], motions[b], h);
+  return desc.contact_slop + travel(bodies[a], impacts.motions[a], h) +
+         travel(bodies[b], impacts.motions[b], h);
 }
 
 // Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
-  discrete_pairs.clear();
-  for (const collide::IndexPair& pair : discrete_body_pairs.find(body_ways())) {
+  impacts.discrete_pairs.clear();
+  for (const collide::IndexPair& pair : impacts.discrete_body_pairs.find(body_ways())) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
     if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
@@ -58,24 +59,25 @@ void World::Impl::find_discrete_pairs(double h) {
     wake(pair.b);
     pose_colliders(bodies[pair.a], colliders);
     pose_colliders(bodies[pair.b], colliders);
-    const double margin =
-        desc.contact_slop + travel(a, motions[pair.a], h) + travel(b, motions[pair.b], h);
+    const double margin = desc.contact_slop + travel(a, impacts.motions[pair.a], h) +
+                          travel(b, impacts.motions[pair.b], h);
     for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
       const Collider& ca = colliders[i];
       const collide::Bounds near = grown(ca.bounds, margin);
-      if (!overlap(near, bounds[pair.b])) continue;
+      if (!overlap(near, impacts.bounds[pair.b])) continue;
       for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
         const Collider& cb = colliders[j];
         if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
         if (continuous && (is_swept(a, ca) || is_swept(b, cb))) continue;
         if (sensors_only && !ca.sensor && !cb.sensor) continue;
-        if (pushable_or_sensed(a, b, ca, cb)) discrete_pairs.push_back(make_pair(colliders, i, j));
+        if (pushable_or_sensed(a, b, ca, cb))
+          impacts.discrete_pairs.push_back(make_pair(colliders, i, j));
       }
     }
   }
-  std::sort(discrete_pairs.begin(), discrete_pairs.end(),
+  std::sort(impacts.discrete_pairs.begin(), impacts.discrete_pairs.end(),
             [](const ColliderPair& p, const ColliderPair& q) { return p.key < q.key; });
-  counters.pairs += static_cast<std::uint32_t>(discrete_pairs.size());
+  counters.pairs += static_cast<std::uint32_t>(impacts.discrete_pairs.size());
 }
 
 collide::SweepQuery ImpactTimes::sweep_query(const SweptPair& p, double h) const {
@@ -150,7 +152,7 @@ double reach_from(const Vec3& x, const Collider& c) {
 void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
   wake(other);
   const Body &a = bodies[index], &b = bodies[other];
-  const collide::Motion &ma = motions[index], &mb = motions[other];
+  const collide::Motion &ma = impacts.motions[index], &mb = impacts.motions[other];
   const ImpactTimes times = impact_times();
   pose_colliders(bodies[index], colliders);
   const double speed = norm(ma.v - mb.v);
@@ -168,29 +170,31 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
       pose_collider(b, cb);
       if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(b, cb)) continue;
-      const double separation = times.separation(ca, cb, margin, manifold_scratch, manifolds);
+      const double separation =
+          times.separation(ca, cb, margin, narrow.manifold_scratch, narrow.manifolds);
       if (separation > margin) continue;
       const ColliderPair pair = make_pair(colliders, i, j);
-      swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
+      impacts.swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
     }
   }
 }
 
 void World::Impl::find_swept_pairs(double h) {
-  swept_pairs.clear();
+  impacts.swept_pairs.clear();
   // Two continuous bodies meet once, in the order of their slots, but for sensors: those that are
   // not swept are found by what the other sweeps.
   for (const collide::IndexPair& p :
-       swept_body_pairs.find(body_ways(), impact_bodies(), desc.contact_slop, h)) {
-    if (!overlap(bounds[p.a], bounds[p.b])) continue;
-    const bool a = swept_body_pairs.sweeps(p.a), b = swept_body_pairs.sweeps(p.b);
+       impacts.swept_body_pairs.find(body_ways(), impact_bodies(), desc.contact_slop, h)) {
+    if (!overlap(impacts.bounds[p.a], impacts.bounds[p.b])) continue;
+    const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
     if (a) add_swept_pairs(p.a, p.b, h);
     if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
   }
-  std::sort(swept_pairs.begin(), swept_pairs.end(),
+  std::sort(impacts.swept_pairs.begin(), impacts.swept_pairs.end(),
             [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });
-  counters.pairs = std::max(counters.pairs,
-                            static_cast<std::uint32_t>(discrete_pairs.size() + swept_pairs.size()));
+  counters.pairs = std::max(
+      counters.pairs,
+      static_cast<std::uint32_t>(impacts.discrete_pairs.size() + impacts.swept_pairs.size()));
 }
 
 }  // namespace vp

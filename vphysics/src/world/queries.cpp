@@ -216,7 +216,7 @@ void World::Impl::find_strays() {
 
 Query World::Impl::query(const QueryFilter& filter) {
   find_strays();
-  return {bodies, colliders, finder, queries, parts_scratch, filter};
+  return {bodies, colliders, finder, queries, narrow.parts_scratch, filter};
 }
 
 // --- rays ----------------------------------------------------------------------------------------
@@ -304,7 +304,7 @@ Expected<void> World::overlapping(const Shape& shape, const SE3& T_world_shape,
   const SE3 T = proper(T_world_shape);
   Query query = impl_->query(filter);
   query.for_swept({bounds_of(geometry, T), {}}, [&](const Collider& c) {
-    if (parts_touch(geometry, T, c.geometry, c.T, impl_->parts_scratch)) {
+    if (parts_touch(geometry, T, c.geometry, c.T, query.parts)) {
       found.push_back(query.hit_of(c, 0).collider);
     }
     return 1.0;

@@ -24,15 +24,15 @@ constexpr double kSlide = 0.03, kClear = 0.01;
 }  // namespace
 
 const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
-  if (!impact_bodies_are_stale) return impact_body_list;
-  impact_bodies_are_stale = false;
-  impact_body_list.clear();
+  if (!impacts.bodies_are_stale) return impacts.body_list;
+  impacts.bodies_are_stale = false;
+  impacts.body_list.clear();
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (!body.alive || body.motion == Motion::fixed || remote_bodies[i]) continue;
-    if (!body.is_link || body.first_collider != kNone) impact_body_list.push_back(i);
+    if (!body.alive || body.motion == Motion::fixed || impacts.remote_bodies[i]) continue;
+    if (!body.is_link || body.first_collider != kNone) impacts.body_list.push_back(i);
   }
-  return impact_body_list;
+  return impacts.body_list;
 }
 
 // As long as no body or collider comes or goes.
@@ -51,8 +51,8 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
 void World::Impl::list_remote_articulations() {
   const bool few =
       !lists.some_sub_stepped && desc.sleep_after <= 0.0 && lists.movers.size() <= kFewMovers;
-  remote_bodies.assign(bodies.size(), 0);
-  impact_bodies_are_stale = impact_scratch_is_stale = true;
+  impacts.remote_bodies.assign(bodies.size(), 0);
+  impacts.bodies_are_stale = impacts.scratch_is_stale = true;
   for (Articulation& art : articulations) {
     if (!art.alive) continue;
     look_at(art);
@@ -62,7 +62,7 @@ void World::Impl::list_remote_articulations() {
 
 bool World::Impl::is_near_mover(const collide::Bounds& box) const {
   return std::any_of(lists.movers.begin(), lists.movers.end(),
-                     [&](std::uint32_t m) { return overlap(box, bounds[m]); });
+                     [&](std::uint32_t m) { return overlap(box, impacts.bounds[m]); });
 }
 
 // After the bounds of those that are not remote: whom a mover may meet within h, or who has slid
@@ -96,10 +96,10 @@ void World::Impl::make_remote() {
     if (is_near_mover(collide::grown(box, kClear))) continue;
     art.set_remote(box);
     for (const std::uint32_t b : art.bodies) {
-      remote_bodies[b] = 1;
-      bounds[b] = {};
+      impacts.remote_bodies[b] = 1;
+      impacts.bounds[b] = {};
     }
-    impact_bodies_are_stale = true;
+    impacts.bodies_are_stale = true;
   }
 }
 

@@ -332,7 +332,7 @@ void World::Impl::adopt(Incoming& from) {
   from.contacts.adopt();
   sub_step_state = from.sub_steps;
   ready_for_queries = false;
-  records.swap(from.records);
+  impacts.records.swap(from.records);
   events.destroyed.swap(from.destroyed_pairs);
   events.clear();
   step_contacts.clear();

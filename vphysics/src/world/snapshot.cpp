@@ -115,7 +115,7 @@ void World::Impl::write(Sink& sink) {
   sink.word(structure);
   sink.word(bodies.size());
   sink.word(articulations.size());
-  sink.word(records.size());
+  sink.word(impacts.records.size());
   sink.word(events.destroyed.size());
   put(sink, sub_step_state.length);
   put(sink, sub_step_state.push_length);
@@ -139,7 +139,7 @@ void World::Impl::write(Sink& sink) {
       }
     }
   }
-  for (const PairRecord& record : records) put(sink, record);
+  for (const PairRecord& record : impacts.records) put(sink, record);
   for (const DestroyedPair& pair : events.destroyed) put(sink, pair);
   for (const BodyJoint& joint : joints) {
     if (joint.alive) put(sink, joint);

@@ -40,17 +40,17 @@ void World::Impl::begin_step(double dt) {
   const std::size_t n = bodies.size();
   status = {};
   counters = {};
-  manifold_scratch.looked_at = 0;
-  manifold_scratch.crowded = manifold_scratch.rough = false;
+  narrow.manifold_scratch.looked_at = 0;
+  narrow.manifold_scratch.crowded = narrow.manifold_scratch.rough = false;
   narrow.renewed = 0;
   events.clear();
   step_contacts.clear();
-  next_records.clear();
+  impacts.next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
   const std::size_t room = 64 + 2 * colliders.size() + events.destroyed.size();
   events.reserve(room);
-  records.reserve(room);
-  next_records.reserve(room);
+  impacts.records.reserve(room);
+  impacts.next_records.reserve(room);
   contact_store.reserve(room);
   for (auto* list : {&narrow.stale, &narrow.look_again})
     list->reserve(contact_store.stale.capacity());
@@ -59,8 +59,8 @@ void World::Impl::begin_step(double dt) {
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   islands.reserve(n);
-  for (const std::uint32_t i : bodies_on_links) bodies[i].on_link = false;
-  bodies_on_links.clear();
+  for (const std::uint32_t i : impacts.bodies_on_links) bodies[i].on_link = false;
+  impacts.bodies_on_links.clear();
   for (Articulation& art : articulations) art.sub_stepped = false;
   list_bodies();
   narrow.new_pairs.reserve(room);
@@ -95,31 +95,31 @@ void World::Impl::begin_impact_stage() {
   // whenever it comes, allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
   const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + events.destroyed.size();
-  swept_body_pairs.reserve(n, room);
-  discrete_body_pairs.reserve(n, room);
-  discrete_pairs.reserve(room);
-  swept_pairs.reserve(room);
-  discrete_contacts.reserve(room);
-  contacts.reserve(room);
-  link_contacts.reserve(room);
+  impacts.swept_body_pairs.reserve(n, room);
+  impacts.discrete_body_pairs.reserve(n, room);
+  impacts.discrete_pairs.reserve(room);
+  impacts.swept_pairs.reserve(room);
+  impacts.discrete_contacts.reserve(room);
+  impacts.contacts.reserve(room);
+  impacts.link_contacts.reserve(room);
   step_contacts.reserve(4 * room);
-  manifolds.reserve(kManifoldsOfPair);
-  bodies_on_links.reserve(n);
-  bounds.resize(n);
-  motions.resize(n);
-  solver_bodies.resize(n);
-  start_poses.resize(n);
-  held.assign(n, 0);
-  in_contact.assign(n, 0);
-  as_swept.assign(n, 0);
-  if (impact_scratch_is_stale) {
-    impact_scratch_is_stale = false;
-    drift.assign(n, {});
-    forced.assign(n, {});
+  narrow.manifolds.reserve(kManifoldsOfPair);
+  impacts.bodies_on_links.reserve(n);
+  impacts.bounds.resize(n);
+  impacts.motions.resize(n);
+  impacts.solver_bodies.resize(n);
+  impacts.start_poses.resize(n);
+  impacts.held.assign(n, 0);
+  impacts.in_contact.assign(n, 0);
+  impacts.as_swept.assign(n, 0);
+  if (impacts.scratch_is_stale) {
+    impacts.scratch_is_stale = false;
+    impacts.drift.assign(n, {});
+    impacts.forced.assign(n, {});
   }
   for (const std::uint32_t i : impact_bodies()) {
-    drift[i] = forced[i] = {};
-    if (!bodies[i].is_link) start_poses[i] = bodies[i].T;
+    impacts.drift[i] = impacts.forced[i] = {};
+    if (!bodies[i].is_link) impacts.start_poses[i] = bodies[i].T;
   }
 }
 
@@ -135,7 +135,7 @@ void World::Impl::integrate_forces(double dt) {
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
     if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
-    forced[i] = {body.w, body.v};
+    impacts.forced[i] = {body.w, body.v};
     if (body.is_link) continue;
     const Velocity a = acceleration_of(body);
     body.v += dt * a.v;
@@ -147,9 +147,10 @@ void World::Impl::integrate_forces(double dt) {
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
     if (joins_sub_steps(body)) continue;
-    const bool stopped = !body.is_link && stop_if_out_of_range(i, start_poses[i]);
+    const bool stopped = !body.is_link && stop_if_out_of_range(i, impacts.start_poses[i]);
     if (body.motion != Motion::dynamic) continue;
-    forced[i] = stopped ? Velocity{} : Velocity{body.w - forced[i].w, body.v - forced[i].v};
+    impacts.forced[i] =
+        stopped ? Velocity{} : Velocity{body.w - impacts.forced[i].w, body.v - impacts.forced[i].v};
   }
 }
 
@@ -175,8 +176,8 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   s.w = body.w;
   s.v = body.v;
   s.x = at;
-  s.forced_w = forced[index].w;
-  s.forced_v = forced[index].v;
+  s.forced_w = impacts.forced[index].w;
+  s.forced_v = impacts.forced[index].v;
   if (body.motion != Motion::dynamic) return s;
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);
@@ -194,12 +195,12 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
 void World::Impl::refresh_solver_bodies() {
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (!body.is_link) solver_bodies[i] = solver_body(i, reference_point(body));
+    if (!body.is_link) impacts.solver_bodies[i] = solver_body(i, reference_point(body));
   }
-  for (const solve::ContactConstraint& c : contacts) {
+  for (const solve::ContactConstraint& c : impacts.contacts) {
     for (const std::uint32_t i : {c.a, c.b}) {
       const bool listed = !bodies[i].is_link && bodies[i].motion != Motion::fixed;
-      if (!listed) solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
+      if (!listed) impacts.solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
     }
   }
 }
@@ -220,20 +221,20 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
 // contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
-  if (!swept_body_pairs.stale()) {
+  if (!impacts.swept_body_pairs.stale()) {
     for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
     return;
   }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!remote_bodies[i]) refresh_motion_of(i, h);
+    if (!impacts.remote_bodies[i]) refresh_motion_of(i, h);
   }
 }
 void World::Impl::refresh_motion_of(std::uint32_t i, double h) {
   const Body& body = bodies[i];
   if (body.is_link && body.first_collider == kNone) return;
-  const bool stands = held[i] || !body.alive || body.motion == Motion::fixed;
-  motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
-                      : motion_of(body, drift[i], in_contact[i] ? 0.0 : h);
+  const bool stands = impacts.held[i] || !body.alive || body.motion == Motion::fixed;
+  impacts.motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
+                              : motion_of(body, impacts.drift[i], impacts.in_contact[i] ? 0.0 : h);
 }
 
 // Motions and bounds for the rest of the step.
@@ -299,21 +300,21 @@ void World::Impl::advance_all(double dt) {
 // To the next impact, or to the end of the step. On the way to an impact what may be met goes as it
 // has been swept.
 void World::Impl::advance(double h, bool to_end) {
-  as_swept.assign(in_contact.begin(), in_contact.end());
+  impacts.as_swept.assign(impacts.in_contact.begin(), impacts.in_contact.end());
   if (!to_end) {
-    for (const SweptPair& p : swept_pairs) {
-      as_swept[colliders[p.pair.a].body] = as_swept[colliders[p.pair.b].body] = 1;
+    for (const SweptPair& p : impacts.swept_pairs) {
+      impacts.as_swept[colliders[p.pair.a].body] = impacts.as_swept[colliders[p.pair.b].body] = 1;
     }
   }
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (body.is_link || is_still(body) || held[i]) continue;
-    advance_body(bodies[i], motions[i], h, !as_swept[i], drift[i].w);
-    if (stop_if_out_of_range(i, start_poses[i])) held[i] = 1;
+    if (body.is_link || is_still(body) || impacts.held[i]) continue;
+    advance_body(bodies[i], impacts.motions[i], h, !impacts.as_swept[i], impacts.drift[i].w);
+    if (stop_if_out_of_range(i, impacts.start_poses[i])) impacts.held[i] = 1;
   }
   advance_articulations(h);
-  for (solve::ContactConstraint& c : discrete_contacts) {
-    const collide::Motion &a = motions[c.a], &b = motions[c.b];
+  for (solve::ContactConstraint& c : impacts.discrete_contacts) {
+    const collide::Motion &a = impacts.motions[c.a], &b = impacts.motions[c.b];
     for (int i = 0; i < c.count; ++i) {
       solve::ContactPoint& p = c.points[i];
       const Vec3 u = b.v + cross(b.w, p.position - b.x) - a.v - cross(a.w, p.position - a.x);
@@ -326,7 +327,7 @@ void World::Impl::apply_corrections() {
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
-    const solve::SolverBody& s = solver_bodies[i];
+    const solve::SolverBody& s = impacts.solver_bodies[i];
     if (s.shift == Vec3{} && s.turn == Vec3{}) continue;
     place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
   }
@@ -337,7 +338,7 @@ void World::Impl::apply_corrections() {
 // rests, rolls or is pinched costs nothing.
 double World::Impl::next_impact(double h) {
   double first = -1.0;
-  for (const SweptPair& swept : swept_pairs) {
+  for (const SweptPair& swept : impacts.swept_pairs) {
     if (swept.sensor) continue;
     const double slop = desc.contact_slop;
     const double target =
@@ -355,9 +356,9 @@ void World::Impl::hold_what_meets(double h) {
   status.time_held = h;
   for (bool again = true; again;) {
     again = false;
-    for (const SweptPair& swept : swept_pairs) {
+    for (const SweptPair& swept : impacts.swept_pairs) {
       const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
-      if (swept.sensor || (held[a] && held[b])) continue;
+      if (swept.sensor || (impacts.held[a] && impacts.held[b])) continue;
       const double slop = desc.contact_slop;
       const double target =
           swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
@@ -386,13 +387,13 @@ void World::Impl::take_back_forces(double h) {
   const double share = h / dt_now;
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
-    if (!held[i] || body.is_link || body.motion != Motion::dynamic) continue;
+    if (!impacts.held[i] || body.is_link || body.motion != Motion::dynamic) continue;
     const Velocity a = acceleration_of(body);
     take_back(body.v, dt_now * a.v, share);
     take_back(body.w, dt_now * a.w, share);
   }
   for (Articulation& art : articulations) {
-    if (!art.alive || !held[art.bodies.front()]) continue;
+    if (!art.alive || !impacts.held[art.bodies.front()]) continue;
     art.take_back_forces(share);
     follow(art);
   }
@@ -425,10 +426,10 @@ void World::Impl::feel_forces(double dt) {
   integrate_forces(dt);
   for (const std::uint32_t i : lists.movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
-      drift[i] = settle(i, dt);
+      impacts.drift[i] = settle(i, dt);
       if (bodies[i].by_rows()) continue;
       const Velocity a = acceleration_of(bodies[i]);
-      forced[i] = {dt * a.w, dt * a.v};
+      impacts.forced[i] = {dt * a.w, dt * a.v};
     }
   }
   forget_lost_bodies();
@@ -446,9 +447,9 @@ void World::Impl::run_impacts(double dt) {
   for (int solves = 0;; ++solves) {
     const double h = dt - time;
     solve_contacts(h, dt, solves == 0);
-    if (solves == 0) remember_impulses(contacts, 1.0);
-    report_contacts(contacts, time);
-    note_contacts(contacts);
+    if (solves == 0) remember_impulses(impacts.contacts, 1.0);
+    report_contacts(impacts.contacts, time);
+    note_contacts(impacts.contacts);
     refresh_ways(h);
     find_swept_pairs(h);
     double t = next_impact(h);
@@ -471,7 +472,7 @@ void World::Impl::run_impacts(double dt) {
 
 void World::Impl::count_contacts() {
   note_limits_of_surfaces();
-  counters.triangles = manifold_scratch.looked_at;
+  counters.triangles = narrow.manifold_scratch.looked_at;
   solve::ColourSet colours;
   for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
     colours.insert(contact_store.graph.colours_in_use(region));
@@ -494,12 +495,12 @@ void World::Impl::finish_step() {
     const auto stage = in(Stage::sleep);
     send_to_sleep();
   }
-  std::erase_if(next_records, [](const PairRecord& r) {
+  std::erase_if(impacts.next_records, [](const PairRecord& r) {
     bool loaded = r.touching;
     for (std::uint32_t i = 0; i < r.count; ++i) loaded |= r.points[i].normal_impulse > 0.0;
     return !loaded;
   });
-  records.swap(next_records);
+  impacts.records.swap(impacts.next_records);
   clear_loads();
 }
 

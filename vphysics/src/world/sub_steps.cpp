@@ -202,7 +202,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
        .reach = static_cast<float>(speed_unit)});
   JointSteps joint_steps({bodies, joints, body_rows, start_ways, workers, speed_unit},
                          joint_scratch, h);
-  const bool links = !bodies_on_links.empty();
+  const bool links = !impacts.bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
   const bool contacts_alone = !links && joint_steps.empty();
   // What contacts gave in one sub-step is given again in the next as a whole, by body, unless

@@ -74,7 +74,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
 
 // Ends all that it touches; the next step reports it.
 void World::Impl::drop_contacts(std::uint32_t index) {
-  std::erase_if(records, [&](const PairRecord& r) {
+  std::erase_if(impacts.records, [&](const PairRecord& r) {
     if (r.a != index && r.b != index) return false;
     if (r.touching) {
       events.destroyed.push_back(

@@ -1,0 +1,76 @@
+// What the stage of impacts works on: continuous bodies and links, in the order of time (step.cpp,
+// contacts.cpp), and links in the sub-steps (link_contacts.cpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solve/contact_solver.h"
+#include "world/impact_pairs.h"
+
+namespace vp {
+
+struct PairPoint {
+  std::uint32_t feature;
+  double normal_impulse;
+  Vec3 friction;  // world frame
+  Vec3 position;  // world frame
+};
+
+// What is remembered of a pair of colliders from step to step.
+struct PairRecord {
+  std::uint64_t key = 0;  // serials of both
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t part = 0;  // number of the manifold, of pairs with several
+  std::uint32_t count = 0;
+  bool touching = false;  // the pair: only of part 0
+  Vec3 rolling;
+  PairPoint points[collide::kMaxPoints]{};
+};
+
+// A point of the impacts of a step, or of a link in its sub-steps.
+struct StepContact {
+  ColliderId a, b;
+  Vec3 point, normal;  // from a to b
+  double impulse = 0.0;
+  Vec3 friction;  // on b
+};
+
+struct ImpactStage {
+  // State, sorted by key and part; next: of the step that is going on.
+  std::vector<PairRecord> records, next_records;
+  // What the stage goes through, ascending: all bodies that are not fixed, and links with
+  // colliders, but those of remote articulations (remote.cpp).
+  std::vector<std::uint32_t> body_list;
+  bool bodies_are_stale = true;  // some of these have changed
+  // Bodies have come or gone: what drift and forced have of others than those is not 0.
+  bool scratch_is_stale = true;
+  std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
+  SweptBodyPairs swept_body_pairs;
+  DiscreteBodyPairs discrete_body_pairs;
+
+  // --- of each body
+  std::vector<SE3> start_poses;
+  std::vector<collide::Motion> motions;  // for the rest of the step
+  std::vector<collide::Bounds> bounds;   // of all that it passes
+  std::vector<Velocity> drift;           // mean velocity over the step less that at its end
+  std::vector<Velocity> forced;          // what the step's forces added
+  std::vector<std::uint8_t> held;        // stands for the rest of the step
+  std::vector<std::uint8_t> in_contact;  // of the last solve
+  std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
+  std::vector<solve::SolverBody> solver_bodies;
+
+  // --- of a round
+  std::vector<ColliderPair> discrete_pairs;
+  std::vector<SweptPair> swept_pairs;
+  std::vector<solve::ContactConstraint> discrete_contacts, contacts;
+  std::vector<solve::JointRow> joint_rows;
+  std::vector<solve::SolverArticulation> solver_articulations;
+  std::vector<double> link_rows;
+
+  // --- of the sub-steps
+  std::vector<solve::ContactConstraint> link_contacts;
+  std::vector<std::uint32_t> bodies_on_links;
+};
+
+}  // namespace vp
