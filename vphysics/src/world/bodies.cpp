@@ -88,7 +88,7 @@ void World::Impl::start_way_anew(std::uint32_t index) {
   };
   for_near([&](std::uint32_t, const Contact& c) { contact_store.use_clearance(c, body_set); });
   std::fill_n(body_rows[index + 1].way, 6, 0.0f);
-  std::fill_n(start_ways[index].begin(), 6, 0.0f);
+  std::fill_n(sub_step.start_ways[index].begin(), 6, 0.0f);
   std::fill_n(bodies[index].bounded_at, 6, 1e9f);
   for_near([&](std::uint32_t contact, const Contact& c) {
     const double left = contact_store.clearance(c);
@@ -103,7 +103,7 @@ void World::Impl::start_way_anew(std::uint32_t index) {
 
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
-  mover_news.resize(lists.movers.size());
+  sub_step.mover_news.resize(lists.movers.size());
   const BodyRows step = rows_in(dt);
   const Approach approach = approach_in(dt);
   workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
@@ -115,15 +115,15 @@ void World::Impl::load_rows(double dt) {
       const bool stays = joins_sub_steps(body) &&
                          stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
       const bool pulled = !(approach.pull_of(body) == Velocity{});
-      mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
-                                                (far || !stays ? kLeaves : 0));
+      sub_step.mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
+                                                         (far || !stays ? kLeaves : 0));
     }
   });
   for (std::size_t k = 0; k < lists.movers.size(); ++k) {
-    if (mover_news[k] == 0) continue;
+    if (sub_step.mover_news[k] == 0) continue;
     const std::uint32_t i = lists.movers[k];
-    if ((mover_news[k] & kFar) != 0) start_way_anew(i);
-    if ((mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
+    if ((sub_step.mover_news[k] & kFar) != 0) start_way_anew(i);
+    if ((sub_step.mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
 }

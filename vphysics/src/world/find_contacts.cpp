@@ -182,7 +182,7 @@ void World::Impl::remove_contact(std::uint32_t index) {
 void World::Impl::find_stale_contacts(double dt) {
   const float step = static_cast<float>(dt);
   const ContactRuns runs = contact_runs();
-  std::vector<std::uint32_t>& found = block_words.words;
+  std::vector<std::uint32_t>& found = sub_step.blocks.words;
   (void)runs.number();
   runs.for_parts([&](const auto& pass, const auto& part, std::size_t first) {
     pass.find_moved(part, step, static_cast<float>(kTurn), found.data() + first);

@@ -69,52 +69,46 @@ struct World::Impl {
   double speed_unit = 1.0;  // what a speed of things of a metre counts
   Workers workers;
   std::shared_ptr<StageObserver> observer;  // or null
+  std::shared_ptr<Recorder> recorder;       // or null
+
+  // --- stores
   Bodies bodies;
   Colliders colliders;
   std::vector<Articulation> articulations;
   std::vector<std::uint32_t> free_articulations;
   Joints joints;
-  std::uint32_t next_serial = 1;
-  std::uint64_t structure = 0;  // digest of all that was created and destroyed (structure.h)
-  BodyLoads loads;
-
-  collide::PairFinder finder;
   solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
   const BodySet body_set{bodies, colliders, body_rows};
   ContactStore contact_store;
-  SubStepState sub_step_state;
-  Islands islands;
-  Regions regions;
-  ImpactStage impacts;
+  std::uint32_t next_serial = 1;  // of colliders
+  std::uint64_t structure = 0;    // digest of all that was created and destroyed (structure.h)
 
+  // --- parts
+  BodyLoads loads;
   BodyLists lists;
-  std::shared_ptr<Recorder> recorder;  // or null
+  collide::PairFinder finder;
+  Regions regions;
+  Islands islands;
+  SubStepState sub_step_state;
+  ImpactStage impacts;
+  bool ready_for_queries = false;  // nothing has moved since find_strays()
+  QueryScratch queries;
+  struct Incoming;
+  std::shared_ptr<Incoming> incoming;  // of restore(); none before the first
 
   // --- of the last step
   Events events;
+  StepStatus status;
   StepCounters counters;
   int sub_steps_taken = 0;
   std::vector<StepContact> step_contacts;  // but those of lanes
 
-  // --- of queries
-  bool ready_for_queries = false;  // nothing has moved since find_strays()
-  QueryScratch queries;
-
-  // --- of restore(); kept for its capacity
-  struct Incoming;
-  std::shared_ptr<Incoming> incoming;  // none before the first
-
-  // --- scratch of a step; kept for its capacity
-  NarrowPhaseScratch narrow;
+  // --- of the step that is going on
+  double dt_now = 0.0;  // 0: none is
   bool finds_contacts = false;
+  NarrowPhaseScratch narrow;
+  SubStepScratch sub_step;
   std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
-  double dt_now = 0.0;                     // of the step that is going on; 0: none is
-  BlockWords block_words;
-  solve::LargeVector<solve::Gain> gains;  // of each body, by the contacts of a sub-step
-  std::vector<std::uint8_t> mover_news;   // of each mover: it needs more than its own row
-  std::vector<std::array<float, 6>> start_ways;
-  JointScratch joint_scratch;
-  StepStatus status;
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -210,7 +204,7 @@ struct World::Impl {
   // bodies.cpp
   void list_bodies();
   BodyRows rows_in(double dt) {
-    return {body_rows, start_ways, loads, desc, dt, sub_steps_in(desc, speed_unit, dt)};
+    return {body_rows, sub_step.start_ways, loads, desc, dt, sub_steps_in(desc, speed_unit, dt)};
   }
   void load_rows(double dt);
   void start_way_anew(std::uint32_t body);
@@ -276,7 +270,7 @@ struct World::Impl {
   void take_sub_steps(double dt, int count);
 
   ContactRuns contact_runs() {
-    return {contact_store.graph, body_rows.data(), workers, block_words};
+    return {contact_store.graph, body_rows.data(), workers, sub_step.blocks};
   }
 
   // touches.cpp

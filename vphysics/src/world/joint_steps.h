@@ -13,6 +13,7 @@
 #include "world/joint.h"
 #include "world/joint_runs.h"
 #include "world/parallel.h"
+#include "world/runs.h"
 
 namespace vp {
 
@@ -30,6 +31,15 @@ struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
   solve::LargeVector<solve::Gone> ways;  // by row: of what is joined
+};
+
+// Of the sub-steps of a step; kept for its capacity.
+struct SubStepScratch {
+  BlockWords blocks;
+  solve::LargeVector<solve::Gain> gains;         // of each body, by the contacts of a sub-step
+  std::vector<std::array<float, 6>> start_ways;  // of each body: its row's way when the step began
+  std::vector<std::uint8_t> mover_news;          // of each mover: it needs more than its own row
+  JointScratch joints;
 };
 
 // Where a body's row has taken it since the step began.

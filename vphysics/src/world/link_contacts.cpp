@@ -151,8 +151,9 @@ void World::Impl::begin_links(double h) {
 solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, double h) const {
   const Body& body = bodies[index];
   const bool stands = body.is_link || body.motion == Motion::fixed;
-  const Vec3 at = stands ? reference_point(body)
-                         : place_within_step(body, body_rows[index + 1], start_ways[index]).centre;
+  const Vec3 at =
+      stands ? reference_point(body)
+             : place_within_step(body, body_rows[index + 1], sub_step.start_ways[index]).centre;
   solve::SolverBody s = solver_body(index, at);
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);

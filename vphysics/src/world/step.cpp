@@ -67,13 +67,13 @@ void World::Impl::begin_step(double dt) {
   body_rows.resize(n + 1);
   contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
-  block_words.words.reserve(room / solve::kLanes +
-                            2 * solve::kColours * contact_store.graph.regions());
+  sub_step.blocks.words.reserve(room / solve::kLanes +
+                                2 * solve::kColours * contact_store.graph.regions());
   if (!lists.movers.empty()) contact_store.graph.reserve(lists.movers.size());
-  start_ways.resize(n);
-  gains.resize(n);
+  sub_step.start_ways.resize(n);
+  sub_step.gains.resize(n);
   if (has_impact_stage()) begin_impact_stage();
-  joint_scratch.active.reserve(joints.size());
+  sub_step.joints.active.reserve(joints.size());
   events.report_destroyed(colliders);
   finds_contacts = has_contacts_to_find();
   if (lists.some_sub_stepped) load_rows(dt);
@@ -282,11 +282,11 @@ void World::Impl::advance_all(double dt) {
     for (std::size_t k = begin; k < end; ++k) {
       Body& body = bodies[lists.movers[k]];
       const bool led = body.motion == Motion::dynamic && body.by_rows();
-      mover_news[k] = led && rows.advance(body, lists.movers[k]) ? 0 : 1;
+      sub_step.mover_news[k] = led && rows.advance(body, lists.movers[k]) ? 0 : 1;
     }
   });
   for (std::size_t k = 0; k < lists.movers.size(); ++k) {
-    if (mover_news[k] == 0) continue;
+    if (sub_step.mover_news[k] == 0) continue;
     const std::uint32_t i = lists.movers[k];
     Body& body = bodies[i];
     const SE3 start = body.T;
@@ -409,7 +409,7 @@ void World::Impl::run(double dt) {
     find_contacts(dt);
     list_bodies();  // some may have been woken
   }
-  mover_news.resize(lists.movers.size());
+  sub_step.mover_news.resize(lists.movers.size());
   counters.awake = static_cast<std::uint32_t>(lists.movers.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {

@@ -190,18 +190,19 @@ void World::Impl::take_sub_steps(double dt, int n) {
   const double fastest = std::clamp(kPush / state.push_length * kSmallDepth * desc.length_unit,
                                     kFastestPush * speed_unit, kFastestShift * speed_unit);
   const ContactRuns runs = contact_runs();
-  SubSteps steps(
-      {runs, regions, workers, body_rows, gains, static_cast<float>(desc.restitution_threshold)}, h,
-      {.rate = static_cast<float>(kPush / state.push_length),
-       .share = static_cast<float>(1.0 - kLoss),
-       .fastest_push = static_cast<float>(fastest),
-       .inverse_h = 1.0f / h,
-       .kept = 0.0f,
-       .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
-       .h = h,
-       .reach = static_cast<float>(speed_unit)});
-  JointSteps joint_steps({bodies, joints, body_rows, start_ways, workers, speed_unit},
-                         joint_scratch, h);
+  SubSteps steps({runs, regions, workers, body_rows, sub_step.gains,
+                  static_cast<float>(desc.restitution_threshold)},
+                 h,
+                 {.rate = static_cast<float>(kPush / state.push_length),
+                  .share = static_cast<float>(1.0 - kLoss),
+                  .fastest_push = static_cast<float>(fastest),
+                  .inverse_h = 1.0f / h,
+                  .kept = 0.0f,
+                  .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
+                  .h = h,
+                  .reach = static_cast<float>(speed_unit)});
+  JointSteps joint_steps({bodies, joints, body_rows, sub_step.start_ways, workers, speed_unit},
+                         sub_step.joints, h);
   const bool links = !impacts.bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
   const bool contacts_alone = !links && joint_steps.empty();

@@ -94,7 +94,7 @@ void World::Impl::report_news() {
   std::size_t next = 0;
   contact_runs().for_runs([&](const auto&, const auto&, auto& blocks) {
     for (auto& block : blocks) {
-      const std::uint32_t found = block_words.words[next++];
+      const std::uint32_t found = sub_step.blocks.words[next++];
       for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
         report.report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
