@@ -52,7 +52,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   } else {
     impl_->articulations.push_back(std::move(art));
   }
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   if (impl_->recorder) {
     calls::CreateArticulation call;
     for (int l = 0; l < desc.model.links(); ++l) call.links.push_back(desc.model.link(l));

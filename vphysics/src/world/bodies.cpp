@@ -71,7 +71,7 @@ bool BodyLists::refresh(const Bodies& bodies) {
 
 void World::Impl::list_bodies() {
   if (!lists.refresh(bodies)) return;
-  impacts.swept_body_pairs.forget();
+  impacts.swept_body_pairs.invalidate();
   regions.sort(bodies, lists.movers);
   list_remote_articulations();
   impacts.discrete_body_pairs.list_filters(bodies);
@@ -203,7 +203,7 @@ void World::Impl::jumped(std::uint32_t index) {
   contact_store.mark_stale_of(bodies[index]);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
-  impacts.swept_body_pairs.forget();
+  impacts.swept_body_pairs.invalidate();
   pose_colliders(bodies[index], colliders);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);

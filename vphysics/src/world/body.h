@@ -98,7 +98,7 @@ class BodyLists {
   bool some_sleep = false;
 
   // Bodies or colliders have come or gone, fallen asleep or woken.
-  void forget() { stale_ = true; }
+  void invalidate() { stale_ = true; }
   // False: they are as before.
   bool refresh(const Bodies& bodies);
 

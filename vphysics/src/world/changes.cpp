@@ -90,7 +90,7 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   if (body.motion != Motion::dynamic) return;
   body.w = body.T.rotate(V.w);
   body.v = body.T.rotate(V.v + cross(V.w, body.centre));
-  loads.take_arm(body, before - reference_point(body));
+  loads.shift(body, before - reference_point(body));
   contact_store.mark_stale_of(bodies[index]);
 }
 
@@ -187,7 +187,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   if (index + 1 < body_rows.size()) body_rows[index + 1] = {};
   std::fill_n(body.bounded_at, 6, 1e9f);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) add_proxy(c);
-  lists.forget();
+  lists.invalidate();
 }
 
 Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
@@ -293,7 +293,7 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
     body.masks |= impl_->colliders[i].filter.mask;
   }
   impl_->ready_for_queries = false;
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   Structure(impl_->structure)
       .add(word_of(Change::filter, id.index), std::uint64_t{filter.category} << 32 | filter.mask);
   if (impl_->recorder) impl_->log({calls::SetFilter{id, filter}});
@@ -337,7 +337,7 @@ void World::Impl::take_collider_off(std::uint32_t index) {
   update_mass(owner);
   contact_store.mark_stale_of(bodies[owner]);
   body.moved();
-  lists.forget();
+  lists.invalidate();
 }
 
 // What a body has of all its colliders.
@@ -374,7 +374,7 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   }
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   impl_->impacts.bodies_are_stale = true;
   Structure(impl_->structure).add(word_of(Change::destroyed_articulation, id.index));
   if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});

@@ -248,7 +248,7 @@ void ContactState::adopt() {
     Body& body = world_.bodies[i];
     const OfBody& from = bodies_[i];
     body.rested = from.rested;
-    if (body.asleep != from.asleep || body.region != from.region) world_.lists.forget();
+    if (body.asleep != from.asleep || body.region != from.region) world_.lists.invalidate();
     body.asleep = from.asleep;
     body.rest_time = from.rest_time;
     if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);
@@ -263,7 +263,7 @@ void ContactState::adopt() {
     if (c.alive && c.stale && !c.parked) contacts_.stale.push_back(i);
   }
   if (world_.contacts.graph.regions() != contacts_.graph.regions()) {
-    world_.lists.forget();
+    world_.lists.invalidate();
   }
   std::swap(world_.contacts, contacts_);
   regions_.count = static_cast<std::uint16_t>(world_.contacts.graph.regions() - 1);

@@ -51,7 +51,7 @@ void BodyLoads::set(Bodies& bodies, std::uint32_t index, const Vec3& force, cons
   loads_[body.load].torque = torque;
 }
 
-void BodyLoads::take_arm(const Body& body, const Vec3& arm) {
+void BodyLoads::shift(const Body& body, const Vec3& arm) {
   if (body.load == kNone) return;
   BodyLoad& load = loads_[body.load];
   load.torque += cross(arm, load.force);

@@ -33,22 +33,23 @@ void SweptBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
   leavers_.reserve(bodies);
 }
 
-void SweptBodyPairs::keep_bounds(const BodyWays& ways, std::uint32_t index, double slop, double h) {
-  const collide::Bounds& now = ways.bounds[index];
+void SweptBodyPairs::keep_bounds(const BodyMotions& all, std::uint32_t index, double slop,
+                                 double h) {
+  const collide::Bounds& now = all.bounds[index];
   const double margin =
       kCandidateSlops * slop +
-      kCandidateSteps * travel_of_bounds(ways.bodies[index], ways.motions[index], h);
+      kCandidateSteps * travel_of_bounds(all.bodies[index], all.motions[index], h);
   kept_bounds_[index] = collide::empty(now) ? now : grown(now, margin);
 }
 
-void SweptBodyPairs::find_all(const BodyWays& ways, double slop, double h) {
-  const Bodies& bodies = ways.bodies;
+void SweptBodyPairs::find_all(const BodyMotions& all, double slop, double h) {
+  const Bodies& bodies = all.bodies;
   stale_ = false;
   kept_bounds_.resize(bodies.size());
   sweeps_.resize(bodies.size());
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     sweeps_[i] = bodies[i].alive && bodies[i].continuous;
-    keep_bounds(ways, i, slop, h);
+    keep_bounds(all, i, slop, h);
   }
   pairs_.clear();
   broad_phase_.find_pairs(kept_bounds_, sweeps_, pairs_);
@@ -69,21 +70,21 @@ void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
 }
 
 // Who has left its kept bounds looks for others again, alone or, if many have, with all.
-std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyWays& ways,
+std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyMotions& all,
                                                          std::span<const std::uint32_t> moving,
                                                          double slop, double h) {
   leavers_.clear();
   if (!stale_) {
     for (const std::uint32_t i : moving) {
-      if (!holds(kept_bounds_[i], ways.bounds[i])) leavers_.push_back(i);
+      if (!holds(kept_bounds_[i], all.bounds[i])) leavers_.push_back(i);
     }
   }
-  if (stale_ || leavers_.size() > kFewLeavers + ways.bodies.size() / 64) {
-    find_all(ways, slop, h);
+  if (stale_ || leavers_.size() > kFewLeavers + all.bodies.size() / 64) {
+    find_all(all, slop, h);
     return pairs_;
   }
-  for (const std::uint32_t i : leavers_) keep_bounds(ways, i, slop, h);
-  for (const std::uint32_t i : leavers_) find_of(ways.bodies, i);
+  for (const std::uint32_t i : leavers_) keep_bounds(all, i, slop, h);
+  for (const std::uint32_t i : leavers_) find_of(all.bodies, i);
   return pairs_;
 }
 
@@ -105,30 +106,30 @@ void DiscreteBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
 }
 
 // Bounds of what may be in a pair, the others' empty; false if there are no two.
-bool DiscreteBodyPairs::find_bounds(const BodyWays& ways) {
+bool DiscreteBodyPairs::find_bounds(const BodyMotions& all) {
   if ((categories_ & masks_) == 0) return false;
-  const Bodies& bodies = ways.bodies;
+  const Bodies& bodies = all.bodies;
   collide::Bounds around;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (meets_discretely(body) && (body.is_link || body.continuous))
-      around = merged(around, ways.bounds[i]);
+      around = merged(around, all.bounds[i]);
   }
   int meeting = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const bool meets = meets_discretely(body) && (body.categories & masks_) &&
-                       (body.masks & categories_) && overlap(ways.bounds[i], around);
-    bounds_[i] = meets ? ways.bounds[i] : collide::Bounds{};
+                       (body.masks & categories_) && overlap(all.bounds[i], around);
+    bounds_[i] = meets ? all.bounds[i] : collide::Bounds{};
     movable_[i] = body.alive && body.motion != Motion::fixed;
     meeting += meets ? 1 : 0;
   }
   return meeting > 1;
 }
 
-std::span<const collide::IndexPair> DiscreteBodyPairs::find(const BodyWays& ways) {
+std::span<const collide::IndexPair> DiscreteBodyPairs::find(const BodyMotions& all) {
   pairs_.clear();
-  if (find_bounds(ways)) broad_phase_.find_pairs(bounds_, movable_, pairs_);
+  if (find_bounds(all)) broad_phase_.find_pairs(bounds_, movable_, pairs_);
   return pairs_;
 }
 

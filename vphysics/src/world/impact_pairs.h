@@ -20,7 +20,7 @@ double travel(const Body& body, const collide::Motion& motion, double h);
 double travel_of_bounds(const Body& body, const collide::Motion& motion, double h);
 
 // Of each body its motion for the rest of the step, and bounds of all that it passes.
-struct BodyWays {
+struct BodyMotions {
   const Bodies& bodies;
   std::span<const collide::Motion> motions;
   std::span<const collide::Bounds> bounds;
@@ -33,19 +33,19 @@ class SweptBodyPairs {
  public:
   // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
   // is fixed are as old.
-  void forget() { stale_ = true; }
+  void invalidate() { stale_ = true; }
   bool stale() const { return stale_; }
   void reserve(std::size_t bodies, std::size_t pairs);
 
   // moving: all whose bounds may have changed, ascending.
-  std::span<const collide::IndexPair> find(const BodyWays& ways,
+  std::span<const collide::IndexPair> find(const BodyMotions& all,
                                            std::span<const std::uint32_t> moving, double slop,
                                            double h);
   bool sweeps(std::uint32_t body) const { return sweeps_[body] != 0; }
 
  private:
-  void keep_bounds(const BodyWays& ways, std::uint32_t body, double slop, double h);
-  void find_all(const BodyWays& ways, double slop, double h);
+  void keep_bounds(const BodyMotions& all, std::uint32_t body, double slop, double h);
+  void find_all(const BodyMotions& all, double slop, double h);
   void find_of(const Bodies& bodies, std::uint32_t body);
 
   bool stale_ = true;
@@ -62,10 +62,10 @@ class DiscreteBodyPairs {
   // Bodies or colliders have come or gone.
   void list_filters(const Bodies& bodies);
   void reserve(std::size_t bodies, std::size_t pairs);
-  std::span<const collide::IndexPair> find(const BodyWays& ways);
+  std::span<const collide::IndexPair> find(const BodyMotions& all);
 
  private:
-  bool find_bounds(const BodyWays& ways);
+  bool find_bounds(const BodyMotions& all);
 
   std::uint32_t categories_ = 0, masks_ = 0;  // union over all that may be in a pair
   collide::BroadPhase broad_phase_;

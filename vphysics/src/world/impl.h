@@ -1,4 +1,7 @@
-// What a world owns.
+// What a world owns: stores, the parts that work on them, and the order of the step (step.cpp).
+//
+// A part gets the data that it works on with each call and does not know the world. The methods
+// here are what joins the parts: waking, which touches most of them, and the public calls' helpers.
 #pragma once
 
 #include <array>
@@ -251,7 +254,7 @@ struct World::Impl {
   void store_bodies_on_links();
 
   // sleep.cpp
-  Bonds bonds() { return {bodies, colliders, contact_store, joints}; }
+  IslandGraph island_graph() { return {bodies, colliders, contact_store, joints}; }
   void send_to_sleep();
   void wake(std::uint32_t body);
   void wake_neighbours(std::uint32_t body);
@@ -277,7 +280,7 @@ struct World::Impl {
   void report_news();
 
   // pairs.cpp
-  BodyWays body_ways() const { return {bodies, impacts.motions, impacts.bounds}; }
+  BodyMotions body_motions() const { return {bodies, impacts.motions, impacts.bounds}; }
   ImpactTimes impact_times() {
     return {colliders, impacts.motions, desc.contact_slop, narrow.parts_scratch};
   }

@@ -18,7 +18,7 @@
 namespace vp {
 
 // What holds bodies together.
-struct Bonds {
+struct IslandGraph {
   Bodies& bodies;
   const Colliders& colliders;
   ContactStore& contacts;
@@ -32,19 +32,19 @@ class Islands {
   void watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt);
   // f(island) of each that rests, of all watched since the last time; f puts it to sleep.
   template <class F>
-  void find_resting(const Bonds& bonds, double sleep_after, const F& f) {
+  void find_resting(const IslandGraph& graph, double sleep_after, const F& f) {
     const std::uint64_t first = found_ + 1;
     for (const std::uint32_t seed : drowsy_) {
-      if (bonds.bodies[seed].island >= first) continue;  // asleep, or gone through in vain
-      if (rests(bonds, seed, first, sleep_after)) f(std::span<const std::uint32_t>(island_));
+      if (graph.bodies[seed].island >= first) continue;  // asleep, or gone through in vain
+      if (rests(graph, seed, first, sleep_after)) f(std::span<const std::uint32_t>(island_));
     }
     drowsy_.clear();
   }
   // A body that is asleep wakes with all that it hangs together with. Returns all of these.
-  std::span<const std::uint32_t> wake(const Bonds& bonds, std::uint32_t body);
+  std::span<const std::uint32_t> wake(const IslandGraph& graph, std::uint32_t body);
 
  private:
-  bool rests(const Bonds& bonds, std::uint32_t seed, std::uint64_t first, double sleep_after);
+  bool rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first, double sleep_after);
 
   std::uint64_t found_ = 0;
   std::vector<std::uint32_t> drowsy_;  // bodies that ask in this step

@@ -30,8 +30,8 @@ class BodyLoads {
   bool can_bear(const Body& body, const Inertia& inertia, const SE3& T) const;
 
   void set(Bodies& bodies, std::uint32_t body, const Vec3& force, const Vec3& torque);
-  // The body's centre of mass has gone by -arm.
-  void take_arm(const Body& body, const Vec3& arm);
+  // The body's centre of mass, which its torque is about, has moved by -arm.
+  void shift(const Body& body, const Vec3& arm);
   void remove(Bodies& bodies, std::uint32_t body);
   void clear(Bodies& bodies);
 

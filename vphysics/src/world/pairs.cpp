@@ -48,7 +48,7 @@ double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
 // Pairs in which nothing is swept.
 void World::Impl::find_discrete_pairs(double h) {
   impacts.discrete_pairs.clear();
-  for (const collide::IndexPair& pair : impacts.discrete_body_pairs.find(body_ways())) {
+  for (const collide::IndexPair& pair : impacts.discrete_body_pairs.find(body_motions())) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
     if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
@@ -184,7 +184,7 @@ void World::Impl::find_swept_pairs(double h) {
   // Two continuous bodies meet once, in the order of their slots, but for sensors: those that are
   // not swept are found by what the other sweeps.
   for (const collide::IndexPair& p :
-       impacts.swept_body_pairs.find(body_ways(), impact_bodies(), desc.contact_slop, h)) {
+       impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
     if (!overlap(impacts.bounds[p.a], impacts.bounds[p.b])) continue;
     const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
     if (a) add_swept_pairs(p.a, p.b, h);

@@ -294,7 +294,7 @@ void World::Impl::adopt(Incoming& from) {
       body.T = state->T;
       body.moved();
       // Swept pairs have found what is fixed where it was.
-      if (body.motion == Motion::fixed) lists.forget();
+      if (body.motion == Motion::fixed) lists.invalidate();
     }
     body.w = state->w;
     body.v = state->v;

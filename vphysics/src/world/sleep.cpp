@@ -17,14 +17,14 @@ bool may_sleep(const Body& body) {
 
 // f(body) of all that touch it or are joined to it, some perhaps more than once.
 template <class F>
-void for_partners(const Bonds& bonds, std::uint32_t index, const F& f) {
+void for_partners(const IslandGraph& graph, std::uint32_t index, const F& f) {
   const auto other = [index](std::uint32_t a, std::uint32_t b) { return a == index ? b : a; };
-  bonds.contacts.for_each_of(bonds.bodies[index], [&](std::uint32_t, const Contact& c) {
-    if (c.place.points > 0) f(other(bonds.colliders[c.a].body, bonds.colliders[c.b].body));
+  graph.contacts.for_each_of(graph.bodies[index], [&](std::uint32_t, const Contact& c) {
+    if (c.place.points > 0) f(other(graph.colliders[c.a].body, graph.colliders[c.b].body));
   });
-  for (std::uint32_t e = bonds.bodies[index].first_joint; e != kNone;
-       e = bonds.joints[e / 2].next[e % 2]) {
-    f(other(bonds.joints[e / 2].a, bonds.joints[e / 2].b));
+  for (std::uint32_t e = graph.bodies[index].first_joint; e != kNone;
+       e = graph.joints[e / 2].next[e % 2]) {
+    f(other(graph.joints[e / 2].a, graph.joints[e / 2].b));
   }
 }
 
@@ -48,13 +48,13 @@ void Islands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, doub
 
 // Into island_: all that the seed hangs together with. False, and not all of it: some of it does
 // not rest, or was found not to in an island from `first` on.
-bool Islands::rests(const Bonds& bonds, std::uint32_t seed, std::uint64_t first,
+bool Islands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first,
                     double sleep_after) {
   const std::uint64_t island = ++found_;
   bool rests = true;
   island_.clear();
   const auto reach = [&](std::uint32_t index) {
-    Body& body = bonds.bodies[index];
+    Body& body = graph.bodies[index];
     if (body.motion == Motion::fixed || body.island == island) return;
     if (body.motion == Motion::kinematic) {
       rests = rests && body.prescribed == se3{};
@@ -65,45 +65,46 @@ bool Islands::rests(const Bonds& bonds, std::uint32_t seed, std::uint64_t first,
     island_.push_back(index);
   };
   reach(seed);
-  for (std::size_t i = 0; i < island_.size() && rests; ++i) for_partners(bonds, island_[i], reach);
+  for (std::size_t i = 0; i < island_.size() && rests; ++i) for_partners(graph, island_[i], reach);
   if (rests) return true;
   for (const std::uint32_t i : island_) {
-    double& time = bonds.bodies[i].rest_time;
+    double& time = graph.bodies[i].rest_time;
     time = std::min(time, sleep_after);
   }
   return false;
 }
 
-std::span<const std::uint32_t> Islands::wake(const Bonds& bonds, std::uint32_t seed) {
+std::span<const std::uint32_t> Islands::wake(const IslandGraph& graph, std::uint32_t seed) {
   woken_.clear();
   const auto reach = [&](std::uint32_t index) {
-    Body& body = bonds.bodies[index];
+    Body& body = graph.bodies[index];
     if (!body.asleep) return;
     body.asleep = false;
     body.rest_time = 0.0;
     woken_.push_back(index);
   };
   reach(seed);
-  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(bonds, woken_[i], reach);
+  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(graph, woken_[i], reach);
   return woken_;
 }
 
 void World::Impl::send_to_sleep() {
   for (const std::uint32_t i : lists.movers) islands.watch(bodies[i], i, desc, dt_now);
-  islands.find_resting(bonds(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
-    for (const std::uint32_t i : island) {
-      Body& body = bodies[i];
-      body.asleep = true;
-      body.v = body.w = {};
-      std::fill_n(body_rows[i + 1].velocity, 6, 0.0f);
-    }
-    for (const std::uint32_t i : island) {
-      contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
-        contact_store.park(contact, body_set);
+  islands.find_resting(
+      island_graph(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
+        for (const std::uint32_t i : island) {
+          Body& body = bodies[i];
+          body.asleep = true;
+          body.v = body.w = {};
+          std::fill_n(body_rows[i + 1].velocity, 6, 0.0f);
+        }
+        for (const std::uint32_t i : island) {
+          contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
+            contact_store.park(contact, body_set);
+          });
+        }
+        lists.invalidate();
       });
-    }
-    lists.forget();
-  });
 }
 
 // With all that it hangs together with.
@@ -111,13 +112,13 @@ void World::Impl::wake(std::uint32_t seed) {
   bodies[seed].rest_time = 0.0;
   if (!bodies[seed].asleep) return;
   const BodyRows rows = rows_in(dt_now);
-  for (const std::uint32_t i : islands.wake(bonds(), seed)) {
+  for (const std::uint32_t i : islands.wake(island_graph(), seed)) {
     if (dt_now > 0.0 && rows.load(bodies[i], i)) start_way_anew(i);
     contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
       contact_store.unpark(contact, body_set);
     });
   }
-  lists.forget();
+  lists.invalidate();
 }
 
 void World::Impl::wake_neighbours(std::uint32_t index) {

@@ -66,7 +66,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
   Structure(impl_->structure).add(0x100u + index, desc);
   const BodyId id = impl_->bodies.id(index);
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
   if (impl_->recorder) impl_->log({calls::CreateBody{desc}});
   return id;
@@ -118,7 +118,7 @@ Expected<void> World::destroy_body(BodyId id) {
   body->prescribed = {};
   if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
   body->first_collider = kNone;
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   impl_->bodies.release(id.index - 1);
   Structure(impl_->structure).add(0x200u + id.index);
   if (impl_->recorder) impl_->log({calls::DestroyBody{id}});
@@ -174,7 +174,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   if (body->is_link) impl_->follow(impl_->articulations[body->articulation]);
   impl_->note_collider(index);
   if (adds_mass) impl_->update_mass(c.body);
-  impl_->lists.forget();
+  impl_->lists.invalidate();
   impl_->wake(c.body);
   impl_->add_proxy(index);
   Structure(impl_->structure).add(0x300u + index, body_handle.index, desc);
