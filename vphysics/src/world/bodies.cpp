@@ -27,6 +27,13 @@ collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& way, double m
   return grown(merged(b, end), more);
 }
 
+// A kinematic body's origin goes along the chord to where its twist takes it.
+void prescribe_velocity(Body& body, double dt) {
+  const SE3 end = body.T * Exp(dt * body.prescribed);
+  body.w = body.T.rotate(body.prescribed.w);
+  body.v = (1.0 / dt) * (end.position() - body.T.position());
+}
+
 }  // namespace
 
 void place(Body& body, const Vec3& reference, const Mat3& R) {
@@ -126,10 +133,6 @@ void World::Impl::load_rows(double dt) {
     if ((sub_step.mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
-}
-
-void World::Impl::update_bounds_of_links(double dt) {
-  for (const std::uint32_t i : lists.links) update_bounds(i, dt, false);
 }
 
 // Gives the broad phase the bounds of what may have left its enlarged ones.

@@ -57,16 +57,6 @@ std::optional<std::string> why_not(const Body& body, const Colliders& colliders,
 
 }  // namespace
 
-Inertia World::Impl::inertia_of_colliders(const Body& body) const {
-  Inertia sum;
-  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-    const Collider& collider = colliders[c];
-    if (collider.sensor) continue;
-    sum = sum + solid_inertia(collider.shape, collider.density).InvXform(collider.T_body_shape);
-  }
-  return sum;
-}
-
 // Why the body, whose velocity is V, cannot have that inertia; nothing if it can.
 std::optional<std::string> World::Impl::problem_with_mass(const Body& body, const se3& V,
                                                           const Inertia& inertia) const {
@@ -98,7 +88,7 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
 void World::Impl::update_mass(std::uint32_t index) {
   const Body& body = bodies[index];
   if (!body.mass_from_colliders || body.motion != Motion::dynamic) return;
-  const Inertia sum = inertia_of_colliders(body);
+  const Inertia sum = inertia_of_colliders(body, colliders);
   change_mass(index, sum.mass() > 0.0 ? sum : kUnitInertia);
 }
 
@@ -140,7 +130,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   std::optional<Inertia> inertia;  // none: what the body has
   Vec3 centre = body->centre;
   if (motion == Motion::dynamic && body->mass_from_colliders) {
-    inertia = impl_->inertia_of_colliders(*body);
+    inertia = inertia_of_colliders(*body, impl_->colliders);
     if (inertia->mass() == 0.0) inertia = kUnitInertia;
     if (auto problem = problem_with(*inertia)) return refuse("set_motion: " + *problem);
     centre = inertia->centre_of_mass();
@@ -305,13 +295,7 @@ Expected<void> World::remove_collider(ColliderId id) {
   if (!c) return stale("remove_collider", "the collider");
   const std::uint32_t body = c->body;
   if (impl_->bodies[body].mass_from_colliders && impl_->bodies[body].motion == Motion::dynamic) {
-    Inertia sum;
-    for (std::uint32_t i = impl_->bodies[body].first_collider; i != kNone;
-         i = impl_->colliders[i].next) {
-      const Collider& other = impl_->colliders[i];
-      if (i == id.index - 1 || other.sensor) continue;
-      sum = sum + solid_inertia(other.shape, other.density).InvXform(other.T_body_shape);
-    }
+    const Inertia sum = inertia_of_colliders(impl_->bodies[body], impl_->colliders, id.index - 1);
     const se3 V = velocity(impl_->bodies.id(body));
     const Inertia left = sum.mass() > 0.0 ? sum : kUnitInertia;
     if (auto problem = impl_->problem_with_mass(impl_->bodies[body], V, left)) {

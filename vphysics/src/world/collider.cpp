@@ -94,6 +94,16 @@ void note_collider(Body& body, Collider& c, const Vec3& line) {
   body.least_size = std::min(body.least_size, c.size);
 }
 
+Inertia inertia_of_colliders(const Body& body, const Colliders& colliders, std::uint32_t without) {
+  Inertia sum;
+  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
+    const Collider& collider = colliders[c];
+    if (collider.sensor || c == without) continue;
+    sum = sum + solid_inertia(collider.shape, collider.density).InvXform(collider.T_body_shape);
+  }
+  return sum;
+}
+
 ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_t j) {
   if (colliders[i].serial > colliders[j].serial) std::swap(i, j);
   return {(std::uint64_t{colliders[i].serial} << 32) | colliders[j].serial, i, j};

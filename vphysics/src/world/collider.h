@@ -55,6 +55,9 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders);
 // Adds a collider to what its body has of all its colliders. line: of a link that moves along and
 // about a line alone, that line; else zero.
 void note_collider(Body& body, Collider& collider, const Vec3& line);
+// Of a body's solid colliders, but one.
+Inertia inertia_of_colliders(const Body& body, const Colliders& colliders,
+                             std::uint32_t without = kNone);
 
 // In order of creation.
 struct ColliderPair {

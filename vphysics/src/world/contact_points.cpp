@@ -8,23 +8,11 @@
 
 namespace vp {
 
-// Of the impulses that solve() has left.
-void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
-  for (const solve::ContactConstraint& c : solved) {
-    for (int i = 0; i < c.count; ++i) {
-      const solve::ContactPoint& p = c.points[i];
-      if (p.normal_impulse <= 0.0) continue;
-      step_contacts.push_back(
-          {colliders.id(c.collider_a), colliders.id(c.collider_b), p.position, c.normal,
-           p.normal_impulse,
-           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]});
-    }
-  }
-}
+namespace {
 
 template <int P>
-void World::Impl::add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool of_a,
-                                std::vector<ContactPoint>& points) const {
+void add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool of_a,
+                   const Colliders& colliders, std::vector<ContactPoint>& points) {
   const int lane = solve::ContactGraph::lane(c.place);
   const double sign = of_a ? -1.0 : 1.0, all = get(block.given, lane);
   double last = 0.0;
@@ -45,6 +33,22 @@ void World::Impl::add_points_of(const Contact& c, const solve::ContactBlock<P>& 
   }
 }
 
+}  // namespace
+
+// Of the impulses that solve() has left.
+void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
+  for (const solve::ContactConstraint& c : solved) {
+    for (int i = 0; i < c.count; ++i) {
+      const solve::ContactPoint& p = c.points[i];
+      if (p.normal_impulse <= 0.0) continue;
+      step_contacts.push_back(
+          {colliders.id(c.collider_a), colliders.id(c.collider_b), p.position, c.normal,
+           p.normal_impulse,
+           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]});
+    }
+  }
+}
+
 void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
   const Body* body = impl_->find(id);
   VP_ASSERT(body && "contacts_of: the body does not exist (any more)");
@@ -55,9 +59,9 @@ void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
     if (!stepped || !c.touching || c.sensor || c.place.points == 0) return;
     const bool of_a = world.colliders[c.a].body == id.index - 1;
     if (c.place.points == 1) {
-      world.add_points_of(c, world.contact_store.graph.block<1>(c.place), of_a, points);
+      add_points_of(c, world.contact_store.graph.block<1>(c.place), of_a, world.colliders, points);
     } else {
-      world.add_points_of(c, world.contact_store.graph.block<4>(c.place), of_a, points);
+      add_points_of(c, world.contact_store.graph.block<4>(c.place), of_a, world.colliders, points);
     }
   });
   for (const StepContact& c : world.step_contacts) {

@@ -243,6 +243,13 @@ void ContactStore::mark_stale_of(const Body& body) {
   for_each_of(body, [&](std::uint32_t index, Contact&) { mark_stale(index); });
 }
 
+void ContactStore::mark_stale_lanes(const solve::IndexField& contacts, std::uint32_t bits) {
+  for (; bits != 0; bits &= bits - 1) {
+    const std::uint32_t contact = contacts.lane[std::countr_zero(bits)];
+    if (contact != solve::kNoContact) mark_stale(contact);
+  }
+}
+
 // By a bit for each of the pool.
 void ContactStore::take_stale(std::vector<std::uint32_t>& ascending) {
   stale_bits_.resize(pool.capacity() / 64 + 1);

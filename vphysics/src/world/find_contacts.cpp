@@ -189,7 +189,7 @@ void World::Impl::find_stale_contacts(double dt) {
   });
   std::size_t next = 0;
   runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
-    for (const auto& block : blocks) mark_stale_lanes(block.contact, found[next++]);
+    for (const auto& block : blocks) contact_store.mark_stale_lanes(block.contact, found[next++]);
   });
   const std::span<solve::NearBlock> blocks = contact_store.near.blocks();
   found.resize(std::max(found.size(), blocks.size()));
@@ -198,14 +198,8 @@ void World::Impl::find_stale_contacts(double dt) {
                         solve::passes().find_closer(blocks.data() + begin, end - begin,
                                                     body_rows.data(), step, found.data() + begin);
                       });
-  for (std::size_t b = 0; b < blocks.size(); ++b) mark_stale_lanes(blocks[b].contact, found[b]);
-}
-
-void World::Impl::mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits) {
-  for (; bits != 0; bits &= bits - 1) {
-    const std::uint32_t contact = of.lane[std::countr_zero(bits)];
-    if (contact != solve::kNoContact) contact_store.mark_stale(contact);
-  }
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    contact_store.mark_stale_lanes(blocks[b].contact, found[b]);
 }
 
 // In the order of their slots; then those that these have woken.
@@ -256,10 +250,6 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
 
 void World::Impl::note_limits(const collide::Manifold& manifold) {
   status.distance_limit |= manifold.rough;
-}
-void World::Impl::note_limits_of_surfaces() {
-  status.manifold_limit |= narrow.manifold_scratch.crowded;
-  status.distance_limit |= narrow.manifold_scratch.rough;
 }
 
 void World::Impl::take_over(const Looked& found) {

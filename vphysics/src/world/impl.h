@@ -135,7 +135,6 @@ struct World::Impl {
   // changes.cpp
   Body* find_body_to_change(BodyId id);
   tl::unexpected<Error> no_body_to_change(const char* call, BodyId id) const;
-  Inertia inertia_of_colliders(const Body& body) const;
   std::optional<std::string> problem_with_mass(const Body& body, const se3& V,
                                                const Inertia& inertia) const;
   void change_mass(std::uint32_t body, const Inertia& inertia);
@@ -178,8 +177,8 @@ struct World::Impl {
 
   // step.cpp
   void begin_step(double dt);
+  void divide_into_regions(double dt);
   void begin_impact_stage();
-  void prescribe_velocity(Body& body, double dt);
   void integrate_forces(double dt);
   solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
   void refresh_solver_bodies();
@@ -213,7 +212,6 @@ struct World::Impl {
   void start_way_anew(std::uint32_t body);
   Velocity settle(std::uint32_t body, double dt);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
-  void update_bounds_of_links(double dt);
   void add_proxy(std::uint32_t collider);
   void forget_lost_bodies();
   void forget_contacts(std::uint32_t body);
@@ -234,10 +232,10 @@ struct World::Impl {
   void remove_contact(std::uint32_t contact);
   void take_over(const Looked& looked);
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
-  void mark_stale_lanes(const solve::IndexField& of, std::uint32_t bits);
   Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void look_at_stale_contacts(double dt);
   void find_manifolds_of_stale(double dt, bool first);
+  void note_limits(const collide::Manifold& manifold);
 
   // link_contacts.cpp
   void find_bodies_on_links();
@@ -259,19 +257,12 @@ struct World::Impl {
   void wake(std::uint32_t body);
   void wake_neighbours(std::uint32_t body);
 
-  void note_limits(const collide::Manifold& manifold);
-  void note_limits_of_surfaces();
-
   // part_contacts.cpp
   void find_parts(const Looked& look);
-  std::uint32_t claim_part(const collide::SubManifold& found);
-
-  void divide_into_regions(double dt);
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
   void take_sub_steps(double dt, int count);
-
   ContactRuns contact_runs() {
     return {contact_store.graph, body_rows.data(), workers, sub_step.blocks};
   }
@@ -309,11 +300,6 @@ struct World::Impl {
   void report_swept_sensors(double h, double time);
 
   class Drawing;  // debug_draw.cpp
-
-  // contact_points.cpp
-  template <int P>
-  void add_points_of(const Contact& contact, const solve::ContactBlock<P>& block, bool of_a,
-                     std::vector<ContactPoint>& points) const;
 
   // queries.cpp
   void find_strays();

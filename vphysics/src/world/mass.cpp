@@ -46,7 +46,7 @@ Expected<void> World::set_mass_from_colliders(BodyId id) {
   if (body->motion != Motion::dynamic) {
     return refuse("set_mass_from_colliders: the body is not dynamic, so it needs no mass");
   }
-  const Inertia sum = impl_->inertia_of_colliders(*body);
+  const Inertia sum = inertia_of_colliders(*body, impl_->colliders);
   if (sum.mass() == 0.0) {
     return refuse(
         "set_mass_from_colliders: the body has no collider with a volume but sensors; add "

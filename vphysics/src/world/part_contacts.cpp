@@ -22,6 +22,39 @@ void put_deepest_first(collide::Manifold& m) {
   std::swap(m.points[0], *std::min_element(m.points, m.points + m.count, deeper));
 }
 
+// Of the old parts that are left and have nearly the normal: that of the same triangle, or else
+// with the most features of it, or else the normal most alike; or none.
+std::uint32_t claim_part(const ContactStore& contacts, const Colliders& colliders,
+                         std::vector<std::uint32_t>& old_parts, const collide::SubManifold& found) {
+  std::uint32_t* best = nullptr;
+  double most = kSameNormal;
+  for (std::uint32_t& p : old_parts) {
+    if (p == kNone) continue;
+    const Contact& part = contacts[p];
+    const auto on_surface = [&](std::uint32_t collider) {
+      return is_surface(colliders[collider].geometry);
+    };
+    const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
+    if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
+    const int lane = solve::ContactGraph::lane(part.place);
+    const Vec3 normal = part.place.points == 1
+                            ? get(contacts.graph.block<1>(part.place).normal, lane)
+                            : get(contacts.graph.block<4>(part.place).normal, lane);
+    double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
+    for (int i = 0; i < found.manifold.count; ++i) {
+      const std::uint32_t* end = part.feature + part.count;
+      if (std::find(part.feature, end, found.manifold.points[i].feature) != end) alike += 0.4;
+    }
+    if (alike <= most) continue;
+    most = alike;
+    best = &p;
+  }
+  if (!best) return kNone;
+  const std::uint32_t claimed = *best;
+  *best = kNone;
+  return claimed;
+}
+
 }  // namespace
 
 void World::Impl::find_parts(const Looked& look) {
@@ -64,7 +97,7 @@ void World::Impl::find_parts(const Looked& look) {
   contact_store.set_clearance(contact_store[index], clearance, body_set);
   narrow.claimed_parts.clear();
   for (const collide::SubManifold& found : narrow.manifolds)
-    narrow.claimed_parts.push_back(claim_part(found));
+    narrow.claimed_parts.push_back(claim_part(contact_store, colliders, narrow.old_parts, found));
   for (const std::uint32_t p : narrow.old_parts) {
     if (p != kNone) contact_store.remove(p, body_set);
   }
@@ -97,38 +130,6 @@ void World::Impl::find_parts(const Looked& look) {
   const Contact& whole = contact_store[index];
   if (whole.touching && !contact_store.touches_in_parts(whole))
     events.news_of_parts.push_back({index, kNone, 0.0, 0.0, {}, {}});
-}
-
-// Of the old parts that are left and have nearly the normal: that of the same triangle, or else
-// with the most features of it, or else the normal most alike; or none.
-std::uint32_t World::Impl::claim_part(const collide::SubManifold& found) {
-  std::uint32_t* best = nullptr;
-  double most = kSameNormal;
-  for (std::uint32_t& p : narrow.old_parts) {
-    if (p == kNone) continue;
-    const Contact& part = contact_store[p];
-    const auto on_surface = [&](std::uint32_t collider) {
-      return is_surface(colliders[collider].geometry);
-    };
-    const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
-    if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
-    const int lane = solve::ContactGraph::lane(part.place);
-    const Vec3 normal = part.place.points == 1
-                            ? get(contact_store.graph.block<1>(part.place).normal, lane)
-                            : get(contact_store.graph.block<4>(part.place).normal, lane);
-    double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
-    for (int i = 0; i < found.manifold.count; ++i) {
-      const std::uint32_t* end = part.feature + part.count;
-      if (std::find(part.feature, end, found.manifold.points[i].feature) != end) alike += 0.4;
-    }
-    if (alike <= most) continue;
-    most = alike;
-    best = &p;
-  }
-  if (!best) return kNone;
-  const std::uint32_t claimed = *best;
-  *best = kNone;
-  return claimed;
 }
 
 }  // namespace vp

@@ -77,7 +77,9 @@ void World::Impl::begin_step(double dt) {
   events.report_destroyed(colliders);
   finds_contacts = has_contacts_to_find();
   if (lists.some_sub_stepped) load_rows(dt);
-  if (finds_contacts) update_bounds_of_links(dt);
+  if (finds_contacts) {
+    for (const std::uint32_t i : lists.links) update_bounds(i, dt, false);
+  }
 }
 
 void World::Impl::divide_into_regions(double dt) {
@@ -121,13 +123,6 @@ void World::Impl::begin_impact_stage() {
     impacts.drift[i] = impacts.forced[i] = {};
     if (!bodies[i].is_link) impacts.start_poses[i] = bodies[i].T;
   }
-}
-
-// A kinematic body's origin goes along the chord to where its twist takes it.
-void World::Impl::prescribe_velocity(Body& body, double dt) {
-  const SE3 end = body.T * Exp(dt * body.prescribed);
-  body.w = body.T.rotate(body.prescribed.w);
-  body.v = (1.0 / dt) * (end.position() - body.T.position());
 }
 
 // Of what the stage of impacts moves.
@@ -471,7 +466,8 @@ void World::Impl::run_impacts(double dt) {
 }
 
 void World::Impl::count_contacts() {
-  note_limits_of_surfaces();
+  status.manifold_limit |= narrow.manifold_scratch.crowded;
+  status.distance_limit |= narrow.manifold_scratch.rough;
   counters.triangles = narrow.manifold_scratch.looked_at;
   solve::ColourSet colours;
   for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {

@@ -148,7 +148,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   }
   const bool adds_mass = body->mass_from_colliders && body->motion == Motion::dynamic;
   if (adds_mass && !desc.sensor) {
-    const Inertia sum = impl_->inertia_of_colliders(*body) +
+    const Inertia sum = inertia_of_colliders(*body, impl_->colliders) +
                         solid_inertia(desc.shape, desc.density).InvXform(desc.T_body_shape);
     if (auto problem = impl_->problem_with_mass(*body, velocity(body_handle), sum)) {
       return refuse("add_collider: with it, " + *problem);
