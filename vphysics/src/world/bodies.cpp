@@ -159,9 +159,9 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
 }
 
-Velocity World::Impl::settle(std::uint32_t index, double dt) {
+Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
   Velocity more;
-  if (!rows_in(dt).settle(bodies[index], index, more)) {
+  if (!rows.settle(bodies[index], index, more)) {
     status.non_finite = true;
     lost_bodies.push_back(index);
   }

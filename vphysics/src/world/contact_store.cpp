@@ -86,7 +86,6 @@ void ContactStore::remove_parts(std::uint32_t index, const BodySet& on) {
   pool[index].first_part = kNone;
 }
 
-// One of several: the whole has to be looked at anew.
 void ContactStore::forget_part(std::uint32_t index, const BodySet& on) {
   Contact& whole = pool[pool[index].whole];
   mark_stale(index);
@@ -141,7 +140,6 @@ void ContactStore::set_near(std::uint32_t index, double clearance, const BodySet
   set_clearance(c, clearance, on);
 }
 
-// It has been looked at where its bodies are now.
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
   solve::NearBlock& block = near.block(c.near_index);
   const int lane = solve::NearList::lane(c.near_index);
@@ -160,7 +158,6 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const BodyS
   block.radius.lane[lane] = static_cast<float>(at.radius);
 }
 
-// Of what is to be looked at; of a link, elsewhere.
 void ContactStore::reset_near(const Contact& c, const BodySet& on) {
   set_clearance(c, c.of_link ? kNeverMeets : 0.0, on);
 }
@@ -176,8 +173,7 @@ double ContactStore::clearance(const Contact& c) const {
       near.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)]);
 }
 
-// Takes from it how far the two have gone against each other since they were looked at, as
-// find_closer counts it.
+// As find_closer counts it.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   solve::NearBlock& block = near.block(c.near_index);
   const int lane = solve::NearList::lane(c.near_index);
@@ -232,7 +228,6 @@ void ContactStore::unpark(std::uint32_t index, const BodySet& on) {
   if (c.stale) mark_stale(index);
 }
 
-// Of a part, the whole.
 void ContactStore::mark_stale(std::uint32_t contact) {
   if (pool[contact].is_part()) contact = pool[contact].whole;
   pool[contact].stale = true;

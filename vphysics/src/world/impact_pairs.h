@@ -28,7 +28,7 @@ struct BodyMotions {
 
 // Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
 // both are within the kept ones; what never meets by its filters is left out. They outlast steps,
-// but decide nothing: what is near enough is found among them anew in every round.
+// but decide nothing: what is near enough is found among them again in every round.
 class SweptBodyPairs {
  public:
   // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what

@@ -210,7 +210,7 @@ struct World::Impl {
   }
   void load_rows(double dt);
   void start_way_anew(std::uint32_t body);
-  Velocity settle(std::uint32_t body, double dt);
+  Velocity settle(const BodyRows& rows, std::uint32_t body);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
   void forget_lost_bodies();

@@ -285,7 +285,7 @@ void World::Impl::advance_all(double dt) {
     const std::uint32_t i = lists.movers[k];
     Body& body = bodies[i];
     const SE3 start = body.T;
-    const Velocity more = body.motion == Motion::dynamic ? settle(i, dt) : Velocity{};
+    const Velocity more = body.motion == Motion::dynamic ? settle(rows, i) : Velocity{};
     advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true, more.w);
     (void)stop_if_out_of_range(i, start);
   }
@@ -419,9 +419,10 @@ void World::Impl::run(double dt) {
 void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   integrate_forces(dt);
+  const BodyRows rows = rows_in(dt);
   for (const std::uint32_t i : lists.movers) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
-      impacts.drift[i] = settle(i, dt);
+      impacts.drift[i] = settle(rows, i);
       if (bodies[i].by_rows()) continue;
       const Velocity a = acceleration_of(bodies[i]);
       impacts.forced[i] = {dt * a.w, dt * a.v};
