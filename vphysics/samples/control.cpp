@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
 
   // begin: control
   constexpr double kStep = 0.001, kStiffness = 400.0, kDamping = 40.0;  // [1/s^2], [1/s]
-  std::vector<double> a(n), tau(n);
+  std::vector<double> wanted(n), a(n), tau(n);
   double worst = 0.0, largest = 0.0;
   for (int tick = 0; tick < 4000; ++tick) {
     const double t = kStep * tick;
@@ -38,9 +38,9 @@ int main(int argc, char** argv) {
       // Each joint swings between zero and twice this, from rest on.
       const double swing = k + 1 < n ? 0.3 : 0.01, rate = 2.0 + 0.3 * static_cast<double>(k);
       const double target = swing * (1.0 - std::cos(rate * t));
-      const double target_v = swing * rate * std::sin(rate * t);
+      wanted[k] = swing * rate * std::sin(rate * t);
       const double target_a = swing * rate * rate * std::cos(rate * t);
-      a[k] = target_a + kDamping * (target_v - v[k]) + kStiffness * (target - q[k]);
+      a[k] = target_a + kDamping * (wanted[k] - v[k]) + kStiffness * (target - q[k]);
       worst = std::max(worst, std::fabs(target - q[k]));
     }
     largest = std::max(largest, worst);
@@ -48,8 +48,9 @@ int main(int argc, char** argv) {
     for (const vp::UrdfJoint& joint : arm->urdf.joints) {
       if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // a fixed one
       const auto k = static_cast<std::size_t>(model.first_velocity(joint.link));
-      // Dry friction is no part of the dynamics; it is overcome in the direction of the motion.
-      const double force = tau[k] + (v[k] > 0.0 ? joint.friction : -joint.friction);
+      // Dry friction is no part of the dynamics. It is overcome in the direction of the motion that
+      // is wanted: a joint that it holds has none of its own.
+      const double force = tau[k] + std::copysign(joint.friction, wanted[k]);
       if (!world.apply_joint_force(arm->articulation, joint.link, 0, force)) return 1;
     }
     if (!world.step(kStep)) return 1;

@@ -291,6 +291,69 @@ TEST(LinkContact, NoBallPassesALinkUnderALoad) {
   EXPECT_LT(highest, 0.0);
 }
 
+// The base cannot move, so that what lies on it joins nothing; the arm's joint is solved all the
+// same.
+TEST(LinkContact, AMotorGoesOnWhileABoxLiesOnItsFixedBase) {
+  World world;
+  LinkSpec base = link_of(FixedJoint{}, kPlate, 1000.0);
+  LinkSpec arm = link_of(RevoluteJoint{{0, 1, 0}}, Box{{0.3, 0.05, 0.05}}, 500.0);
+  arm.parent = 0;
+  arm.T_parent_joint = SE3(Vec3{1, 0, 1});
+  const ArticulationId id = must(world.create_articulation({model_of({base, arm})}));
+  must(world.add_collider(world.link_body(id, 0), collider_of(kPlate, kRough)));
+  must(world.set_drive(id, 1, 0, {0.5, 0, 1e4, 1e3, 1e5}));
+  add_dynamic(world,
+              {.shape = Box{{0.1, 0.1, 0.1}}, .material = kRough, .pose = SE3(Vec3{0, 0, 0.16})});
+  for (int i = 0; i < 1500; ++i) must(world.step(0.001));
+  EXPECT_GT(world.counters().contacts, 0u);
+  EXPECT_NEAR(world.joint_position(id, 1, 0), 0.5, 1e-3);
+}
+
+// Legs that press against one another's ground: a spider of stiff motors stands, however few rounds
+// the solver has.
+TEST(LinkContact, AWalkerThatIsDroppedStandsWithFewRounds) {
+  for (const int iterations : {1, 2, 3, 6, 12}) {
+    SCOPED_TRACE(iterations);
+    World world({.velocity_iterations = iterations});
+    add_ground(world, kRough);
+    const Walker walker = add_walker(world, {0, 0, Walker::kHeight + 0.1}, kRough);
+    double fastest = 0.0;
+    for (int i = 0; i < 1500; ++i) {
+      must(world.step(0.001));
+      for (const double v : world.velocities(walker.id)) fastest = std::max(fastest, std::fabs(v));
+    }
+    EXPECT_LT(fastest, 40.0);  // a foot of 0.5 m that is stopped from a fall of 0.1 m: 10 rad/s
+  }
+}
+
+// What moves the walls is stronger than anything: their contacts contradict one another, more so in
+// each step. The walker is crushed, not thrown out.
+TEST(LinkContact, AWalkerBetweenWallsThatCloseIsNotThrownOut) {
+  const Box wall{{0.1, 2.0, 1.0}};
+  for (const double rate : kRates) {
+    double fastest = 0.0;
+    for (const double closing : {0.3, 0.7, 1.0, 1.6, 3.0}) {
+      SCOPED_TRACE(testing::Message() << rate << " Hz, " << closing << " m/s");
+      World world;
+      add_ground(world, kRough);
+      const Walker walker = add_walker(world, {0, 0, Walker::kHeight}, kRough);
+      add_fixed(world, wall, kRough, SE3(Vec3{0.6, 0, 0.5}));
+      add_kinematic(world, wall, se3{{}, {closing, 0, 0}}, kRough, SE3(Vec3{-0.7, 0, 0.5}));
+      StepStatus status;
+      for (int i = 0; i < static_cast<int>(1.5 / closing * rate); ++i) {
+        status |= must(world.step(1.0 / rate));
+        for (int link = 0; link < 9; ++link) {
+          fastest = std::max(fastest, norm(world.velocity(world.link_body(walker.id, link)).v));
+        }
+      }
+      EXPECT_FALSE(status.non_finite);
+      EXPECT_TRUE(status.position_error);
+    }
+    std::printf("%g Hz: at most %.3g m/s\n", rate, fastest);
+    EXPECT_LT(fastest, 300.0);  // of a foot; the joints' stiff motors have a part in it
+  }
+}
+
 TEST(LinkContact, StepsToTheSameBitsFromASnapshot) {
   const auto build = [](World& world) {
     add_ground(world, kRough);

@@ -37,8 +37,8 @@ enum class Limit : std::uint8_t {
   positions,  // this step and the one before ended with shapes that overlap by more than half
               // of the smaller one's least half extent, or with a hard joint that is open by more
               // than half of the smaller body's radius or by 0.2 rad: loads, masses or joints ask
-              // for more than a step can do. Of what meets in sub-steps; not of gears and users'
-              // constraints
+              // for more than a step can do. Links and what is continuous as they were when the
+              // step began; not of gears and users' constraints
 };
 inline constexpr std::array kLimits{Limit::impacts,   Limit::range,     Limit::bounces,
                                     Limit::manifolds, Limit::distances, Limit::colours,

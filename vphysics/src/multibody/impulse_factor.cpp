@@ -25,13 +25,17 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
   next_.resize(n, kEnd);
   depth_.resize(n);
   a_.resize(n);
+  A_.resize(n);
   r_.resize(n);
   J_.resize(tree.nodes.size());
+  own_.resize(tree.nodes.size());
   for (const auto& node : tree.nodes) {
+    body_dof_.push_back(static_cast<std::uint32_t>(node.v));
     const bool root = node.parent == kWorld;
     std::uint32_t next =
         root ? kEnd
              : static_cast<std::uint32_t>(tree.nodes[static_cast<std::size_t>(node.parent)].v);
+    parent_dof_.push_back(next);
     // The last of a joint's own is the nearest to the root.
     for (int k = node.dofs; k-- > 0;) {
       const auto dof = static_cast<std::uint32_t>(node.v + k);
@@ -64,7 +68,9 @@ bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_
   const Work<double>& work = data.work();
   const auto nodes = static_cast<int>(tree.nodes.size());
   for (int i = 0; i < nodes; ++i) {
-    J_[static_cast<std::size_t>(i)] = AInertia(inertia_of(tree, work, i));
+    const auto n = static_cast<std::size_t>(i);
+    own_[n] = detail::inertia_of(tree, work, i);
+    J_[n] = AInertia(own_[n]);
   }
   for (KeptRow& kept : joint_rows_) kept.valid = false;
   bool fine = true;
@@ -151,6 +157,28 @@ void ImpulseFactor::twists(std::span<const double> v) {
     const se3 own = v[d] * columns_[d].S;
     a_[d] = next == kEnd ? own : a_[next] + own;
   }
+}
+
+void ImpulseFactor::bias(const Vec3& gravity, std::span<double> force) {
+  for (dse3& r : r_) r = {};
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    const std::uint32_t body = body_dof_[i], parent = parent_dof_[i];
+    const se3& V = a_[body];
+    A_[body] = parent == kEnd ? se3{{}, -gravity} : A_[parent] + ad(a_[parent], V);
+    r_[body] = own_[i] * A_[body] - dad(V, own_[i] * V);
+  }
+  for (const std::uint32_t d : inwards_) {
+    const std::uint32_t next = next_[d];
+    force[d] = columns_[d].S * r_[d];
+    if (next != kEnd) r_[next] = r_[next] + r_[d];
+  }
+}
+
+void ImpulseFactor::add_load(int link, const Vec3& point, const dse3& load,
+                             std::span<double> force) const {
+  const LinkPath& path = links_[static_cast<std::size_t>(link)];
+  const dse3 F{load.m + cross(point - path.origin, load.f), load.f};
+  for (std::uint32_t d = path.first; d != kEnd; d = next_[d]) force[d] += columns_[d].S * F;
 }
 
 }  // namespace vp::detail

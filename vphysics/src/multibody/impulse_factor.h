@@ -43,6 +43,7 @@ class ImpulseFactor {
   std::uint32_t depth_of_dof(std::uint32_t dof) const { return depth_[dof]; }
   const std::uint32_t* next() const { return next_.data(); }
   std::uint32_t deepest() const { return deepest_; }
+  std::size_t dofs() const { return columns_.size(); }
 
   // y of a unit impulse: a force through a point of the link, or a moment, in world axes. It has as
   // many entries as the link is deep.
@@ -69,6 +70,19 @@ class ImpulseFactor {
     const se3& V = a_[path.first];
     return {V.w, V.v + cross(V.w, point - path.origin)};
   }
+  // Of one node's body, in the tree's frame: its inertia, and its twist once twists() has been
+  // called.
+  const Inertia& inertia_of(int node) const { return own_[static_cast<std::size_t>(node)]; }
+  const se3& twist_of(int node) const { return a_[body_dof_[static_cast<std::size_t>(node)]]; }
+
+  // The joints' forces that keep the velocities that twists() was given last: those of the
+  // velocities, and those against gravity. Without damping; of models whose joints' subspaces are
+  // constant, in the frame of the joint's one side or the other: all but users' joints. Recursive
+  // Newton-Euler: with V the twists, A = A_parent + ad(V_parent, V) and F = J A - dad(V, J V) of a
+  // body, S times the sum of F of all that hangs on a joint.
+  void bias(const Vec3& gravity, std::span<double> force);
+  // Adds what a load on a link, about a point of it and in world axes, does along the joints.
+  void add_load(int link, const Vec3& point, const dse3& load, std::span<double> force) const;
 
  private:
   struct Column {
@@ -93,9 +107,13 @@ class ImpulseFactor {
   std::vector<LinkPath> links_;
   std::vector<KeptRow> joint_rows_;  // of each degree of freedom
   std::vector<double> kept_;
-  std::vector<AInertia> J_;  // of each node: scratch
-  std::vector<se3> a_;       // of each degree of freedom: scratch, and what twists() leaves
-  std::vector<dse3> r_;      // scratch
+  std::vector<std::uint32_t> body_dof_;    // of each node: that which carries its body
+  std::vector<std::uint32_t> parent_dof_;  // likewise of the node that it hangs on, or kEnd
+  std::vector<Inertia> own_;               // of each node's body
+  std::vector<AInertia> J_;                // of each node: scratch
+  std::vector<se3> A_;                     // of each degree of freedom that carries a body: scratch
+  std::vector<se3> a_;   // of each degree of freedom: scratch, and what twists() leaves
+  std::vector<dse3> r_;  // scratch
   std::uint32_t deepest_ = 0;
 };
 

@@ -24,38 +24,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/acceleration.h"
+#include "solve/dense_island.h"
 #include "solve/impulses.h"
+#include "solve/instant_scratch.h"
 
 namespace vp::solve {
 namespace {
 
-// Changes of speed below this [m/s] end the iteration: a thousandth of what gravity adds in 0.1 ms.
-constexpr double kConverged = 1e-7;
 // With few contacts more rounds cost little, and a light ball between heavy men needs them: the
 // error shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts /
 // contacts, at most kMostRounds times.
 constexpr std::size_t kFewContacts = 32;
 constexpr std::size_t kMostRounds = 8;
+// A small island that settles within so many, as one that stood in the last step too, needs no
+// matrix.
+constexpr int kRoundsWithoutMatrix = 3;
 // Share of the penetration beyond the slop that one solve takes out, the most it takes out [m], and
 // its rounds. A larger share makes stacks nervous.
 constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
-
-// Of what is no link; links as they were before the solve.
-inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
-                              const ContactPoint& p) {
-  Vec3 u;
-  if (!c.stands_b) u = b.v + cross(b.w, p.arm_b);
-  if (!c.stands_a) u = u - a.v - cross(a.w, p.arm_a);
-  return u;
-}
-// What the solve has added to a row's speed through links.
-inline double through_links(const ContactConstraint& c, int row) {
-  if (!c.has_links()) return 0.0;
-  return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
-}
 
 // The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
 double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
@@ -176,46 +164,34 @@ void warm_start(const StepContext& s) {
   for (JointRow& row : s.joints) push(row.side, 0, row.impulse, row.side.velocity);
 }
 
-// Sticking: the impulse that stops the point, by the whole block. Sliding: a gradient step,
-// projected on the disc, with one mass for both directions: only so does friction settle opposite
-// to the velocity, since the block turns what it multiplies.
-void solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
-                    int row) {
+// Returns the change of speed.
+double solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
+                      int row) {
   const Vec3 u = relative_velocity(a, b, c, p);
-  const double u0 = dot(c.tangent[0], u) + through_links(c, row) - c.surface_speed[0];
-  const double u1 = dot(c.tangent[1], u) + through_links(c, row + 1) - c.surface_speed[1];
-  double p0 = p.tangent_impulse[0] - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
-  double p1 = p.tangent_impulse[1] - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
-  const double most = c.friction * p.normal_impulse;
-  if (p0 * p0 + p1 * p1 > most * most) {
-    p0 = p.tangent_impulse[0] - p.slide_mass * u0;
-    p1 = p.tangent_impulse[1] - p.slide_mass * u1;
-    const double size = std::sqrt(p0 * p0 + p1 * p1);
-    if (size > most) {
-      p0 *= most / size;
-      p1 *= most / size;
-    }
-  }
-  const double change0 = p0 - p.tangent_impulse[0], change1 = p1 - p.tangent_impulse[1];
+  double next[2] = {p.tangent_impulse[0], p.tangent_impulse[1]};
+  friction_after(c, p, dot(c.tangent[0], u) + through_links(c, row) - c.surface_speed[0],
+                 dot(c.tangent[1], u) + through_links(c, row + 1) - c.surface_speed[1],
+                 p.normal_impulse, next);
+  const double change0 = next[0] - p.tangent_impulse[0], change1 = next[1] - p.tangent_impulse[1];
   apply(a, b, c, p, change0 * c.tangent[0] + change1 * c.tangent[1]);
   apply_to_links(c, row, change0);
   apply_to_links(c, row + 1, change1);
-  p.tangent_impulse[0] = p0;
-  p.tangent_impulse[1] = p1;
+  p.tangent_impulse[0] = next[0];
+  p.tangent_impulse[1] = next[1];
+  return p.slide_mass > 0.0 ? std::sqrt(change0 * change0 + change1 * change1) / p.slide_mass : 0.0;
 }
 
-void solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
+double solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
   const int r = row_of(c.count, 0);
   const Vec3 turning =
       b.w - a.w + Vec3{through_links(c, r), through_links(c, r + 1), through_links(c, r + 2)};
-  Vec3 next = c.rolling_impulse - c.rolling_mass * turning;
   double load = 0.0;
   for (int i = 0; i < c.count; ++i) load += c.points[i].normal_impulse;
-  const double most = c.rolling * load;
-  const double size = norm(next);
-  if (size > most) next *= most / size;
-  apply_moment(a, b, c, next - c.rolling_impulse);
+  const Vec3 next = rolling_after(c, c.rolling_impulse, turning, load);
+  const Vec3 by = next - c.rolling_impulse;
+  apply_moment(a, b, c, by);
   c.rolling_impulse = next;
+  return norm(by) / c.rolling_mass;
 }
 
 // Returns the change of speed.
@@ -233,8 +209,10 @@ double solve_normal(SolverBody& a, SolverBody& b, const ContactConstraint& c, Co
 double solve_contact(const StepContext& s, ContactConstraint& c) {
   SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
   double change = 0.0;
-  if (c.rolling_mass > 0.0) solve_rolling(a, b, c);
-  for (int i = 0; i < c.count; ++i) solve_friction(a, b, c, c.points[i], row_of(i, kTangent));
+  if (c.rolling_mass > 0.0) change = std::max(change, solve_rolling(a, b, c));
+  for (int i = 0; i < c.count; ++i) {
+    change = std::max(change, solve_friction(a, b, c, c.points[i], row_of(i, kTangent)));
+  }
   for (int i = 0; i < c.count; ++i) {
     change = std::max(change, solve_normal(a, b, c, c.points[i], row_of(i, kNormal)));
   }
@@ -242,14 +220,14 @@ double solve_contact(const StepContext& s, ContactConstraint& c) {
 }
 
 // Every other round goes the other way, so that a load runs up a stack as fast as down it.
-double one_round(const StepContext& s, bool forward) {
+double one_round(const StepContext& s, std::span<const std::uint32_t> contacts,
+                 std::span<const std::uint32_t> joints, bool forward) {
   double change = 0.0;
-  for (JointRow& row : s.joints) {
-    if (s.articulations[row.articulation].touched) change = std::max(change, solve_joint(row));
-  }
-  const std::size_t n = s.contacts.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    change = std::max(change, solve_contact(s, s.contacts[forward ? i : n - 1 - i]));
+  for (const std::uint32_t i : joints) change = std::max(change, solve_joint(s.joints[i]));
+  const std::size_t n = contacts.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t i = contacts[forward ? k : n - 1 - k];
+    change = std::max(change, solve_contact(s, s.contacts[i]));
   }
   return change;
 }
@@ -272,22 +250,39 @@ void settle_untouched(const StepContext& s) {
       for (std::size_t k = begin; k < end; ++k) {
         change = std::max(change, solve_joint(s.joints[k]));
       }
-      if (change < kConverged) break;
+      if (change < converged(s)) break;
     }
   }
 }
 
 void iterate(const StepContext& s) {
-  const std::size_t contacts = std::max<std::size_t>(1, s.contacts.size());
-  const int more =
-      static_cast<int>(std::clamp<std::size_t>(kFewContacts / contacts, 1, kMostRounds));
-  const int rounds = s.iterations * more;
-  Acceleration acceleration(s);
-  for (int i = 0; i < rounds; ++i) {
-    // Friction reads the normal impulses of the round before: two quiet rounds are needed.
-    if (one_round(s, i % 2 == 0) < kConverged && i > 0) break;
-    if (i % 2 == 1) acceleration.after_sweep(i + 1, rounds);
+  const Islands& islands = s.scratch.islands;
+  for (const Island& island : islands.all()) {
+    const auto contacts = islands.contacts(island), joints = islands.joints(island);
+    const bool is_small = island.rows <= DenseIsland::kMaxRows;
+    const std::size_t more =
+        std::clamp<std::size_t>(kFewContacts / contacts.size(), 1, kMostRounds);
+    // In sub-steps others change what has been settled: they come again soon.
+    const bool to_the_end = is_small && s.push_rate == 0.0;
+    const int alone = s.iterations * static_cast<int>(more);
+    const int rounds = to_the_end ? s.iterations * static_cast<int>(kMostRounds) : alone;
+    const int first = is_small ? kRoundsWithoutMatrix : rounds;
+    bool settled = false;
+    for (int i = 0; i < std::min(first, rounds) && !settled; ++i) {
+      settled = one_round(s, contacts, joints, i % 2 == 0) < converged(s);
+    }
+    if (settled || first >= rounds) continue;
+    DenseIsland(s, islands, island, s.scratch.dense).iterate(rounds - first, alone - first);
   }
+}
+
+// What is the same in all rounds.
+void begin(const StepContext& s) {
+  prepare_link_rows(s);
+  for (ContactConstraint& c : s.contacts) prepare(s, c);
+  s.scratch.islands.find(s);
+  warm_start(s);
+  settle_untouched(s);
 }
 
 bool set_bounce_targets(const StepContext& s) {
@@ -359,20 +354,14 @@ void set_normal(ContactConstraint& c, const Vec3& n) {
 }
 
 void solve(const StepContext& s) {
-  prepare_link_rows(s);
-  for (ContactConstraint& c : s.contacts) prepare(s, c);
-  warm_start(s);
-  settle_untouched(s);
+  begin(s);
   iterate(s);
   if (set_bounce_targets(s)) iterate(s);
   correct_positions(s);
 }
 
 void begin_sub_step(const StepContext& s) {
-  prepare_link_rows(s);
-  for (ContactConstraint& c : s.contacts) prepare(s, c);
-  warm_start(s);
-  settle_untouched(s);
+  begin(s);
 }
 
 void solve_sub_step(const StepContext& s) {

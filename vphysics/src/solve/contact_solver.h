@@ -63,6 +63,9 @@ struct ContactConstraint {
   Vec3 rolling_impulse;
   int count;
   bool swept;  // belongs to a continuous body
+  // By the solver: false where what it meets contradicts what others meet, as between two walls
+  // that come together. Such impulses are no guess for the next step.
+  bool consistent = true;
   // Prepared. An impulse moves the body itself; the body has no velocity, and gets none.
   bool moves_a, moves_b, stands_a, stands_b;
   ContactPoint points[collide::kMaxPoints];
@@ -71,12 +74,15 @@ struct ContactConstraint {
   bool has_links() const { return side_a.depth + side_b.depth > 0; }
 };
 
+struct InstantScratch;  // instant_scratch.h
+
 struct StepContext {
   std::span<SolverBody> bodies;
   std::span<ContactConstraint> contacts;
   std::span<JointRow> joints;
   std::span<SolverArticulation> articulations;
   std::vector<double>& rows;  // memory for those of links; keeps its capacity
+  InstantScratch& scratch;    // and for the islands
   double duration;            // to the end of the step [s]
   double step;                // all of it [s]
   double slop;

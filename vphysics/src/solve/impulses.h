@@ -1,10 +1,59 @@
 // What the impulses of a contact's rows do to its bodies.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "solve/contact_solver.h"
 #include "solve/link_rows.h"
 
 namespace vp::solve {
+
+// Changes of speed below this [m/s] end the iteration: a twenty-thousandth of what gravity adds in
+// the step, and no less than rounding leaves.
+inline double converged(const StepContext& s) {
+  return std::max(1e-7, 5e-4 * s.step);
+}
+
+// Of what is no link; links as they were before the solve.
+inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
+                              const ContactPoint& p) {
+  Vec3 u;
+  if (!c.stands_b) u = b.v + cross(b.w, p.arm_b);
+  if (!c.stands_a) u = u - a.v - cross(a.w, p.arm_a);
+  return u;
+}
+// What the solve has added to a row's speed through links.
+inline double through_links(const ContactConstraint& c, int row) {
+  if (!c.has_links()) return 0.0;
+  return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
+}
+
+// Friction's impulses, of those before, at tangential speeds u0 and u1 beside what the surfaces do
+// themselves. Sticking: what stops the point, by the whole block. Sliding: a gradient step,
+// projected on the disc, with one mass for both directions: only so does friction settle opposite
+// to the velocity, since the block turns what it multiplies.
+inline void friction_after(const ContactConstraint& c, const ContactPoint& p, double u0, double u1,
+                           double normal_impulse, double (&impulse)[2]) {
+  const double before0 = impulse[0], before1 = impulse[1];
+  impulse[0] = before0 - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
+  impulse[1] = before1 - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
+  const double most = c.friction * normal_impulse;
+  if (impulse[0] * impulse[0] + impulse[1] * impulse[1] <= most * most) return;
+  impulse[0] = before0 - p.slide_mass * u0;
+  impulse[1] = before1 - p.slide_mass * u1;
+  const double size = std::sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1]);
+  if (size <= most) return;
+  impulse[0] *= most / size;
+  impulse[1] *= most / size;
+}
+// That against rolling, at so fast a relative rotation, of contacts that carry so much.
+inline Vec3 rolling_after(const ContactConstraint& c, const Vec3& before, const Vec3& rotation,
+                          double load) {
+  const Vec3 next = before - c.rolling_mass * rotation;
+  const double most = c.rolling * load, size = norm(next);
+  return size > most ? (most / size) * next : next;
+}
 
 inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, const ContactPoint& p,
                   const Vec3& impulse) {

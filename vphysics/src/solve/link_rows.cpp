@@ -3,10 +3,6 @@
 namespace vp::solve {
 namespace {
 
-int rows_of(const ContactConstraint& c) {
-  return kRowsOfPoint * c.count + (c.rolling > 0.0 ? 3 : 0);
-}
-
 // Everything but the rows themselves.
 void attach(const SolverArticulation& art, std::uint32_t first, std::uint32_t depth,
             LinkSide& side) {
@@ -19,7 +15,8 @@ std::size_t attach(const StepContext& s, const ContactConstraint& c, std::uint32
   const SolverBody& link = s.bodies[body];
   if (link.articulation < 0) return 0;
   SolverArticulation& art = s.articulations[static_cast<std::size_t>(link.articulation)];
-  art.touched = true;
+  // What touches a link that is fixed to the world moves none of its joints.
+  art.touched = art.touched || art.factor->depth(link.link) > 0;
   attach(art, art.factor->first(link.link), art.factor->depth(link.link), side);
   return static_cast<std::size_t>(rows_of(c)) * side.depth;
 }

@@ -14,6 +14,10 @@ constexpr int row_of(int point, int direction) {
   return kRowsOfPoint * point + direction;
 }
 
+inline int rows_of(const ContactConstraint& c) {
+  return kRowsOfPoint * c.count + (c.rolling > 0.0 ? 3 : 0);
+}
+
 void prepare_link_rows(const StepContext& context);
 
 }  // namespace vp::solve

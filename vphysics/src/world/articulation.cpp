@@ -70,13 +70,12 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   v.resize(n);
   dofs.resize(n);
   for (std::vector<double>* scratch : {&damping_, &forced_, &moving_, &drift_, &rate_, &change_,
-                                       &force_, &zero_, &velocity_, &shift_}) {
+                                       &force_, &zero_, &pushed_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
   whole_.resize(floating_.size());
   joint_loads_.resize(n);
   loads_.resize(static_cast<std::size_t>(model.links()));
-  link_loads_.resize(loads_.size());
   for (int l = 0; l < model.links(); ++l) floating_of_.push_back(tree_of(model, floating_, l));
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
@@ -104,10 +103,13 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   first_dof_.push_back(model.velocities());
   start_q_ = moved_q_ = remote_q_ = q;
   const auto& nodes = model.tree().nodes;
+  has_user_joints_ = std::any_of(nodes.begin(), nodes.end(), [](const auto& node) {
+    return node.kind == detail::NodeKind::user;
+  });
   constant_ = !damped_ && std::all_of(nodes.begin(), nodes.end(), continues_axis);
   forward_kinematics<double>(model_, data_, q, v);
   regular_ = factor_.factor(model_, data_);
-  factored_ = true;
+  factored_ = Factored::without_damping;
   find_change(1.0, zero_);
   fall_ = change_;
   if (constant_) {
@@ -124,7 +126,8 @@ void Articulation::refresh() {
     return;
   }
   forward_kinematics<double>(model_, data_, q, v);
-  factored_ = twists_ = false;
+  factored_ = Factored::no;
+  twists_ = false;
 }
 
 // A joint that looks the other way along its line slides and turns backwards.
@@ -217,7 +220,7 @@ bool Articulation::settle_alone(double h) {
       impulse = std::clamp(p, -motor.most, motor.most);
       v_after = standing_or(speed + responses_[i] * impulse);
     }
-    dof.drive_impulse = impulse;
+    dof.impulses = {impulse};
     v[i] = v_after;
   }
   if (!remote) update_twists();
@@ -290,10 +293,12 @@ SE3 Articulation::T_world_link(int link) const {
   return SE3(moved.rotation(), moved.position() + T_line_link_[l].position().z * R.cz);
 }
 
+// Without damping, which forces of the step alone have time for.
 void Articulation::update_factor() {
-  if (factored_) return;
+  const bool damped = factored_ == Factored::for_the_step && damped_;
+  if (factored_ != Factored::no && !damped) return;
   (void)factor_.factor(model_, data_);
-  factored_ = true;
+  factored_ = Factored::without_damping;
 }
 
 void Articulation::update_twists() {
@@ -310,15 +315,15 @@ se3 Articulation::twist_in_data(int link, const Vec3& p) const {
 
 // change_ = (M + dt D)^-1 dt (f - h(q, at) - D v)
 void Articulation::find_change(double dt, std::span<const double> at) {
-  Loads loads{.gravity = gravity_, .external = {}};
-  if (loaded_) loads.external = link_loads_;
-  inverse_dynamics<double>(model_, data_, q, at, zero_, loads, force_);
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    // inverse_dynamics() has the damping of the velocities that it is given.
-    change_[i] = dt * (damping_[i] * (at[i] - v[i]) - force_[i]);
+  if (has_user_joints_) {
+    inverse_dynamics<double>(model_, data_, q, at, zero_, {.gravity = gravity_}, force_);
+    for (std::size_t i = 0; i < v.size(); ++i) force_[i] -= damping_[i] * at[i];
+  } else {
+    factor_.twists(at);
+    factor_.bias(gravity_, force_);
   }
-  if (loaded_) {
-    for (std::size_t i = 0; i < v.size(); ++i) change_[i] += dt * joint_loads_[i];
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    change_[i] = dt * (pushed_[i] - force_[i] - damping_[i] * v[i]);
   }
   factor_.solve(change_);
 }
@@ -328,12 +333,16 @@ void Articulation::clear_loads() {
   loaded_ = false;
   std::fill(loads_.begin(), loads_.end(), dse3{});
   std::fill(joint_loads_.begin(), joint_loads_.end(), 0.0);
+  std::fill(pushed_.begin(), pushed_.end(), 0.0);
 }
 
-void Articulation::find_loads_of_links() {
+// All of the user's, along the joints.
+void Articulation::find_pushed() {
+  pushed_ = joint_loads_;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
-    const SE3 T = T_world_link(static_cast<int>(l));
-    link_loads_[l] = {T.unrotate(loads_[l].m), T.unrotate(loads_[l].f)};
+    if (loads_[l] == dse3{}) continue;
+    const int link = static_cast<int>(l);
+    factor_.add_load(link, T_world_link(link).position(), loads_[l], pushed_);
   }
 }
 
@@ -423,21 +432,22 @@ bool Articulation::add_forces(double dt, bool& changed) {
     changed = add_constant_forces(dt);
     return true;
   }
-  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(model_, data_);
   const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
-  factored_ = !damped_;
-  if (loaded_) find_loads_of_links();
+  factored_ = Factored::for_the_step;
+  if (!floating_.empty()) factor_.twists(v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
+  if (loaded_) find_pushed();
   find_change(dt, v);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
   find_change(dt, rate_);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
-  if (!floating_.empty()) forward_kinematics<double>(model_, data_, q, v);
+  if (!floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
     whole_[i].linear += (dt * whole_[i].mass) * gravity_;
   }
   if (loaded_) add_loads_of_trees(dt);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, whole_[i], v);
+    floating_[i].set_momentum(model_, data_, floating_[i].whole(data_, factor_), whole_[i], v);
   }
   update_twists();
   return fine;
@@ -461,28 +471,29 @@ void Articulation::advance(double h) {
     for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
     integrate<double>(model_, q, rate_, q);
   }
-  refresh();
+  refresh();  // in full, as restore() does: to the same bits
 }
 
 // The root turns at the rate that it will have halfway, where its momentum is what it is now.
 void Articulation::advance_floating(double h) {
-  forward_kinematics<double>(model_, data_, q, v);
-  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(model_, data_);
+  if (factored_ == Factored::no) update_factor();
+  factor_.twists(v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = 0.5 * h * v[i];
   integrate<double>(model_, q, rate_, moved_q_);
   forward_kinematics<double>(model_, data_, moved_q_, v);
   rate_ = v;
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, whole_[i], rate_);
+    floating_[i].set_momentum(model_, data_, floating_[i].whole(model_, data_), whole_[i], rate_);
   }
   for (double& r : rate_) r *= h;
   integrate<double>(model_, q, rate_, q);
   forward_kinematics<double>(model_, data_, q, v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    const WholeTree& from = whole_[i];
+    const WholeTree &from = whole_[i], now = floating_[i].whole(model_, data_);
     const Vec3 centre = from.centre + (h / from.mass) * from.linear;
-    floating_[i].shift(model_, centre - floating_[i].whole(model_, data_).centre, q);
-    floating_[i].set_momentum(model_, data_, from, v);
+    floating_[i].shift(model_, centre - now.centre, q);
+    floating_[i].set_momentum(model_, data_, now, from, v);
   }
 }
 
@@ -512,8 +523,8 @@ void Articulation::end_sub_steps(double dt) {
   factor_.twists(drift_);
 }
 
-solve::SolverArticulation Articulation::begin_solve() {
-  update_factor();
+solve::SolverArticulation Articulation::begin_solve(bool whole_step) {
+  if (!whole_step || factored_ != Factored::for_the_step) update_factor();
   std::fill(velocity_.begin(), velocity_.end(), 0.0);
   std::fill(shift_.begin(), shift_.end(), 0.0);
   return {&factor_, velocity_.data(), shift_.data(), false};
@@ -576,7 +587,7 @@ bool Articulation::in_range() const {
 void Articulation::return_to_start() {
   q = start_q_;
   std::fill(v.begin(), v.end(), 0.0);
-  for (JointDof& dof : dofs) dof.drive_impulse = 0.0;
+  for (JointDof& dof : dofs) dof.impulses = {};
   refresh();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,6 +15,16 @@
 
 namespace vp {
 
+// The rows that a degree of freedom may have in the solver.
+enum RowOfDof : std::uint8_t {
+  kMotorRow,
+  kFrictionRow,  // or the lock, where it is infinite
+  kSpringRow,
+  kLowerRow,  // limits: stops, or springs
+  kUpperRow,
+  kRowsOfDof
+};
+
 // One degree of freedom.
 struct JointDof {
   int coordinate = -1;  // its place in q; -1: of a ball or a free joint, where there is none
@@ -22,7 +33,8 @@ struct JointDof {
   bool locked = false;                 // by infinite friction
   bool passive = false;                // has a spring, friction, or limits that give way
   JointDrive drive;
-  double drive_impulse = 0.0;  // warm start
+  // Of each of its rows in the last step, from which the next solve starts.
+  std::array<double, kRowsOfDof> impulses{};
 };
 
 // A motor for h. With f = k (p - q - h v) + d (v_t - v) its impulse is push - gain v, v being the
@@ -90,7 +102,8 @@ class Articulation {
   bool settles_alone() const { return !responses_.empty(); }
   // After a change of any dof's drive.
   void drives_changed() { drives_are_compared_ = false; }
-  solve::SolverArticulation begin_solve();
+  // whole_step: impulses that act all along the step, which the joints' damping resists meanwhile.
+  solve::SolverArticulation begin_solve(bool whole_step);
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();
   // World frame. False, and nothing changes, if a velocity would leave the range.
@@ -158,7 +171,7 @@ class Articulation {
   void place_on_lines();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
-  void find_loads_of_links();
+  void find_pushed();
   void add_loads_of_trees(double dt);
   void add_impulse(int link, double dt);
   void add_joint_impulse(std::uint32_t dof, double dt);
@@ -175,6 +188,7 @@ class Articulation {
   std::vector<std::size_t> stopped_;  // degrees of freedom with hard stops
   std::vector<double> damping_;       // of each degree of freedom
   bool damped_ = false;
+  bool has_user_joints_ = false;  // only the model's own passes know how they move
   // All joints move along and about one line on which all masses are balanced, and none is damped,
   // as of a table's rods: the mass matrix and the forces of gravity never change, and the
   // velocities make none. One factor serves for ever; data_ is not used, for so few joints its
@@ -203,19 +217,19 @@ class Articulation {
   // Then of each velocity: its drive and response are those of the one before it.
   std::vector<std::uint8_t> driven_alike_;
   bool drives_are_compared_ = false;
-  bool factored_ = false;  // for this configuration, without damping
-  bool twists_ = false;    // the factor has the links' velocities, else the data
+  enum class Factored : std::uint8_t { no, without_damping, for_the_step };
+  Factored factored_ = Factored::no;  // of this configuration
+  bool twists_ = false;               // the factor has the links' velocities, else the data
   bool regular_ = false;
   bool loaded_ = false;
   std::vector<dse3> loads_;          // of each link
-  std::vector<dse3> link_loads_;     // the same, as the model's passes want them: in its frame
   std::vector<double> joint_loads_;  // of each degree of freedom
   std::vector<int> floating_of_;     // of each link: the tree that it is of, or -1
 
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
   std::vector<double> forced_;          // what the forces of this step have added to v
-  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, velocity_, shift_;
+  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, pushed_, velocity_, shift_;
   std::vector<double> remote_q_;
   std::vector<WholeTree> whole_;
   std::vector<double> fall_;  // the acceleration of a constant one

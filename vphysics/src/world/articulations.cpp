@@ -10,8 +10,6 @@ namespace vp {
 
 // Contacts at once for whose rows there is memory before they are needed.
 constexpr std::size_t kContactsReady = 32;
-// Rows of one degree of freedom at most: motor, friction or lock, spring, two limits.
-constexpr std::size_t kRowsOfDof = 5;
 
 // Links are bodies for all that collides; their pose and velocity are copies.
 void World::Impl::follow(Articulation& art) {
@@ -78,71 +76,82 @@ namespace {
 // a soft row: v + s f h = target with s = 1 / (h^2 k + h d), target = (h k (p - q) + h d v_t) s.
 class JointRows {
  public:
+  // With memory, rows start from what they were in the last step, and are remembered.
   JointRows(std::vector<solve::JointRow>& rows, std::uint32_t articulation, std::uint32_t i,
-            const Articulation& art)
-      : rows_(rows), dof_(art.dofs[i]), speed_(art.v[i]), articulation_(articulation), i_(i) {
+            Articulation& art, bool with_memory)
+      : rows_(rows),
+        dof_(art.dofs[i]),
+        speed_(art.v[i]),
+        articulation_(articulation),
+        i_(i),
+        with_memory_(with_memory) {
     if (dof_.coordinate >= 0) q_ = art.q[static_cast<std::size_t>(dof_.coordinate)];
+    if (!with_memory_) return;
+    before_ = dof_.impulses;
+    dof_.impulses = {};
   }
 
-  bool add_motor(double h, JointDof& dof) {
-    const Motor motor = motor_of(dof, h, q_);
-    if (motor.most <= 0.0) return false;
-    solve::JointRow& row = add(motor.push / motor.gain, -motor.most, motor.most);
-    row.softness = 1.0 / motor.gain;
-    row.impulse = std::clamp(dof.drive_impulse, -motor.most, motor.most);
-    row.remember = &dof.drive_impulse;
-    return true;
+  void add_motor(double h) {
+    const Motor motor = motor_of(dof_, h, q_);
+    if (motor.most <= 0.0) return;
+    add(kMotorRow, motor.push / motor.gain, -motor.most, motor.most, 1.0 / motor.gain);
   }
   // Spring, dry friction, and limits that give way.
   void add_passive(double h) {
     const JointForces& f = dof_.forces;
-    if (f.friction > 0.0 && !dof_.locked) add(0.0, -h * f.friction, h * f.friction);
+    if (f.friction > 0.0 && !dof_.locked) {
+      add(kFrictionRow, 0.0, -h * f.friction, h * f.friction);
+    }
     if (dof_.coordinate < 0) return;
-    if (f.stiffness > 0.0) add_spring(h, f.stiffness, 0.0, f.rest, -kAny, kAny);
+    if (f.stiffness > 0.0) add_spring(kSpringRow, h, f.stiffness, 0.0, f.rest, -kAny, kAny);
     if (std::isfinite(f.limit_stiffness)) {
       if (std::isfinite(f.lower)) {
-        add_spring(h, f.limit_stiffness, f.limit_damping, f.lower, 0.0, kAny);
+        add_spring(kLowerRow, h, f.limit_stiffness, f.limit_damping, f.lower, 0.0, kAny);
       }
       if (std::isfinite(f.upper)) {
-        add_spring(h, f.limit_stiffness, f.limit_damping, f.upper, -kAny, 0.0);
+        add_spring(kUpperRow, h, f.limit_stiffness, f.limit_damping, f.upper, -kAny, 0.0);
       }
     }
   }
   // Stops let the joint just reach them by the end of the step, and bring back within a whole step
   // what is beyond them. A locked joint stands.
   void add_stops(double h, double dt) {
-    if (dof_.locked) add(0.0, -kAny, kAny);
+    if (dof_.locked) add(kFrictionRow, 0.0, -kAny, kAny);
     if (dof_.coordinate < 0) return;
     const double below = dof_.lower - q_, above = dof_.upper - q_;
     // Rows only for stops within reach; twice the present rate, since an impulse may add to it.
     const double near = h * (2.0 * std::fabs(speed_) + 1.0);
-    if (below > -near) add(below / (below > 0.0 ? dt : h), 0.0, kAny);
-    if (above < near) add(above / (above < 0.0 ? dt : h), -kAny, 0.0);
+    if (below > -near) add(kLowerRow, below / (below > 0.0 ? dt : h), 0.0, kAny);
+    if (above < near) add(kUpperRow, above / (above < 0.0 ? dt : h), -kAny, 0.0);
   }
 
  private:
   static constexpr double kAny = 1e30;
 
-  solve::JointRow& add(double target, double lower, double upper) {
+  void add(RowOfDof kind, double target, double lower, double upper, double softness = 0.0) {
     solve::JointRow& row = rows_.emplace_back();
     row.articulation = articulation_;
     row.dof = i_;
     row.speed = speed_;
     row.target = target;
+    row.softness = softness;
     row.lower = lower;
     row.upper = upper;
-    return row;
+    row.impulse = std::clamp(before_[kind], lower, upper);
+    row.remember = with_memory_ ? &dof_.impulses[kind] : nullptr;
   }
-  void add_spring(double h, double stiffness, double damping, double rest, double lower,
-                  double upper) {
+  void add_spring(RowOfDof kind, double h, double stiffness, double damping, double rest,
+                  double lower, double upper) {
     const double gain = h * (h * stiffness + damping);
-    if (gain > 0.0) add(h * stiffness * (rest - q_) / gain, lower, upper).softness = 1.0 / gain;
+    if (gain > 0.0) add(kind, h * stiffness * (rest - q_) / gain, lower, upper, 1.0 / gain);
   }
 
   std::vector<solve::JointRow>& rows_;
-  const JointDof& dof_;
+  JointDof& dof_;
   double speed_, q_ = 0.0;
   std::uint32_t articulation_, i_;
+  bool with_memory_;
+  std::array<double, kRowsOfDof> before_{};
 };
 
 }  // namespace
@@ -166,9 +175,9 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
     const bool first =
         of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
-      JointRows rows(impacts.joint_rows, a, i, art);
+      JointRows rows(impacts.joint_rows, a, i, art, first);
       if (first) {
-        if (!rows.add_motor(h, art.dofs[i])) art.dofs[i].drive_impulse = 0.0;
+        rows.add_motor(h);
         if (art.dofs[i].passive) rows.add_passive(h);
       }
       rows.add_stops(h, dt);
@@ -176,10 +185,10 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
   }
 }
 
-void World::Impl::begin_solve_articulations() {
+void World::Impl::begin_solve_articulations(bool first) {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
-    if (art.alive && !art.remote) impacts.solver_articulations[a] = art.begin_solve();
+    if (art.alive && !art.remote) impacts.solver_articulations[a] = art.begin_solve(first);
   }
 }
 

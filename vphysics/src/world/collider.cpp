@@ -121,4 +121,9 @@ Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b)
           smaller.geometry.kind == collide::Kind::compound};
 }
 
+double smaller_size(const Collider& a, const Collider& b) {
+  if (a.size == 0.0) return b.size;
+  return b.size == 0.0 ? a.size : std::min(a.size, b.size);
+}
+
 }  // namespace vp

@@ -80,4 +80,7 @@ struct Vicinity {
 
 Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b);
 
+// Half of the least extent of the smaller one; 0 if neither has one.
+double smaller_size(const Collider& a, const Collider& b);
+
 }  // namespace vp

@@ -51,6 +51,12 @@ bool of_one_pair(const solve::ContactConstraint& a, const solve::ContactConstrai
   return a.collider_a == b.collider_a && a.collider_b == b.collider_b;
 }
 
+// By as much as a contact in lanes (solve::kTooDeep).
+bool is_too_deep(const Collider& a, const Collider& b, double separation) {
+  const double size = smaller_size(a, b);
+  return size > 0.0 && separation < -0.5 * size;
+}
+
 // A load that is carried is no approach in the impacts that follow.
 void remove_carried(Vec3& forced, const Vec3& change) {
   const double against = -dot(forced, change), size = dot(change, change);
@@ -119,6 +125,7 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
     p.normal_impulse = old ? old->normal_impulse : 0.0;
     p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
     p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
+    if (is_too_deep(a, b, p.separation)) position_error_now = true;
   }
 }
 
@@ -174,7 +181,12 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
       }
     }
   }
-  impacts.contacts.assign(impacts.discrete_contacts.begin(), impacts.discrete_contacts.end());
+  if (first && impacts.swept_pairs.empty()) {  // no impact will follow that wants them again
+    impacts.contacts.swap(impacts.discrete_contacts);
+    impacts.discrete_contacts.clear();
+  } else {
+    impacts.contacts.assign(impacts.discrete_contacts.begin(), impacts.discrete_contacts.end());
+  }
   find_swept_contacts(first);
   impacts.in_contact.assign(bodies.size(), 0);
   for (const solve::ContactConstraint& c : impacts.contacts) {
@@ -184,10 +196,10 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
   if (impacts.contacts.empty() && impacts.joint_rows.empty()) return;
   refresh_solver_bodies();
-  begin_solve_articulations();
+  begin_solve_articulations(first);
   solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows,
-                impacts.solver_articulations, impacts.link_rows, h, dt, desc.contact_slop,
-                desc.restitution_threshold, desc.velocity_iterations});
+                impacts.solver_articulations, impacts.link_rows, impacts.instant, h, dt,
+                desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
@@ -267,12 +279,12 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
     PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b), part);
     record.count = static_cast<std::uint32_t>(c.count);
     // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
-    const Vec3 rolling = scale * c.rolling_impulse;
+    const Vec3 rolling = c.consistent ? scale * c.rolling_impulse : Vec3{};
     record.rolling = in_range(rolling) ? rolling : Vec3{};
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};
-      if (p.bounces) continue;  // a bounce carries nothing on
+      if (p.bounces || !c.consistent) continue;  // a bounce carries nothing on
       record.points[i].normal_impulse = scale * p.normal_impulse;
       record.points[i].friction =
           scale * (p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]);

@@ -32,12 +32,6 @@ int points_of(const Contact& c, const Collider& a, const Collider& b) {
   return ball ? 1 : collide::kMaxPoints;
 }
 
-// The least of the two; a half-space has no size.
-double smaller_size(const Collider& a, const Collider& b) {
-  if (a.size == 0.0) return b.size;
-  return b.size == 0.0 ? a.size : std::min(a.size, b.size);
-}
-
 // The impulses that a contact's lane holds.
 struct Held {
   std::array<float, collide::kMaxPoints> normal{};

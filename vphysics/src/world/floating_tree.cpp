@@ -34,15 +34,28 @@ WholeTree FloatingTree::whole(const Model& model, const Data& data) const {
     J = J + own;
     P = P + own * detail::velocity_of(data.work(), node);
   }
+  return whole(data, J, P);
+}
+
+WholeTree FloatingTree::whole(const Data& data, const detail::ImpulseFactor& factor) const {
+  Inertia J;
+  dse3 P{};
+  for (const int node : nodes_) {
+    J = J + factor.inertia_of(node);
+    P = P + factor.inertia_of(node) * factor.twist_of(node);
+  }
+  return whole(data, J, P);
+}
+
+WholeTree FloatingTree::whole(const Data& data, const Inertia& J, const dse3& P) const {
   const Vec3 c = J.centre_of_mass();
   const Vec3 origin = detail::origin_of(data.work(), root_);
   return {J.mass(), c + origin,          J.central(),
           P.f,      P.m - cross(c, P.f), detail::pose_of(data.work(), root_).position() + origin};
 }
 
-void FloatingTree::set_momentum(const Model& model, const Data& data, const WholeTree& wanted,
-                                std::span<double> v) const {
-  const WholeTree now = whole(model, data);
+void FloatingTree::set_momentum(const Model& model, const Data& data, const WholeTree& now,
+                                const WholeTree& wanted, std::span<double> v) const {
   const Vec3 w = inverse(now.central) * (wanted.angular - now.angular);
   const Vec3 at_centre = (1.0 / now.mass) * (wanted.linear - now.linear);
   const SE3 T_tree_root = detail::pose_of(data.work(), root_);

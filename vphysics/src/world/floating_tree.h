@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "multibody/impulse_factor.h"
 #include "vphysics/multibody/dynamics.h"
 
 namespace vp {
@@ -30,14 +31,19 @@ class FloatingTree {
 
   // Of the configuration and velocities that forward_kinematics() was given last.
   WholeTree whole(const Model& model, const Data& data) const;
-  // Changes the root's velocities in v, which forward_kinematics() was given last, to those with
-  // the momentum wanted.
-  void set_momentum(const Model& model, const Data& data, const WholeTree& wanted,
-                    std::span<double> v) const;
+  // The same of the velocities that factor.twists() was given last; the factor is of the data's
+  // configuration.
+  WholeTree whole(const Data& data, const detail::ImpulseFactor& factor) const;
+  // Changes the root's velocities in v, of which the tree is as it is now, to those with the
+  // momentum wanted.
+  void set_momentum(const Model& model, const Data& data, const WholeTree& now,
+                    const WholeTree& wanted, std::span<double> v) const;
   void shift(const Model& model, const Vec3& by, std::span<double> q) const;
   int root() const { return root_; }  // the number of its node
 
  private:
+  WholeTree whole(const Data& data, const Inertia& J, const dse3& momentum) const;
+
   int root_ = 0;
   std::vector<int> nodes_;
 };

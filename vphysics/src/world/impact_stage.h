@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solve/contact_solver.h"
+#include "solve/instant_scratch.h"
 #include "world/impact_pairs.h"
 
 namespace vp {
@@ -67,6 +68,7 @@ struct ImpactStage {
   std::vector<solve::JointRow> joint_rows;
   std::vector<solve::SolverArticulation> solver_articulations;
   std::vector<double> link_rows;
+  solve::InstantScratch instant;
 
   // --- of the sub-steps
   std::vector<solve::ContactConstraint> link_contacts;

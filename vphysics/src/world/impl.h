@@ -109,6 +109,7 @@ struct World::Impl {
   // --- of the step that is going on
   double dt_now = 0.0;  // 0: none is
   bool finds_contacts = false;
+  bool position_error_now = false;  // of contacts or joints, so far
   NarrowPhaseScratch narrow;
   SubStepScratch sub_step;
   std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
@@ -159,7 +160,7 @@ struct World::Impl {
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);
   void add_joint_rows(double h, double dt, JointRowsOf of);
-  void begin_solve_articulations();
+  void begin_solve_articulations(bool first);
   void end_solve_articulations(bool first);
   void advance_articulations(double h);
   bool stop_if_out_of_range(Articulation& articulation);
@@ -193,6 +194,7 @@ struct World::Impl {
                     const Vec3& more_w);
   void advance_all(double dt);
   void apply_corrections();
+  void note_position_error();
   void finish_step();
   InStage in(Stage stage) const { return {observer.get(), stage}; }
   void count_contacts();

@@ -96,6 +96,7 @@ solve::StepContext World::Impl::link_context(double h) {
           impacts.joint_rows,
           impacts.solver_articulations,
           impacts.link_rows,
+          impacts.instant,
           h,
           h,
           desc.contact_slop,
@@ -134,7 +135,7 @@ void World::Impl::begin_links(double h) {
     for (const std::uint32_t b : art.bodies) {
       impacts.forced[b] = {bodies[b].w - impacts.forced[b].w, bodies[b].v - impacts.forced[b].v};
     }
-    impacts.solver_articulations[a] = art.begin_solve();
+    impacts.solver_articulations[a] = art.begin_solve(true);
   }
   add_joint_rows(h, h, JointRowsOf::sub_step);
   for (const solve::ContactConstraint& c : impacts.link_contacts) {

@@ -25,7 +25,7 @@ struct BodyState {
 struct DofState {
   double v = 0.0;
   JointDrive drive;
-  double drive_impulse = 0.0;
+  std::array<double, kRowsOfDof> impulses{};
 };
 // What of a joint changes.
 struct JointState {
@@ -59,7 +59,7 @@ void read(Reader& in, const JointDof& dof, DofState& state) {
   d.damping = in.number();
   d.max_force = in.number();
   in.check(!problem_with(d).has_value() && (dof.coordinate >= 0 || d.stiffness == 0.0));
-  state.drive_impulse = in.number();
+  for (double& x : state.impulses) x = in.number();
 }
 
 void read(Reader& in, const Colliders& colliders, PairRecord& r) {
@@ -309,7 +309,7 @@ void World::Impl::adopt(Incoming& from) {
     for (std::size_t i = 0; i < art.v.size(); ++i, ++dof) {
       art.v[i] = dof->v;
       art.dofs[i].drive = dof->drive;
-      art.dofs[i].drive_impulse = dof->drive_impulse;
+      art.dofs[i].impulses = dof->impulses;
     }
     art.drives_changed();
     art.refresh();

@@ -133,10 +133,11 @@ void World::Impl::write(Sink& sink) {
     for (const double x : art.q) put(sink, x);
     for (std::size_t i = 0; i < art.v.size(); ++i) {
       const JointDrive& d = art.dofs[i].drive;
-      for (const double x : {art.v[i], d.position, d.velocity, d.stiffness, d.damping, d.max_force,
-                             art.dofs[i].drive_impulse}) {
+      for (const double x :
+           {art.v[i], d.position, d.velocity, d.stiffness, d.damping, d.max_force}) {
         put(sink, x);
       }
+      for (const double x : art.dofs[i].impulses) put(sink, x);
     }
   }
   for (const PairRecord& record : impacts.records) put(sink, record);

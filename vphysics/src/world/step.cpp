@@ -8,6 +8,7 @@
 // See docs/decisions/0002-impacts-and-contacts.md.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vphysics/recording.h"
 #include "world/free_turn.h"
@@ -39,6 +40,7 @@ void World::Impl::begin_step(double dt) {
   ready_for_queries = false;
   const std::size_t n = bodies.size();
   status = {};
+  position_error_now = false;
   counters = {};
   narrow.manifold_scratch.looked_at = 0;
   narrow.manifold_scratch.crowded = narrow.manifold_scratch.rough = false;
@@ -106,6 +108,9 @@ void World::Impl::begin_impact_stage() {
   impacts.link_contacts.reserve(room);
   step_contacts.reserve(4 * room);
   narrow.manifolds.reserve(kManifoldsOfPair);
+  std::size_t dofs = 0;
+  for (const Articulation& art : articulations) dofs = std::max(dofs, art.dofs.size());
+  impacts.instant.reserve(room, impacts.joint_rows.capacity(), dofs);
   impacts.bodies_on_links.reserve(n);
   impacts.bounds.resize(n);
   impacts.motions.resize(n);
@@ -486,8 +491,15 @@ void World::Impl::count_contacts() {
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }
 
+// What is pushed out within a step of its beginning is no trouble.
+void World::Impl::note_position_error() {
+  const bool before = std::exchange(sub_step_state.position_error, position_error_now);
+  status.position_error = position_error_now && before;
+}
+
 void World::Impl::finish_step() {
   count_contacts();
+  note_position_error();
   if (desc.sleep_after > 0.0) {
     const auto stage = in(Stage::sleep);
     send_to_sleep();

@@ -168,10 +168,7 @@ int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt) {
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_in(desc, speed_unit, dt);
   sub_steps_taken = n;
-  if (!lists.some_sub_stepped) {
-    sub_step_state.position_error = false;
-    return;
-  }
+  if (!lists.some_sub_stepped) return;
   take_sub_steps(dt, n);
   const auto stage = in(Stage::report);
   report_news();
@@ -249,10 +246,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
     steps.go_on();
   }
   const bool some_are_far_open = joint_steps.end(dt);
-  // What is pushed out within a step of its beginning is no trouble.
-  const bool error = steps.some_too_deep() || some_are_far_open;
-  const bool error_before = std::exchange(state.position_error, error);
-  status.position_error = error && error_before;
+  if (steps.some_too_deep() || some_are_far_open) position_error_now = true;
 }
 
 }  // namespace vp

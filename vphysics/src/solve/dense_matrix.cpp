@@ -1,0 +1,200 @@
+#include "solve/dense_matrix.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "solve/fours.h"
+#include "solve/impulses.h"
+
+namespace vp::solve {
+namespace {
+
+// y of a free body's rows, so that (y, y') is how one answers the other: an impulse f through the
+// centre of mass and a moment m about it are f / sqrt(mass) and L^T m, L L^T the inverse inertia.
+class BodyAnswer {
+ public:
+  static constexpr std::size_t kSize = 8;  // six numbers and two zeros
+
+  explicit BodyAnswer(const SolverBody& body) : linear_(std::sqrt(body.inverse_mass)) {
+    const Sym3& A = body.angular;
+    xx_ = root(A.xx);
+    yx_ = quotient(A.xy, xx_);
+    zx_ = quotient(A.zx, xx_);
+    yy_ = root(A.yy - yx_ * yx_);
+    zy_ = quotient(A.yz - zx_ * yx_, yy_);
+    zz_ = root(A.zz - zx_ * zx_ - zy_ * zy_);
+  }
+  void add(const Vec3& f, const Vec3& m, double* y) const {
+    y[0] += linear_ * f.x;
+    y[1] += linear_ * f.y;
+    y[2] += linear_ * f.z;
+    y[3] += xx_ * m.x + yx_ * m.y + zx_ * m.z;
+    y[4] += yy_ * m.y + zy_ * m.z;
+    y[5] += zz_ * m.z;
+  }
+
+ private:
+  static double root(double square) { return square > 0.0 ? std::sqrt(square) : 0.0; }
+  static double quotient(double a, double b) { return b > 0.0 ? a / b : 0.0; }
+  double linear_, xx_, yx_, zx_, yy_, zy_, zz_;
+};
+
+void add_rows_of_body(const SolverBody& body, const ContactConstraint& c, bool is_a, double* y) {
+  const BodyAnswer answer(body);
+  const double sign = is_a ? -1.0 : 1.0;
+  for (int i = 0; i < c.count; ++i) {
+    const Vec3& arm = is_a ? c.points[i].arm_a : c.points[i].arm_b;
+    for (const Vec3* d : {&c.normal, &c.tangent[0], &c.tangent[1]}) {
+      answer.add(sign * *d, sign * cross(arm, *d), y);
+      y += BodyAnswer::kSize;
+    }
+  }
+  if (c.rolling <= 0.0) return;
+  for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    answer.add({}, sign * d, y);
+    y += BodyAnswer::kSize;
+  }
+}
+
+void add_rows_of_links(const LinkSide& side, int rows, std::size_t size, double* y) {
+  for (int r = 0; r < rows; ++r, y += size) {
+    const double* from = side.row(r);
+    for (std::uint32_t k = 0, d = side.first; k < side.depth; ++k, d = side.next[d]) {
+      y[d] += from[k];
+    }
+  }
+}
+
+// Whether an impulse of the contact pushes the articulation there.
+bool is_of(const StepContext& s, std::uint32_t body, const LinkSide& side,
+           std::uint32_t articulation) {
+  return side.depth > 0 && s.bodies[body].articulation == static_cast<int>(articulation);
+}
+
+// W, mover after mover: the rows that push it, as a matrix Y, add Y Y^T.
+class Assembly {
+ public:
+  Assembly(const StepContext& s, const Islands& islands, const Island& island,
+           DenseScratch& scratch)
+      : s_(s),
+        joints_(islands.joints(island)),
+        contacts_(islands.contacts(island)),
+        scratch_(scratch),
+        n_(island.rows),
+        stride_(in_fours(n_)),
+        W_(scratch.matrix.data()) {}
+
+  void run() {
+    list_ends();
+    auto& ends = scratch_.ends;
+    for (std::size_t begin = 0, end = 0; begin < ends.size(); begin = end) {
+      const MoverKey key = ends[begin].mover;
+      while (end < ends.size() && ends[end].mover == key) ++end;
+      add_mover(key, std::span(ends).subspan(begin, end - begin));
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < i; ++j) W_[j * stride_ + i] = W_[i * stride_ + j];
+    }
+  }
+
+ private:
+  // What each joint row and each contact pushes.
+  void list_ends() {
+    auto& ends = scratch_.ends;
+    ends.clear();
+    std::uint32_t row = 0;
+    for (const std::uint32_t j : joints_) {
+      ends.push_back({key_of_articulation(s_.joints[j].articulation), row++, kNoContact});
+    }
+    for (const std::uint32_t k : contacts_) {
+      const ContactConstraint& c = s_.contacts[k];
+      const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side) {
+        if (moves) ends.push_back({body, row, k});
+        if (side.depth == 0) return;
+        const auto own = static_cast<std::uint32_t>(s_.bodies[body].articulation);
+        ends.push_back({key_of_articulation(own), row, k});
+      };
+      add(c.a, c.moves_a, c.side_a);
+      add(c.b, c.moves_b, c.side_b);
+      row += static_cast<std::uint32_t>(rows_of(c));
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  }
+
+  void add_mover(MoverKey key, std::span<const DenseEnd> ends) {
+    const bool is_body = key < key_of_articulation(0);
+    const auto mover = static_cast<std::uint32_t>(key);
+    size_ = is_body ? BodyAnswer::kSize : in_fours(s_.articulations[mover].factor->dofs());
+    scratch_.rows.clear();
+    scratch_.answers.clear();
+    for (const DenseEnd& end : ends) {
+      if (end.contact == kNoContact) {
+        add_rows_of_links(s_.joints[joints_[end.row]].side, 1, size_, append(end.row, 1));
+        continue;
+      }
+      const ContactConstraint& c = s_.contacts[end.contact];
+      const int count = rows_of(c);
+      double* const y = append(end.row, count);
+      if (is_body) {
+        if (c.moves_a && c.a == mover) add_rows_of_body(s_.bodies[c.a], c, true, y);
+        if (c.moves_b && c.b == mover) add_rows_of_body(s_.bodies[c.b], c, false, y);
+      } else {
+        if (is_of(s_, c.a, c.side_a, mover)) add_rows_of_links(c.side_a, count, size_, y);
+        if (is_of(s_, c.b, c.side_b, mover)) add_rows_of_links(c.side_b, count, size_, y);
+      }
+    }
+    add_products();
+  }
+
+  // Of rows that follow one another, their y: zeros so far.
+  double* append(std::uint32_t first, int count) {
+    const std::size_t before = scratch_.rows.size();
+    for (int r = 0; r < count; ++r) scratch_.rows.push_back(first + static_cast<std::uint32_t>(r));
+    scratch_.answers.resize(scratch_.rows.size() * size_, 0.0);
+    return scratch_.answers.data() + before * size_;
+  }
+
+  // To the lower half alone: rows ascend. Most of a y is zero: links of different branches share
+  // only what carries both.
+  void add_products() {
+    const auto& rows = scratch_.rows;
+    const std::size_t n = rows.size(), width = in_fours(n);
+    const double* y = scratch_.answers.data();
+    auto& columns = scratch_.columns;
+    columns.assign(size_ * width, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < size_; ++k) columns[k * width + i] = y[i * size_ + k];
+    }
+    std::array<double, kMaxDenseRows> sums;
+    for (std::size_t i = 0; i < n; ++i, y += size_) {
+      const std::size_t end = in_fours(i + 1);
+      std::fill_n(sums.begin(), end, 0.0);
+      for (std::size_t k = 0; k < size_; ++k) {
+        if (y[k] != 0.0) add_scaled(sums.data(), columns.data() + k * width, y[k], end);
+      }
+      double* const line = W_ + rows[i] * stride_;
+      for (std::size_t j = 0; j <= i; ++j) line[rows[j]] += sums[j];
+    }
+  }
+
+  static constexpr std::uint32_t kNoContact = 0xffffffffu;
+
+  const StepContext& s_;
+  std::span<const std::uint32_t> joints_, contacts_;
+  DenseScratch& scratch_;
+  std::size_t n_, stride_, size_ = 0;  // size_: of a y of the mover at hand
+  double* W_;
+};
+
+}  // namespace
+
+void write_dense_matrix(const StepContext& s, const Islands& islands, const Island& island,
+                        DenseScratch& scratch) {
+  scratch.matrix.assign(island.rows * in_fours(island.rows), 0.0);
+  Assembly(s, islands, island, scratch).run();
+}
+
+}  // namespace vp::solve

@@ -1,0 +1,64 @@
+// The contacts and joint rows of an instant in islands: what is of one never feels what is of
+// another, since nothing that moves is common to both.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solve/contact_solver.h"
+
+namespace vp::solve {
+
+// What answers impulses: a body, or an articulation as a whole.
+using MoverKey = std::uint64_t;
+inline MoverKey key_of_articulation(std::uint32_t articulation) {
+  return (MoverKey{1} << 32) | articulation;
+}
+
+struct Island {
+  std::uint32_t first_contact, end_contact;  // of Islands::contacts
+  std::uint32_t first_joint, end_joint;      // of Islands::joints
+  std::uint32_t rows;
+};
+
+class Islands {
+ public:
+  void reserve(std::size_t contacts, std::size_t joints) {
+    islands_.reserve(contacts);
+    contacts_.reserve(contacts);
+    joints_.reserve(joints);
+    ends_.reserve(2 * contacts);
+    parent_.reserve(contacts);
+    island_of_.reserve(std::max(contacts, joints));
+  }
+  // Of contacts that are prepared, and of the joint rows of the articulations that they touch.
+  void find(const StepContext& context);
+
+  std::span<Island> all() { return islands_; }
+  std::span<const Island> all() const { return islands_; }
+  // Numbers in the context, ascending.
+  std::span<const std::uint32_t> contacts(const Island& island) const {
+    return std::span(contacts_).subspan(island.first_contact,
+                                        island.end_contact - island.first_contact);
+  }
+  std::span<const std::uint32_t> joints(const Island& island) const {
+    return std::span(joints_).subspan(island.first_joint, island.end_joint - island.first_joint);
+  }
+
+ private:
+  std::uint32_t root_of(std::uint32_t contact);
+  void join_contacts(const StepContext& context);
+  void number_islands(const StepContext& context);
+  void add_joints(const StepContext& context);
+
+  std::vector<Island> islands_;
+  std::vector<std::uint32_t> contacts_, joints_;
+  std::vector<std::pair<MoverKey, std::uint32_t>> ends_;  // what moves, and the contacts on it
+  std::vector<std::uint32_t> parent_;                     // of each contact: union and find
+  std::vector<std::uint32_t> island_of_;                  // of each contact, of each joint row
+};
+
+}  // namespace vp::solve
