@@ -25,7 +25,6 @@
 #include "world/contact_store.h"
 #include "world/events.h"
 #include "world/impact_stage.h"
-#include "world/islands.h"
 #include "world/joint.h"
 #include "world/joint_steps.h"
 #include "world/loads.h"
@@ -34,6 +33,7 @@
 #include "world/parallel.h"
 #include "world/regions.h"
 #include "world/runs.h"
+#include "world/sleep_islands.h"
 #include "world/solver_limits.h"
 
 namespace vp {
@@ -91,7 +91,7 @@ struct World::Impl {
   BodyLists lists;
   collide::PairFinder finder;
   Regions regions;
-  Islands islands;
+  SleepIslands sleep_islands;
   SubStepState sub_step_state;
   ImpactStage impacts;
   bool ready_for_queries = false;  // nothing has moved since find_strays()

@@ -30,11 +30,11 @@ void for_partners(const IslandGraph& graph, std::uint32_t index, const F& f) {
 
 }  // namespace
 
-void Islands::reserve(std::size_t bodies) {
+void SleepIslands::reserve(std::size_t bodies) {
   for (auto* list : {&drowsy_, &island_, &woken_}) list->reserve(bodies);
 }
 
-void Islands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt) {
+void SleepIslands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt) {
   if (!may_sleep(body)) return;
   const double before = body.rest_time;
   const bool slow = norm(body.v) + body.reach * norm(body.w) < desc.sleep_speed;
@@ -48,8 +48,8 @@ void Islands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, doub
 
 // Into island_: all that the seed hangs together with. False, and not all of it: some of it does
 // not rest, or was found not to in an island from `first` on.
-bool Islands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first,
-                    double sleep_after) {
+bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first,
+                         double sleep_after) {
   const std::uint64_t island = ++found_;
   bool rests = true;
   island_.clear();
@@ -74,7 +74,7 @@ bool Islands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t 
   return false;
 }
 
-std::span<const std::uint32_t> Islands::wake(const IslandGraph& graph, std::uint32_t seed) {
+std::span<const std::uint32_t> SleepIslands::wake(const IslandGraph& graph, std::uint32_t seed) {
   woken_.clear();
   const auto reach = [&](std::uint32_t index) {
     Body& body = graph.bodies[index];
@@ -89,8 +89,8 @@ std::span<const std::uint32_t> Islands::wake(const IslandGraph& graph, std::uint
 }
 
 void World::Impl::send_to_sleep() {
-  for (const std::uint32_t i : lists.movers) islands.watch(bodies[i], i, desc, dt_now);
-  islands.find_resting(
+  for (const std::uint32_t i : lists.movers) sleep_islands.watch(bodies[i], i, desc, dt_now);
+  sleep_islands.find_resting(
       island_graph(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
         for (const std::uint32_t i : island) {
           Body& body = bodies[i];
@@ -112,7 +112,7 @@ void World::Impl::wake(std::uint32_t seed) {
   bodies[seed].rest_time = 0.0;
   if (!bodies[seed].asleep) return;
   const BodyRows rows = rows_in(dt_now);
-  for (const std::uint32_t i : islands.wake(island_graph(), seed)) {
+  for (const std::uint32_t i : sleep_islands.wake(island_graph(), seed)) {
     if (dt_now > 0.0 && rows.load(bodies[i], i)) start_way_anew(i);
     contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
       contact_store.unpark(contact, body_set);

@@ -60,7 +60,7 @@ void World::Impl::begin_step(double dt) {
       std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
-  islands.reserve(n);
+  sleep_islands.reserve(n);
   for (const std::uint32_t i : impacts.bodies_on_links) bodies[i].on_link = false;
   impacts.bodies_on_links.clear();
   for (Articulation& art : articulations) art.sub_stepped = false;

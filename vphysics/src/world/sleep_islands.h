@@ -1,4 +1,4 @@
-// Islands: bodies that hang together by contacts and joints. They fall asleep together, and wake
+// Islands of bodies that hang together by contacts and joints. They fall asleep together, and wake
 // together.
 //
 // A body is drowsy when it has been slow for sleep_after. As soon as it is, and then each
@@ -25,7 +25,7 @@ struct IslandGraph {
   const Joints& joints;
 };
 
-class Islands {
+class SleepIslands {
  public:
   void reserve(std::size_t bodies);
   // Counts for how long a body has been slow, at the end of a step.

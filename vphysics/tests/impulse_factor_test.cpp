@@ -1,0 +1,107 @@
+// The square root of a tree's inverse mass matrix, beside the model's own passes.
+#include "multibody/impulse_factor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "trees.h"
+#include "vphysics/multibody/dynamics.h"
+
+namespace vp::test {
+namespace {
+
+constexpr int kTrees = 40;
+constexpr int kKinds = 9;  // of joints: all but users'
+
+double largest(const std::vector<double>& x) {
+  double most = 0.0;
+  for (const double y : x) most = std::max(most, std::fabs(y));
+  return most;
+}
+
+// A tree in some state, and its factor.
+struct Case {
+  Case(Random& random, int links)
+      : model(random_tree(random, links, kKinds)),
+        state(random_state(random, model)),
+        data(model),
+        factor(model) {
+    forward_kinematics<double>(model, data, state.q, state.v);
+    fine = factor.factor(model, data);
+    factor.twists(state.v);
+  }
+  std::size_t size() const { return state.v.size(); }
+  double damping(int link) const { return model.link(link).damping; }
+
+  Model model;
+  State state;
+  Data data;
+  detail::ImpulseFactor factor;
+  bool fine = false;
+};
+
+// At no acceleration inverse dynamics gives the same forces, and those of the damping besides.
+TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
+  Random random(41);
+  for (int k = 0; k < kTrees; ++k) {
+    Case c(random, 1 + k % 20);
+    ASSERT_TRUE(c.fine);
+    const Vec3 gravity{0.3, -1.0, -9.81};
+    std::vector<double> bias(c.size()), expected(c.size());
+    const std::vector<double> none(c.size());
+    c.factor.bias(gravity, bias);
+    inverse_dynamics<double>(c.model, c.data, c.state.q, c.state.v, none, {.gravity = gravity},
+                             expected);
+    for (int link = 0; link < c.model.links(); ++link) {
+      const int first = c.model.first_velocity(link);
+      for (int d = 0; d < velocities_of(c.model.link(link).joint); ++d) {
+        const auto i = static_cast<std::size_t>(first + d);
+        expected[i] -= c.damping(link) * c.state.v[i];
+      }
+    }
+    const double scale = 1.0 + largest(expected);
+    for (std::size_t i = 0; i < bias.size(); ++i) {
+      EXPECT_NEAR(bias[i], expected[i], 1e-11 * scale) << "tree " << k << ", velocity " << i;
+    }
+  }
+}
+
+// With loads on links, and solved for accelerations: what forward dynamics says.
+TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
+  Random random(42);
+  for (int k = 0; k < kTrees; ++k) {
+    Case c(random, 1 + k % 20);
+    const Vec3 gravity{0.0, 0.0, -9.81};
+    // Loads in the links' frames, as forward_dynamics() takes them, and the same in the world's.
+    std::vector<dse3> loads(static_cast<std::size_t>(c.model.links()));
+    std::vector<double> force = c.state.tau, bias(c.size()), expected(c.size());
+    for (int link = 0; link < c.model.links(); ++link) {
+      const SE3 T = T_world_link(c.model, c.data, link);
+      const dse3 load{random.in_cube(3.0), random.in_cube(3.0)};
+      loads[static_cast<std::size_t>(link)] = {T.unrotate(load.m), T.unrotate(load.f)};
+      c.factor.add_load(link, T.position(), load, force);
+    }
+    c.factor.bias(gravity, bias);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= bias[i];
+    for (int link = 0; link < c.model.links(); ++link) {
+      const int first = c.model.first_velocity(link);
+      for (int d = 0; d < velocities_of(c.model.link(link).joint); ++d) {
+        const auto i = static_cast<std::size_t>(first + d);
+        force[i] -= c.damping(link) * c.state.v[i];
+      }
+    }
+    c.factor.solve(force);
+    forward_dynamics<double>(c.model, c.data, c.state.q, c.state.v, c.state.tau,
+                             {.gravity = gravity, .external = loads}, expected);
+    const double scale = 1.0 + largest(expected);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      EXPECT_NEAR(force[i], expected[i], 1e-9 * scale) << "tree " << k << ", velocity " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vp::test
