@@ -14,8 +14,8 @@ namespace {
 constexpr double kHeld = 1e-6, kHeldMore = 30.0, kHeldLess = 10.0;
 // Steps of an island at most, and of those that do not help.
 constexpr int kMostSteps = 24, kMostRefused = 6;
-// The least share of a step that is tried.
-constexpr double kLeastShare = 0.05;
+// Shares of a step that are tried: all of it, half of it, and so on.
+constexpr int kShares = 5;
 // What still changes by so much in the end [m/s] contradicts itself; and no contact makes anything
 // so many times faster than it was or is to be.
 constexpr double kContradicts = 0.01;
@@ -402,7 +402,8 @@ bool DenseIsland::step() {
   if (!solve_directly()) return false;
   const Rows p = p_, u = u_;
   const double before = error();
-  for (double share = 1.0; share > kLeastShare; share *= 0.5) {
+  double share = 1.0;
+  for (int k = 0; k < kShares; ++k, share *= 0.5) {
     go(share);
     if (error() < (1.0 - 0.5 * share) * before) return true;
     p_ = p;
