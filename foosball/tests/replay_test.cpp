@@ -20,7 +20,7 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x36364184b0eac6d1u;
+constexpr std::uint64_t kGolden = 0xec04a31f5cbf46a1u;
 // Of players with levels.
 constexpr std::uint64_t kGoldenLevel = 0xc1310dc969060f68u;
 

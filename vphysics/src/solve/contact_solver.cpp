@@ -259,20 +259,19 @@ void iterate(const StepContext& s) {
   const Islands& islands = s.scratch.islands;
   for (const Island& island : islands.all()) {
     const auto contacts = islands.contacts(island), joints = islands.joints(island);
-    const bool is_small = island.rows <= DenseIsland::kMaxRows;
-    const std::size_t more =
-        std::clamp<std::size_t>(kFewContacts / contacts.size(), 1, kMostRounds);
     // In sub-steps others change what has been settled: they come again soon.
-    const bool to_the_end = is_small && s.push_rate == 0.0;
-    const int alone = s.iterations * static_cast<int>(more);
-    const int rounds = to_the_end ? s.iterations * static_cast<int>(kMostRounds) : alone;
-    const int first = is_small ? kRoundsWithoutMatrix : rounds;
+    const bool to_the_end = island.rows <= DenseIsland::kMaxRows && s.push_rate == 0.0;
+    const std::size_t more =
+        to_the_end ? kMostRounds
+                   : std::clamp<std::size_t>(kFewContacts / contacts.size(), 1, kMostRounds);
+    const int rounds = s.iterations * static_cast<int>(more);
+    const int first = to_the_end ? kRoundsWithoutMatrix : rounds;
     bool settled = false;
     for (int i = 0; i < std::min(first, rounds) && !settled; ++i) {
       settled = one_round(s, contacts, joints, i % 2 == 0) < converged(s);
     }
     if (settled || first >= rounds) continue;
-    DenseIsland(s, islands, island, s.scratch.dense).iterate(rounds - first, alone - first);
+    DenseIsland(s, islands, island, s.scratch.dense).iterate(rounds - first);
   }
 }
 

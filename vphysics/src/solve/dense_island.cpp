@@ -12,14 +12,16 @@ namespace {
 // The term that holds what no row feels, as a share of the diagonal: at first, and by how much it
 // grows and shrinks.
 constexpr double kHeld = 1e-6, kHeldMore = 30.0, kHeldLess = 10.0;
-// Steps of an island at most, and of those that do not help.
-constexpr int kMostSteps = 24, kMostRefused = 6;
+// Steps of an island at most, and of those in a row that do not help.
+constexpr int kMostSteps = 24, kMostRefused = 3;
 // Shares of a step that are tried: all of it, half of it, and so on.
 constexpr int kShares = 5;
 // What still changes by so much in the end [m/s] contradicts itself; and no contact makes anything
-// so many times faster than it was or is to be.
+// so many times faster than it was or is to be. Impulses that grow by so much meanwhile are no
+// guess for the next step.
 constexpr double kContradicts = 0.01;
 constexpr double kThrown = 10.0;
+constexpr double kGrown = 1.5;
 
 }  // namespace
 
@@ -169,7 +171,6 @@ double DenseIsland::round(bool forward) {
   return most_;
 }
 
-// The equations of the rows that are not at a bound, with their right sides.
 void DenseIsland::add_equation(std::uint32_t row, double error, double softness) {
   equations_[free_count_++] = {row, {}, {}, 0.0, softness, error};
 }
@@ -196,7 +197,8 @@ void DenseIsland::add_disc(const Disc& disc, double load) {
   }
 }
 
-// What slides comes last: the equations before it are symmetric.
+// The equations of the rows that are not at a bound, with their right sides. What slides comes
+// last: the equations before it are symmetric.
 void DenseIsland::find_equations() {
   free_count_ = sliding_count_ = 0;
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
@@ -376,6 +378,13 @@ void DenseIsland::project(Rows& x) const {
   }
 }
 
+// All that presses.
+double DenseIsland::load() const {
+  double sum = 0.0;
+  for (std::uint32_t k = 0; k < contact_count_; ++k) sum += load(contacts_[k]);
+  return sum;
+}
+
 double DenseIsland::fastest() const {
   double most = 0.0;
   for (std::uint32_t r = 0; r < size_; ++r) most = std::max(most, std::fabs(u_[r]));
@@ -414,11 +423,12 @@ bool DenseIsland::step() {
 
 // A step that does not help is followed by ever more rounds alone, and the next is a shorter one.
 // Where walls come together on what is between them no impulses are right: steps and rounds only
-// make them larger, steps by far more. Such an island goes back to before the first step, has
-// rounds alone, and forgets its impulses, since from step to step they would grow further.
-void DenseIsland::iterate(int rounds, int alone) {
+// make them larger, steps by far more. Such an island goes back to before the first step and has
+// rounds alone; where its contacts carry more and more it forgets them, since they would go on to
+// grow from step to step.
+void DenseIsland::iterate(int rounds) {
   read();
-  const double wanted = std::max(fastest(), fastest_target());
+  const double wanted = std::max(fastest(), fastest_target()), load_before = load();
   Rows p_first{}, u_first{};
   double before = 0.0;  // the change of the round before
   int next = 1, wait = 1, steps = 0, refused = 0;
@@ -432,6 +442,7 @@ void DenseIsland::iterate(int rounds, int alone) {
       }
       if (step()) {
         held_ = std::max(kHeld, held_ / kHeldLess);
+        refused = 0;
       } else {
         next = i + 1 + wait;
         wait *= 2;
@@ -446,8 +457,8 @@ void DenseIsland::iterate(int rounds, int alone) {
     p_ = p_first;
     u_ = u_first;
     settled = false;
-    for (int i = 1; i < alone && !settled; ++i) settled = round(i % 2 == 0) < converged(s_);
-    if (!settled) forget();
+    for (int i = 0; i < rounds && !settled; ++i) settled = round(i % 2 == 0) < converged(s_);
+    if (!settled && load() > kGrown * load_before) forget();
   }
   write();
 }

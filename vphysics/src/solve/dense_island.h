@@ -31,9 +31,8 @@ class DenseIsland {
   // Prepared rows, whose matrix it writes into the scratch.
   DenseIsland(const StepContext& context, const Islands& islands, const Island& island,
               DenseScratch& scratch);
-  // From the velocities of now; impulses and velocities are then those of the end. `alone`: the
-  // rounds, where Newton's steps do not help.
-  void iterate(int rounds, int alone);
+  // From the velocities of now; impulses and velocities are then those of the end.
+  void iterate(int rounds);
 
  private:
   using Rows = std::array<double, kMaxRows>;
@@ -57,6 +56,7 @@ class DenseIsland {
   void solve_rolling(const Contact& contact);
   void solve_friction(const ContactConstraint& c, const ContactPoint& p, std::uint32_t row);
   double load(const Contact& contact) const;
+  double load() const;
   // Rows of friction, two of them, or of what resists rolling, three: |p| <= friction * load, the
   // load being that of some normals, three rows apart.
   struct Disc {

@@ -93,16 +93,16 @@ class Articulation {
   // q after h seconds at the velocities v.
   void advance(double h);
 
-  // For the solver: the response of the present configuration, and nothing pushed yet. end_solve()
-  // takes over what it did, corrections of the coordinates within the limits.
-  // What that does for an articulation that nothing touches and of which no joint feels another, at
+  // What the solver does for an articulation that nothing touches and of which no joint feels another, at
   // the first instant of a step: its motors, whose impulses for h are known at once. False, and
   // nothing done, where it needs the solver.
   bool settle_alone(double h);
   bool settles_alone() const { return !responses_.empty(); }
   // After a change of any dof's drive.
   void drives_changed() { drives_are_compared_ = false; }
-  // whole_step: impulses that act all along the step, which the joints' damping resists meanwhile.
+  // For the solver: the response of the present configuration, and nothing pushed yet. end_solve()
+  // takes over what it did, corrections of the coordinates within the limits. whole_step: of
+  // impulses that act all along the step, which the joints' damping resists meanwhile.
   solve::SolverArticulation begin_solve(bool whole_step);
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();

@@ -4,7 +4,7 @@
 //   records, destroyed pairs; lengths of sub-steps: of impulses, of the push; 1 if the last step
 //   ended with a position error, else 0
 //   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
-//   articulations:  coordinates; for each velocity: itself, drive (5), drive impulse
+//   articulations:  coordinates; for each velocity: itself, drive (5), impulses (5)
 //   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
 //   joints:         turns; of a gear its bodies' first poses; of each axis its drive (5) and
