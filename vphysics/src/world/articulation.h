@@ -93,9 +93,9 @@ class Articulation {
   // q after h seconds at the velocities v.
   void advance(double h);
 
-  // What the solver does for an articulation that nothing touches and of which no joint feels another, at
-  // the first instant of a step: its motors, whose impulses for h are known at once. False, and
-  // nothing done, where it needs the solver.
+  // What the solver does for an articulation that nothing touches and of which no joint feels
+  // another, at the first instant of a step: its motors, whose impulses for h are known at once.
+  // False, and nothing done, where it needs the solver.
   bool settle_alone(double h);
   bool settles_alone() const { return !responses_.empty(); }
   // After a change of any dof's drive.
