@@ -35,6 +35,8 @@ struct PulseCounts {
   std::uint64_t merged = 0;  // a later one of the rod came before it, or its motor ran so already
   std::uint64_t missing = 0, stray = 0, not_ended = 0;
   std::vector<float> latency_us;  // from the command to the driver's register
+  // Of those for which the bus was free: no pulse began or ended in between.
+  std::vector<float> free_latency_us;
 };
 
 struct MatchOptions {

@@ -27,12 +27,14 @@ void PulseWatch::commanded(std::span<const std::uint8_t> packet, cabinet::Device
   ++counts_.pulses;
   Motor& motor = motors_[command.rod];
   motor.end_us = now_us + 1000 * command.duration_ms + kMostUs;
-  motor.waiting.push_back({now_us, command.amplitude, motor.amplitude == command.amplitude});
+  motor.waiting.push_back(
+      {now_us, command.amplitude, motor.amplitude == command.amplitude, writes_});
 }
 
 void PulseWatch::written(const MotorWrite& write) {
   Motor& motor = motors_[static_cast<std::size_t>(write.rod)];
   motor.amplitude = write.amplitude;
+  const std::uint64_t before = writes_++;
   if (write.amplitude == 0) return;
   const auto pulse = std::ranges::find(motor.waiting, write.amplitude, &Pulse::amplitude);
   if (pulse == motor.waiting.end()) {
@@ -40,7 +42,9 @@ void PulseWatch::written(const MotorWrite& write) {
     return;
   }
   ++counts_.begun;
-  counts_.latency_us.push_back(static_cast<float>(write.time_us - pulse->us));
+  const auto latency = static_cast<float>(write.time_us - pulse->us);
+  counts_.latency_us.push_back(latency);
+  if (pulse->writes == before) counts_.free_latency_us.push_back(latency);
   counts_.merged += static_cast<std::uint64_t>(pulse - motor.waiting.begin());
   motor.waiting.erase(motor.waiting.begin(), pulse + 1);
 }

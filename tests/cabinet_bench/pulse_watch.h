@@ -1,6 +1,7 @@
 // Follows each pulse from the server's command to the driver of its motor.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <span>
 
@@ -23,7 +24,8 @@ class PulseWatch {
   struct Pulse {
     std::int64_t us;
     int amplitude;
-    bool runs_already;  // its motor, at this amplitude
+    bool runs_already;     // its motor, at this amplitude
+    std::uint64_t writes;  // before it
   };
   struct Motor {
     std::deque<Pulse> waiting;
@@ -31,6 +33,7 @@ class PulseWatch {
     std::int64_t end_us = 0;  // by when it has to be silent
   };
   PerRod<Motor> motors_;
+  std::uint64_t writes_ = 0;  // to all motors
   PulseCounts counts_;
 };
 
