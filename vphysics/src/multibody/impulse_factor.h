@@ -107,13 +107,14 @@ class ImpulseFactor {
   std::vector<LinkPath> links_;
   std::vector<KeptRow> joint_rows_;  // of each degree of freedom
   std::vector<double> kept_;
-  std::vector<std::uint32_t> body_dof_;    // of each node: that which carries its body
-  std::vector<std::uint32_t> parent_dof_;  // likewise of the node that it hangs on, or kEnd
-  std::vector<Inertia> own_;               // of each node's body
-  std::vector<AInertia> J_;                // of each node: scratch
-  std::vector<se3> A_;                     // of each degree of freedom that carries a body: scratch
-  std::vector<se3> a_;   // of each degree of freedom: scratch, and what twists() leaves
-  std::vector<dse3> r_;  // scratch
+  std::vector<std::uint32_t> body_dof_;  // of each node: that which carries its body
+  std::vector<std::uint32_t>
+      parent_dof_;            // of each node: that which carries its parent's body, or kEnd
+  std::vector<Inertia> own_;  // of each node's body
+  std::vector<AInertia> J_;   // of each node: scratch
+  std::vector<se3> A_;        // of each degree of freedom that carries a body: scratch
+  std::vector<se3> a_;        // of each degree of freedom: scratch, and what twists() leaves
+  std::vector<dse3> r_;       // scratch
   std::uint32_t deepest_ = 0;
 };
 

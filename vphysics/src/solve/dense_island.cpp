@@ -263,7 +263,7 @@ void DenseIsland::write_equation(std::size_t i, double* A) const {
     for (std::uint32_t k = 0; k < disc.size; ++k)
       A[j] += P[k] * W_[(disc.row + k) * stride_ + column];
     if (disc.is_pressed_by(column)) A[j] -= e.softness * disc.friction * e.direction[own];
-    if (column - disc.row < disc.size) A[j] -= e.softness * P[column - disc.row];
+    if (disc.has(column)) A[j] -= e.softness * P[column - disc.row];
   }
   A[i] += e.softness;
 }

@@ -60,14 +60,16 @@ class DenseIsland {
   // Rows of friction, two of them, or of what resists rolling, three: |p| <= friction * load, the
   // load being that of some normals, three rows apart.
   struct Disc {
-    std::uint32_t row = 0, size = 0;
-    std::uint32_t first_normal = 0, normals = 0;
-    double friction = 0.0, mass = 0.0;
-    double speed[3]{};
+    std::uint32_t row, size;
+    std::uint32_t first_normal, normals;
+    double friction, mass;
+    double speed[3];
     bool is_pressed_by(std::uint32_t normal) const {
+      if (normal < first_normal) return false;
       const std::uint32_t from = normal - first_normal;
       return from < 3 * normals && from % 3 == 0;
     }
+    bool has(std::uint32_t other) const { return other >= row && other - row < size; }
   };
   // Of a row that Newton's step sets right. What slides does so as its disc has it: along the
   // direction d of q = p - m u, u the speeds and m the mass,

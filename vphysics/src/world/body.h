@@ -53,8 +53,8 @@ struct alignas(64) Body {
   Sym3 inverse_central, central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
   double gravity_scale = 1.0;
-  // Since it was last faster than desc.sleep_speed; once drowsy, sleep_after and the time since it
-  // asked (sleep.cpp) [s].
+  // Since it was last faster than desc.sleep_speed; once a candidate for sleep, sleep_after and the
+  // time since it asked (sleep.cpp) [s].
   double rest_time = 0.0;
 
   std::uint64_t pose_number = 1;  // of T: how often it has moved

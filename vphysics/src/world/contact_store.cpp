@@ -38,13 +38,7 @@ void ContactStore::clear() {
 
 // In a slot of the pool and in its bodies' lists.
 std::uint32_t ContactStore::add(const Contact& contact, const BodySet& on) {
-  std::uint32_t index = static_cast<std::uint32_t>(pool.size());
-  if (free.empty()) {
-    pool.emplace_back();
-  } else {
-    index = free.back();
-    free.pop_back();
-  }
+  const std::uint32_t index = take_slot(pool, free);
   Contact& c = pool[index];
   c = contact;
   c.alive = true;

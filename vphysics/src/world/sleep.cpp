@@ -31,7 +31,7 @@ void for_partners(const IslandGraph& graph, std::uint32_t index, const F& f) {
 }  // namespace
 
 void SleepIslands::reserve(std::size_t bodies) {
-  for (auto* list : {&drowsy_, &island_, &woken_}) list->reserve(bodies);
+  for (auto* list : {&candidates_, &island_, &woken_}) list->reserve(bodies);
 }
 
 void SleepIslands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt) {
@@ -42,7 +42,7 @@ void SleepIslands::watch(Body& body, std::uint32_t index, const WorldDesc& desc,
   const bool asks_again = body.rest_time >= 2.0 * desc.sleep_after;
   if (asks_again) body.rest_time = desc.sleep_after;
   if (asks_again || (before < desc.sleep_after && body.rest_time >= desc.sleep_after)) {
-    drowsy_.push_back(index);
+    candidates_.push_back(index);
   }
 }
 

@@ -1,11 +1,11 @@
 // Islands of bodies that hang together by contacts and joints. They fall asleep together, and wake
 // together.
 //
-// A body is drowsy when it has been slow for sleep_after. As soon as it is, and then each
-// sleep_after, it asks: all that it hangs together with is gone through, and if all of it is
-// drowsy, it falls asleep. If not, those that were gone through stay drowsy, and ask again after as
-// long: so one body is gone through about once in that time, and the last one that becomes drowsy
-// finds the others so.
+// A body is a candidate for sleep when it has been slow for sleep_after. As soon as it is, and then
+// each sleep_after, it asks: its whole island is searched, and falls asleep if all of it are
+// candidates. If not, those that were searched stay candidates, and ask again after as long: so a
+// body is searched about once in that time, and the last one that becomes a candidate finds the
+// others so.
 #pragma once
 
 #include <cstdint>
@@ -34,11 +34,11 @@ class SleepIslands {
   template <class F>
   void find_resting(const IslandGraph& graph, double sleep_after, const F& f) {
     const std::uint64_t first = found_ + 1;
-    for (const std::uint32_t seed : drowsy_) {
+    for (const std::uint32_t seed : candidates_) {
       if (graph.bodies[seed].island >= first) continue;  // asleep, or gone through in vain
       if (rests(graph, seed, first, sleep_after)) f(std::span<const std::uint32_t>(island_));
     }
-    drowsy_.clear();
+    candidates_.clear();
   }
   // A body that is asleep wakes with all that it hangs together with. Returns all of these.
   std::span<const std::uint32_t> wake(const IslandGraph& graph, std::uint32_t body);
@@ -47,7 +47,7 @@ class SleepIslands {
   bool rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first, double sleep_after);
 
   std::uint64_t found_ = 0;
-  std::vector<std::uint32_t> drowsy_;  // bodies that ask in this step
+  std::vector<std::uint32_t> candidates_;  // bodies that ask in this step
   std::vector<std::uint32_t> island_, woken_;
 };
 

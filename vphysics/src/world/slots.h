@@ -8,6 +8,19 @@
 
 namespace vp {
 
+// The first free slot, which is free no longer, or a new one at the end.
+template <class T>
+std::uint32_t take_slot(std::vector<T>& slots, std::vector<std::uint32_t>& free) {
+  const auto index = static_cast<std::uint32_t>(slots.size());
+  if (free.empty()) {
+    slots.emplace_back();
+    return index;
+  }
+  const std::uint32_t last = free.back();
+  free.pop_back();
+  return last;
+}
+
 template <class T, class Id>
 class Slots {
  public:
@@ -23,15 +36,8 @@ class Slots {
     return static_cast<std::uint32_t>(&slot - slots_.data());
   }
 
-  // The first free slot, or a new one.
   std::uint32_t take() {
-    std::uint32_t index = static_cast<std::uint32_t>(slots_.size());
-    if (free_.empty()) {
-      slots_.emplace_back();
-    } else {
-      index = free_.back();
-      free_.pop_back();
-    }
+    const std::uint32_t index = take_slot(slots_, free_);
     const std::uint32_t generation = slots_[index].generation + 1;
     slots_[index] = T{};
     slots_[index].generation = generation;
