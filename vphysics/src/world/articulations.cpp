@@ -76,9 +76,10 @@ namespace {
 // a soft row: v + s f h = target with s = 1 / (h^2 k + h d), target = (h k (p - q) + h d v_t) s.
 class JointRows {
  public:
-  // With memory, rows start from what they were in the last step, and are remembered.
+  // With memory, rows start from what they were in the last step, and are remembered. share: of a
+  // step, for which what is remembered is, the rows have.
   JointRows(std::vector<solve::JointRow>& rows, std::uint32_t articulation, std::uint32_t i,
-            Articulation& art, bool with_memory)
+            Articulation& art, bool with_memory, double share)
       : rows_(rows),
         dof_(art.dofs[i]),
         speed_(art.v[i]),
@@ -87,7 +88,7 @@ class JointRows {
         with_memory_(with_memory) {
     if (dof_.coordinate >= 0) q_ = art.q[static_cast<std::size_t>(dof_.coordinate)];
     if (!with_memory_) return;
-    before_ = dof_.impulses;
+    for (std::size_t k = 0; k < before_.size(); ++k) before_[k] = share * dof_.impulses[k];
     dof_.impulses = {};
   }
 
@@ -159,6 +160,7 @@ class JointRows {
 // Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
 // for them.
 void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
+  const double share = h / dt_now;
   impacts.joint_rows.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
@@ -175,7 +177,7 @@ void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
     const bool first =
         of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
-      JointRows rows(impacts.joint_rows, a, i, art, first);
+      JointRows rows(impacts.joint_rows, a, i, art, first, share);
       if (first) {
         rows.add_motor(h);
         if (art.dofs[i].passive) rows.add_passive(h);

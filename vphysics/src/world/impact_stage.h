@@ -40,6 +40,8 @@ struct StepContact {
 struct ImpactStage {
   // State, sorted by key and part; next: of the step that is going on.
   std::vector<PairRecord> records, next_records;
+  // State: of which step the impulses of records and of articulations' joints are, 0: none yet [s].
+  double step = 0.0;
   // What the stage goes through, ascending: all bodies that are not fixed, and links with
   // colliders, but those of remote articulations (remote.cpp).
   std::vector<std::uint32_t> body_list;

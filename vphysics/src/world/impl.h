@@ -179,7 +179,8 @@ struct World::Impl {
   // step.cpp
   void begin_step(double dt);
   void divide_into_regions(double dt);
-  void begin_impact_stage();
+  void rescale_impacts(double dt);
+  void begin_impact_stage(double dt);
   void integrate_forces(double dt);
   solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
   void refresh_solver_bodies();

@@ -195,7 +195,7 @@ void World::Impl::relax_links(double h) {
     for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].way[solve::kCarried] = 1.0f;
   }
   for (solve::JointRow& row : impacts.joint_rows) {
-    if (row.remember) *row.remember = row.impulse;
+    if (row.remember) *row.remember = dt_now / h * row.impulse;  // of a whole step
   }
   for (Articulation& art : articulations) {
     if (!art.sub_stepped) continue;

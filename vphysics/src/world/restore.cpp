@@ -175,6 +175,7 @@ struct World::Impl::Incoming {
 
   Impl& world;
   SubStepState sub_steps;
+  double impact_step = 0.0;
   std::vector<BodyState> bodies;  // that are no links
   std::vector<double> q;          // of all articulations, one after the other, and so:
   std::vector<DofState> dofs;
@@ -205,6 +206,8 @@ const char* World::Impl::Incoming::read(Reader& in) {
   sub_steps.push_length = in.bounded();
   in.check(sub_steps.length >= 0.0 && sub_steps.push_length >= 0.0);
   sub_steps.position_error = in.index(2) != 0;
+  impact_step = in.bounded();
+  in.check(impact_step >= 0.0);
   bodies.clear();
   for (const Body& body : world.bodies) {
     if (!body.is_link) vp::read(in, bodies.emplace_back());
@@ -331,6 +334,7 @@ void World::Impl::adopt(Incoming& from) {
   }
   from.contacts.adopt();
   sub_step_state = from.sub_steps;
+  impacts.step = from.impact_step;
   ready_for_queries = false;
   impacts.records.swap(from.records);
   events.destroyed.swap(from.destroyed_pairs);

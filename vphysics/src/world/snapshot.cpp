@@ -2,7 +2,7 @@
 //
 //   magic, format, structure digest, numbers of bodies, articulations, pair
 //   records, destroyed pairs; lengths of sub-steps: of impulses, of the push; 1 if the last step
-//   ended with a position error, else 0
+//   ended with a position error, else 0; length of the step that records and joints are of
 //   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
 //   articulations:  coordinates; for each velocity: itself, drive (5), impulses (5)
 //   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
@@ -120,6 +120,7 @@ void World::Impl::write(Sink& sink) {
   put(sink, sub_step_state.length);
   put(sink, sub_step_state.push_length);
   sink.word(sub_step_state.position_error ? 1 : 0);
+  put(sink, impacts.step);
   for (const Body& body : bodies) {
     if (body.is_link) continue;
     const Mat3& R = body.T.rotation();

@@ -74,7 +74,7 @@ void World::Impl::begin_step(double dt) {
   if (!lists.movers.empty()) contact_store.graph.reserve(lists.movers.size());
   sub_step.start_ways.resize(n);
   sub_step.gains.resize(n);
-  if (has_impact_stage()) begin_impact_stage();
+  if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());
   events.report_destroyed(colliders);
   finds_contacts = has_contacts_to_find();
@@ -94,7 +94,33 @@ void World::Impl::divide_into_regions(double dt) {
   regions.sort(bodies, lists.movers);
 }
 
-void World::Impl::begin_impact_stage() {
+// What carried a load for a shorter or a longer step is the guess for this one by its share.
+void World::Impl::rescale_impacts(double dt) {
+  const double before = std::exchange(impacts.step, dt);
+  if (before == 0.0 || before == dt) return;
+  const double scale = dt / before;
+  for (PairRecord& record : impacts.records) {
+    record.rolling *= scale;
+    for (PairPoint& point : record.points) {
+      point.normal_impulse *= scale;
+      point.friction *= scale;
+      if (!in_range(point.normal_impulse) || !in_range(point.friction)) {
+        point.normal_impulse = 0.0;
+        point.friction = {};
+      }
+    }
+    if (!in_range(record.rolling)) record.rolling = {};
+  }
+  for (Articulation& art : articulations) {
+    for (JointDof& dof : art.dofs) {
+      for (double& impulse : dof.impulses)
+        impulse = in_range(scale * impulse) ? scale * impulse : 0;
+    }
+  }
+}
+
+void World::Impl::begin_impact_stage(double dt) {
+  rescale_impacts(dt);
   // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
   // whenever it comes, allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
