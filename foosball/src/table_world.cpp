@@ -173,6 +173,12 @@ void TableWorld::add_field_and_walls() {
     add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), wall(), Tag::What::wall);
   }
   for (const double s : ends()) add_goal(s);
+  // A pane over the table: lift_ball() ends a hop at the ceiling, but a foot that is under the ball
+  // there would carry it on.
+  constexpr double kCarried = 0.020;
+  constexpr Mat3 kDown{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  const double pane = tuning_.hop_ceiling + kCarried + 2.0 * table_.ball_radius;
+  add_fixed(vp::HalfSpace{}, SE3(kDown, Vec3{0.0, 0.0, pane}), {}, Tag::What::wall);
 }
 
 // An end wall as deep as the goal, with the opening, and the box behind it.

@@ -301,10 +301,7 @@ TEST_P(TableWorldTest, ADropOf100MillimetresComesBackToHalfItsHeightAndThenLiesD
   EXPECT_LT(world.ball().pose.position().z - r, 0.001) << "no bounce without end";
 }
 
-// The highest hop of sixty shots: where a foot is under the ball as it rises, it carries it on, so
-// that one in four of such rounds goes some millimetres higher than most of them.
 TEST_P(TableWorldTest, NoHopIsHigherThanTheCeilingHoweverTheRodsSpin) {
-  std::vector<double> highest;
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     Random random(seed);
     double top = 0.0;
@@ -321,14 +318,10 @@ TEST_P(TableWorldTest, NoHopIsHigherThanTheCeilingHoweverTheRodsSpin) {
         top = std::max(top, world.ball().pose.position().z - table.ball_radius);
       }
     }
-    highest.push_back(top);
+    std::printf("highest hop %.1f mm\n", 1e3 * top);
+    EXPECT_LT(top, world.tuning().hop_ceiling + 0.025);  // 140 mm: the pane
+    EXPECT_GT(top, 0.5 * world.tuning().hop_ceiling);
   }
-  std::sort(highest.begin(), highest.end());
-  const double median = highest[highest.size() / 2], most = highest.back();
-  std::printf("highest hop %.1f mm, at most %.1f\n", 1e3 * median, 1e3 * most);
-  EXPECT_LT(median, world.tuning().hop_ceiling + 0.025);
-  EXPECT_LT(most, world.tuning().hop_ceiling + 0.045);
-  EXPECT_GT(median, 0.5 * world.tuning().hop_ceiling);
 }
 
 }  // namespace
