@@ -47,13 +47,18 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
   return passage;
 }
 
+double scoring(const TableSpec& table, const Sighting& now, const LaneView& view, double slope) {
+  const double run = 0.5 * table.length - now.ball.x;
+  const double y = y_after(table, now.ball.y, slope, run);
+  const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
+  return within(inside, 0.004 + view.slope_error * run);
+}
+
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope) {
   const double goal_line = 0.5 * table.length;
   const double run = goal_line - now.ball.x;
   const LanePassage men = pass_men(table, now, view, slope, run);
-  const double y = y_after(table, now.ball.y, slope, run);
-  const double inside = 0.5 * table.goal_width - table.ball_radius - std::fabs(y);
-  const double scores = within(inside, 0.004 + view.slope_error * run);
+  const double scores = scoring(table, now, view, slope);
   const double goal = now.goal_counts ? 1.0 : 0.0;
   return men.cost + men.free * (scores * goal + (1.0 - scores) * view.far_worth);
 }

@@ -25,6 +25,9 @@ struct LanePassage {
 LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView& view,
                      double slope, double run);
 
+// Probability that a ball that nobody meets on its way along dy/dx = slope ends in the goal.
+double scoring(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
+
 // Expected worth of a ball that is sent from where it is along dy/dx = slope: 1 a goal; less where
 // men are in the way, and below 0 where it would come back towards the own goal.
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);

@@ -36,6 +36,11 @@ PassPlan pass_along(const TableSpec& table, const Sighting& now, const PassView&
   plan.rod = view.to_rod;
   plan.y = y;
   plan.worth = passage.cost + passage.free * meets * view.value;
+  // From a serve: one that is missed must not go on into the goal, which would be a foul.
+  constexpr double kFoul = 0.5, kMissed = 0.4;
+  if (!now.goal_counts) {
+    plan.worth -= kFoul * std::max(kMissed, 1.0 - meets) * scoring(table, now, lanes, slope);
+  }
   return plan;
 }
 

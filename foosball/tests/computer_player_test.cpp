@@ -207,33 +207,29 @@ TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
 
 // A goal straight from a serve is a foul (ITSF 4.2.2), and a side that nobody plays is no reason to
 // try it: the ball goes to a second man first.
-TEST(ComputerPlayer, ScoresAgainstAnAbsentSideWithFewFoulsFromItsServes) {
-  constexpr int kMatches = 6;
+TEST(ComputerPlayer, ScoresAgainstAnAbsentSideWithoutFoulsFromItsServes) {
   for (const Layout layout : {Layout::paper, Layout::tournament}) {
     for (const char* level : {"3", "5"}) {
+      Match match = *Match::create({.layout = layout, .seed = 601, .rules = {}});
+      ComputerPlayer home({.team = 0, .seed = 1202, .player = *parse_player(level)});
+      TickInput input;
+      const Command confirms{Command::Kind::push, 1};
       int goals = 0, fouls = 0, serves = 0;
-      for (std::uint64_t n = 0; n < kMatches; ++n) {
-        Match match = *Match::create({.layout = layout, .seed = 601 + 17 * n, .rules = {}});
-        ComputerPlayer home({.team = 0, .seed = 1202 + 31 * n, .player = *parse_player(level)});
-        TickInput input;
-        const Command confirms{Command::Kind::push, 1};
-        for (int tick = 0; tick < 120000; ++tick) {
-          home.play(match.view(), input.rods);
-          const bool asked = match.view().screen == Screen::selection && !match.view().confirmed[1];
-          match.step({input.rods, std::span(&confirms, asked ? 1 : 0)});
-          for (const Event& event : match.events()) {
-            goals += event.kind == EventKind::goal ? 1 : 0;
-            if (event.team != 0) continue;
-            fouls += event.kind == EventKind::foul ? 1 : 0;
-            serves += event.kind == EventKind::serve ? 1 : 0;
-          }
+      for (int tick = 0; tick < 120000; ++tick) {
+        home.play(match.view(), input.rods);
+        const bool asked = match.view().screen == Screen::selection && !match.view().confirmed[1];
+        match.step({input.rods, std::span(&confirms, asked ? 1 : 0)});
+        for (const Event& event : match.events()) {
+          goals += event.kind == EventKind::goal ? 1 : 0;
+          if (event.team != 0) continue;
+          fouls += event.kind == EventKind::foul ? 1 : 0;
+          serves += event.kind == EventKind::serve ? 1 : 0;
         }
       }
-      std::printf("level %s, %s: %d goals, %d fouls from %d serves in %d matches of 2 minutes\n",
-                  level, layout == Layout::paper ? "paper" : "tournament", goals, fouls, serves,
-                  kMatches);
-      EXPECT_LE(fouls, serves / 10);
-      EXPECT_GE(goals, std::string(level) == "5" ? 2 * kMatches : 0);
+      std::printf("level %s, %s: %d goals, %d fouls from %d serves in 2 minutes\n", level,
+                  layout == Layout::paper ? "paper" : "tournament", goals, fouls, serves);
+      EXPECT_LE(fouls, 1);
+      EXPECT_GE(goals, std::string(level) == "5" ? 2 : 0);
     }
   }
 }
