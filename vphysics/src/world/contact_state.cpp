@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "collide/manifolds.h"
+
 namespace vp {
 
 void ContactState::clear() {

@@ -16,10 +16,26 @@
 
 #include <vector>
 
-#include "world/impl.h"
+#include "collide/pair_finder.h"
+#include "solve/large_pages.h"
+#include "world/body.h"
+#include "world/collider.h"
+#include "world/contact_store.h"
+#include "world/regions.h"
 #include "world/snapshot_io.h"
 
 namespace vp {
+
+// What is written and read.
+struct ContactData {
+  Bodies& bodies;
+  Colliders& colliders;
+  solve::LargeVector<solve::BodyRow>& body_rows;
+  collide::PairFinder& finder;
+  ContactStore& contacts;
+  Regions::State& regions;
+  BodyLists& lists;
+};
 
 // Read from bytes, checked, and not yet the world's. Kept for its memory: adopt() swaps.
 class ContactState {

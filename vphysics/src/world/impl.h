@@ -23,6 +23,7 @@
 #include "world/body_rows.h"
 #include "world/collider.h"
 #include "world/contact_store.h"
+#include "world/digest.h"
 #include "world/events.h"
 #include "world/impact_stage.h"
 #include "world/joint.h"
@@ -40,17 +41,7 @@ namespace vp {
 
 struct RecordedCall;
 
-// What contact_state.h writes and reads.
-struct ContactData {
-  Bodies& bodies;
-  Colliders& colliders;
-  solve::LargeVector<solve::BodyRow>& body_rows;
-  collide::PairFinder& finder;
-  ContactStore& contacts;
-  Regions::State& regions;
-  BodyLists& lists;
-};
-
+struct ContactData;  // contact_state.h
 struct Query;
 struct QueryScratch {
   std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
@@ -309,18 +300,10 @@ struct World::Impl {
   Query query(const QueryFilter& filter);
 
   // snapshot.cpp, restore.cpp, contact_state.h
-  ContactData contact_data() {
-    return {bodies, colliders, body_rows, finder, contact_store, regions.state, lists};
-  }
+  ContactData contact_data();
   void adopt(Incoming& incoming);
   template <class Sink>
   void write(Sink& sink);
 };
-
-// Mixes a word into a digest.
-inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
-  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
-  return digest ^ (digest >> 29);
-}
 
 }  // namespace vp

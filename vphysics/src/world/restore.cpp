@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "world/contact_state.h"
+#include "world/impl.h"
 #include "world/recorded_call.h"
 
 namespace vp {

@@ -18,6 +18,7 @@
 #include <bit>
 
 #include "world/contact_state.h"
+#include "world/impl.h"
 
 namespace vp {
 namespace {
@@ -107,6 +108,10 @@ void put(Sink& sink, const BodyJoint& joint) {
 }
 
 }  // namespace
+
+ContactData World::Impl::contact_data() {
+  return {bodies, colliders, body_rows, finder, contact_store, regions.state, lists};
+}
 
 template <class Sink>
 void World::Impl::write(Sink& sink) {

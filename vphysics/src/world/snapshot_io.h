@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "world/impl.h"
+#include "world/digest.h"
 #include "world/validate.h"
 
 namespace vp {

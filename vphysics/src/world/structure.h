@@ -10,7 +10,8 @@
 #include <memory>
 #include <span>
 
-#include "world/impl.h"
+#include "vphysics/world.h"
+#include "world/digest.h"
 
 namespace vp {
 

@@ -1,0 +1,14 @@
+// Digests of a world's structure and state.
+#pragma once
+
+#include <cstdint>
+
+namespace vp {
+
+// Mixes a word into a digest.
+inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
+  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
+  return digest ^ (digest >> 29);
+}
+
+}  // namespace vp
