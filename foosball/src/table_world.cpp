@@ -173,12 +173,14 @@ void TableWorld::add_field_and_walls() {
     add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), wall(), Tag::What::wall);
   }
   for (const double s : ends()) add_goal(s);
-  // A pane over the table: lift_ball() ends a hop at the ceiling, but a foot that is under the ball
-  // there would carry it on.
+  // A pane from wall to wall over the table: lift_ball() ends a hop at the ceiling, but a foot that
+  // is under the ball there would carry it on. Where tuning lets balls hop above the walls, they
+  // leave between walls and pane.
   constexpr double kCarried = 0.020;
-  constexpr Mat3 kDown{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-  const double pane = tuning_.hop_ceiling + kCarried + 2.0 * table_.ball_radius;
-  add_fixed(vp::HalfSpace{}, SE3(kDown, Vec3{0.0, 0.0, pane}), {}, Tag::What::wall);
+  constexpr double kHalfThickness = 0.0025;
+  const double under = tuning_.hop_ceiling + kCarried + 2.0 * table_.ball_radius;
+  add_fixed(Box{{0.5 * table_.length, 0.5 * table_.width, kHalfThickness}},
+            SE3(Vec3{0.0, 0.0, under + kHalfThickness}), {}, Tag::What::wall);
 }
 
 // An end wall as deep as the goal, with the opening, and the box behind it.

@@ -20,9 +20,9 @@ namespace {
 // The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
 // every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
 // the new one here, once g++ and clang++, Debug and Release agree on it.
-constexpr std::uint64_t kGolden = 0x872e7a7327c09217u;
+constexpr std::uint64_t kGolden = 0xefa2347de80e2ed5u;
 // Of players with levels.
-constexpr std::uint64_t kGoldenLevel = 0xc661859d804b7053u;
+constexpr std::uint64_t kGoldenLevel = 0xfcac490c2e187fd5u;
 
 struct Players {
   explicit Players(std::uint64_t seed, const char* player = "classic:0.9")
