@@ -25,7 +25,7 @@ struct Instant {
   std::vector<double> rows;
 
   StepContext context() {
-    return {bodies, contacts, {}, {}, rows, scratch, kStep, kStep, 1e-4, 1e9, 12};
+    return {bodies, contacts, {}, {}, {}, rows, scratch, kStep, kStep, 1e-4, 1e9, 12};
   }
   std::uint32_t add_body(double mass, const Vec3& at, const Vec3& v, const Vec3& w) {
     SolverBody body{};

@@ -122,10 +122,6 @@ double target_of(const StepContext& s, const ContactPoint& p) {
          std::max(0.0, p.separation - s.slop) / s.duration;
 }
 
-bool moves(const SolverBody& body) {
-  return body.inverse_mass != 0.0 || !(body.angular == Sym3{});
-}
-
 void prepare(const StepContext& s, ContactConstraint& c) {
   const SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
   c.moves_a = moves(a);
@@ -161,7 +157,7 @@ void warm_start(const StepContext& s) {
     }
     if (c.rolling_mass > 0.0) apply_moment(a, b, c, c.rolling_impulse);
   }
-  for (JointRow& row : s.joints) push(row.side, 0, row.impulse, row.side.velocity);
+  for (const JointRow& row : s.joints) give(s, row, row.impulse);
 }
 
 // Returns the change of speed.
@@ -223,7 +219,7 @@ double solve_contact(const StepContext& s, ContactConstraint& c) {
 double one_round(const StepContext& s, std::span<const std::uint32_t> contacts,
                  std::span<const std::uint32_t> joints, bool forward) {
   double change = 0.0;
-  for (const std::uint32_t i : joints) change = std::max(change, solve_joint(s.joints[i]));
+  for (const std::uint32_t i : joints) change = std::max(change, solve_joint(s, s.joints[i]));
   const std::size_t n = contacts.size();
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t i = contacts[forward ? k : n - 1 - k];
@@ -237,9 +233,13 @@ double one_round(const StepContext& s, std::span<const std::uint32_t> contacts,
 // table's rod, need one round.
 void settle_untouched(const StepContext& s) {
   for (std::size_t begin = 0, end = 0; begin < s.joints.size(); begin = end) {
+    if (s.joints[begin].pair != kNoPair) return;  // those between bodies come last
     const std::uint32_t own = s.joints[begin].articulation;
     bool coupled = false;
-    for (; end < s.joints.size() && s.joints[end].articulation == own; ++end) {
+    const auto is_own = [&](const JointRow& row) {
+      return row.pair == kNoPair && row.articulation == own;
+    };
+    for (; end < s.joints.size() && is_own(s.joints[end]); ++end) {
       coupled = coupled || feels_others(s.joints[end].side) ||
                 (end > begin && s.joints[end].dof == s.joints[end - 1].dof);
     }
@@ -248,7 +248,7 @@ void settle_untouched(const StepContext& s) {
     for (int i = 0; i < most; ++i) {
       double change = 0.0;
       for (std::size_t k = begin; k < end; ++k) {
-        change = std::max(change, solve_joint(s.joints[k]));
+        change = std::max(change, solve_joint(s, s.joints[k]));
       }
       if (change < converged(s)) break;
     }
@@ -263,7 +263,8 @@ void iterate(const StepContext& s) {
     const bool to_the_end = island.rows <= DenseIsland::kMaxRows && s.push_rate == 0.0;
     const std::size_t more =
         to_the_end ? kMostRounds
-                   : std::clamp<std::size_t>(kFewContacts / contacts.size(), 1, kMostRounds);
+                   : std::clamp<std::size_t>(kFewContacts / std::max<std::size_t>(1, contacts.size()), 1,
+                                        kMostRounds);
     const int rounds = s.iterations * static_cast<int>(more);
     const int first = to_the_end ? kRoundsWithoutMatrix : rounds;
     bool settled = false;
@@ -301,9 +302,32 @@ bool set_bounce_targets(const StepContext& s) {
   return any;
 }
 
+// Returns whether there is anything to be corrected.
+bool correct_joint(const StepContext& s, const JointRow& row) {
+  if (row.pair == kNoPair || row.mass == 0.0) return false;
+  const JointPair& pair = s.pairs[row.pair];
+  if (pair.error == 0.0) return false;
+  double moved = 0.0;
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    const SolverBody& body = s.bodies[end->body];
+    moved += dot(end->linear, body.shift) + dot(end->angular, body.turn) +
+             along(end->side, 0, end->side.shift);
+  }
+  const double change = -(pair.error + moved) / row.inverse_mass;
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    push(end->side, 0, change, end->side.shift);
+    if (!end->moves) continue;
+    SolverBody& body = s.bodies[end->body];
+    body.shift += (body.inverse_mass * change) * end->linear;
+    body.turn += body.angular * (change * end->angular);
+  }
+  return true;
+}
+
 void correct_positions(const StepContext& s) {
   for (int round = 0; round < kCorrectionRounds; ++round) {
     bool any = false;
+    for (const JointRow& row : s.joints) any |= correct_joint(s, row);
     for (std::size_t k = 0; k < s.contacts.size(); ++k) {
       ContactConstraint& c = s.contacts[round % 2 == 0 ? k : s.contacts.size() - 1 - k];
       SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
@@ -386,6 +410,12 @@ void relax_sub_step(const StepContext& s) {
       ContactPoint& p = c.points[i];
       if (!p.bounces) p.target = std::min(p.target, 0.0);
     }
+  }
+  for (JointRow& row : s.joints) {
+    if (row.pair == kNoPair || !s.pairs[row.pair].relaxes) continue;
+    row.target = s.pairs[row.pair].relaxed_target;
+    row.softness = 0.0;
+    if (row.mass > 0.0) row.mass = 1.0 / row.inverse_mass;
   }
   iterate(s);
 }

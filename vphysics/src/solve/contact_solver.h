@@ -79,7 +79,8 @@ struct InstantScratch;  // instant_scratch.h
 struct StepContext {
   std::span<SolverBody> bodies;
   std::span<ContactConstraint> contacts;
-  std::span<JointRow> joints;
+  std::span<JointRow> joints;  // those of trees, tree by tree; then those between bodies
+  std::span<JointPair> pairs;
   std::span<SolverArticulation> articulations;
   std::vector<double>& rows;  // memory for those of links; keeps its capacity
   InstantScratch& scratch;    // and for the islands

@@ -44,7 +44,7 @@ void DenseIsland::read() {
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
     const JointRow& row = s_.joints[joints_[r]];
     p_[r] = row.impulse;
-    u_[r] = row.speed + along(row.side, 0, row.side.velocity);
+    u_[r] = speed_of(s_, row);
   }
   for (std::uint32_t k = 0; k < contact_count_; ++k) {
     const ContactConstraint& c = *contacts_[k].constraint;
@@ -79,7 +79,7 @@ void DenseIsland::write() {
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
     JointRow& row = s_.joints[joints_[r]];
     row.impulse = p_[r];
-    push(row.side, 0, p_[r] - start_[r], row.side.velocity);
+    give(s_, row, p_[r] - start_[r]);
   }
   for (std::uint32_t k = 0; k < contact_count_; ++k) {
     ContactConstraint& c = *contacts_[k].constraint;
@@ -116,9 +116,7 @@ inline void DenseIsland::change(std::uint32_t row, double by) {
 }
 
 double DenseIsland::joint_after(std::uint32_t r) const {
-  const JointRow& row = s_.joints[joints_[r]];
-  return std::clamp(p_[r] + row.mass * (row.target - u_[r] - row.softness * p_[r]), row.lower,
-                    row.upper);
+  return impulse_after(s_.joints[joints_[r]], p_[r], u_[r]);
 }
 double DenseIsland::normal_after(const ContactPoint& p, std::uint32_t r) const {
   return std::max(0.0, p_[r] + p.normal_mass * (p.target - u_[r]));
@@ -203,7 +201,7 @@ void DenseIsland::find_equations() {
   free_count_ = sliding_count_ = 0;
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
     const JointRow& row = s_.joints[joints_[r]];
-    if (p_[r] <= row.lower || p_[r] >= row.upper) continue;
+    if (p_[r] <= row.lower || p_[r] >= row.upper || row.mass == 0.0) continue;
     add_equation(r, row.target - u_[r] - row.softness * p_[r], row.softness);
   }
   for (std::uint32_t k = 0; k < contact_count_; ++k) {

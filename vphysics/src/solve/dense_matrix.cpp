@@ -105,19 +105,28 @@ class Assembly {
     auto& ends = scratch_.ends;
     ends.clear();
     std::uint32_t row = 0;
+    const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side,
+                         std::uint32_t contact) {
+      if (moves) ends.push_back({body, row, contact});
+      if (side.depth == 0) return;
+      const auto own = static_cast<std::uint32_t>(s_.bodies[body].articulation);
+      ends.push_back({key_of_articulation(own), row, contact});
+    };
     for (const std::uint32_t j : joints_) {
-      ends.push_back({key_of_articulation(s_.joints[j].articulation), row++, kNoContact});
+      const JointRow& joint = s_.joints[j];
+      if (joint.pair == kNoPair) {
+        ends.push_back({key_of_articulation(joint.articulation), row, kNoContact});
+      } else {
+        const JointPair& pair = s_.pairs[joint.pair];
+        for (const PairEnd* end : {&pair.a, &pair.b})
+          add(end->body, end->moves, end->side, kNoContact);
+      }
+      ++row;
     }
     for (const std::uint32_t k : contacts_) {
       const ContactConstraint& c = s_.contacts[k];
-      const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side) {
-        if (moves) ends.push_back({body, row, k});
-        if (side.depth == 0) return;
-        const auto own = static_cast<std::uint32_t>(s_.bodies[body].articulation);
-        ends.push_back({key_of_articulation(own), row, k});
-      };
-      add(c.a, c.moves_a, c.side_a);
-      add(c.b, c.moves_b, c.side_b);
+      add(c.a, c.moves_a, c.side_a, k);
+      add(c.b, c.moves_b, c.side_b, k);
       row += static_cast<std::uint32_t>(rows_of(c));
     }
     std::sort(ends.begin(), ends.end());
@@ -132,7 +141,7 @@ class Assembly {
     scratch_.answers.clear();
     for (const DenseEnd& end : ends) {
       if (end.contact == kNoContact) {
-        add_rows_of_links(s_.joints[joints_[end.row]].side, 1, size_, append(end.row, 1));
+        add_joint(s_.joints[joints_[end.row]], is_body, mover, append(end.row, 1));
         continue;
       }
       const ContactConstraint& c = s_.contacts[end.contact];
@@ -147,6 +156,18 @@ class Assembly {
       }
     }
     add_products();
+  }
+
+  void add_joint(const JointRow& row, bool is_body, std::uint32_t mover, double* y) const {
+    if (row.pair == kNoPair) return add_rows_of_links(row.side, 1, size_, y);
+    const JointPair& pair = s_.pairs[row.pair];
+    for (const PairEnd* end : {&pair.a, &pair.b}) {
+      if (!is_body) {
+        if (is_of(s_, end->body, end->side, mover)) add_rows_of_links(end->side, 1, size_, y);
+      } else if (end->moves && end->body == mover) {
+        BodyAnswer(s_.bodies[mover]).add(end->linear, end->angular, y);
+      }
+    }
   }
 
   // Of rows that follow one another, their y: zeros so far.

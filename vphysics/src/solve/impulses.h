@@ -71,6 +71,40 @@ inline void apply_to_links(const ContactConstraint& c, int row, double impulse) 
   push(c.side_b, row, impulse, c.side_b.velocity);
 }
 
+// --- rows of joints
+
+inline double rigid_speed(const SolverBody& body, const PairEnd& end) {
+  return dot(end.linear, body.v) + dot(end.angular, body.w);
+}
+inline double speed_of(const StepContext& s, const JointRow& row) {
+  if (row.pair == kNoPair) return row.speed + along(row.side, 0, row.side.velocity);
+  const JointPair& pair = s.pairs[row.pair];
+  double speed = 0.0;
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    speed += rigid_speed(s.bodies[end->body], *end) + along(end->side, 0, end->side.velocity);
+  }
+  return speed;
+}
+inline void give(const StepContext& s, const JointRow& row, double impulse) {
+  if (row.pair == kNoPair) return push(row.side, 0, impulse, row.side.velocity);
+  const JointPair& pair = s.pairs[row.pair];
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    push(end->side, 0, impulse, end->side.velocity);
+    if (!end->moves) continue;
+    SolverBody& body = s.bodies[end->body];
+    body.v += (body.inverse_mass * impulse) * end->linear;
+    body.w += body.angular * (impulse * end->angular);
+  }
+}
+// Returns the change of speed.
+inline double solve_joint(const StepContext& s, JointRow& row) {
+  const double next = impulse_after(row, row.impulse, speed_of(s, row));
+  const double change = next - row.impulse;
+  row.impulse = next;
+  give(s, row, change);
+  return row.inverse_mass * std::fabs(change);
+}
+
 inline void apply_moment(SolverBody& a, SolverBody& b, const ContactConstraint& c,
                          const Vec3& impulse) {
   if (c.moves_a) a.w -= a.angular * impulse;

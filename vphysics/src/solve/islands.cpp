@@ -11,26 +11,31 @@ constexpr std::uint32_t kNoIsland = 0xffffffffu;
 
 }  // namespace
 
-// Of the contact with the least number in its island.
-std::uint32_t Islands::root_of(std::uint32_t contact) {
-  while (parent_[contact] != contact) contact = parent_[contact] = parent_[parent_[contact]];
-  return contact;
+// The node with the least number in its island.
+std::uint32_t Islands::root_of(std::uint32_t node) {
+  while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
+  return node;
 }
 
-void Islands::join_contacts(const StepContext& s) {
+void Islands::join_nodes(const StepContext& s) {
   ends_.clear();
   parent_.clear();
-  for (std::uint32_t i = 0; i < s.contacts.size(); ++i) {
-    const ContactConstraint& c = s.contacts[i];
-    parent_.push_back(i);
-    const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side) {
-      if (moves) ends_.emplace_back(body, i);
-      if (side.depth == 0) return;
-      ends_.emplace_back(
-          key_of_articulation(static_cast<std::uint32_t>(s.bodies[body].articulation)), i);
-    };
+  const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side) {
+    const auto node = static_cast<std::uint32_t>(parent_.size());
+    if (moves) ends_.emplace_back(body, node);
+    if (side.depth == 0) return;
+    const auto own = static_cast<std::uint32_t>(s.bodies[body].articulation);
+    ends_.emplace_back(key_of_articulation(own), node);
+  };
+  const auto close = [&] { parent_.push_back(static_cast<std::uint32_t>(parent_.size())); };
+  for (const ContactConstraint& c : s.contacts) {
     add(c.a, c.moves_a, c.side_a);
     add(c.b, c.moves_b, c.side_b);
+    close();
+  }
+  for (const JointPair& pair : s.pairs) {
+    for (const PairEnd* end : {&pair.a, &pair.b}) add(end->body, end->moves, end->side);
+    close();
   }
   std::sort(ends_.begin(), ends_.end());
   for (std::size_t k = 1; k < ends_.size(); ++k) {
@@ -42,14 +47,15 @@ void Islands::join_contacts(const StepContext& s) {
 
 void Islands::number_islands(const StepContext& s) {
   islands_.clear();
-  island_of_.assign(s.contacts.size(), kNoIsland);
-  for (std::uint32_t i = 0; i < s.contacts.size(); ++i) {
+  island_of_.assign(parent_.size(), kNoIsland);
+  for (std::uint32_t i = 0; i < parent_.size(); ++i) {
     const std::uint32_t root = root_of(i);
     if (root == i) {
       island_of_[i] = static_cast<std::uint32_t>(islands_.size());
       islands_.push_back({});
     }
     Island& island = islands_[island_of_[i] = island_of_[root]];
+    if (i >= s.contacts.size()) continue;
     ++island.end_contact;
     island.rows += static_cast<std::uint32_t>(rows_of(s.contacts[i]));
   }
@@ -72,16 +78,18 @@ void Islands::add_joints(const StepContext& s) {
     const bool found = end != ends_.end() && end->first == key;
     return found ? island_of_[end->second] : kNoIsland;
   };
-  joints_.clear();
+  island_of_joint_.clear();
   for (std::uint32_t i = 0; i < s.joints.size(); ++i) {
-    const bool same = i > 0 && s.joints[i].articulation == s.joints[i - 1].articulation;
-    const std::uint32_t own = same ? joints_.back() : island_of(s.joints[i].articulation);
-    joints_.push_back(own);
+    const JointRow& row = s.joints[i];
+    const bool same = i > 0 && row.articulation == s.joints[i - 1].articulation;
+    const std::uint32_t own = row.pair != kNoPair ? island_of_[s.contacts.size() + row.pair]
+                              : same              ? island_of_joint_.back()
+                                                  : island_of(row.articulation);
+    island_of_joint_.push_back(own);
     if (own == kNoIsland) continue;
     ++islands_[own].end_joint;
     ++islands_[own].rows;
   }
-  island_of_.assign(joints_.begin(), joints_.end());
   std::uint32_t count = 0;
   for (Island& island : islands_) {
     island.first_joint = count;
@@ -90,12 +98,13 @@ void Islands::add_joints(const StepContext& s) {
   }
   joints_.resize(count);
   for (std::uint32_t i = 0; i < s.joints.size(); ++i) {
-    if (island_of_[i] != kNoIsland) joints_[islands_[island_of_[i]].end_joint++] = i;
+    const std::uint32_t own = island_of_joint_[i];
+    if (own != kNoIsland) joints_[islands_[own].end_joint++] = i;
   }
 }
 
 void Islands::find(const StepContext& s) {
-  join_contacts(s);
+  join_nodes(s);
   number_islands(s);
   add_joints(s);
 }

@@ -30,11 +30,13 @@ class Islands {
     islands_.reserve(contacts);
     contacts_.reserve(contacts);
     joints_.reserve(joints);
-    ends_.reserve(2 * contacts);
-    parent_.reserve(contacts);
-    island_of_.reserve(std::max(contacts, joints));
+    ends_.reserve(2 * (contacts + joints));
+    parent_.reserve(contacts + joints);
+    island_of_.reserve(contacts + joints);
+    island_of_joint_.reserve(joints);
   }
-  // Of contacts that are prepared, and of the joint rows of the articulations that they touch.
+  // Of contacts and rows of joints between bodies, which are prepared, and of the rows of the
+  // articulations that they push.
   void find(const StepContext& context);
 
   std::span<Island> all() { return islands_; }
@@ -49,16 +51,18 @@ class Islands {
   }
 
  private:
-  std::uint32_t root_of(std::uint32_t contact);
-  void join_contacts(const StepContext& context);
+  std::uint32_t root_of(std::uint32_t node);
+  void join_nodes(const StepContext& context);
   void number_islands(const StepContext& context);
   void add_joints(const StepContext& context);
 
   std::vector<Island> islands_;
   std::vector<std::uint32_t> contacts_, joints_;
-  std::vector<std::pair<MoverKey, std::uint32_t>> ends_;  // what moves, and the contacts on it
-  std::vector<std::uint32_t> parent_;                     // of each contact: union and find
-  std::vector<std::uint32_t> island_of_;                  // of each contact, of each joint row
+  // Nodes are the contacts, then the rows of joints between bodies.
+  std::vector<std::pair<MoverKey, std::uint32_t>> ends_;  // what moves, and the nodes on it
+  std::vector<std::uint32_t> parent_;                     // of each node: union and find
+  std::vector<std::uint32_t> island_of_;                  // of each node
+  std::vector<std::uint32_t> island_of_joint_;
 };
 
 }  // namespace vp::solve

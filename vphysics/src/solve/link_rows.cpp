@@ -1,5 +1,7 @@
 #include "solve/link_rows.h"
 
+#include <algorithm>
+
 namespace vp::solve {
 namespace {
 
@@ -44,6 +46,80 @@ double* fill(const StepContext& s, const ContactConstraint& c, std::uint32_t bod
   return y;
 }
 
+// Returns how many numbers its rows need.
+std::size_t attach(const StepContext& s, PairEnd& end) {
+  const SolverBody& body = s.bodies[end.body];
+  end.moves = moves(body);
+  end.side = {};
+  if (body.articulation < 0) return 0;
+  SolverArticulation& art = s.articulations[static_cast<std::size_t>(body.articulation)];
+  art.touched = art.touched || art.factor->depth(body.link) > 0;
+  attach(art, art.factor->first(body.link), art.factor->depth(body.link), end.side);
+  return 2 * std::size_t{end.side.depth};
+}
+
+// y of a force along end.linear through the body's point, and of a moment along end.angular.
+double* fill(const StepContext& s, PairEnd& end, double* y) {
+  const std::uint32_t depth = end.side.depth;
+  if (depth == 0) return y;
+  const SolverBody& body = s.bodies[end.body];
+  const detail::ImpulseFactor& factor =
+      *s.articulations[static_cast<std::size_t>(body.articulation)].factor;
+  double* const of_moment = y + depth;
+  factor.force_row(body.link, body.x, end.linear, y);
+  factor.moment_row(body.link, end.angular, of_moment);
+  for (std::uint32_t k = 0; k < depth; ++k) y[k] += of_moment[k];
+  end.side.rows = y;
+  return of_moment + depth;
+}
+
+// The speed that a unit impulse gives the row.
+double response_of(const StepContext& s, const JointPair& pair) {
+  double sum = 0.0;
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    if (end->side.depth > 0) sum += response(end->side, 0, 0);
+    if (!end->moves) continue;
+    const SolverBody& body = s.bodies[end->body];
+    sum += body.inverse_mass * dot(end->linear, end->linear) +
+           dot(end->angular, body.angular * end->angular);
+  }
+  const SolverBody &a = s.bodies[pair.a.body], &b = s.bodies[pair.b.body];
+  if (a.articulation >= 0 && a.articulation == b.articulation) {
+    sum += 2.0 * response(pair.a.side, 0, pair.b.side, 0);
+  }
+  return std::max(0.0, sum);
+}
+
+// What answers less [1/kg or 1/(kg m^2)] than this cannot be held by an impulse.
+constexpr double kNoAnswer = 1e-12;
+// A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
+// that it neither loses nor gains energy; a stiffer one ever more implicitly.
+constexpr double kExplicit = 0.25;
+
+// At a speed u after the step the impulse is push - gain u.
+void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
+  const double h = s.step, stiff = h * h * pair.stiffness * row.inverse_mass;
+  const double implicit = stiff > kExplicit ? 1.0 - kExplicit / stiff : 0.0;
+  const double gain = h * pair.damping + implicit * h * h * pair.stiffness;
+  const double push = h * (pair.damping * pair.drive_speed - pair.stiffness * pair.drive_error);
+  if (gain > 0.0) {
+    row.target = push / gain;
+    row.softness = 1.0 / gain;
+  } else {
+    row.lower = row.upper = std::clamp(push, row.lower, row.upper);
+  }
+  row.impulse = std::clamp(row.impulse, row.lower, row.upper);
+}
+
+void prepare(const StepContext& s, const JointPair& pair, JointRow& row) {
+  row.inverse_mass = response_of(s, pair);
+  row.softness = pair.loss * row.inverse_mass;
+  if (pair.drives) prepare_drive(s, pair, row);
+  const bool answers = row.inverse_mass > kNoAnswer;
+  row.mass = answers ? 1.0 / (row.inverse_mass + row.softness) : 0.0;
+  if (!answers) row.impulse = row.lower = row.upper = 0.0;
+}
+
 }  // namespace
 
 void prepare_link_rows(const StepContext& s) {
@@ -51,6 +127,7 @@ void prepare_link_rows(const StepContext& s) {
   for (ContactConstraint& c : s.contacts) {
     size += attach(s, c, c.a, c.side_a) + attach(s, c, c.b, c.side_b);
   }
+  for (JointPair& pair : s.pairs) size += attach(s, pair.a) + attach(s, pair.b);
   if (s.rows.size() < size) s.rows.resize(size);
   double* y = s.rows.data();
   for (ContactConstraint& c : s.contacts) {
@@ -58,6 +135,13 @@ void prepare_link_rows(const StepContext& s) {
     y = fill(s, c, c.b, 1.0, c.side_b, y);
   }
   for (JointRow& row : s.joints) {
+    if (row.pair != kNoPair) {
+      JointPair& pair = s.pairs[row.pair];
+      y = fill(s, pair.a, y);
+      y = fill(s, pair.b, y);
+      prepare(s, pair, row);
+      continue;
+    }
     const SolverArticulation& art = s.articulations[row.articulation];
     const detail::ImpulseFactor::JointRow of = art.factor->joint_row(row.dof);
     attach(art, row.dof, art.factor->depth_of_dof(row.dof), row.side);

@@ -18,6 +18,11 @@ inline int rows_of(const ContactConstraint& c) {
   return kRowsOfPoint * c.count + (c.rolling > 0.0 ? 3 : 0);
 }
 
+// Whether an impulse moves the body itself: no link, and not what nothing pushes.
+inline bool moves(const SolverBody& body) {
+  return body.inverse_mass != 0.0 || !(body.angular == Sym3{});
+}
+
 void prepare_link_rows(const StepContext& context);
 
 }  // namespace vp::solve

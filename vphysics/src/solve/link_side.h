@@ -56,4 +56,19 @@ inline double response(const LinkSide& side, int row, int other) {
   return sum;
 }
 
+// The same between rows of two links of one articulation, which share what carries both. Degrees of
+// freedom farther out have greater numbers, but within one joint, which both rows have as a whole.
+inline double response(const LinkSide& a, int row_a, const LinkSide& b, int row_b) {
+  const double *y = a.row(row_a), *x = b.row(row_b);
+  double sum = 0.0;
+  std::uint32_t i = 0, j = 0, d = a.first, e = b.first;
+  while (i < a.depth && j < b.depth) {
+    const bool a_goes = d >= e, b_goes = e >= d;
+    if (a_goes && b_goes) sum += y[i] * x[j];
+    if (a_goes) ++i, d = a.next[d];
+    if (b_goes) ++j, e = b.next[e];
+  }
+  return sum;
+}
+
 }  // namespace vp::solve

@@ -26,7 +26,7 @@ void World::Impl::follow_poses(const Articulation& art) {
   ready_for_queries = false;
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
-    if (body.first_collider == kNone) continue;
+    if (!body.is_followed()) continue;
     body.T = art.T_world_link(body.link);
     body.moved();
   }
@@ -35,7 +35,7 @@ void World::Impl::follow_poses(const Articulation& art) {
 void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
-    if (body.first_collider == kNone) continue;
+    if (!body.is_followed()) continue;
     const se3 now = art.link_velocity(body.link, body.T.position());
     if (carrying && !(impacts.forced[b] == Velocity{})) carry(b, now.w - body.w, now.v - body.v);
     body.w = now.w;
@@ -49,9 +49,17 @@ void World::Impl::reserve_link_rows() {
     deepest = std::max(deepest, art.deepest());
     dofs += art.dofs.size();
   }
-  impacts.joint_rows.reserve(kRowsOfDof * dofs);
+  // Of each row of a joint in rows what it holds or drives, and its stop.
+  const std::size_t in_rows =
+      static_cast<std::size_t>(std::count_if(joints.begin(), joints.end(), [](const BodyJoint& j) {
+        return j.alive && j.in_rows;
+      }));
+  impacts.row_joints.reserve(in_rows);
+  impacts.joint_pairs.reserve(2 * solve::kJointRows * in_rows);
+  impacts.joint_rows.reserve(kRowsOfDof * dofs + 2 * solve::kJointRows * in_rows);
   constexpr std::size_t kRows = 3 * collide::kMaxPoints + 3;
-  const std::size_t size = kContactsReady * 2 * kRows * deepest;
+  const std::size_t of_joints = 2 * 2 * 2 * std::size_t{solve::kJointRows} * in_rows;
+  const std::size_t size = (kContactsReady * 2 * kRows + of_joints) * deepest;
   if (impacts.link_rows.size() < size) impacts.link_rows.resize(size);
   impacts.solver_articulations.resize(articulations.size());
 }
@@ -159,23 +167,24 @@ class JointRows {
 
 // Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
 // for them.
-void World::Impl::add_joint_rows(double h, double dt, JointRowsOf of) {
+void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
   const double share = h / dt_now;
   impacts.joint_rows.clear();
+  impacts.joint_pairs.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
-    if (!art.alive || (of == JointRowsOf::sub_step && !art.sub_stepped)) continue;
-    if (of == JointRowsOf::first_instant && !art.sub_stepped && !art.touched &&
+    if (!art.alive || (of == RowsOf::sub_step && !art.sub_stepped)) continue;
+    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched &&
         art.settle_alone(h)) {
       if (!art.remote) follow_velocities(art, false);
       continue;
     }
     if (art.remote) {
-      if (of != JointRowsOf::first_instant) continue;  // its stops hold as they were solved
+      if (of != RowsOf::first_instant) continue;  // its stops hold as they were solved
       follow(art);
     }
     const bool first =
-        of == JointRowsOf::sub_step || (of == JointRowsOf::first_instant && !art.sub_stepped);
+        of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
       JointRows rows(impacts.joint_rows, a, i, art, first, share);
       if (first) {

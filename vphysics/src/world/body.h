@@ -77,6 +77,8 @@ struct alignas(64) Body {
   bool unbounded = false;  // carries a half-space
   std::uint64_t user_data = 0;
 
+  // Of a link: T and the velocities are its own.
+  bool is_followed() const { return first_collider != kNone || first_joint != kNone; }
   // Its row of the solver tells how it goes; else it falls freely.
   bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }

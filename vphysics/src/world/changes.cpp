@@ -352,6 +352,7 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
     for (std::uint32_t c = body.first_collider; c != kNone; c = impl_->colliders[c].next) {
       impl_->release_collider(c);
     }
+    while (body.first_joint != kNone) impl_->remove_joint(body.first_joint / 2);
     body.w = body.v = {};
     body.first_collider = kNone;
     impl_->bodies.release(b);

@@ -168,6 +168,7 @@ void World::Impl::note_touched_articulations() {
       if (bodies[i].is_link) articulations[bodies[i].articulation].touched = true;
     }
   }
+  note_joined_bodies();
 }
 
 void World::Impl::solve_contacts(double h, double dt, bool first) {
@@ -193,11 +194,14 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     if (c.swept) impacts.in_contact[c.a] = impacts.in_contact[c.b] = 1;
   }
   note_touched_articulations();
-  add_joint_rows(h, dt, first ? JointRowsOf::first_instant : JointRowsOf::impact);
+  const RowJointStep of_joints{first ? RowsOf::first_instant : RowsOf::impact, dt, h, 1.0,
+                               speed_unit};
+  add_joint_rows(h, dt, of_joints.of);
+  add_row_joints(of_joints);
   if (impacts.contacts.empty() && impacts.joint_rows.empty()) return;
   refresh_solver_bodies();
   begin_solve_articulations(first);
-  solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows,
+  solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows, impacts.joint_pairs,
                 impacts.solver_articulations, impacts.link_rows, impacts.instant, h, dt,
                 desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
   for (const std::uint32_t i : impact_bodies()) {
@@ -209,6 +213,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     (void)stop_if_out_of_range(i, impacts.start_poses[i]);
   }
   end_solve_articulations(first);
+  take_back_row_joints(of_joints);
   apply_corrections();
   for (const solve::ContactConstraint& c : impacts.contacts) {
     counters.contacts += static_cast<std::uint32_t>(c.count);

@@ -68,9 +68,13 @@ struct ImpactStage {
   std::vector<SweptPair> swept_pairs;
   std::vector<solve::ContactConstraint> discrete_contacts, contacts;
   std::vector<solve::JointRow> joint_rows;
+  std::vector<solve::JointPair> joint_pairs;
   std::vector<solve::SolverArticulation> solver_articulations;
   std::vector<double> link_rows;
   solve::InstantScratch instant;
+
+  // --- of a step
+  std::vector<std::uint32_t> row_joints;  // that are alive (row_joints.h)
 
   // --- of the sub-steps
   std::vector<solve::ContactConstraint> link_contacts;

@@ -33,6 +33,7 @@
 #include "world/observed_stage.h"
 #include "world/parallel.h"
 #include "world/regions.h"
+#include "world/row_joints.h"
 #include "world/runs.h"
 #include "world/sleep_islands.h"
 #include "world/solver_limits.h"
@@ -54,8 +55,6 @@ struct SubStepState {
   double push_length = 0.0;     // that the push is made for [s]
   bool position_error = false;  // the last step ended with one, of contacts or of joints
 };
-
-enum class JointRowsOf : std::uint8_t { sub_step, first_instant, impact };
 
 struct World::Impl {
   WorldDesc given_desc;
@@ -150,7 +149,7 @@ struct World::Impl {
   void follow_poses(const Articulation& articulation);
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);
-  void add_joint_rows(double h, double dt, JointRowsOf of);
+  void add_joint_rows(double h, double dt, RowsOf of);
   void begin_solve_articulations(bool first);
   void end_solve_articulations(bool first);
   void advance_articulations(double h);
@@ -214,6 +213,15 @@ struct World::Impl {
   // joints.cpp
   void remove_joint(std::uint32_t joint);
 
+  // link_joints.cpp
+  void list_row_joints();
+  void find_bodies_joined_to_links();
+  bool is_in_sub_steps(const BodyJoint& joint) const;
+  void note_joined_bodies();
+  void add_row_joints(const RowJointStep& step);
+  void take_back_row_joints(const RowJointStep& step);
+  void note_open_row_joints();
+
   // find_contacts.cpp
   bool has_contacts_to_find() const;
   void find_contacts(double dt);
@@ -233,6 +241,7 @@ struct World::Impl {
 
   // link_contacts.cpp
   void find_bodies_on_links();
+  void put_on_link(std::uint32_t body, Articulation& articulation);
   bool in_sub_steps(const Body& a, const Body& b) const;
   void find_link_contacts(double dt, int sub_steps);
   solve::StepContext link_context(double h);

@@ -70,6 +70,7 @@ struct BodyJoint {
   // Neighbours in the lists of the bodies; an edge is 2 * joint + side.
   std::uint32_t next[2] = {}, previous[2] = {};
   bool collide = false;
+  bool in_rows = false;  // row_joints.h
   SE3 T_a_joint, T_b_joint;
   double frequency = 0.0, damping_ratio = 1.0;
   JointLaw law;   // its drives are state
@@ -84,6 +85,13 @@ struct BodyJoint {
   double laid_out_for = 0.0;  // the sub-step of the rows; 0: they must be laid out
   Vec3 force, torque;         // of the last step
 
+  // What carried a load for a step is the guess for one so many times as long.
+  void rescale(double ratio) {
+    for (BodyJointRow& row : rows) {
+      row.impulse *= ratio;
+      row.stop *= ratio;
+    }
+  }
   bool holds_point() const {
     return law.form == JointLaw::Form::axes && held >= 3 && rows[2].slot == 2;
   }
@@ -100,8 +108,7 @@ void forget_joints(const Body& body, Joints& joints);
 
 // The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
 void lay_out(BodyJoint& joint, double h);
-// Jacobians and residuals of all rows where the bodies are, but of the form axes; a gear's turns
-// are counted on.
+// Jacobians and residuals of all rows where the bodies are; turns are counted on.
 void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out);
 // Counts a twist on to what it is there.
 void count_turns(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b);

@@ -1,6 +1,6 @@
-// Coordinates of a joint, for who reads them, and rows that are not found in lanes: of distances,
-// gears and users' constraints. What swing and twist are, and how fast all coordinates change, is
-// in solve/joint_angles.h.
+// Coordinates of a joint, for who reads them, and rows that are not found in lanes: those of joints
+// in rows (row_joints.h), of distances, gears and users' constraints. What swing and twist are, and
+// how fast all coordinates change, is in solve/joint_angles.h.
 #include <algorithm>
 #include <cmath>
 
@@ -30,16 +30,25 @@ const Vec3& column(const Mat3& R, int i) {
   return i == 0 ? R.cx : i == 1 ? R.cy : R.cz;
 }
 
-// The swing's vector, in a's frame.
+// The swing's vector and its derivatives, in a's frame.
 struct Swing {
   double x, y;
+  Vec3 by_x, by_y;
 
   explicit Swing(const Ends& e) {
+    constexpr double kSeries = 0.03;
     const Vec3 z_b = transposed_times(e.R_a, e.R_b.cz);
     const double sine = std::sqrt(z_b.x * z_b.x + z_b.y * z_b.y);
-    const double ratio = sine > 1e-9 ? arc_tangent(sine, z_b.z) / sine : 1.0;
+    const double angle = arc_tangent(sine, z_b.z), s = angle * angle;
+    const double ratio = sine > 1e-9 ? angle / sine : 1.0;
     x = -ratio * z_b.y;
     y = ratio * z_b.x;
+    // (1 - s cot(s)) / s^2
+    const double curve = angle < kSeries ? 1.0 / 3.0 + s * (1.0 / 45.0 + s * (2.0 / 945.0))
+                                         : (1.0 - ratio * z_b.z) / s;
+    const Vec3 across{y, -x, 0.0};
+    by_x = Vec3{1.0, 0.0, -y} - (curve * y) * across;
+    by_y = Vec3{0.0, 1.0, x} + (curve * x) * across;
   }
 };
 
@@ -69,6 +78,61 @@ double gear_side(const BodyJoint& joint, const SE3& now, int side) {
   const bool slides = side == 0 ? joint.law.slides_a : joint.law.slides_b;
   if (slides) return gear_way(joint.start[side], now, T);
   return counted_on(joint.turned[side], gear_angle(joint.start[side], now, T));
+}
+
+// The way to the cone, as a row that grows inwards: (1 - f) / |grad f| with
+// f^2 = (x / cone_x)^2 + (y / cone_y)^2.
+double way_to_cone(const JointLaw& law, const Swing& swing, Vec3& axis) {
+  const double ix = 1.0 / law.swing_x, iy = 1.0 / law.swing_y;
+  const double sx = swing.x * ix, sy = swing.y * iy;
+  const double f = std::sqrt(sx * sx + sy * sy);
+  double gx = sx * ix, gy = sy * iy;
+  const double g = std::sqrt(gx * gx + gy * gy);
+  if (!(g > 1e-9)) {
+    axis = -swing.by_x;
+    return std::min(law.swing_x, law.swing_y);
+  }
+  gx /= g;
+  gy /= g;
+  axis = (-gx) * swing.by_x - gy * swing.by_y;
+  return (1.0 - f) * f / g;
+}
+
+Vec3 twist_axis(const Ends& e) {
+  return (1.0 / std::max(1.0 + dot(e.R_a.cz, e.R_b.cz), 1e-3)) * (e.R_a.cz + e.R_b.cz);
+}
+
+void evaluate_axes(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out) {
+  const Ends e(joint, a, b);
+  const Swing swing(e);
+  const double twist = twist_of(e);
+  if (joint.law.axes[kTwist].motion != AxisMotion::locked) {
+    joint.turned[0] = counted_on(joint.turned[0], twist);
+  }
+  const Mat3 world = Mat3::identity();
+  for (int i = 0; i < joint.count; ++i) {
+    const int slot = joint.rows[i].slot;
+    Twelve& J = out.jacobian[i];
+    double& residual = out.residual[i];
+    if (slot < 3) {
+      const Vec3 n = column(joint.holds_point() ? world : e.R_a, slot);
+      J = {-n, -cross(e.r_a + e.d, n), n, cross(e.r_b, n)};
+      residual = dot(n, e.d);
+      continue;
+    }
+    Vec3 axis;
+    if (slot == kTwist) {
+      axis = twist_axis(e);
+      residual = i < joint.held ? twist : joint.turned[0];
+    } else if (joint.law.cone) {
+      residual = way_to_cone(joint.law, swing, axis);
+      axis = e.R_a * axis;
+    } else {
+      axis = e.R_a * (slot == 3 ? swing.by_x : swing.by_y);
+      residual = slot == 3 ? swing.x : swing.y;
+    }
+    J = {{}, -axis, {}, axis};
+  }
 }
 
 void evaluate_distance(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
@@ -142,7 +206,7 @@ void evaluate_user(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& 
 void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out) {
   switch (joint.law.form) {
     case JointLaw::Form::axes:
-      return;  // in lanes
+      return evaluate_axes(joint, a, b, out);
     case JointLaw::Form::distance:
       return evaluate_distance(joint, a, b, out);
     case JointLaw::Form::gear:

@@ -121,9 +121,10 @@ const auto& passes_for(const JointRun<solve::RowsBlock>&) {
 
 }  // namespace
 
-// What is asleep keeps its impulses.
+// Of those in lanes. What is asleep keeps its impulses.
 bool JointSteps::is_active(const BodyJoint& joint) const {
-  return joint.alive && !(is_still(context_.bodies[joint.a]) && is_still(context_.bodies[joint.b]));
+  const Body &a = context_.bodies[joint.a], &b = context_.bodies[joint.b];
+  return joint.alive && !joint.in_rows && !(is_still(a) && is_still(b));
 }
 
 // f(passes, run of blocks): of a colour side by side, but for blocks that share bodies.
@@ -197,7 +198,7 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
   if (empty()) return;
   scratch_.ways.resize(context_.rows.size(), solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].first_joint != kNone && bodies[i].motion != Motion::fixed)
+    if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
       scratch_.joined_bodies.push_back(i);
   }
   for_runs([](const auto& passes, const auto& run) { passes.load_inertias(run); });
@@ -277,7 +278,6 @@ void JointSteps::relax() {
 // user's constraint have no size to be compared with.
 template <class BLOCK>
 bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
-  constexpr double kOpen = 0.5, kTurnedOff = 0.2;
   constexpr float kAtLimit = 0.999f;
   if (joint.law.form == JointLaw::Form::gear || joint.law.form == JointLaw::Form::user)
     return false;

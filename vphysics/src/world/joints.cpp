@@ -38,6 +38,7 @@ void World::Impl::remove_joint(std::uint32_t index) {
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
   }
   contact_store.mark_stale_of(bodies[joint.a]);
+  if (joint.in_rows) lists.invalidate();
   joint.law.user.reset();
   joints.release(index);
 }
@@ -47,17 +48,13 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   if (!a) return stale("create_joint", "body a");
   if (!b) return stale("create_joint", "body b");
   if (a == b) return refuse("create_joint: a body cannot be joined to itself; name two bodies");
-  for (const Body* body : {a, b}) {
-    if (body->is_link) {
-      return refuse(Errc::unsupported,
-                    "create_joint: links cannot be joined to other bodies in this version; make "
-                    "the joint part of the articulation's model");
-    }
-    if (body->continuous) {
-      return refuse(Errc::unsupported,
-                    "create_joint: continuous bodies cannot be joined in this version; create the "
-                    "body without continuous");
-    }
+  const auto is_stepped = [](const Body& body) {
+    return joins_sub_steps(body) && body.motion == Motion::dynamic;
+  };
+  if ((a->continuous && is_stepped(*b)) || (b->continuous && is_stepped(*a))) {
+    return refuse(Errc::unsupported,
+                  "create_joint: a continuous body cannot be joined to a dynamic one that is not; "
+                  "create both with or both without continuous");
   }
   if (a->motion != Motion::dynamic && b->motion != Motion::dynamic)
     return refuse("create_joint: one of the two bodies must be dynamic");
@@ -77,10 +74,15 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   joint.damping_ratio = desc.damping_ratio;
   joint.law = law_of(desc.kind);
   joint.main = main_slot(desc.kind);
+  joint.in_rows = is_in_rows(impl_->bodies, joint);
+  link_joint(impl_->bodies, impl_->joints, index);
+  for (const Body* body : {a, b}) {
+    if (body->is_link) impl_->follow(impl_->articulations[body->articulation]);
+  }
+  if (joint.in_rows) impl_->lists.invalidate();
   joint.start[0] = impl_->bodies[joint.a].T;
   joint.start[1] = impl_->bodies[joint.b].T;
   joint.turned[0] = first_turn(joint.law);
-  link_joint(impl_->bodies, impl_->joints, index);
   impl_->wake(joint.a);
   impl_->wake(joint.b);
   impl_->contact_store.mark_stale_of(impl_->bodies[joint.a]);

@@ -21,31 +21,41 @@ void World::Impl::find_bodies_on_links() {
   const auto articulation_of = [this](const Body& body) {
     return body.is_link ? &articulations[body.articulation] : nullptr;
   };
+  find_bodies_joined_to_links();
   const auto meets_link = [](const Contact& c) { return c.alive && c.of_link && !c.sensor; };
   for (const Contact& c : contact_store.pool) {
     if (!meets_link(c)) continue;
     for (const auto& [mine, other] : {std::pair{c.a, c.b}, std::pair{c.b, c.a}}) {
       Articulation* art = articulation_of(bodies[colliders[other].body]);
       const std::uint32_t index = colliders[mine].body;
-      Body& body = bodies[index];
+      const Body& body = bodies[index];
       if (!art || !joins_sub_steps(body) || body.motion != Motion::dynamic) continue;
-      art->sub_stepped = true;
-      if (body.on_link) continue;
-      body.on_link = true;
-      wake(index);
-      impacts.bodies_on_links.push_back(index);
+      put_on_link(index, *art);
     }
   }
-  for (bool again = !impacts.bodies_on_links.empty(); again;) {
+  bool again = !impacts.bodies_on_links.empty();
+  const auto join = [&](const Body& body_a, const Body& body_b) {
+    Articulation *a = articulation_of(body_a), *b = articulation_of(body_b);
+    if (!a || !b || a->sub_stepped == b->sub_stepped) return;
+    a->sub_stepped = b->sub_stepped = again = true;
+  };
+  while (again) {
     again = false;
     for (const Contact& c : contact_store.pool) {
       if (!meets_link(c)) continue;
-      Articulation* a = articulation_of(bodies[colliders[c.a].body]);
-      Articulation* b = articulation_of(bodies[colliders[c.b].body]);
-      if (!a || !b || a->sub_stepped == b->sub_stepped) continue;
-      a->sub_stepped = b->sub_stepped = again = true;
+      join(bodies[colliders[c.a].body], bodies[colliders[c.b].body]);
     }
+    for (const std::uint32_t i : impacts.row_joints) join(bodies[joints[i].a], bodies[joints[i].b]);
   }
+}
+
+void World::Impl::put_on_link(std::uint32_t index, Articulation& art) {
+  art.sub_stepped = true;
+  Body& body = bodies[index];
+  if (body.on_link) return;
+  body.on_link = true;
+  wake(index);
+  impacts.bodies_on_links.push_back(index);
 }
 
 // Whether their contact is solved there.
@@ -59,7 +69,8 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
   for (const Contact& c : contact_store.pool) {
     if (!c.alive || !c.of_link || c.sensor) continue;
     const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
-    if (in_sub_steps(a, b) && !a.continuous && !b.continuous) {
+    if (in_sub_steps(a, b) && !a.continuous && !b.continuous &&
+        !keeps_apart(bodies, joints, colliders[c.a].body, colliders[c.b].body)) {
       impacts.discrete_pairs.push_back({c.key, c.a, c.b});
     }
   }
@@ -94,6 +105,7 @@ solve::StepContext World::Impl::link_context(double h) {
   return {impacts.solver_bodies,
           impacts.link_contacts,
           impacts.joint_rows,
+          impacts.joint_pairs,
           impacts.solver_articulations,
           impacts.link_rows,
           impacts.instant,
@@ -137,9 +149,14 @@ void World::Impl::begin_links(double h) {
     }
     impacts.solver_articulations[a] = art.begin_solve(true);
   }
-  add_joint_rows(h, h, JointRowsOf::sub_step);
+  add_joint_rows(h, h, RowsOf::sub_step);
   for (const solve::ContactConstraint& c : impacts.link_contacts) {
     for (const std::uint32_t i : {c.a, c.b})
+      impacts.solver_bodies[i] = solver_body_in_sub_step(i, h);
+  }
+  add_row_joints({RowsOf::sub_step, h, h, h / dt_now, speed_unit});
+  for (const solve::JointPair& pair : impacts.joint_pairs) {
+    for (const std::uint32_t i : {pair.a.body, pair.b.body})
       impacts.solver_bodies[i] = solver_body_in_sub_step(i, h);
   }
   load_bodies_on_links();
@@ -197,6 +214,7 @@ void World::Impl::relax_links(double h) {
   for (solve::JointRow& row : impacts.joint_rows) {
     if (row.remember) *row.remember = dt_now / h * row.impulse;  // of a whole step
   }
+  take_back_row_joints({RowsOf::sub_step, h, h, h / dt_now, speed_unit});
   for (Articulation& art : articulations) {
     if (!art.sub_stepped) continue;
     (void)art.end_solve();

@@ -55,6 +55,7 @@ void World::Impl::find_discrete_pairs(double h) {
     const bool sensors_only = in_sub_steps(a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
+    if (keeps_apart(bodies, joints, pair.a, pair.b)) continue;
     wake(pair.a);
     wake(pair.b);
     pose_colliders(bodies[pair.a], colliders);
@@ -186,6 +187,7 @@ void World::Impl::find_swept_pairs(double h) {
   for (const collide::IndexPair& p :
        impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
     if (!overlap(impacts.bounds[p.a], impacts.bounds[p.b])) continue;
+    if (keeps_apart(bodies, joints, p.a, p.b)) continue;
     const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
     if (a) add_swept_pairs(p.a, p.b, h);
     if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);

@@ -39,6 +39,7 @@ const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
 bool World::Impl::can_be_remote(const Articulation& art) const {
   if (!art.keeps_twists() || !art.settles_alone()) return false;
   for (const std::uint32_t b : art.bodies) {
+    if (bodies[b].first_joint != kNone) return false;
     if (bodies[b].first_collider == kNone) continue;
     for (const Body& other : bodies) {
       const bool tested = !other.is_link && other.motion != Motion::fixed;  // as movers

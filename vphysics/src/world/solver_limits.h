@@ -17,6 +17,11 @@ inline constexpr double kSmallDepth = 1e-3;
 // How fast joints take out their errors [m/s of things of a metre].
 inline constexpr double kFastestJoint = 3.0;
 
+// Joints that hold hard and are open by more than this share of the smaller body's size, or turned
+// by more than this [rad], are a position error.
+inline constexpr double kOpen = 0.5;
+inline constexpr double kTurnedOff = 0.2;
+
 int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt);
 
 }  // namespace vp

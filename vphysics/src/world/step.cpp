@@ -111,6 +111,9 @@ void World::Impl::rescale_impacts(double dt) {
     }
     if (!in_range(record.rolling)) record.rolling = {};
   }
+  for (BodyJoint& joint : joints) {
+    if (joint.alive && joint.in_rows) joint.rescale(scale);
+  }
   for (Articulation& art : articulations) {
     for (JointDof& dof : art.dofs) {
       for (double& impulse : dof.impulses)
@@ -121,6 +124,7 @@ void World::Impl::rescale_impacts(double dt) {
 
 void World::Impl::begin_impact_stage(double dt) {
   rescale_impacts(dt);
+  list_row_joints();
   // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
   // whenever it comes, allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
@@ -228,6 +232,10 @@ void World::Impl::refresh_solver_bodies() {
       const bool listed = !bodies[i].is_link && bodies[i].motion != Motion::fixed;
       if (!listed) impacts.solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
     }
+  }
+  for (const solve::JointPair& pair : impacts.joint_pairs) {
+    for (const std::uint32_t i : {pair.a.body, pair.b.body})
+      impacts.solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
   }
 }
 
@@ -489,7 +497,7 @@ void World::Impl::run_impacts(double dt) {
     report_swept_sensors(t, time);
     if (solves == 0) report_ends();
     advance(t, last);
-    if (last) return;
+    if (last) return note_open_row_joints();
     time += t;
     ++counters.impacts;
     refresh_ways(dt - time);

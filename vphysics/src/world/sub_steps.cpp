@@ -39,10 +39,7 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
     }
   }
   for (BodyJoint& joint : joints) {
-    for (BodyJointRow& row : joint.rows) {
-      row.impulse *= ratio;
-      row.stop *= ratio;
-    }
+    if (!joint.in_rows) joint.rescale(ratio);
   }
 }
 

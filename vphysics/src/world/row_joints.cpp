@@ -1,0 +1,187 @@
+#include "world/row_joints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/solver_limits.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+
+// Share of an error that an instant takes out.
+constexpr double kCorrected = 0.5;
+constexpr double kAny = 1e30;
+
+bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
+  return joint.law.form == JointLaw::Form::axes && row.slot >= solve::kSwingX;
+}
+
+class Rows {
+ public:
+  Rows(BodyJoint& joint, std::uint32_t index, const RowJointStep& step, const Vec3& anchor,
+       const JointMeasure& measure, std::vector<solve::JointRow>& rows,
+       std::vector<solve::JointPair>& pairs)
+      : joint_(joint),
+        index_(index),
+        step_(step),
+        anchor_(anchor),
+        measure_(measure),
+        rows_(rows),
+        pairs_(pairs) {}
+
+  void add(int i) {
+    const BodyJointRow& row = joint_.rows[i];
+    if (i < joint_.held) return add_held(i, -kAny, kAny);
+    if (row.bounded_hold) return add_bounded(i);
+    add_drive(i);
+    add_stop(i);
+  }
+
+ private:
+  double residual(int i) const { return measure_.residual[i]; }
+  double fastest(const BodyJointRow& row) const {
+    return is_angle(joint_, row) ? double{solve::kFastestTurn} : kFastestJoint * step_.speed_unit;
+  }
+  bool in_instant() const { return step_.of != RowsOf::sub_step; }
+
+  std::pair<solve::JointRow&, solve::JointPair&> add_row(int i, bool of_stop, double lower,
+                                                         double upper) {
+    solve::JointRow& row = rows_.emplace_back();
+    row.articulation = solve::kNoPair;
+    row.pair = static_cast<std::uint32_t>(pairs_.size());
+    row.lower = lower;
+    row.upper = upper;
+    solve::JointPair& pair = pairs_.emplace_back();
+    const Twelve& J = measure_.jacobian[i];
+    pair.a.body = joint_.a;
+    pair.a.linear = J.linear_a;
+    pair.a.angular = J.angular_a;
+    pair.b.body = joint_.b;
+    pair.b.linear = J.linear_b;
+    pair.b.angular = J.angular_b;
+    pair.joint = index_;
+    pair.row = static_cast<std::uint32_t>(i);
+    pair.of_stop = of_stop;
+    pair.anchor = anchor_;
+    const BodyJointRow& from = joint_.rows[i];
+    if (step_.with_memory()) {
+      row.impulse = std::clamp(step_.share * (of_stop ? from.stop : from.impulse), lower, upper);
+    }
+    return {row, pair};
+  }
+
+  // That an error goes: by velocities, or by moving the bodies.
+  void take_out(const BodyJointRow& from, double error, solve::JointRow& row,
+                solve::JointPair& pair) const {
+    const double most = fastest(from);
+    if (from.relaxes && in_instant()) {
+      const double reach = most * step_.h;
+      if (step_.with_memory()) pair.error = std::clamp(kCorrected * error, -reach, reach);
+      return;
+    }
+    row.target = -std::clamp(from.rate * error, -most, most);
+    pair.loss = from.loss;
+    pair.relaxes = from.relaxes;
+  }
+
+  void add_held(int i, double lower, double upper) {
+    const BodyJointRow& from = joint_.rows[i];
+    if (!from.relaxes && !step_.with_memory()) return;
+    const auto [row, pair] = add_row(i, false, lower, upper);
+    take_out(from, residual(i), row, pair);
+  }
+
+  // Where its bounds let it push one way only, a gap may close.
+  void add_bounded(int i) {
+    const BodyJointRow& from = joint_.rows[i];
+    const double C = residual(i);
+    const bool open = (from.least >= 0.0 && C > 0.0) || (from.most <= 0.0 && C < 0.0);
+    if (!open) return add_held(i, from.least, from.most);
+    const auto [row, pair] = add_row(i, false, from.least, from.most);
+    row.target = pair.relaxed_target = -C / step_.left;
+  }
+
+  void add_drive(int i) {
+    const BodyJointRow& from = joint_.rows[i];
+    if (!(from.most > from.least) || !step_.with_memory()) return;
+    solve::JointPair& pair = add_row(i, false, from.least, from.most).second;
+    pair.drives = true;
+    pair.stiffness = from.stiffness;
+    pair.damping = from.damping;
+    pair.drive_error = residual(i) - from.position;
+    pair.drive_speed = from.speed;
+  }
+
+  // The nearer one.
+  void add_stop(int i) {
+    const BodyJointRow& from = joint_.rows[i];
+    const double below = residual(i) - from.lower, above = from.upper - residual(i);
+    const bool at_lower = below <= above;
+    const double gap = at_lower ? below : above, side = at_lower ? 1.0 : -1.0;
+    if (!(gap < 0.5 * BodyJointRow::kNowhere)) return;
+    if (gap < 0.0 && !from.relaxes && !step_.with_memory()) return;
+    const auto [row, pair] = add_row(i, true, at_lower ? 0.0 : -kAny, at_lower ? kAny : 0.0);
+    if (gap < 0.0) return take_out(from, side * gap, row, pair);
+    row.target = pair.relaxed_target = -side * gap / step_.left;
+  }
+
+  BodyJoint& joint_;
+  std::uint32_t index_;
+  const RowJointStep& step_;
+  const Vec3& anchor_;
+  const JointMeasure& measure_;
+  std::vector<solve::JointRow>& rows_;
+  std::vector<solve::JointPair>& pairs_;
+};
+
+}  // namespace
+
+bool is_in_rows(const Bodies& bodies, const BodyJoint& joint) {
+  const auto is = [](const Body& body) { return body.is_link || body.continuous; };
+  return is(bodies[joint.a]) || is(bodies[joint.b]);
+}
+
+void add_rows(BodyJoint& joint, std::uint32_t index, const BodyPlace& a, const BodyPlace& b,
+              const RowJointStep& step, std::vector<solve::JointRow>& rows,
+              std::vector<solve::JointPair>& pairs) {
+  if (joint.laid_out_for != step.h) lay_out(joint, step.h);
+  joint.laid_out_for = step.h;
+  JointMeasure measure;
+  evaluate(joint, a, b, measure);
+  const bool user = joint.law.form == JointLaw::Form::user;
+  const Vec3 anchor = user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre;
+  Rows added(joint, index, step, anchor, measure, rows, pairs);
+  for (int i = 0; i < joint.count; ++i) added.add(i);
+  if (!step.with_memory()) return;
+  for (BodyJointRow& row : joint.rows) row.impulse = row.stop = 0.0;
+}
+
+void take_back(std::span<const solve::JointRow> rows, std::span<const solve::JointPair> pairs,
+               const RowJointStep& step, double dt, Joints& joints) {
+  for (const solve::JointRow& row : rows) {
+    if (row.pair == solve::kNoPair) continue;
+    const solve::JointPair& pair = pairs[row.pair];
+    BodyJoint& joint = joints[pair.joint];
+    joint.force += (row.impulse / dt) * pair.b.linear;
+    joint.torque += (row.impulse / dt) * (pair.b.angular - cross(pair.anchor, pair.b.linear));
+    if (!step.with_memory()) continue;
+    BodyJointRow& to = joint.rows[pair.row];
+    const double whole = row.impulse / step.share;
+    (pair.of_stop ? to.stop : to.impulse) = in_range(whole) ? whole : 0.0;
+  }
+}
+
+bool is_far_open(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, double size) {
+  if (joint.law.form != JointLaw::Form::axes && joint.law.form != JointLaw::Form::distance)
+    return false;
+  for (int i = 0; i < joint.held; ++i) {
+    const BodyJointRow& row = joint.rows[i];
+    if (!row.relaxes) continue;
+    const double error = std::fabs(coordinate(joint, a, b, row.slot).value_or(0.0) - row.position);
+    if (error > (is_angle(joint, row) ? kTurnedOff : kOpen * size)) return true;
+  }
+  return false;
+}
+
+}  // namespace vp
