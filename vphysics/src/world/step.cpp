@@ -74,6 +74,7 @@ void World::Impl::begin_step(double dt) {
   if (!lists.movers.empty()) contact_store.graph.reserve(lists.movers.size());
   sub_step.start_ways.resize(n);
   sub_step.gains.resize(n);
+  impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());
   events.report_destroyed(colliders);
