@@ -255,12 +255,27 @@ void settle_untouched(const StepContext& s) {
   }
 }
 
+bool some_in_lanes(const StepContext& s, const Island& island) {
+  if (s.push_rate == 0.0) return false;
+  const Islands& islands = s.scratch.islands;
+  const auto is = [&](std::uint32_t body) { return s.bodies[body].in_lanes; };
+  for (const std::uint32_t i : islands.contacts(island)) {
+    if (is(s.contacts[i].a) || is(s.contacts[i].b)) return true;
+  }
+  for (const std::uint32_t i : islands.joints(island)) {
+    if (s.joints[i].pair == kNoPair) continue;
+    const JointPair& pair = s.pairs[s.joints[i].pair];
+    if (is(pair.a.body) || is(pair.b.body)) return true;
+  }
+  return false;
+}
+
 void iterate(const StepContext& s) {
   const Islands& islands = s.scratch.islands;
   for (const Island& island : islands.all()) {
     const auto contacts = islands.contacts(island), joints = islands.joints(island);
-    // In sub-steps others change what has been settled: they come again soon.
-    const bool to_the_end = island.rows <= DenseIsland::kMaxRows && s.push_rate == 0.0;
+    // What others push meanwhile comes again soon.
+    const bool to_the_end = island.rows <= DenseIsland::kMaxRows && !some_in_lanes(s, island);
     const std::size_t more =
         to_the_end ? kMostRounds
                    : std::clamp<std::size_t>(kFewContacts / std::max<std::size_t>(1, contacts.size()), 1,
@@ -313,7 +328,7 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
     moved += dot(end->linear, body.shift) + dot(end->angular, body.turn) +
              along(end->side, 0, end->side.shift);
   }
-  const double change = -(pair.error + moved) / row.inverse_mass;
+  const double change = -(pair.error + moved) * row.mass;
   for (const PairEnd* end : {&pair.a, &pair.b}) {
     push(end->side, 0, change, end->side.shift);
     if (!end->moves) continue;
@@ -413,9 +428,10 @@ void relax_sub_step(const StepContext& s) {
   }
   for (JointRow& row : s.joints) {
     if (row.pair == kNoPair || !s.pairs[row.pair].relaxes) continue;
-    row.target = s.pairs[row.pair].relaxed_target;
-    row.softness = 0.0;
-    if (row.mass > 0.0) row.mass = 1.0 / row.inverse_mass;
+    const JointPair& pair = s.pairs[row.pair];
+    row.target = pair.relaxed_target;
+    row.softness -= pair.loss * row.inverse_mass;
+    if (row.mass > 0.0) row.mass = 1.0 / (row.inverse_mass + row.softness);
   }
   iterate(s);
 }

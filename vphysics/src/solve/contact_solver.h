@@ -25,8 +25,9 @@ struct SolverBody {
   Vec3 x;                   // the point, world frame
   Vec3 forced_w, forced_v;  // what this step's forces added to w and v
   int articulation, link;   // of a link; articulation is negative for all else
+  bool in_lanes;            // others push it between rounds
 };
-static_assert(sizeof(SolverBody) == 29 * sizeof(double));
+static_assert(sizeof(SolverBody) == 30 * sizeof(double));
 
 struct ContactPoint {
   // Given.
@@ -79,7 +80,9 @@ struct InstantScratch;  // instant_scratch.h
 struct StepContext {
   std::span<SolverBody> bodies;
   std::span<ContactConstraint> contacts;
-  std::span<JointRow> joints;  // those of trees, tree by tree; then those between bodies
+  // Those of trees, tree by tree; then, joint by joint, those between bodies, of which each has a
+  // pair, in the same order.
+  std::span<JointRow> joints;
   std::span<JointPair> pairs;
   std::span<SolverArticulation> articulations;
   std::vector<double>& rows;  // memory for those of links; keeps its capacity

@@ -92,6 +92,10 @@ double response_of(const StepContext& s, const JointPair& pair) {
 
 // What answers less [1/kg or 1/(kg m^2)] than this cannot be held by an impulse.
 constexpr double kNoAnswer = 1e-12;
+// A row gives way by this share of what its joint answers most: where a tree is stretched, so that
+// its end cannot go on, joints that pull it would else throw its links about. The square of the
+// angle [rad] to which it must bend to answer.
+constexpr double kLeastSoftness = 1e-4;
 // A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
 // that it neither loses nor gains energy; a stiffer one ever more implicitly.
 constexpr double kExplicit = 0.25;
@@ -111,13 +115,31 @@ void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
   row.impulse = std::clamp(row.impulse, row.lower, row.upper);
 }
 
-void prepare(const StepContext& s, const JointPair& pair, JointRow& row) {
-  row.inverse_mass = response_of(s, pair);
-  row.softness = pair.loss * row.inverse_mass;
+bool is_about_an_axis(const JointPair& pair) {
+  return pair.a.linear == Vec3{} && pair.b.linear == Vec3{};
+}
+
+// Rows of one joint, which follow one another. largest: what a unit impulse gives one of them that
+// is like it, a force or a moment.
+void prepare(const StepContext& s, const JointPair& pair, double largest, JointRow& row) {
+  row.softness = pair.loss * row.inverse_mass + kLeastSoftness * largest;
   if (pair.drives) prepare_drive(s, pair, row);
   const bool answers = row.inverse_mass > kNoAnswer;
   row.mass = answers ? 1.0 / (row.inverse_mass + row.softness) : 0.0;
   if (!answers) row.impulse = row.lower = row.upper = 0.0;
+}
+void prepare_joint(const StepContext& s, std::span<JointRow> rows) {
+  double largest[2] = {};
+  for (JointRow& row : rows) {
+    const JointPair& pair = s.pairs[row.pair];
+    row.inverse_mass = response_of(s, pair);
+    double& most = largest[is_about_an_axis(pair) ? 1 : 0];
+    most = std::max(most, row.inverse_mass);
+  }
+  for (JointRow& row : rows) {
+    const JointPair& pair = s.pairs[row.pair];
+    prepare(s, pair, largest[is_about_an_axis(pair) ? 1 : 0], row);
+  }
 }
 
 }  // namespace
@@ -134,14 +156,18 @@ void prepare_link_rows(const StepContext& s) {
     y = fill(s, c, c.a, -1.0, c.side_a, y);
     y = fill(s, c, c.b, 1.0, c.side_b, y);
   }
-  for (JointRow& row : s.joints) {
-    if (row.pair != kNoPair) {
-      JointPair& pair = s.pairs[row.pair];
-      y = fill(s, pair.a, y);
-      y = fill(s, pair.b, y);
-      prepare(s, pair, row);
-      continue;
-    }
+  for (JointPair& pair : s.pairs) {
+    y = fill(s, pair.a, y);
+    y = fill(s, pair.b, y);
+  }
+  const std::size_t own = s.joints.size() - s.pairs.size();
+  const std::span<JointRow> between = s.joints.subspan(own);
+  for (std::size_t begin = 0, end = 0; begin < between.size(); begin = end) {
+    const std::uint32_t joint = s.pairs[begin].joint;
+    while (end < between.size() && s.pairs[end].joint == joint) ++end;
+    prepare_joint(s, between.subspan(begin, end - begin));
+  }
+  for (JointRow& row : s.joints.first(own)) {
     const SolverArticulation& art = s.articulations[row.articulation];
     const detail::ImpulseFactor::JointRow of = art.factor->joint_row(row.dof);
     attach(art, row.dof, art.factor->depth_of_dof(row.dof), row.side);

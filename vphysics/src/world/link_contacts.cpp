@@ -164,6 +164,17 @@ void World::Impl::begin_links(double h) {
   store_bodies_on_links();
 }
 
+namespace {
+
+bool has_joints_in_lanes(const Body& body, const Joints& joints) {
+  for (std::uint32_t e = body.first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
+    if (!joints[e / 2].in_rows) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 // Where it is in this sub-step. A fixed link, too, has its articulation's joints solved with what
 // touches it.
 solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, double h) const {
@@ -178,6 +189,7 @@ solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, doub
     s.link = body.link;
   } else {
     s.forced_w = s.forced_v = {};
+    s.in_lanes = body.lanes > 0 || has_joints_in_lanes(body, joints);
     if (body.motion == Motion::dynamic) {
       const Velocity a = acceleration_of(body);
       s.forced_w = h * a.w;

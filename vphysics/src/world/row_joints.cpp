@@ -11,6 +11,9 @@ namespace {
 
 // Share of an error that an instant takes out.
 constexpr double kCorrected = 0.5;
+// G of what holds hard in sub-steps, as a share of K: rows that contradict one another carry no more
+// than what its inverse makes of the speed at which errors are taken out.
+constexpr double kLoss = 0.005;
 constexpr double kAny = 1e30;
 
 bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
@@ -81,7 +84,7 @@ class Rows {
       return;
     }
     row.target = -std::clamp(from.rate * error, -most, most);
-    pair.loss = from.loss;
+    pair.loss = from.relaxes ? kLoss : from.loss;
     pair.relaxes = from.relaxes;
   }
 
