@@ -56,7 +56,8 @@ BodyId add_box(World& world, const Inertia& inertia, const SE3& pose, const se3&
   EXPECT_EQ(pose.rotation(), Mat3::identity());
   const Vec3 x = pose.position();
   q = {x.x, x.y, x.z, 0, 0, 0, 1};
-  must(world.set_joint_states(id, q, std::vector<double>{V.w.x, V.w.y, V.w.z, V.v.x, V.v.y, V.v.z}));
+  must(
+      world.set_joint_states(id, q, std::vector<double>{V.w.x, V.w.y, V.w.z, V.v.x, V.v.y, V.v.z}));
   const BodyId body = world.link_body(id, 0);
   EXPECT_LT(norm(world.pose(body).position() - x), 1e-12);
   return body;
@@ -143,7 +144,8 @@ TEST(LinkJoint, EveryKindMovesAsItDoesBetweenBodies) {
   }
 }
 
-// --- loops of one tree -----------------------------------------------------------------------------
+// --- loops of one tree
+// -----------------------------------------------------------------------------
 
 // A four-bar linkage in the plane of x and z, all turning about y: crank, coupler, rocker; ground
 // from (0, 0) to (d, 0). Its loop is closed by a joint of the world.
@@ -197,10 +199,10 @@ struct FourBar {
 // Where the crank is after a second, by the dynamics of a tree with constraints.
 double swung(double dt) {
   const Model model = FourBar::model();
-  ConstrainedData data(model,
-                       must(ConstraintSet::make(
-                           model, {close_hinge({1, SE3(kAlongY, {FourBar::kCoupler, 0, 0})},
-                                               {2, SE3(kAlongY, {FourBar::kRocker, 0, 0})})})));
+  ConstrainedData data(
+      model,
+      must(ConstraintSet::make(model, {close_hinge({1, SE3(kAlongY, {FourBar::kCoupler, 0, 0})},
+                                                   {2, SE3(kAlongY, {FourBar::kRocker, 0, 0})})})));
   std::vector<double> q = FourBar::start(), v(3), tau(3);
   Loads loads;
   loads.gravity = {0, 0, -kG};
@@ -224,8 +226,9 @@ TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
       }
       off[k] = std::fabs(f.world.joint_position(f.id, 0, 0) - expected);
     }
-    std::printf("crank off by %.2g rad at 1 kHz (theirs %.2g), %.2g at 4 kHz; loop open by %.2g m\n",
-                off[0], theirs, off[1], gap);
+    std::printf(
+        "crank off by %.2g rad at 1 kHz (theirs %.2g), %.2g at 4 kHz; loop open by %.2g m\n",
+        off[0], theirs, off[1], gap);
     EXPECT_LT(off[0], 2.0 * theirs);
     EXPECT_LT(off[1], 0.35 * off[0]);  // of the first order
     EXPECT_LT(gap, 1e-4);
@@ -264,7 +267,8 @@ TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
   EXPECT_LT(speed, 0.4);  // turns of a step, 0.02, of 10 m/s: 0.21
 }
 
-// --- links and free bodies -------------------------------------------------------------------------
+// --- links and free bodies
+// -------------------------------------------------------------------------
 
 // An arm of two links whose hand a box is welded to, held by motors.
 struct Gripper {
@@ -284,7 +288,8 @@ struct Gripper {
     arm = must(world.create_articulation({model_of(links)}));
     for (int i = 0; i < 2; ++i) must(world.set_drive(arm, i, 0, {0.0, 0.0, 5e4, 500.0, 1e4}));
     const Shape shape = Box{{0.1, 0.1, 0.1}};
-    box = add_dynamic(world, {.shape = shape, .density = kMass / 0.008, .pose = SE3(Vec3{1.1, 0, 0})});
+    box = add_dynamic(world,
+                      {.shape = shape, .density = kMass / 0.008, .pose = SE3(Vec3{1.1, 0, 0})});
     weld = join(world, world.link_body(arm, 1), box, Weld{}, SE3(Vec3{1.0, 0, 0}));
   }
 };
@@ -319,8 +324,8 @@ TEST(LinkJoint, KeepMomentumAndAngularMomentum) {
   World world(weightless());
   const Inertia inertia = solid_inertia(Box{{0.2, 0.1, 0.05}}, 1000.0);
   const BodyId a = add_box(world, inertia, SE3{}, {{1, 2, 3}, {0, 0.3, 0}}, Ends::links, false);
-  const BodyId b = add_box(world, inertia, SE3(Vec3{0.6, 0, 0}), {{0, 1, 2}, {0, 1, 0}},
-                           Ends::links, false);
+  const BodyId b =
+      add_box(world, inertia, SE3(Vec3{0.6, 0, 0}), {{0, 1, 2}, {0, 1, 0}}, Ends::links, false);
   const BodyId c = add_mass(world, inertia, SE3(Vec3{1.2, 0, 0}), {{2, 0, 1}, {0, 0, 1}});
   join(world, a, b, Hinge{}, SE3(Vec3{0.3, 0, 0}));
   join(world, b, c, BallSocket{}, SE3(Vec3{0.9, 0, 0}));
@@ -360,7 +365,8 @@ TEST(LinkJoint, JoinedOnesDoNotMeetUnlessAsked) {
   }
 }
 
-// --- state and calls -------------------------------------------------------------------------------
+// --- state and calls
+// -------------------------------------------------------------------------------
 
 TEST(LinkJoint, ARestoredWorldGoesOnToTheSameBits) {
   FourBar one(Hinge{});

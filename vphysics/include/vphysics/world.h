@@ -81,7 +81,7 @@ struct BodyDesc {
   double angular_damping = 0.0;  // [1/s]
   double gravity_scale = 1.0;    // of WorldDesc::gravity; at most 1e6 either way
   bool allow_sleep = true;       // false: nor does anything sleep that hangs together with it
-  bool continuous = false;       // passes through nothing, however fast; cannot be joined
+  bool continuous = false;       // passes through nothing, however fast
   std::uint64_t user_data = 0;
 };
 

@@ -8,9 +8,15 @@
 //                   each within half a turn, not to be used near it
 //   turn_z          the turn about z that is left [rad]; counted on beyond whole turns
 //
-// One of the two bodies may be fixed or kinematic. Joints are solved in every sub-step, before the
-// contacts, and hold as stiffly as the sub-step allows. Refused so far: links of articulations
-// (their tree has joints of its own) and continuous bodies.
+// One of the two bodies may be fixed or kinematic, each may be a link: of one articulation they
+// close a loop of its tree. A continuous body may be joined to another one, to a link and to what
+// is fixed or kinematic; refused: to a dynamic body that is not continuous, whose contacts are
+// solved at other times.
+//
+// Joints between free bodies are solved in every sub-step, before the contacts, and hold as stiffly
+// as the sub-step allows. Those of links and of continuous bodies are solved with what touches
+// these, exactly where together they are few: a loop stays closed at impacts too. Springs and
+// drives are felt once a step there.
 //
 // Source: Catto, Soft Constraints, GDC 2011, for springs and the softness of what is held;
 // docs/decisions/0023.

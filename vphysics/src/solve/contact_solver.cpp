@@ -278,8 +278,8 @@ void iterate(const StepContext& s) {
     const bool to_the_end = island.rows <= DenseIsland::kMaxRows && !some_in_lanes(s, island);
     const std::size_t more =
         to_the_end ? kMostRounds
-                   : std::clamp<std::size_t>(kFewContacts / std::max<std::size_t>(1, contacts.size()), 1,
-                                        kMostRounds);
+                   : std::clamp<std::size_t>(
+                         kFewContacts / std::max<std::size_t>(1, contacts.size()), 1, kMostRounds);
     const int rounds = s.iterations * static_cast<int>(more);
     const int first = to_the_end ? kRoundsWithoutMatrix : rounds;
     bool settled = false;

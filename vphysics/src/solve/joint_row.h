@@ -50,7 +50,7 @@ struct JointRow {
   double impulse = 0.0;        // before the solve: the warm start
   double* remember = nullptr;  // where the world keeps the impulse for the next step; may be null
   // Prepared.
-  LinkSide side{};  // of a tree's own joint
+  LinkSide side{};                        // of a tree's own joint
   double inverse_mass = 0.0, mass = 0.0;  // the latter of the row with its softness
 };
 

@@ -50,10 +50,8 @@ void World::Impl::reserve_link_rows() {
     dofs += art.dofs.size();
   }
   // Of each row of a joint in rows what it holds or drives, and its stop.
-  const std::size_t in_rows =
-      static_cast<std::size_t>(std::count_if(joints.begin(), joints.end(), [](const BodyJoint& j) {
-        return j.alive && j.in_rows;
-      }));
+  const std::size_t in_rows = static_cast<std::size_t>(std::count_if(
+      joints.begin(), joints.end(), [](const BodyJoint& j) { return j.alive && j.in_rows; }));
   impacts.row_joints.reserve(in_rows);
   impacts.joint_pairs.reserve(2 * solve::kJointRows * in_rows);
   impacts.joint_rows.reserve(kRowsOfDof * dofs + 2 * solve::kJointRows * in_rows);
@@ -174,8 +172,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (!art.alive || (of == RowsOf::sub_step && !art.sub_stepped)) continue;
-    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched &&
-        art.settle_alone(h)) {
+    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.settle_alone(h)) {
       if (!art.remote) follow_velocities(art, false);
       continue;
     }
@@ -183,8 +180,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
       if (of != RowsOf::first_instant) continue;  // its stops hold as they were solved
       follow(art);
     }
-    const bool first =
-        of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);
+    const bool first = of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
       JointRows rows(impacts.joint_rows, a, i, art, first, share);
       if (first) {

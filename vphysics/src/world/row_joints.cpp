@@ -11,8 +11,8 @@ namespace {
 
 // Share of an error that an instant takes out.
 constexpr double kCorrected = 0.5;
-// G of what holds hard in sub-steps, as a share of K: rows that contradict one another carry no more
-// than what its inverse makes of the speed at which errors are taken out.
+// G of what holds hard in sub-steps, as a share of K: rows that contradict one another carry no
+// more than what its inverse makes of the speed at which errors are taken out.
 constexpr double kLoss = 0.005;
 constexpr double kAny = 1e30;
 
