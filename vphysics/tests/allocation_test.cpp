@@ -305,6 +305,41 @@ TEST(Step, WithTheFirstContactOfAContinuousBodyAllocatesNothing) {
   }
 }
 
+// Robots that stand, welded to one another and to a crate, which is later let go.
+TEST(Step, WithJointsOfLinksAllocatesNothingOnceWarm) {
+  World world;
+  add_ground(world, {0.8, 0.0, 0.0});
+  Walker walkers[2];
+  for (int i = 0; i < 2; ++i) {
+    walkers[i] = add_walker(world, {0, 0.8 * i, Walker::kHeight}, {0.8, 0.0, 0.0});
+    for (int link = 1; link < world.model(walkers[i].id)->links(); ++link) {
+      must(world.set_drive(walkers[i].id, link, 0, {0.0, 0.0, 200.0, 10.0, 200.0}));
+    }
+  }
+  const BodyId first = world.link_body(walkers[0].id, 0), second = world.link_body(walkers[1].id, 0);
+  JointDesc weld;
+  weld.kind = Weld{};
+  weld.T_a_joint = SE3(Vec3{0, 0.4, 0});
+  weld.T_b_joint = SE3(Vec3{0, -0.4, 0});
+  must(world.create_joint(first, second, weld));
+  const BodyId crate = add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}},
+                                           .material = {0.5, 0.0, 0.0},
+                                           .density = 200.0,
+                                           .pose = SE3(Vec3{0.6, 0, Walker::kHeight})});
+  weld.T_a_joint = SE3(Vec3{0.6, 0, 0});
+  weld.T_b_joint = {};
+  const JointId held = must(world.create_joint(first, crate, weld));
+  long during[2] = {};
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 500) must(world.destroy_joint(held));
+    const long before = g_allocations;
+    must(world.step(0.001));
+    if (i % 500 >= 50) during[i / 500] += g_allocations - before;
+  }
+  EXPECT_EQ(during[0], 0);
+  EXPECT_EQ(during[1], 0);
+}
+
 // What goes back again and again, as look-ahead does, takes no memory for it: the world and what it
 // has read change places.
 TEST(Restore, AllocatesNothingOnceWarm) {
