@@ -268,6 +268,30 @@ class World {
   [[nodiscard]] Expected<void> apply_joint_force(ArticulationId articulation, int link, int dof,
                                                  double force);
 
+  // What a link's joint did to the link in the last step, on the average: force and torque in the
+  // world frame, the torque about the link's origin, where its joint has it. It is what a
+  // force-torque sensor in the joint reads, of fixed joints too: motors, stops, friction, springs,
+  // the user's joint forces, and what holds the joint together; impacts within the step count by
+  // impulse / dt. The joint does the opposite to the parent. A free joint holds nothing: its own
+  // joint_effort() alone. Force and torque are those of the links' momenta and of what acts on
+  // them, gravity, the user's forces and contacts, rolling friction too: exact to rounding at rest,
+  // to the order of dt where links move. What StepStatus::impact_limit holds is held by its joints.
+  // Changes of state between steps (apply_impulse, set_joint_states) are not in it. Zero before the
+  // first step, after restore() and after a step in which the articulation left the range of
+  // numbers. The first question after a step costs O(links), others nothing; the first of all
+  // allocates. Precondition: the articulation has that link.
+  JointForce joint_reaction(ArticulationId articulation, int link) const;
+  // What acted along one degree of freedom in the last step, on the average [N] or [N m]: motor,
+  // friction, spring, stops, damping, the user's joint force. The reaction along the same axis is
+  // that less armature times the rate of the velocity, to the order of dt. Zero as above. Of any
+  // joint; precondition: it has that degree of freedom.
+  double joint_effort(ArticulationId articulation, int link, int dof) const;
+  // Of a link alone: the mean acceleration over the last step of its point that is there now, world
+  // frame [m/s^2]. An accelerometer reads that less gravity, in its own axes. Zero as above.
+  // Precondition: the body is a link; what is to carry such a sensor and hangs on nothing is an
+  // articulation of one link with a free joint.
+  Vec3 acceleration_at(BodyId link, const Vec3& point_world) const;
+
   bool contains(JointId joint) const;
   // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six
   // degrees of freedom ask by axis, of a UserConstraint by row. Precondition: the joint exists and

@@ -196,7 +196,11 @@ void World::Impl::begin_solve_articulations(bool first) {
 
 void World::Impl::end_solve_articulations(bool first) {
   for (solve::JointRow& row : impacts.joint_rows) {
-    if (row.remember) *row.remember = row.impulse;
+    if (row.remember) {
+      *row.remember = row.impulse;
+    } else {
+      articulations[row.articulation].add_effort(row.dof, row.impulse);
+    }
   }
   for (Articulation& art : articulations) {
     if (!art.alive || art.remote) continue;

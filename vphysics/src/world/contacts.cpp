@@ -208,6 +208,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     body.v = impacts.solver_bodies[i].v;
     (void)stop_if_out_of_range(i, impacts.start_poses[i]);
   }
+  note_link_impulses(impacts.contacts);
   end_solve_articulations(first);
   apply_corrections();
   for (const solve::ContactConstraint& c : impacts.contacts) {
