@@ -10,7 +10,7 @@
 #include "random.h"
 #include "tree_scenes.h"
 #include "trees.h"
-#include "vphysics/multibody/quantities.h"
+#include "vphysics/assert.h"
 
 namespace vp::test {
 namespace {
@@ -628,6 +628,30 @@ TEST(JointReaction, StaysUntilTheNextStepAndIsZeroAfterRestore) {
     }
   }
   EXPECT_EQ(asked.state_hash(), not_asked.state_hash());
+}
+
+// A caller's mistake asserts; a handler that goes on gets zero.
+TEST(JointReaction, OfNoSuchLinkIsZero) {
+  static int assertions = 0;
+  assertions = 0;
+  const AssertHandler before =
+      set_assert_handler([](const char*, const char*, int) { ++assertions; });
+  World world;
+  const auto id =
+      must(world.create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))}));
+  const BodyId link = world.link_body(id, 1), body = add_dynamic(world, {});
+  step(world, 0.001);
+  for (const int none : {-1, 2}) EXPECT_EQ(norm(world.joint_reaction(id, none).force), 0.0);
+  EXPECT_EQ(world.joint_effort(id, 0, 1), 0.0);
+  EXPECT_EQ(norm(world.acceleration_at(body, {})), 0.0);
+  must(world.destroy_articulation(id));
+  EXPECT_EQ(norm(world.joint_reaction(id, 0).force), 0.0);
+  EXPECT_EQ(world.joint_effort(id, 0, 0), 0.0);
+  EXPECT_EQ(norm(world.acceleration_at(link, {})), 0.0);
+  set_assert_handler(before);
+#if defined(VP_ASSERTIONS) || !defined(NDEBUG)
+  EXPECT_EQ(assertions, 7);
+#endif
 }
 
 // An accelerometer: at rest it reads the weight, in free fall nothing, on a wheel what pulls

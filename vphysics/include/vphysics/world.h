@@ -269,21 +269,20 @@ class World {
                                                  double force);
 
   // What a link's joint did to the link in the last step, on the average: force and torque in the
-  // world frame, the torque about the link's origin, where its joint has it. It is what a
-  // force-torque sensor in the joint reads, of fixed joints too: motors, stops, friction, springs,
-  // the user's joint forces, and what holds the joint together; impacts within the step count by
-  // impulse / dt. The joint does the opposite to the parent. A free joint holds nothing: its own
-  // joint_effort() alone. Force and torque are those of the links' momenta and of what acts on
-  // them, gravity, the user's forces and contacts, rolling friction too: exact to rounding at rest,
-  // to the order of dt where links move. What StepStatus::impact_limit holds is held by its joints.
-  // Changes of state between steps (apply_impulse, set_joint_states) are not in it. Zero before the
-  // first step, after restore() and after a step in which the articulation left the range of
-  // numbers. The first question after a step costs O(links), others nothing; the first of all
-  // allocates. Precondition: the articulation has that link.
+  // world frame, the torque about the link's origin. A force-torque sensor in the joint reads it;
+  // the parent gets the opposite. Of fixed joints too. Motors, stops, friction, springs, the user's
+  // joint forces and what holds the joint are in it, impacts within the step by impulse / dt. Found
+  // from the momenta and from gravity, the user's forces and contacts, with rolling friction: exact
+  // at rest, to the order of dt in motion. A free root without damping and armature has its
+  // joint_effort() alone: what position corrections of contacts change of its momentum is in no
+  // reaction. Joints hold what StepStatus::impact_limit holds. apply_impulse and states set between
+  // steps are not in it. Zero before the first step, after restore() and after a step in which the
+  // articulation left the range of numbers. The first question after a step costs O(links), the
+  // first of all allocates. Precondition: the articulation has that link.
   JointForce joint_reaction(ArticulationId articulation, int link) const;
   // What acted along one degree of freedom in the last step, on the average [N] or [N m]: motor,
   // friction, spring, stops, damping, the user's joint force. The reaction along the same axis is
-  // that less armature times the rate of the velocity, to the order of dt. Zero as above. Of any
+  // that less armature times its acceleration, to the order of dt. Zero as above. Of any
   // joint; precondition: it has that degree of freedom.
   double joint_effort(ArticulationId articulation, int link, int dof) const;
   // Of a link alone: the mean acceleration over the last step of its point that is there now, world

@@ -415,7 +415,7 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
   const bool fine = add_forces(dt, changed);
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
-  reactions_.act(dt);
+  if (sub_stepped) reactions_.act(dt);  // else at the start
   if (damped_) add_damping_efforts(v);
   return fine;
 }

@@ -40,12 +40,9 @@ JointReactions::Work::Work(const Model& model)
   for (std::vector<Pose>& p : poses) p.resize(sums.size());
 }
 
-void JointReactions::begin_step(std::span<const double> v) {
-  step_ = time_ = acting_ = 0.0;
-  spoiled_ = found_ = end_is_kept_ = has_loads_ = false;
-  std::copy(v.begin(), v.end(), start_v_.begin());
-  if (has_external_) std::fill(external_.begin(), external_.end(), External{});
-  if (has_efforts_) std::fill(efforts_.begin(), efforts_.end(), 0.0);
+void JointReactions::forget_impulses() {
+  std::fill(external_.begin(), external_.end(), External{});
+  std::fill(efforts_.begin(), efforts_.end(), 0.0);
   has_external_ = has_efforts_ = false;
 }
 

@@ -18,7 +18,12 @@ class JointReactions {
   explicit JointReactions(const Model& model);
 
   // --- during a step
-  void begin_step(std::span<const double> v);
+  void begin_step(std::span<const double> v) {
+    step_ = time_ = acting_ = 0.0;
+    spoiled_ = found_ = end_is_kept_ = has_loads_ = false;
+    for (std::size_t i = 0; i < v.size(); ++i) start_v_[i] = v[i];  // of a rod two: no call
+    if (has_external_ || has_efforts_) forget_impulses();
+  }
   // From now on impulses are of h later.
   void pass(double h) { time_ += h; }
   void back_to_start() { time_ = 0.0; }
@@ -57,6 +62,8 @@ class JointReactions {
   Vec3 acceleration(int link, const Vec3& point) const;  // of a point in the link's frame
 
  private:
+  void forget_impulses();
+
   // From outside, but gravity. delay: the sum of impulses, each times its time within the step.
   struct External {
     Vec3 impulse, moment, delay;
