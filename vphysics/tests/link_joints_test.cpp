@@ -319,6 +319,24 @@ TEST(LinkJoint, LetGoABoxFallsAsAFreeOne) {
   EXPECT_NEAR(g.world.pose(g.box).position().z, z - 0.5 * kG * 0.04, 2e-3);
 }
 
+// What a crate that is welded to the hand adds is felt by every joint of the arm.
+TEST(LinkJoint, ReactionsOfAnArmCarryWhatItsHandHolds) {
+  Gripper g;
+  run(g.world, 3.0);
+  for (int link = 0; link < 2; ++link) {
+    const double arm = 2 - link, load = Gripper::kMass;
+    const JointForce reaction = g.world.joint_reaction(g.arm, link);
+    EXPECT_NEAR(reaction.force.z, (arm + load) * kG, 1e-3);
+    // About y, of weights on the x side: bars of half a metre and the crate's centre.
+    const double x = g.world.pose(g.world.link_body(g.arm, link)).position().x;
+    double moment = load * (g.world.pose(g.box).position().x - x);
+    for (int i = link; i < 2; ++i) {
+      moment += (g.world.pose(g.world.link_body(g.arm, i)) * Vec3{0.25, 0, 0}).x - x;
+    }
+    EXPECT_NEAR(reaction.torque.y, -kG * moment, 1e-3 * kG * moment);
+  }
+}
+
 // Two trees and a free body that only joints hold together: nothing outside pushes them.
 TEST(LinkJoint, KeepMomentumAndAngularMomentum) {
   World world(weightless());

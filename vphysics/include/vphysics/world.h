@@ -268,6 +268,29 @@ class World {
   [[nodiscard]] Expected<void> apply_joint_force(ArticulationId articulation, int link, int dof,
                                                  double force);
 
+  // What a link's joint did to the link in the last step, on the average: force and torque in the
+  // world frame, the torque about the link's origin. A force-torque sensor in the joint reads it;
+  // the parent gets the opposite. Of fixed joints too. Motors, stops, friction, springs, the user's
+  // joint forces and what holds the joint are in it, impacts within the step by impulse / dt. Found
+  // from the momenta and from gravity, the user's forces and contacts, with rolling friction: exact
+  // at rest, to the order of dt in motion. A free root without damping and armature has its
+  // joint_effort() alone: what position corrections of contacts change of its momentum is in no
+  // reaction. Joints hold what StepStatus::impact_limit holds. apply_impulse and states set between
+  // steps are not in it. Zero before the first step, after restore() and after a step in which the
+  // articulation left the range of numbers. The first question after a step costs O(links), the
+  // first of all allocates. Precondition: the articulation has that link.
+  JointForce joint_reaction(ArticulationId articulation, int link) const;
+  // What acted along one degree of freedom in the last step, on the average [N] or [N m]: motor,
+  // friction, spring, stops, damping, the user's joint force. The reaction along the same axis is
+  // that less armature times its acceleration, to the order of dt. Zero as above. Of any
+  // joint; precondition: it has that degree of freedom.
+  double joint_effort(ArticulationId articulation, int link, int dof) const;
+  // Of a link alone: the mean acceleration over the last step of its point that is there now, world
+  // frame [m/s^2]. An accelerometer reads that less gravity, in its own axes. Zero as above.
+  // Precondition: the body is a link; what is to carry such a sensor and hangs on nothing is an
+  // articulation of one link with a free joint.
+  Vec3 acceleration_at(BodyId link, const Vec3& point_world) const;
+
   bool contains(JointId joint) const;
   // As the world stands now. The first is of the joint's one coordinate; of a ball, a weld and six
   // degrees of freedom ask by axis, of a UserConstraint by row. Precondition: the joint exists and

@@ -65,7 +65,8 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       gravity_(gravity),
       data_(model, Arithmetic::reproducible),
       factor_(model),
-      floating_(FloatingTree::of(model)) {
+      floating_(FloatingTree::of(model)),
+      reactions_(model) {
   const auto n = static_cast<std::size_t>(model.velocities());
   v.resize(n);
   dofs.resize(n);
@@ -414,7 +415,16 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
   const bool fine = add_forces(dt, changed);
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
+  if (sub_stepped) reactions_.act(dt);  // else at the start
+  if (damped_) add_damping_efforts(v);
   return fine;
+}
+
+// Of damping that is in the factor, with what has come to the velocities.
+void Articulation::add_damping_efforts(std::span<const double> gained) {
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    reactions_.add_effort(i, -factored_time_ * damping_[i] * gained[i]);
+  }
 }
 
 void Articulation::take_back_forces(double share) {
@@ -434,6 +444,7 @@ bool Articulation::add_forces(double dt, bool& changed) {
   }
   const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
   factored_ = Factored::for_the_step;
+  factored_time_ = dt;
   if (!floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
   if (loaded_) find_pushed();
@@ -454,6 +465,7 @@ bool Articulation::add_forces(double dt, bool& changed) {
 }
 
 void Articulation::advance(double h) {
+  reactions_.pass(h);
   if (sub_stepped) {
     for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * (v[i] + drift_[i]);
     integrate<double>(model_, q, rate_, q);
@@ -515,6 +527,7 @@ void Articulation::advance_sub_step(double h) {
 }
 
 void Articulation::end_sub_steps(double dt) {
+  reactions_.back_to_start();
   difference<double>(model_, start_q_, q, rate_);
   for (std::size_t i = 0; i < v.size(); ++i) drift_[i] = rate_[i] / dt - v[i];
   q = start_q_;
@@ -538,6 +551,7 @@ Articulation::Change Articulation::end_solve() {
   if (!moved && !pushed(velocity_)) return Change::none;
   factor_.to_velocities(velocity_);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = standing_or(v[i] + velocity_[i]);
+  if (damped_ && factored_ == Factored::for_the_step) add_damping_efforts(velocity_);
   if (!moved) {
     update_twists();
     return Change::of_velocities;
@@ -567,9 +581,22 @@ bool Articulation::apply_impulse(int link, const Vec3& impulse, const Vec3& poin
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (!vp::in_range(v[i] + change_[i])) return false;
   }
+  keep_end_of_step();
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
   refresh();
   return true;
+}
+
+const JointReactions* Articulation::reactions() {
+  if (!reactions_.knows_step()) return nullptr;
+  if (reactions_.is_found()) return &reactions_;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    rate_[i] = 0.0;
+    if (sub_stepped) continue;  // those are of the last sub-step
+    for (const double impulse : dofs[i].impulses) rate_[i] += impulse;
+  }
+  reactions_.find(model_, {start_q_, q, v, gravity_, rate_});
+  return &reactions_;
 }
 
 bool Articulation::in_range() const {
@@ -585,6 +612,7 @@ bool Articulation::in_range() const {
 }
 
 void Articulation::return_to_start() {
+  reactions_.spoil();
   q = start_q_;
   std::fill(v.begin(), v.end(), 0.0);
   for (JointDof& dof : dofs) dof.impulses = {};

@@ -12,6 +12,7 @@
 #include "vphysics/multibody/dynamics.h"
 #include "vphysics/world.h"
 #include "world/floating_tree.h"
+#include "world/joint_reactions.h"
 
 namespace vp {
 
@@ -157,9 +158,28 @@ class Articulation {
   // Where it was when the step began, at rest.
   void mark_start() {
     start_q_ = q;
+    reactions_.begin_step(v);
     std::fill(forced_.begin(), forced_.end(), 0.0);
   }
   void return_to_start();
+
+  // --- what its joints did in the last step (joint_reactions.h)
+  // An impulse on a link in the step that is going on, that is not of its joints; world frame, the
+  // moment about the world's origin. Whatever acts on links must be told here.
+  void add_external_impulse(int link, const Vec3& impulse, const Vec3& moment) {
+    reactions_.add_impulse(link, impulse, moment);
+  }
+  // Along a degree of freedom, unless it is among its impulses of the whole step.
+  void add_effort(std::uint32_t dof, double impulse) { reactions_.add_effort(dof, impulse); }
+  void end_step(double dt) {
+    if (loaded_) reactions_.note_loads(loads_, joint_loads_);
+    reactions_.end_step(dt);
+  }
+  // Before q or v are set.
+  void keep_end_of_step() { reactions_.keep_end(q, v); }
+  void forget_step() { reactions_.forget(); }
+  // Null: no step is known.
+  const JointReactions* reactions();
 
  private:
   void update_factor();
@@ -176,6 +196,7 @@ class Articulation {
   void add_impulse(int link, double dt);
   void add_joint_impulse(std::uint32_t dof, double dt);
   bool add_forces(double dt, bool& changed);
+  void add_damping_efforts(std::span<const double> gained);
   bool add_constant_forces(double dt);
   void advance_floating(double h);
 
@@ -219,12 +240,14 @@ class Articulation {
   bool drives_are_compared_ = false;
   enum class Factored : std::uint8_t { no, without_damping, for_the_step };
   Factored factored_ = Factored::no;  // of this configuration
+  double factored_time_ = 0.0;        // for how long, for the step
   bool twists_ = false;               // the factor has the links' velocities, else the data
   bool regular_ = false;
   bool loaded_ = false;
   std::vector<dse3> loads_;          // of each link
   std::vector<double> joint_loads_;  // of each degree of freedom
   std::vector<int> floating_of_;     // of each link: the tree that it is of, or -1
+  JointReactions reactions_;
 
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v

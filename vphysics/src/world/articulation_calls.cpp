@@ -88,6 +88,7 @@ Expected<void> World::set_joint_states(ArticulationId id, std::span<const double
   Articulation* art = impl_->find(id);
   if (!art) return refuse("set_joint_states: no such articulation");
   if (auto problem = problem_with(*art, q, v)) return refuse("set_joint_states: " + *problem);
+  art->keep_end_of_step();
   std::copy(q.begin(), q.end(), art->q.begin());
   std::copy(v.begin(), v.end(), art->v.begin());
   art->refresh();
@@ -139,6 +140,7 @@ Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, doub
   if (position < joint.lower || position > joint.upper) {
     return refuse("set_joint_state: the position must lie between the joint's stops");
   }
+  art->keep_end_of_step();
   art->q[static_cast<std::size_t>(joint.coordinate)] = position;
   art->v[static_cast<std::size_t>(i)] = velocity;
   art->refresh();

@@ -201,7 +201,11 @@ void World::Impl::begin_solve_articulations(bool first) {
 
 void World::Impl::end_solve_articulations(bool first) {
   for (solve::JointRow& row : impacts.joint_rows) {
-    if (row.remember) *row.remember = row.impulse;
+    if (row.remember) {
+      *row.remember = row.impulse;
+    } else if (row.pair == solve::kNoPair) {
+      articulations[row.articulation].add_effort(row.dof, row.impulse);
+    }
   }
   for (Articulation& art : articulations) {
     if (!art.alive || art.remote) continue;

@@ -212,6 +212,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     body.v = impacts.solver_bodies[i].v;
     (void)stop_if_out_of_range(i, impacts.start_poses[i]);
   }
+  note_link_impulses(impacts.contacts);
   end_solve_articulations(first);
   take_back_row_joints(of_joints);
   apply_corrections();

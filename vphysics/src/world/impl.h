@@ -285,6 +285,9 @@ struct World::Impl {
   void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
   double discrete_margin(const ColliderPair& pair, double h) const;
 
+  // joint_reactions.cpp
+  void note_link_impulses(std::span<const solve::ContactConstraint> solved);
+
   // contacts.cpp
   PairRecord& record_of(const ColliderPair& pair, std::uint32_t part = 0);
   std::span<const collide::SubManifold> manifolds_of(const ColliderPair& pair, double margin);

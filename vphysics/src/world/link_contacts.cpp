@@ -219,12 +219,15 @@ void World::Impl::relax_links(double h) {
   solve::relax_sub_step(link_context(h));
   store_bodies_on_links();
   solve::note_sub_step(impacts.link_contacts);
+  note_link_impulses(impacts.link_contacts);
   for (const solve::ContactConstraint& c : impacts.link_contacts) {
     if (c.points[0].normal_impulse <= 0.0) continue;
     for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].way[solve::kCarried] = 1.0f;
   }
   for (solve::JointRow& row : impacts.joint_rows) {
     if (row.remember) *row.remember = dt_now / h * row.impulse;  // of a whole step
+    if (row.pair == solve::kNoPair)
+      articulations[row.articulation].add_effort(row.dof, row.impulse);
   }
   take_back_row_joints({RowsOf::sub_step, h, h, h / dt_now, speed_unit});
   for (Articulation& art : articulations) {

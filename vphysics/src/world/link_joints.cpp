@@ -63,6 +63,18 @@ void World::Impl::add_row_joints(const RowJointStep& step) {
 
 void World::Impl::take_back_row_joints(const RowJointStep& step) {
   take_back(impacts.joint_rows, impacts.joint_pairs, step, dt_now, joints);
+  for (const solve::JointRow& row : impacts.joint_rows) {
+    if (row.pair == solve::kNoPair) continue;
+    const solve::JointPair& pair = impacts.joint_pairs[row.pair];
+    for (const solve::PairEnd* end : {&pair.a, &pair.b}) {
+      const Body& body = bodies[end->body];
+      if (!body.is_link) continue;
+      const Vec3 impulse = row.impulse * end->linear;
+      const Vec3 moment =
+          row.impulse * end->angular + cross(impacts.solver_bodies[end->body].x, impulse);
+      articulations[body.articulation].add_external_impulse(body.link, impulse, moment);
+    }
+  }
 }
 
 // At the end of a step.

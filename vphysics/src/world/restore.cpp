@@ -316,6 +316,7 @@ void World::Impl::adopt(Incoming& from) {
       art.dofs[i].impulses = dof->impulses;
     }
     art.drives_changed();
+    art.forget_step();
     art.refresh();
     follow(art);
   }

@@ -63,7 +63,10 @@ void World::Impl::begin_step(double dt) {
   sleep_islands.reserve(n);
   for (const std::uint32_t i : impacts.bodies_on_links) bodies[i].on_link = false;
   impacts.bodies_on_links.clear();
-  for (Articulation& art : articulations) art.sub_stepped = false;
+  for (Articulation& art : articulations) {
+    art.sub_stepped = false;
+    art.forget_step();
+  }
   list_bodies();
   narrow.new_pairs.reserve(room);
   body_rows.resize(n + 1);
@@ -545,6 +548,7 @@ void World::Impl::finish_step() {
     return !loaded;
   });
   impacts.records.swap(impacts.next_records);
+  for (Articulation& art : articulations) art.end_step(dt_now);
   clear_loads();
 }
 

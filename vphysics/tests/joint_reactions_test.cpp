@@ -1,0 +1,687 @@
+// What the joints of articulations did in a step, against statics, closed forms, and the balance of
+// momentum of each link, from what the world shows of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "random.h"
+#include "tree_scenes.h"
+#include "trees.h"
+#include "vphysics/assert.h"
+
+namespace vp::test {
+namespace {
+
+constexpr double kG = 9.81;
+const Vec3 kGravity{0, 0, -kG};
+const Material kRough{0.6, 0.0, 0.0};
+
+void step(World& world, double dt, int count = 1) {
+  for (int i = 0; i < count; ++i) must(world.step(dt));
+}
+std::vector<double> copied(std::span<const double> x) {
+  return {x.begin(), x.end()};
+}
+
+// A link's centre of mass, momentum and angular momentum about the world's origin.
+struct Momentum {
+  Vec3 centre, linear, angular;
+};
+Momentum momentum_of(const World& world, BodyId link, const Inertia& J) {
+  const SE3 T = world.pose(link);
+  const dse3 P = J * world.velocity(link);
+  const Vec3 linear = T.rotate(P.f);
+  return {T * J.centre_of_mass(), linear, T.rotate(P.m) + cross(T.position(), linear)};
+}
+std::vector<Momentum> momenta(const World& world, ArticulationId id) {
+  std::vector<Momentum> all;
+  for (int l = 0; l < world.model(id)->links(); ++l) {
+    all.push_back(momentum_of(world, world.link_body(id, l), world.model(id)->link(l).inertia));
+  }
+  return all;
+}
+Vec3 contact_impulse(const World& world, BodyId body) {
+  std::vector<ContactPoint> points;
+  world.contacts_of(body, points);
+  Vec3 sum;
+  for (const ContactPoint& p : points) sum += p.normal_impulse * p.normal + p.friction_impulse;
+  return sum;
+}
+
+// How far mass times acceleration of each link is from gravity, contacts, forces of the user and
+// what joints do to it; against the largest of these.
+struct Balance {
+  double off = 0.0, size = 0.0, contact = 0.0;
+};
+Balance balance_of(const World& world, ArticulationId id, const std::vector<Momentum>& before,
+                   const std::vector<Vec3>& user, double dt, bool with_roots = true) {
+  const Model& model = *world.model(id);
+  const std::vector<Momentum> now = momenta(world, id);
+  std::vector<Vec3> force(now.size());
+  Balance balance;
+  for (int l = 0; l < model.links(); ++l) {
+    const auto i = static_cast<std::size_t>(l);
+    const Vec3 contact = (1.0 / dt) * contact_impulse(world, world.link_body(id, l));
+    const Vec3 joint = world.joint_reaction(id, l).force;
+    const Vec3 weight = model.link(l).inertia.mass() * kGravity;
+    force[i] += contact + joint + weight + user[i];
+    const int parent = model.link(l).parent;
+    if (parent != kWorld) force[static_cast<std::size_t>(parent)] -= joint;
+    for (const Vec3& f : {contact, joint, weight, user[i]}) {
+      balance.size = std::max(balance.size, norm(f));
+    }
+    balance.contact = std::max(balance.contact, norm(contact));
+  }
+  for (int l = 0; l < model.links(); ++l) {
+    const auto i = static_cast<std::size_t>(l);
+    if (!with_roots && model.link(l).parent == kWorld) continue;
+    const Vec3 changed = (1.0 / dt) * (now[i].linear - before[i].linear);
+    balance.off = std::max(balance.off, norm(changed - force[i]));
+  }
+  return balance;
+}
+
+// Every kind of joint, locked: each carries the weight of what hangs on it, and its moment. The
+// solver ends when nothing is faster than a limit, so that they are not quite still: how their
+// momenta change is part of it. Along the joints the locks have, besides, what the velocities would
+// do that gravity gives before they are solved: the square of dt.
+TEST(JointReaction, OfWhatStandsIsStatics) {
+  double before = 0.0;
+  for (const double dt : {1e-3, 5e-4}) {
+    Random random(11);
+    double worst = 0.0, along = 0.0;
+    for (int sample = 0; sample < 20; ++sample) {
+      const Model loose = random_tree(random, 12);
+      std::vector<LinkSpec> links;
+      for (int l = 0; l < loose.links(); ++l) {
+        LinkSpec link = loose.link(l);
+        JointForces locked;
+        locked.friction = JointForces::kNever;
+        link.forces.assign(static_cast<std::size_t>(velocities_of(link.joint)), locked);
+        links.push_back(link);
+      }
+      World world;
+      const ArticulationId id = must(world.create_articulation({model_of(links)}));
+      const State s = random_state(random, loose);
+      const std::vector<double> zero(s.v.size());
+      must(world.set_joint_states(id, s.q, zero));
+      step(world, dt, 300);
+      const std::vector<Momentum> was = momenta(world, id);
+      const std::vector<double> v = copied(world.velocities(id));
+      step(world, dt);
+      const std::vector<Momentum> now = momenta(world, id);
+      std::vector<Vec3> force(links.size()), moment(links.size());  // about the world's origin
+      for (int l = loose.links(); l-- > 0;) {
+        const auto i = static_cast<std::size_t>(l);
+        const Vec3 weight = links[i].inertia.mass() * kGravity;
+        force[i] += (1.0 / dt) * (now[i].linear - was[i].linear) - weight;
+        moment[i] += (1.0 / dt) * (now[i].angular - was[i].angular) - cross(now[i].centre, weight);
+        const JointForce joint = world.joint_reaction(id, l);
+        const Vec3 at = world.pose(world.link_body(id, l)).position();
+        worst = std::max({worst, norm(joint.force - force[i]),
+                          norm(joint.torque - (moment[i] - cross(at, force[i])))});
+        if (links[i].parent == kWorld) continue;
+        force[static_cast<std::size_t>(links[i].parent)] += force[i];
+        moment[static_cast<std::size_t>(links[i].parent)] += moment[i];
+      }
+      Data data(loose);
+      std::vector<double> tau(s.v.size()), a = copied(world.velocities(id));
+      for (std::size_t i = 0; i < a.size(); ++i) a[i] = (a[i] - v[i]) / dt;
+      inverse_dynamics<double>(loose, data, world.coordinates(id), zero, a, {.gravity = kGravity},
+                               tau);
+      for (int l = 0; l < loose.links(); ++l) {
+        for (int k = 0; k < velocities_of(links[static_cast<std::size_t>(l)].joint); ++k) {
+          const auto i = static_cast<std::size_t>(loose.first_velocity(l) + k);
+          along = std::max(along, std::fabs(world.joint_effort(id, l, k) - tau[i]));
+        }
+      }
+    }
+    std::printf("locked trees at %.0e s: %.1e N or N m off statics; %.1e along joints\n", dt, worst,
+                along);
+    EXPECT_LT(worst, 1e-7);  // measured 2.4e-8, of forces of 100 N; they move by so much
+    EXPECT_LT(along, 1e-3);  // measured 2.4e-4, 6.1e-5
+    if (before > 0.0) {
+      EXPECT_GT(before / along, 3.5);
+    }
+    before = along;
+  }
+}
+
+TEST(JointReaction, OfAHangingPendulumIsItsWeight) {
+  World world;
+  const auto id =
+      must(world.create_articulation({model_of(hanging_chain(3, RevoluteJoint{{0, 1, 0}}))}));
+  step(world, 0.001, 10);
+  for (int l = 0; l < 3; ++l) {
+    const JointForce joint = world.joint_reaction(id, l);
+    EXPECT_LT(norm(joint.force - Vec3{0, 0, 0.5 * kG * (3 - l)}), 1e-9);
+    EXPECT_LT(norm(joint.torque), 1e-9);
+    EXPECT_EQ(world.joint_effort(id, l, 0), 0.0);
+  }
+}
+
+// An arm that drives hold out: two bars, the weights at their middles.
+TEST(JointReaction, OfAnArmThatDrivesHoldIsStatics) {
+  World world;
+  auto links = hanging_chain(2, RevoluteJoint{{0, 1, 0}});
+  links[0].T_parent_joint = SE3(Vec3{0.3, -0.2, 1.0});
+  const auto id = must(world.create_articulation({model_of(links)}));
+  for (int l = 0; l < 2; ++l) must(world.set_drive(id, l, 0, {-0.7, 0, 400, 20, 1e9}));
+  step(world, 0.002, 5000);
+  const double weight = 0.5 * kG, a = world.joint_position(id, 0, 0),
+               b = a + world.joint_position(id, 1, 0), half = 0.1;
+  // Horizontally, from each joint: of a bar at an angle a from -z about y, -sin a of its length.
+  const double at_elbow = -half * std::sin(b), elbow = -2 * half * std::sin(a);
+  const double at_shoulder = -half * std::sin(a) + elbow + at_elbow;
+  const double torque[] = {-weight * at_shoulder, -weight * at_elbow};
+  for (int l = 0; l < 2; ++l) {
+    const JointForce joint = world.joint_reaction(id, l);
+    EXPECT_LT(norm(joint.force - Vec3{0, 0, weight * (2 - l)}), 1e-9);
+    EXPECT_LT(norm(joint.torque - Vec3{0, torque[l], 0}), 1e-9);
+    EXPECT_NEAR(world.joint_effort(id, l, 0), torque[l], 5e-5);  // the square of dt: 1.1e-5
+    EXPECT_GT(std::fabs(torque[l]), 0.3);
+  }
+}
+
+// A bar that swings, against its equation integrated in small steps: the error goes with dt.
+TEST(JointReaction, OfASwingingPendulumIsCentripetalForceAndWeight) {
+  constexpr double kLength = 0.2, kMass = 0.5, kStart = 1.2, kTime = 0.8;
+  const Inertia J = bar(kMass, kLength);
+  double before = 0.0;
+  for (const double dt : {2e-3, 1e-3, 5e-4}) {
+    World world;
+    const auto id =
+        must(world.create_articulation({model_of(hanging_chain(1, RevoluteJoint{{0, 1, 0}}))}));
+    must(world.set_joint_state(id, 0, 0, kStart, 0.0));
+    const int count = static_cast<int>(std::lround(kTime / dt));
+    double worst = 0.0, angle = kStart, speed = 0.0;
+    const auto pull = [&](double x) {
+      return -kMass * kG * 0.5 * kLength / J.rotational().yy * std::sin(x);
+    };
+    for (int i = 0; i < count; ++i) {
+      step(world, dt);
+      constexpr int kFine = 40;
+      for (int k = 0; k < kFine; ++k) {  // leapfrog: its middle is that of the step
+        const double h = dt / kFine;
+        speed += 0.5 * h * pull(angle);
+        angle += h * speed;
+        speed += 0.5 * h * pull(angle);
+        if (k != kFine / 2 - 1) continue;
+        const Vec3 out{-std::sin(angle), 0, -std::cos(angle)};
+        const Vec3 onward{-std::cos(angle), 0, std::sin(angle)};
+        const Vec3 centripetal = (-0.5 * kLength * speed * speed) * out;
+        const Vec3 a = centripetal + (0.5 * kLength * pull(angle)) * onward;
+        const Vec3 expected = kMass * (a - kGravity);
+        worst = std::max(worst, norm(world.joint_reaction(id, 0).force - expected));
+      }
+      EXPECT_LT(norm(world.joint_reaction(id, 0).torque), 1e-9);  // nothing turns it
+    }
+    std::printf("pendulum at %.1e s: force off by %.2e N, %.2f times less\n", dt, worst,
+                before / worst);
+    if (before > 0.0) {
+      EXPECT_NEAR(before / worst, 2.0, 0.1);  // measured 2.01, 2.00
+    }
+    before = worst;
+  }
+}
+
+// Impulses on feet, drives, gravity: what hips carry is the trunk's weight.
+TEST(JointReaction, OfAStandingWalkerIsTheWeightOfWhatIsAbove) {
+  World world;
+  add_ground(world, kRough);
+  const Walker walker = add_walker(world, {0, 0, Walker::kHeight}, kRough);
+  step(world, 0.001, 4000);
+  const Model& model = *world.model(walker.id);
+  Vec3 hips, knees;
+  for (int leg = 0; leg < 4; ++leg) {
+    hips -= world.joint_reaction(walker.id, 1 + 2 * leg).force;
+    knees -= world.joint_reaction(walker.id, 2 + 2 * leg).force;
+  }
+  const double trunk = kG * model.link(0).inertia.mass(), thighs = 4 * kG;
+  std::printf("hips carry %.6f N of %.6f N\n", hips.z, trunk);
+  EXPECT_LT(norm(hips - Vec3{0, 0, trunk}), 1e-6 * trunk);  // measured 6.4e-8
+  EXPECT_LT(norm(knees - Vec3{0, 0, trunk + thighs}), 1e-6 * trunk);
+  EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).force), 0.0);  // it floats
+  EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).torque), 0.0);
+}
+
+// A tree of any joints with motors, stops, springs, friction, damping, and spheres that fall on the
+// ground and bounce.
+ArticulationId add_rough_tree(World& world, Random& random, bool floating, const Material& m) {
+  const Model loose = random_tree(random, 10);
+  std::vector<LinkSpec> links;
+  for (int l = 0; l < loose.links(); ++l) {
+    LinkSpec link = loose.link(l);
+    if (link.parent == kWorld && l > 0) link.parent = 0;
+    if (l == 0) link.joint = floating ? Joint{FreeJoint{}} : Joint{RevoluteJoint{{1, 0, 0}}};
+    if (l == 0 && floating) link.armature = link.damping = 0.0;
+    if (l == 0) link.T_parent_joint = SE3(Vec3{0, 0, 1.0});
+    const auto n = static_cast<std::size_t>(velocities_of(link.joint));
+    const bool has_coordinates = velocities_of(link.joint) == coordinates_of(link.joint);
+    for (std::size_t k = 0; k < n && (l > 0 || !floating); ++k) {
+      JointForces f;
+      f.friction = l % 3 == 0 ? 0.3 : 0.0;
+      if (has_coordinates && l % 2 == 0) f.stiffness = 5.0;
+      if (has_coordinates) f.lower = -0.6, f.upper = 0.8;
+      link.forces.push_back(f);
+    }
+    links.push_back(link);
+  }
+  const auto id = must(world.create_articulation({model_of(links)}));
+  for (int l = 0; l < loose.links(); ++l) {
+    must(world.add_collider(world.link_body(id, l), collider_of(Sphere{0.15}, m)));
+  }
+  return id;
+}
+
+TEST(JointReaction, BalancesTheMomentumOfEachLink) {
+  for (const bool floating : {false, true}) {
+    Random random(floating ? 5 : 3);
+    double worst = 0.0, worst_root = 0.0, contact = 0.0;
+    for (int sample = 0; sample < 5; ++sample) {
+      World world;
+      add_ground(world, {0.6, 0.4, 0.02});
+      const auto id = add_rough_tree(world, random, floating, {0.6, 0.4, 0.02});
+      const auto n = world.velocities(id).size();
+      const int count = world.model(id)->links();
+      std::vector<JointDrive> drives(n);
+      for (JointDrive& d : drives) d = {0, random.uniform(-1, 1), 0, 2.0, 8.0};
+      for (std::size_t k = 0; k < 6 && floating; ++k) drives[k] = {};
+      must(world.set_drives(id, drives));
+      for (int i = 0; i < 200; ++i) {
+        const double dt = i % 7 == 0 ? 0.004 : 0.002;
+        const int pushed = static_cast<int>(random.word() % static_cast<unsigned>(count));
+        std::vector<Vec3> user(static_cast<std::size_t>(count));
+        user[static_cast<std::size_t>(pushed)] = random.in_cube(20.0);
+        const BodyId body = world.link_body(id, pushed);
+        must(world.apply_force(body, user[static_cast<std::size_t>(pushed)]));
+        must(world.apply_torque(body, random.in_cube(2.0)));
+        const std::vector<Momentum> before = momenta(world, id);
+        step(world, dt);
+        const Balance all = balance_of(world, id, before, user, dt);
+        const Balance inner = balance_of(world, id, before, user, dt, false);
+        worst = std::max(worst, inner.off / inner.size);
+        worst_root = std::max(worst_root, all.off / all.size);
+        contact = std::max(contact, all.contact);
+      }
+    }
+    std::printf("%s: balance of links %.1e, of roots too %.1e; contacts up to %.0f N\n",
+                floating ? "floating" : "fixed", worst, worst_root, contact);
+    EXPECT_GT(contact, 500.0);
+    EXPECT_LT(worst, 1e-9);
+    if (!floating) {
+      EXPECT_LT(worst_root, 1e-9);
+    }
+  }
+}
+
+// Angular momentum of each link about its centre of mass, of swinging trees: to the order of dt.
+TEST(JointReaction, BalancesAngularMomentumToTheOrderOfTheStep) {
+  double before = 0.0;
+  for (const double dt : {2e-3, 1e-3, 5e-4}) {
+    Random random(21);
+    double worst = 0.0;
+    for (int sample = 0; sample < 10; ++sample) {
+      World world;
+      const Model model = random_tree(random, 8);
+      const auto id = must(world.create_articulation({model}));
+      const State s = random_state(random, model);
+      must(world.set_joint_states(id, s.q, s.v));
+      step(world, dt, 10);
+      const std::vector<Momentum> was = momenta(world, id);
+      std::vector<Vec3> origin;
+      for (int l = 0; l < model.links(); ++l) {
+        origin.push_back(world.pose(world.link_body(id, l)).position());
+      }
+      step(world, dt);
+      const std::vector<Momentum> now = momenta(world, id);
+      std::vector<Vec3> torque(now.size());
+      for (int l = 0; l < model.links(); ++l) {
+        const auto i = static_cast<std::size_t>(l);
+        const JointForce joint = world.joint_reaction(id, l);
+        torque[i] += joint.torque + cross(origin[i] - was[i].centre, joint.force);
+        if (model.link(l).parent == kWorld) continue;
+        const auto p = static_cast<std::size_t>(model.link(l).parent);
+        torque[p] -= joint.torque + cross(origin[i] - was[p].centre, joint.force);
+      }
+      for (std::size_t i = 0; i < now.size(); ++i) {
+        const auto spin = [](const Momentum& m) { return m.angular - cross(m.centre, m.linear); };
+        const Vec3 changed = (1.0 / dt) * (spin(now[i]) - spin(was[i]));
+        worst = std::max(worst, norm(changed - torque[i]));
+      }
+    }
+    std::printf("angular balance at %.1e s: %.2e N m off, %.2f times less\n", dt, worst,
+                before / worst);
+    if (before > 0.0) {
+      EXPECT_GT(before / worst, 1.8);  // measured 2.13, 2.07
+    }
+    before = worst;
+  }
+}
+
+// A tree that tumbles in flight, whatever its joints do: the sum of what they do to its trunk and
+// its momentum is nothing but gravity, about any point.
+TEST(JointReaction, OfATumblingTreeLeavesNothingToItsRoot) {
+  World world;
+  const Walker walker = add_walker(world, {1e3, -2e3, 5.0}, kRough);
+  std::vector<double> v(world.velocities(walker.id).size(), 0.7);
+  must(world.set_joint_states(walker.id, walker.rest, v));
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const BodyId trunk = world.link_body(walker.id, 0);
+    const Momentum was = momenta(world, walker.id)[0];
+    step(world, 1e-3);
+    const Momentum now = momenta(world, walker.id)[0];
+    Vec3 force = world.model(walker.id)->link(0).inertia.mass() * kGravity;
+    for (int leg = 0; leg < 4; ++leg) force -= world.joint_reaction(walker.id, 1 + 2 * leg).force;
+    worst = std::max(worst, norm(1e3 * (now.linear - was.linear) - force));
+    EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).force), 0.0);
+    EXPECT_TRUE(world.contains(trunk));
+  }
+  std::printf("tumbling walker: trunk off by %.1e N\n", worst);
+  EXPECT_LT(worst, 1e-7);
+}
+
+// What a drive is told it does: its law, with the velocity that it leaves.
+TEST(JointEffort, IsWhatTheDriveIsTold) {
+  World world;
+  auto links = hanging_chain(1, RevoluteJoint{{0, 1, 0}});
+  links[0].armature = 0.02;
+  const auto id = must(world.create_articulation({model_of(links)}));
+  must(world.set_drive(id, 0, 0, {0.8, 0.1, 30.0, 0.5, 100.0}));
+  const double dt = 0.002;
+  for (int i = 0; i < 300; ++i) {
+    const double q = world.joint_position(id, 0, 0), v = world.joint_velocity(id, 0, 0);
+    must(world.apply_joint_force(id, 0, 0, 0.25));
+    step(world, dt);
+    const double w = world.joint_velocity(id, 0, 0);
+    const double told = 30.0 * (0.8 - q - dt * w) + 0.5 * (0.1 - w) + 0.25;
+    EXPECT_NEAR(world.joint_effort(id, 0, 0), told, 1e-9);
+    // The rotor takes its part of it.
+    const JointForce joint = world.joint_reaction(id, 0);
+    EXPECT_NEAR(joint.torque.y + 0.02 * (w - v) / dt, told, 1e-9);
+  }
+  must(world.set_drive(id, 0, 0, {0.8, 1e3, 0.0, 0.5, 3.0}));  // as much as it can
+  step(world, dt);
+  EXPECT_NEAR(world.joint_effort(id, 0, 0), 3.0, 1e-12);
+}
+
+// Motors, springs, friction, damping and stops of a tree in motion: the efforts are those of
+// inverse dynamics, and what reactions have along the joints' axes, to the order of dt.
+TEST(JointEffort, IsThatOfInverseDynamicsAndOfTheReaction) {
+  double before_dynamics = 0.0, before_axis = 0.0;
+  for (const double dt : {1e-3, 5e-4, 2.5e-4}) {
+    auto links = hanging_chain(5, RevoluteJoint{{0, 1, 0}});
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      links[l].joint = RevoluteJoint{l % 2 == 0 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}};
+      links[l].armature = 0.01;
+      links[l].damping = 0.02;
+      JointForces f;
+      f.stiffness = 2.0;
+      f.friction = l == 1 ? 0.05 : 0.0;
+      links[l].forces = {f};
+    }
+    const Model model = model_of(links);
+    World world;
+    const auto id = must(world.create_articulation({model}));
+    must(world.set_joint_states(id, std::vector<double>{.5, -.4, .3, .6, -.2},
+                                std::vector<double>{1, 2, -1, 3, 2}));
+    for (int l = 0; l < 5; ++l) must(world.set_drive(id, l, 0, {0.3, 0, 5.0, 0.1, 2.0}));
+    step(world, dt, static_cast<int>(std::lround(0.02 / dt)));
+    const auto q = copied(world.coordinates(id)), v = copied(world.velocities(id));
+    step(world, dt);
+    const auto w = copied(world.velocities(id));
+    std::vector<double> a(5), tau(5);
+    for (std::size_t i = 0; i < 5; ++i) a[i] = (w[i] - v[i]) / dt;
+    Data data(model);
+    inverse_dynamics<double>(model, data, q, v, a, {.gravity = kGravity}, tau);
+    double dynamics = 0.0, axis = 0.0;
+    for (int l = 0; l < 5; ++l) {
+      const auto i = static_cast<std::size_t>(l);
+      const double effort = world.joint_effort(id, l, 0);
+      dynamics = std::max(dynamics, std::fabs(effort - (tau[i] - 0.02 * v[i])));
+      const Vec3 along =
+          world.pose(world.link_body(id, l)).rotate(std::get<RevoluteJoint>(links[i].joint).axis);
+      const double felt = dot(along, world.joint_reaction(id, l).torque);
+      axis = std::max(axis, std::fabs(effort - 0.01 * a[i] - felt));
+    }
+    std::printf("efforts at %.1e s: %.2e N m off inverse dynamics, %.2e off reactions\n", dt,
+                dynamics, axis);
+    if (before_axis > 0.0) {
+      EXPECT_GT(before_dynamics / dynamics, 1.7);
+      EXPECT_GT(before_axis / axis, 1.7);
+    }
+    before_dynamics = dynamics;
+    before_axis = axis;
+  }
+}
+
+// In sub-steps, without friction, whose impulses contacts_of() has in full: a box falls on a plate
+// that springs hold, and slides off.
+TEST(JointReaction, HasTheLoadOfABodyOnALink) {
+  LinkSpec plate;
+  plate.joint = PrismaticJoint{{0, 0, 1}};
+  plate.inertia = solid_inertia(Box{{0.5, 0.5, 0.05}}, 200.0);
+  JointForces spring;
+  spring.stiffness = 1e5;
+  plate.forces = {spring};
+  plate.damping = 300.0;
+  for (const int sub_steps : {0, 1, 7}) {
+    WorldDesc desc;
+    desc.sub_steps = sub_steps;
+    World world(desc);
+    const auto id = must(world.create_articulation({model_of({plate})}));
+    const Material smooth{0.0, 0.3, 0.0};
+    const BodyId body = world.link_body(id, 0);
+    must(world.add_collider(body, collider_of(Box{{0.5, 0.5, 0.05}}, smooth)));
+    const BodyId box = add_dynamic(
+        world, {.shape = Box{{0.1, 0.1, 0.1}}, .material = smooth, .pose = SE3({0.1, 0, 0.3})});
+    double worst = 0.0, contact = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const std::vector<Momentum> before = momenta(world, id);
+      const double v = world.joint_velocity(id, 0, 0);
+      must(world.apply_force(body, {1, 2, 3}));
+      step(world, 0.001);
+      const Balance balance = balance_of(world, id, before, {{1, 2, 3}}, 0.001);
+      worst = std::max(worst, balance.off / balance.size);
+      contact = std::max(contact, balance.contact);
+      // What acts along the joint is what the reaction has along it: the plate does not turn.
+      const double effort = world.joint_effort(id, 0, 0);
+      EXPECT_NEAR(effort, world.joint_reaction(id, 0).force.z, 1e-7 * balance.size) << i << v;
+    }
+    const JointForce joint = world.joint_reaction(id, 0);
+    const double mass = plate.inertia.mass() + world.inertia(box).mass();
+    std::printf("%d sub-steps: balance %.1e, contacts up to %.0f N; at rest %.6f of the weight\n",
+                sub_steps, worst, contact, (joint.force.z + 3.0) / (mass * kG));
+    EXPECT_GT(contact, 2000.0);
+    EXPECT_LT(worst, 1e-6);
+    EXPECT_NEAR((joint.force.z + 3.0) / (mass * kG), 1.0, 1e-5);
+    // The moment of a box beside the middle.
+    const double arm = world.pose(box).position().x;
+    EXPECT_NEAR(joint.torque.y, -arm * kG * world.inertia(box).mass(), 1e-3);
+  }
+}
+
+// A ball that bounces off a locked plate in the middle of a step, and one that a rod's foot hits.
+TEST(JointReaction, HasImpactsWithinTheStep) {
+  LinkSpec plate;
+  plate.joint = PrismaticJoint{{1, 0, 0}};
+  plate.inertia = solid_inertia(Box{{0.5, 0.5, 0.05}}, 200.0);
+  JointForces locked;
+  locked.friction = JointForces::kNever;
+  plate.forces = {locked};
+  World world;
+  const auto id = must(world.create_articulation({model_of({plate})}));
+  const Material hard{0.3, 0.9, 0.01};
+  must(world.add_collider(world.link_body(id, 0), collider_of(Box{{0.5, 0.5, 0.05}}, hard)));
+  const BodyId ball = add_ball(world, {0.2, 0, 0.5}, {0, 0.4, 0}, hard);
+  const double mass = world.inertia(ball).mass(), dt = 0.001;
+  double hardest = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    const Vec3 before = world.velocity_world(ball).linear;
+    step(world, dt);
+    const Vec3 to_ball = mass * (world.velocity_world(ball).linear - before - dt * kGravity);
+    const Vec3 expected = (1.0 / dt) * to_ball - plate.inertia.mass() * kGravity;
+    EXPECT_LT(norm(world.joint_reaction(id, 0).force - expected), 1e-9 * norm(expected));
+    hardest = std::max(hardest, norm(to_ball) / dt);
+  }
+  EXPECT_GT(hardest, 100.0);
+}
+
+// Rods of a table, of which those that nothing is near are not looked at.
+TEST(JointReaction, OfRodsThatNothingIsNear) {
+  World world;
+  const Rod rod = add_rod(world, 0.1, 0.08, 3, 0.2, {0.4, 0.3, 0.0});
+  add_ball(world, {2.0, 0, 1.0}, {}, {0.4, 0.3, 0.0});
+  must(world.set_drive(rod.articulation, 0, 0, {0.05, 0, 200, 20, 50}));
+  must(world.set_drive(rod.articulation, 0, 1, {2.0, 0, 2, 0.1, 5}));
+  for (int i = 0; i < 300; ++i) {
+    const std::vector<Momentum> before = momenta(world, rod.articulation);
+    step(world, 0.001);
+    const JointForce joint = world.joint_reaction(rod.articulation, 0);  // before it is looked at
+    EXPECT_NEAR(joint.force.y, world.joint_effort(rod.articulation, 0, 0), 1e-9);
+    EXPECT_NEAR(joint.torque.y, world.joint_effort(rod.articulation, 0, 1), 1e-9);
+    const Balance balance = balance_of(world, rod.articulation, before, {{}}, 0.001);
+    EXPECT_LT(balance.off, 1e-9);
+  }
+}
+
+// Joints of several degrees of freedom, and the user's forces along them.
+TEST(JointReaction, OfAFreeRootIsWhatActsAlongIt) {
+  World world;
+  const Walker walker = add_walker(world, {0, 0, 5.0}, kRough);
+  const SE3 before = world.pose(world.link_body(walker.id, 0));
+  for (int k = 0; k < 6; ++k) must(world.apply_joint_force(walker.id, 0, k, 1.0 + k));
+  step(world, 0.001);
+  const JointForce joint = world.joint_reaction(walker.id, 0);
+  EXPECT_LT(norm(joint.torque - before.rotate({1, 2, 3})), 1e-9);
+  EXPECT_LT(norm(joint.force - before.rotate({4, 5, 6})), 1e-9);
+  EXPECT_NEAR(world.joint_effort(walker.id, 0, 4), 5.0, 1e-12);
+  step(world, 0.001);
+  EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).force), 0.0);
+}
+
+TEST(JointReaction, OfABallHasNoTorqueThroughIt) {
+  double before = 0.0;
+  for (const double dt : {2e-3, 1e-3}) {
+    World world;
+    const auto id = must(world.create_articulation({model_of(hanging_chain(1, BallJoint{}))}));
+    must(world.set_joint_states(id, std::vector<double>{0.6, 0, 0, 0.8}, {{1.0, 2.0, 5.0}}));
+    double worst = 0.0;
+    for (int i = 0; i < static_cast<int>(0.4 / dt); ++i) {
+      step(world, dt);
+      worst = std::max(worst, norm(world.joint_reaction(id, 0).torque));
+    }
+    std::printf("ball at %.0e s: %.2e N m\n", dt, worst);
+    if (before > 0.0) {
+      EXPECT_GT(before / worst, 1.8);  // measured 2.0
+    }
+    before = worst;
+  }
+  EXPECT_LT(before, 3e-3);  // measured 1.8e-3, of 0.5 N m by its weight
+}
+
+// The last step stays what it was, whatever is set afterwards; but no snapshot has it.
+TEST(JointReaction, StaysUntilTheNextStepAndIsZeroAfterRestore) {
+  World world;
+  const auto id =
+      must(world.create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))}));
+  const BodyId tip = world.link_body(id, 1);
+  must(world.set_drive(id, 0, 0, {0.4, 0, 10, 1, 10}));
+  EXPECT_EQ(norm(world.joint_reaction(id, 0).force), 0.0);
+  EXPECT_EQ(world.joint_effort(id, 0, 0), 0.0);
+  EXPECT_EQ(norm(world.acceleration_at(tip, {})), 0.0);
+  step(world, 0.001, 50);
+  std::vector<std::byte> bytes;
+  world.snapshot(bytes);
+  World other = std::move(world);
+  for (const int change : {0, 1, 2}) {
+    must(other.restore(bytes));
+    EXPECT_EQ(norm(other.joint_reaction(id, 1).force), 0.0);
+    EXPECT_EQ(other.joint_effort(id, 0, 0), 0.0);
+    EXPECT_EQ(norm(other.acceleration_at(tip, {})), 0.0);
+    step(other, 0.001);
+    World same;
+    (void)same.create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))});
+    must(same.restore(bytes));
+    step(same, 0.001);
+    const JointForce expected = same.joint_reaction(id, 1);
+    EXPECT_GT(norm(expected.force), 1.0);
+    if (change == 0) must(other.apply_impulse(tip, {1, 2, 3}, {0, 0, -0.3}));
+    if (change == 1) must(other.set_joint_state(id, 0, 0, 1.0, 2.0));
+    if (change == 2) must(other.set_joint_states(id, {{1.0, 1.0}}, {{3.0, 3.0}}));
+    EXPECT_EQ(other.joint_reaction(id, 1).force, expected.force);
+    EXPECT_EQ(other.joint_reaction(id, 1).torque, expected.torque);
+    EXPECT_EQ(other.joint_effort(id, 0, 0), same.joint_effort(id, 0, 0));
+  }
+  // Asking changes nothing.
+  World asked, not_asked;
+  for (World* w : {&asked, &not_asked}) {
+    (void)w->create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))});
+    must(w->restore(bytes));
+    for (int i = 0; i < 20; ++i) {
+      step(*w, 0.001);
+      if (w == &asked) (void)w->joint_reaction(id, 0);
+    }
+  }
+  EXPECT_EQ(asked.state_hash(), not_asked.state_hash());
+}
+
+// A caller's mistake asserts; a handler that goes on gets zero.
+TEST(JointReaction, OfNoSuchLinkIsZero) {
+  static int assertions = 0;
+  assertions = 0;
+  const AssertHandler before =
+      set_assert_handler([](const char*, const char*, int) { ++assertions; });
+  World world;
+  const auto id =
+      must(world.create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))}));
+  const BodyId link = world.link_body(id, 1), body = add_dynamic(world, {});
+  step(world, 0.001);
+  for (const int none : {-1, 2}) EXPECT_EQ(norm(world.joint_reaction(id, none).force), 0.0);
+  EXPECT_EQ(world.joint_effort(id, 0, 1), 0.0);
+  EXPECT_EQ(norm(world.acceleration_at(body, {})), 0.0);
+  must(world.destroy_articulation(id));
+  EXPECT_EQ(norm(world.joint_reaction(id, 0).force), 0.0);
+  EXPECT_EQ(world.joint_effort(id, 0, 0), 0.0);
+  EXPECT_EQ(norm(world.acceleration_at(link, {})), 0.0);
+  set_assert_handler(before);
+#if defined(VP_ASSERTIONS) || !defined(NDEBUG)
+  EXPECT_EQ(assertions, 7);
+#endif
+}
+
+// An accelerometer: at rest it reads the weight, in free fall nothing, on a wheel what pulls
+// inward.
+TEST(AccelerationAt, IsTheChangeOfVelocityOfThePoint) {
+  World world;
+  const Walker walker = add_walker(world, {0, 0, 5.0}, kRough);
+  const BodyId trunk = world.link_body(walker.id, 0);
+  step(world, 0.001);
+  EXPECT_LT(norm(world.acceleration_at(trunk, {0.3, 0.1, 5.0}) - kGravity), 1e-9);
+
+  World turning;
+  LinkSpec wheel;
+  wheel.joint = RevoluteJoint{{0, 0, 1}};
+  wheel.inertia = solid_inertia(Cylinder{0.1, 0.5}, 100.0);
+  const auto id = must(turning.create_articulation({model_of({wheel})}));
+  const BodyId body = turning.link_body(id, 0);
+  must(turning.set_joint_state(id, 0, 0, 0.3, 7.0));
+  const double dt = 0.001;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 in_wheel{0.5, 0, 0.1};
+    const Vec3 before = turning.velocity_at(body, turning.pose(body) * in_wheel);
+    step(turning, dt);
+    const Vec3 point = turning.pose(body) * in_wheel;
+    const Vec3 change = (1.0 / dt) * (turning.velocity_at(body, point) - before);
+    EXPECT_LT(norm(turning.acceleration_at(body, point) - change), 1e-9);
+    const Vec3 halfway = Exp(Vec3{0, 0, -0.5 * dt * 7.0}).matrix() * Vec3{point.x, point.y, 0};
+    EXPECT_LT(norm(change - (-49.0) * halfway), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace vp::test
