@@ -92,6 +92,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   impl_->lists.invalidate();
   if (impl_->recorder) {
     std::vector<LinkSpec> links;
+    links.reserve(static_cast<std::size_t>(desc.model.links()));
     for (int l = 0; l < desc.model.links(); ++l) links.push_back(desc.model.link(l));
     if (desc.links_collide) {
       impl_->log({calls::CreateArticulationWith{std::move(links), true}});
