@@ -114,6 +114,12 @@ std::vector<Change> changes() {
        [](Yard& y) { must(y.world.set_mass_from_colliders(y.boxes[5])); }},
       {"create_articulation",
        [](Yard& y) { must(y.world.create_articulation(rod_desc(-2.0, 0.5))); }},
+      {"create_articulation of links that meet each other",
+       [](Yard& y) {
+         ArticulationDesc desc = hanging_desc();
+         desc.links_collide = true;
+         must(y.world.create_articulation(desc));
+       }},
       {"create_articulation of an inertia that no body has",
        [](Yard& y) {
          LinkSpec link;

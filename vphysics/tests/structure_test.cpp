@@ -24,6 +24,7 @@ struct Recipe {
   ColliderDesc collider;
   Shape second = Box{{1, 1, 1}}, third = Capsule{0.2, 0.3};
   LinkSpec link = rod_link(0, 0.1), swinging = swinging_link();
+  bool links_collide = false;
 };
 using Change = std::function<void(Recipe&)>;
 
@@ -46,7 +47,7 @@ World make(const Recipe& r) {
   must(world.add_collider(other, collider));
   collider.shape = r.third;
   must(world.add_collider(other, collider));
-  must(world.create_articulation({model_of({r.link, r.swinging})}));
+  must(world.create_articulation({model_of({r.link, r.swinging}), r.links_collide}));
   return world;
 }
 bool takes(const Change& change) {
@@ -172,6 +173,7 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
       {"friction", [](Recipe& r) { r.link.forces[0].friction = 1.0; }},
       {"motor_limit", [](Recipe& r) { r.link.forces[0].motor_limit = 1.0; }},
       {"upper limit", [](Recipe& r) { r.link.forces[1].upper = 0.13; }},
+      {"links_collide", [](Recipe& r) { r.links_collide = true; }},
   };
   for (const auto& [name, change] : changes) EXPECT_FALSE(takes(change)) << name;
 }

@@ -379,6 +379,27 @@ TEST(UrdfWorld, MeshesAreFoundAsRobotsToolsFindThem) {
   fs::remove_all(root);
 }
 
+// The first and the last link overlap; the one in between is a neighbour of both.
+TEST(UrdfWorld, LinksMeetEachOtherIfAskedTo) {
+  const std::string ball = collision("<sphere radius=\"0.5\"/>");
+  const std::string text =
+      robot(link("base", ball) + link("upper", ball) + link("lower", ball) + link("hand", ball) +
+            joint("shoulder", "continuous", "base", "upper", origin("0 0 -0.2")) +
+            joint("elbow", "continuous", "upper", "lower", origin("0 0 -0.2")) +
+            joint("wrist", "fixed", "lower", "hand", origin("0 0 -0.2")));
+  for (const bool collide : {false, true}) {
+    UrdfWorldOptions options = floating();
+    options.links_collide = collide;
+    Placed placed = place(text, options);
+    (void)must_build(placed.world.step(0.001));
+    std::vector<std::pair<ColliderId, ColliderId>> met, expected;
+    for (const ContactEvent& e : placed.world.contact_events()) met.emplace_back(e.a, e.b);
+    const auto& all = placed.robot.colliders;
+    if (collide) expected = {{all[0], all[2]}, {all[0], all[3]}};
+    EXPECT_TRUE(met == expected) << met.size();
+  }
+}
+
 // It falls onto its feet and stays there; nothing of it goes through the ground.
 TEST(UrdfWorld, ARobotStandsOnTheGroundByItsGeometry) {
   const auto foot = [](const std::string& name, const std::string& at) {

@@ -11,7 +11,8 @@
 //
 // Boxes, spheres, cylinders and capsules are shapes of the same kind. Meshes (mesh_file.h) are
 // convex hulls, one for each object of the file, or triangles where a link does not move. Links of
-// one articulation do not meet each other; UrdfWorldOptions::filter says what else does not meet.
+// one robot meet each other if UrdfWorldOptions::links_collide says so; UrdfWorldOptions::filter
+// says what else does not meet.
 //
 // A robot of which no joint moves, such as a table or a cup, is one body of the world.
 //
@@ -39,6 +40,7 @@ struct UrdfWorldOptions {
   Material material{};
   CollisionFilter filter{};
   std::uint64_t user_data = 0;
+  bool links_collide = false;  // ArticulationDesc has it: each with all but its neighbours
   // If above zero [kg/m^3], links without mass that have collision geometry get the mass and
   // inertia of its volume, and those with a mass but no moments its moments; triangles have none.
   double density = 0.0;

@@ -86,15 +86,21 @@ struct BodyDesc {
 };
 
 // A tree of links with any joints (multibody/model.h). Each link is a body of the world, which
-// takes colliders as others do, but is moved by its joints alone. Links of one articulation do not
-// meet each other. Armature, damping, stops, springs and friction of the joints are the model's;
-// stops, springs and friction are solved together with the contacts, springs implicitly.
+// takes colliders as others do, but is moved by its joints alone. Armature, damping, stops, springs
+// and friction of the joints are the model's; stops, springs and friction are solved together with
+// the contacts, springs implicitly.
 //
 // A tree whose root is a free joint without damping and armature keeps its momentum to rounding
 // where nothing touches it. The forces that velocities make are integrated explicitly: a tree that
 // swings by more than about half a radian a step gains energy.
 struct ArticulationDesc {
   Model model;
+  // Links meet each other as other bodies do, by their colliders' filters, but for neighbours: a
+  // link and its parent. What hangs together by joints without degrees of freedom counts as one
+  // link, what is fixed to the world as one with the world; revolute, universal and ball joints at
+  // one point, as a hip of three hinges, count as one joint, and all its links as neighbours.
+  // False: no two of its links meet.
+  bool links_collide = false;
 };
 
 // What a pair of colliders did in a step. Bodies that meet in sub-steps tell at the end of the

@@ -4,6 +4,7 @@
 //     normal    p_n >= 0,          speed >= target
 //     friction  |p_t| <= mu p_n,   a disc, not a box: two rows solved together
 //     rolling   |p_r| <= rho p_n,  moments
+// Of two links of one articulation the share is that of the sum of both y.
 // Restitution is a second round, in which contacts that closed faster than the threshold and
 // carried an impulse in the first get a target that leaves at e times their approach.
 //
@@ -45,6 +46,12 @@ constexpr double kCorrectedShare = 0.2;
 constexpr double kMostCorrected = 0.002;
 constexpr int kCorrectionRounds = 8;
 
+// Two links of a tree of which one hardly moves without the other along their normal, as two that
+// overlap near the joints between them, would have to swing far to come apart. Where they answer an
+// impulse on both by less than this share of what they answer each alone, they are pushed out by
+// less, so that joints go no faster for it than at that share.
+constexpr double kLeastLeverage = 0.01;
+
 // The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
 double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
                 const ContactPoint& p, const Vec3& d1, const Vec3& d2, int r1, int r2) {
@@ -56,7 +63,7 @@ double response(const SolverBody& a, const SolverBody& b, const ContactConstrain
     sum += dot(d1, b.inverse_mass * d2);
     sum += dot(cross(p.arm_b, d1), b.angular * cross(p.arm_b, d2));
   }
-  return sum + response(c.side_a, r1, r2) + response(c.side_b, r1, r2);
+  return sum + response(c.side_a, c.side_b, r1, r2);
 }
 
 void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
@@ -85,12 +92,8 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactCon
 double rolling_mass(const SolverBody& a, const SolverBody& b, const ContactConstraint& c) {
   Sym3 K = a.angular + b.angular;
   const int r = row_of(c.count, 0);
-  for (const LinkSide* side : {&c.side_a, &c.side_b}) {
-    if (side->depth == 0) continue;
-    K = K + Sym3{response(*side, r, r),         response(*side, r + 1, r + 1),
-                 response(*side, r + 2, r + 2), response(*side, r, r + 1),
-                 response(*side, r + 1, r + 2), response(*side, r + 2, r)};
-  }
+  const auto k = [&](int i, int j) { return response(c.side_a, c.side_b, r + i, r + j); };
+  if (c.has_links()) K = K + Sym3{k(0, 0), k(1, 1), k(2, 2), k(0, 1), k(1, 2), k(2, 0)};
   const double x = std::fabs(K.xx) + std::fabs(K.xy) + std::fabs(K.zx);
   const double y = std::fabs(K.xy) + std::fabs(K.yy) + std::fabs(K.yz);
   const double z = std::fabs(K.zx) + std::fabs(K.yz) + std::fabs(K.zz);
@@ -115,9 +118,17 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
   p.bounces = false;
 }
 
-// What is apart may close its gap; what is deep is pushed out, in sub-steps.
-double target_of(const StepContext& s, const ContactPoint& p) {
-  const double deep = std::max(0.0, -p.separation - s.slop);
+double corrected_share(const ContactConstraint& c, int row, double k) {
+  if (!of_one_tree(c.side_a, c.side_b)) return 1.0;
+  const double each = response(c.side_a, row, row) + response(c.side_b, row, row);
+  return k < kLeastLeverage * each ? std::sqrt(k / (kLeastLeverage * each)) : 1.0;
+}
+
+// What is apart may close its gap; what is deep is pushed out, in sub-steps: but for links of one
+// tree, whose joints that would jerk. Their positions are corrected.
+double target_of(const StepContext& s, const ContactConstraint& c, const ContactPoint& p) {
+  const bool pushed = !of_one_tree(c.side_a, c.side_b);
+  const double deep = pushed ? std::max(0.0, -p.separation - s.slop) : 0.0;
   return std::min(s.push_rate * deep, s.fastest_push) -
          std::max(0.0, p.separation - s.slop) / s.duration;
 }
@@ -136,9 +147,10 @@ void prepare(const StepContext& s, ContactConstraint& c) {
     const int row = row_of(i, kNormal);
     const double k = response(a, b, c, p, c.normal, c.normal, row, row);
     p.normal_mass = k > 1e-12 ? 1.0 / k : 0.0;
+    p.corrected_share = corrected_share(c, row, k);
     prepare_tangents(a, b, c, p, row_of(i, kTangent));
     prepare_approach(s, a, b, c, p);
-    p.target = target_of(s, p);
+    p.target = target_of(s, c, p);
     p.push = 0.0;
   }
 }
@@ -255,27 +267,30 @@ void settle_untouched(const StepContext& s) {
   }
 }
 
-bool some_in_lanes(const StepContext& s, const Island& island) {
-  if (s.push_rate == 0.0) return false;
+// In sub-steps others change what has been settled: they come again soon, and rounds will do. But
+// not for joints between bodies, whose rows feel one another, unless lanes push the bodies too.
+bool goes_to_the_end(const StepContext& s, const Island& island) {
+  if (s.push_rate == 0.0) return true;
   const Islands& islands = s.scratch.islands;
-  const auto is = [&](std::uint32_t body) { return s.bodies[body].in_lanes; };
-  for (const std::uint32_t i : islands.contacts(island)) {
-    if (is(s.contacts[i].a) || is(s.contacts[i].b)) return true;
-  }
+  const auto in_lanes = [&](std::uint32_t body) { return s.bodies[body].in_lanes; };
+  bool joined = false;
   for (const std::uint32_t i : islands.joints(island)) {
     if (s.joints[i].pair == kNoPair) continue;
     const JointPair& pair = s.pairs[s.joints[i].pair];
-    if (is(pair.a.body) || is(pair.b.body)) return true;
+    if (in_lanes(pair.a.body) || in_lanes(pair.b.body)) return false;
+    joined = true;
   }
-  return false;
+  for (const std::uint32_t i : islands.contacts(island)) {
+    if (in_lanes(s.contacts[i].a) || in_lanes(s.contacts[i].b)) return false;
+  }
+  return joined;
 }
 
 void iterate(const StepContext& s) {
   const Islands& islands = s.scratch.islands;
   for (const Island& island : islands.all()) {
     const auto contacts = islands.contacts(island), joints = islands.joints(island);
-    // What others push meanwhile comes again soon.
-    const bool to_the_end = island.rows <= DenseIsland::kMaxRows && !some_in_lanes(s, island);
+    const bool to_the_end = island.rows <= DenseIsland::kMaxRows && goes_to_the_end(s, island);
     const std::size_t more =
         to_the_end ? kMostRounds
                    : std::clamp<std::size_t>(
@@ -339,16 +354,20 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
   return true;
 }
 
+// In sub-steps what velocities push out is left to them.
 void correct_positions(const StepContext& s) {
+  const bool sub_step = s.push_rate > 0.0;
   for (int round = 0; round < kCorrectionRounds; ++round) {
     bool any = false;
     for (const JointRow& row : s.joints) any |= correct_joint(s, row);
     for (std::size_t k = 0; k < s.contacts.size(); ++k) {
       ContactConstraint& c = s.contacts[round % 2 == 0 ? k : s.contacts.size() - 1 - k];
+      if (sub_step && !of_one_tree(c.side_a, c.side_b)) continue;
       SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
       for (int i = 0; i < c.count; ++i) {
         ContactPoint& p = c.points[i];
-        const double wanted = std::min(kCorrectedShare * (-s.slop - p.separation), kMostCorrected);
+        const double wanted = p.corrected_share *
+                              std::min(kCorrectedShare * (-s.slop - p.separation), kMostCorrected);
         if (wanted <= 0.0) continue;
         any = true;
         const int row = row_of(i, kNormal);
@@ -434,6 +453,7 @@ void relax_sub_step(const StepContext& s) {
     if (row.mass > 0.0) row.mass = 1.0 / (row.inverse_mass + row.softness);
   }
   iterate(s);
+  correct_positions(s);
 }
 
 void note_sub_step(std::span<ContactConstraint> contacts) {

@@ -48,7 +48,8 @@ struct ContactPoint {
   // Impulses; what they hold before the solve is the warm start.
   double normal_impulse;
   double tangent_impulse[2];
-  double push;  // of the position correction
+  double push;             // of the position correction
+  double corrected_share;  // prepared: of what others are corrected by
   // Of a step with sub-steps, over those: impulse, approach and whether it hit (note_sub_step).
   double step_impulse = 0.0, step_approach = 0.0;
   bool step_hits = false;

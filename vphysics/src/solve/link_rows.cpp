@@ -75,17 +75,12 @@ double* fill(const StepContext& s, PairEnd& end, double* y) {
 
 // The speed that a unit impulse gives the row.
 double response_of(const StepContext& s, const JointPair& pair) {
-  double sum = 0.0;
+  double sum = response(pair.a.side, pair.b.side, 0, 0);
   for (const PairEnd* end : {&pair.a, &pair.b}) {
-    if (end->side.depth > 0) sum += response(end->side, 0, 0);
     if (!end->moves) continue;
     const SolverBody& body = s.bodies[end->body];
     sum += body.inverse_mass * dot(end->linear, end->linear) +
            dot(end->angular, body.angular * end->angular);
-  }
-  const SolverBody &a = s.bodies[pair.a.body], &b = s.bodies[pair.b.body];
-  if (a.articulation >= 0 && a.articulation == b.articulation) {
-    sum += 2.0 * response(pair.a.side, 0, pair.b.side, 0);
   }
   return std::max(0.0, sum);
 }

@@ -55,18 +55,20 @@ inline double response(const LinkSide& side, int row, int other) {
   for (std::uint32_t k = 0; k < side.depth; ++k) sum += y[k] * x[k];
   return sum;
 }
-
-// The same between rows of two links of one articulation, which share what carries both. Degrees of
-// freedom farther out have greater numbers, but within one joint, which both rows have as a whole.
-inline double response(const LinkSide& a, int row_a, const LinkSide& b, int row_b) {
-  const double *y = a.row(row_a), *x = b.row(row_b);
+inline bool of_one_tree(const LinkSide& a, const LinkSide& b) {
+  return a.depth > 0 && b.depth > 0 && a.velocity == b.velocity;
+}
+// The same of rows that push two links. Of one articulation they share the degrees of freedom that
+// carry both: (y_a + y_b, y'_a + y'_b).
+inline double response(const LinkSide& a, const LinkSide& b, int row, int other) {
+  if (!of_one_tree(a, b)) return response(a, row, other) + response(b, row, other);
+  const double *y_a = a.row(row), *x_a = a.row(other), *y_b = b.row(row), *x_b = b.row(other);
+  std::uint32_t i = 0, j = 0, d_a = a.first, d_b = b.first;
   double sum = 0.0;
-  std::uint32_t i = 0, j = 0, d = a.first, e = b.first;
-  while (i < a.depth && j < b.depth) {
-    const bool a_goes = d >= e, b_goes = e >= d;
-    if (a_goes && b_goes) sum += y[i] * x[j];
-    if (a_goes) ++i, d = a.next[d];
-    if (b_goes) ++j, e = b.next[e];
+  for (; a.depth - i > b.depth - j; d_a = a.next[d_a], ++i) sum += y_a[i] * x_a[i];
+  for (; b.depth - j > a.depth - i; d_b = b.next[d_b], ++j) sum += y_b[j] * x_b[j];
+  for (; i < a.depth; d_a = a.next[d_a], d_b = b.next[d_b], ++i, ++j) {
+    sum += d_a == d_b ? (y_a[i] + y_b[j]) * (x_a[i] + x_b[j]) : y_a[i] * x_a[i] + y_b[j] * x_b[j];
   }
   return sum;
 }

@@ -221,7 +221,7 @@ class Importer {
   // --- into the world ---------------------------------------------------------------------------
 
   Expected<void> create_articulation() {
-    const auto made = world_.create_articulation({model()});
+    const auto made = world_.create_articulation({model(), options_.links_collide});
     if (!made) return tl::make_unexpected(made.error());
     robot_.articulation = *made;
     return {};

@@ -63,6 +63,7 @@ class Articulation {
   std::uint32_t generation = 1;  // of its slot
 
   const Model& model() const { return model_; }
+  std::uint32_t body_of(int link) const { return bodies[static_cast<std::size_t>(link)]; }
   // The index of a joint's degree of freedom among the velocities, or -1.
   int dof_index(int link, int dof) const {
     if (link < 0 || link >= static_cast<int>(bodies.size()) || dof < 0) return -1;

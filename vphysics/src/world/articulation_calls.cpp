@@ -19,6 +19,42 @@ Articulation* World::Impl::find(ArticulationId id) {
   return const_cast<Articulation*>(std::as_const(*this).find(id));
 }
 
+namespace {
+
+bool turns_about_a_point(const Joint& joint) {
+  return std::holds_alternative<RevoluteJoint>(joint) ||
+         std::holds_alternative<UniversalJoint>(joint) || std::holds_alternative<BallJoint>(joint);
+}
+
+// Ancestors come before what hangs on them.
+void find_places(const Model& model, const Articulation& art, Bodies& bodies) {
+  constexpr double kOnePoint = 1e-6;  // [m]: files have rounded numbers
+  std::vector<SE3> T_leader_link;
+  for (int l = 0; l < model.links(); ++l) {
+    const LinkSpec& link = model.link(l);
+    LinkPlace parent;
+    SE3 T_leader_joint = link.T_parent_joint;
+    if (link.parent != kWorld) {
+      parent = bodies[art.body_of(link.parent)].place_in_tree;
+      T_leader_joint = T_leader_link[static_cast<std::size_t>(link.parent)] * T_leader_joint;
+    }
+    LinkPlace& place = bodies[art.body_of(l)].place_in_tree;
+    if (velocities_of(link.joint) == 0) {
+      place = parent;
+      T_leader_link.push_back(T_leader_joint);
+      continue;
+    }
+    const bool continues_joint = parent.leader != kWorld && turns_about_a_point(link.joint) &&
+                                 turns_about_a_point(model.link(parent.leader).joint) &&
+                                 norm(T_leader_joint.position()) <= kOnePoint;
+    place =
+        continues_joint ? LinkPlace{l, parent.head, parent.base} : LinkPlace{l, l, parent.leader};
+    T_leader_link.emplace_back();
+  }
+}
+
+}  // namespace
+
 Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc) {
   if (auto problem = problem_with(desc)) return refuse("create_articulation: " + *problem);
   Articulation art(desc.model, impl_->desc.gravity);
@@ -43,6 +79,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
     body.link = link;
     art.bodies.push_back(index);
   }
+  if (desc.links_collide) find_places(desc.model, art, impl_->bodies);
   Structure structure(impl_->structure);
   structure.add(0x400u + art.bodies.front());
   structure.add(desc);
@@ -54,9 +91,14 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
   }
   impl_->lists.invalidate();
   if (impl_->recorder) {
-    calls::CreateArticulation call;
-    for (int l = 0; l < desc.model.links(); ++l) call.links.push_back(desc.model.link(l));
-    impl_->log({std::move(call)});
+    std::vector<LinkSpec> links;
+    links.reserve(static_cast<std::size_t>(desc.model.links()));
+    for (int l = 0; l < desc.model.links(); ++l) links.push_back(desc.model.link(l));
+    if (desc.links_collide) {
+      impl_->log({calls::CreateArticulationWith{std::move(links), true}});
+    } else {
+      impl_->log({calls::CreateArticulation{std::move(links)}});
+    }
   }
   return id;
 }

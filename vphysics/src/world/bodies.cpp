@@ -42,9 +42,15 @@ void place(Body& body, const Vec3& reference, const Mat3& R) {
   body.moved();
 }
 
+bool never_meet(const Body& a, const Body& b) {
+  if (!a.is_link || a.articulation != b.articulation) return false;
+  const LinkPlace &p = a.place_in_tree, &q = b.place_in_tree;
+  return p.leader == q.leader || p.head == q.head || p.base == q.leader || p.leader == q.base;
+}
+
 bool may_meet(const Body& a, const Body& b) {
   if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
-  if (a.is_link && a.articulation == b.articulation) return false;
+  if (never_meet(a, b)) return false;
   const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
   return pushable || a.has_sensor || b.has_sensor;
 }
@@ -225,7 +231,11 @@ void World::Impl::add_proxy(std::uint32_t index) {
   // Continuous bodies look for others themselves (pairs.cpp).
   proxy.category = body.continuous ? 0 : collider.filter.category;
   proxy.mask = body.continuous ? 0 : collider.filter.mask;
-  proxy.owner = body.is_link ? 0x80000000u + body.articulation : collider.body;
+  // Of links that meet one another: what moves as one.
+  const int leader = body.place_in_tree.leader;
+  proxy.owner = !body.is_link      ? collider.body
+                : leader == kWorld ? 0x80000000u + body.articulation
+                                   : articulations[body.articulation].body_of(leader);
   proxy.user = index;
   proxy.margin = kMargin * collider.size;
   collider.proxy = finder.add(proxy);

@@ -18,6 +18,14 @@ struct Velocity {
   bool operator==(const Velocity&) const = default;
 };
 
+// Where a link is among those of its articulation, by which it knows its neighbours: links'
+// numbers, kWorld of what is fixed to the world. All are kWorld where links do not meet each other.
+struct LinkPlace {
+  int leader = kWorld;  // of all that is fixed together: the one that a joint moves
+  int head = kWorld;    // of joints that turn about one point: the leader of the first
+  int base = kWorld;    // the leader of what that joint hangs on
+};
+
 // What a step reads of every body comes first.
 struct alignas(64) Body {
   bool alive = false;
@@ -70,6 +78,7 @@ struct alignas(64) Body {
   std::uint32_t generation = 0;
   std::uint32_t articulation = kNone;
   int link = 0;  // of it
+  LinkPlace place_in_tree;
   std::uint32_t last_collider = kNone;
   std::uint32_t first_edge = kNone;         // of its contacts
   std::uint32_t categories = 0, masks = 0;  // union over its colliders
@@ -115,7 +124,9 @@ inline bool joins_sub_steps(const Body& body) {
 inline bool is_still(const Body& body) {
   return body.asleep || body.motion == Motion::fixed;
 }
-// Whether any collider of the one may meet any of the other; links of one articulation never do.
+// Links of one articulation that never meet: neighbours, or all of it (ArticulationDesc).
+bool never_meet(const Body& a, const Body& b);
+// Whether any collider of the one may meet any of the other.
 bool may_meet(const Body& a, const Body& b);
 // What the solver wants to know of a body that a contact or a joint holds.
 solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body);

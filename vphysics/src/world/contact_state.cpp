@@ -143,7 +143,8 @@ void ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   if (!in.ok()) return;
   const Body &body_a = world_.bodies[a.body], &body_b = world_.bodies[b.body];
   in.check(c.of_link == (body_a.is_link || body_b.is_link) && !body_a.continuous &&
-           !body_b.continuous && (count == 0 || !(c.sensor || c.of_link)));
+           !body_b.continuous && (count == 0 || !(c.sensor || c.of_link)) &&
+           !never_meet(body_a, body_b));
   c.count = static_cast<std::uint8_t>(count);
   for (int i = 0; i < c.count; ++i) {
     const std::uint64_t feature = in.word();

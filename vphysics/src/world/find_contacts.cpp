@@ -152,7 +152,7 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const bool sensor = a.sensor || b.sensor;
   const bool pushes = body_a.motion == Motion::dynamic || body_b.motion == Motion::dynamic;
-  if (!should_meet(a, b) || !(pushes || sensor)) return;
+  if (!should_meet(a, b) || never_meet(body_a, body_b) || !(pushes || sensor)) return;
   Contact c;
   c.key = pair.key;
   c.a = pair.a;

@@ -127,20 +127,24 @@ struct RemoveCollider {
 struct DestroyArticulation {
   ArticulationId articulation;
 };
+// With options that are not the usual ones.
+struct CreateArticulationWith {
+  std::vector<LinkSpec> links;
+  bool links_collide = false;
+};
 
 }  // namespace calls
 
 struct RecordedCall {
-  using What =
-      std::variant<calls::CreateBody, calls::DestroyBody, calls::AddCollider,
-                   calls::CreateArticulation, calls::CreateJoint, calls::DestroyJoint,
-                   calls::SetPose, calls::SetVelocity, calls::ApplyImpulse, calls::SetJointStates,
-                   calls::SetJointState, calls::SetLinkDrive, calls::SetJointDrive,
-                   calls::SetAxisDrive, calls::Restore, calls::Wake, calls::SetMassFromColliders,
-                   calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce, calls::SetMotion,
-                   calls::SetInertia, calls::SetDamping, calls::SetGravityScale,
-                   calls::SetAllowSleep, calls::SetMaterial, calls::SetFilter,
-                   calls::SetSurfaceVelocity, calls::RemoveCollider, calls::DestroyArticulation>;
+  using What = std::variant<
+      calls::CreateBody, calls::DestroyBody, calls::AddCollider, calls::CreateArticulation,
+      calls::CreateJoint, calls::DestroyJoint, calls::SetPose, calls::SetVelocity,
+      calls::ApplyImpulse, calls::SetJointStates, calls::SetJointState, calls::SetLinkDrive,
+      calls::SetJointDrive, calls::SetAxisDrive, calls::Restore, calls::Wake,
+      calls::SetMassFromColliders, calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce,
+      calls::SetMotion, calls::SetInertia, calls::SetDamping, calls::SetGravityScale,
+      calls::SetAllowSleep, calls::SetMaterial, calls::SetFilter, calls::SetSurfaceVelocity,
+      calls::RemoveCollider, calls::DestroyArticulation, calls::CreateArticulationWith>;
   What what;
 };
 

@@ -23,14 +23,14 @@ std::uint32_t word_at(std::span<const std::byte> bytes) {
   return word;
 }
 
-Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links) {
+Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links, bool links_collide) {
   ModelBuilder builder;
   for (const LinkSpec& link : links) {
     if (const auto added = builder.add(link); !added) return tl::make_unexpected(added.error());
   }
   auto model = builder.build();
   if (!model) return tl::make_unexpected(model.error());
-  return ArticulationDesc{std::move(*model)};
+  return ArticulationDesc{std::move(*model), links_collide};
 }
 
 // Does a call; what it returns is of no interest unless it is refused.
@@ -41,10 +41,9 @@ class Doer {
   Done operator()(const calls::CreateBody& c) { return only(world_.create_body(c.desc)); }
   Done operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
   Done operator()(const calls::AddCollider& c) { return only(world_.add_collider(c.body, c.desc)); }
-  Done operator()(const calls::CreateArticulation& c) {
-    const auto desc = articulation_of(c.links);
-    if (!desc) return tl::make_unexpected(desc.error());
-    return only(world_.create_articulation(*desc));
+  Done operator()(const calls::CreateArticulation& c) { return create(c.links, false); }
+  Done operator()(const calls::CreateArticulationWith& c) {
+    return create(c.links, c.links_collide);
   }
   Done operator()(const calls::CreateJoint& c) {
     return only(world_.create_joint(c.a, c.b, c.desc));
@@ -105,6 +104,11 @@ class Doer {
   }
 
  private:
+  Done create(const std::vector<LinkSpec>& links, bool links_collide) {
+    const auto desc = articulation_of(links, links_collide);
+    if (!desc) return tl::make_unexpected(desc.error());
+    return only(world_.create_articulation(*desc));
+  }
   template <class T>
   static Expected<void> only(const Expected<T>& result) {
     if (!result) return tl::make_unexpected(result.error());

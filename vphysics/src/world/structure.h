@@ -127,6 +127,7 @@ class Structure {
         }
       }
     }
+    add_unless(std::uint64_t{0}, 'c', static_cast<std::uint64_t>(desc.links_collide));
   }
 
  private:
