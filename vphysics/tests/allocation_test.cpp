@@ -316,7 +316,8 @@ TEST(Step, WithJointsOfLinksAllocatesNothingOnceWarm) {
       must(world.set_drive(walkers[i].id, link, 0, {0.0, 0.0, 200.0, 10.0, 200.0}));
     }
   }
-  const BodyId first = world.link_body(walkers[0].id, 0), second = world.link_body(walkers[1].id, 0);
+  const BodyId first = world.link_body(walkers[0].id, 0),
+               second = world.link_body(walkers[1].id, 0);
   JointDesc weld;
   weld.kind = Weld{};
   weld.T_a_joint = SE3(Vec3{0, 0.4, 0});

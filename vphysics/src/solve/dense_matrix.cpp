@@ -105,28 +105,19 @@ class Assembly {
     auto& ends = scratch_.ends;
     ends.clear();
     std::uint32_t row = 0;
-    const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side,
-                         std::uint32_t contact) {
-      if (moves) ends.push_back({body, row, contact});
-      if (side.depth == 0) return;
-      const auto own = static_cast<std::uint32_t>(s_.bodies[body].articulation);
-      ends.push_back({key_of_articulation(own), row, contact});
-    };
     for (const std::uint32_t j : joints_) {
       const JointRow& joint = s_.joints[j];
+      const auto add = [&](MoverKey mover) { ends.push_back({mover, row, kNoContact}); };
       if (joint.pair == kNoPair) {
-        ends.push_back({key_of_articulation(joint.articulation), row, kNoContact});
+        add(key_of_articulation(joint.articulation));
       } else {
-        const JointPair& pair = s_.pairs[joint.pair];
-        for (const PairEnd* end : {&pair.a, &pair.b})
-          add(end->body, end->moves, end->side, kNoContact);
+        for_movers(s_, s_.pairs[joint.pair], add);
       }
       ++row;
     }
     for (const std::uint32_t k : contacts_) {
       const ContactConstraint& c = s_.contacts[k];
-      add(c.a, c.moves_a, c.side_a, k);
-      add(c.b, c.moves_b, c.side_b, k);
+      for_movers(s_, c, [&](MoverKey mover) { ends.push_back({mover, row, k}); });
       row += static_cast<std::uint32_t>(rows_of(c));
     }
     std::sort(ends.begin(), ends.end());

@@ -20,23 +20,13 @@ std::uint32_t Islands::root_of(std::uint32_t node) {
 void Islands::join_nodes(const StepContext& s) {
   ends_.clear();
   parent_.clear();
-  const auto add = [&](std::uint32_t body, bool moves, const LinkSide& side) {
+  const auto add = [&](const auto& contact_or_pair) {
     const auto node = static_cast<std::uint32_t>(parent_.size());
-    if (moves) ends_.emplace_back(body, node);
-    if (side.depth == 0) return;
-    const auto own = static_cast<std::uint32_t>(s.bodies[body].articulation);
-    ends_.emplace_back(key_of_articulation(own), node);
+    for_movers(s, contact_or_pair, [&](MoverKey mover) { ends_.emplace_back(mover, node); });
+    parent_.push_back(node);
   };
-  const auto close = [&] { parent_.push_back(static_cast<std::uint32_t>(parent_.size())); };
-  for (const ContactConstraint& c : s.contacts) {
-    add(c.a, c.moves_a, c.side_a);
-    add(c.b, c.moves_b, c.side_b);
-    close();
-  }
-  for (const JointPair& pair : s.pairs) {
-    for (const PairEnd* end : {&pair.a, &pair.b}) add(end->body, end->moves, end->side);
-    close();
-  }
+  for (const ContactConstraint& c : s.contacts) add(c);
+  for (const JointPair& pair : s.pairs) add(pair);
   std::sort(ends_.begin(), ends_.end());
   for (std::size_t k = 1; k < ends_.size(); ++k) {
     if (ends_[k].first != ends_[k - 1].first) continue;

@@ -18,6 +18,26 @@ inline MoverKey key_of_articulation(std::uint32_t articulation) {
   return (MoverKey{1} << 32) | articulation;
 }
 
+// f(mover) of all that an impulse of a contact, or of a row of a joint between bodies, pushes.
+template <class F>
+void for_movers_of(const StepContext& s, std::uint32_t body, bool moves, const LinkSide& side,
+                   const F& f) {
+  if (moves) f(MoverKey{body});
+  if (side.depth == 0) return;
+  f(key_of_articulation(static_cast<std::uint32_t>(s.bodies[body].articulation)));
+}
+template <class F>
+void for_movers(const StepContext& s, const ContactConstraint& c, const F& f) {
+  for_movers_of(s, c.a, c.moves_a, c.side_a, f);
+  for_movers_of(s, c.b, c.moves_b, c.side_b, f);
+}
+template <class F>
+void for_movers(const StepContext& s, const JointPair& pair, const F& f) {
+  for (const PairEnd* end : {&pair.a, &pair.b}) {
+    for_movers_of(s, end->body, end->moves, end->side, f);
+  }
+}
+
 struct Island {
   std::uint32_t first_contact, end_contact;  // of Islands::contacts
   std::uint32_t first_joint, end_joint;      // of Islands::joints
