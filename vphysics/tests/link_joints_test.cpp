@@ -401,6 +401,29 @@ TEST(LinkJoint, ARestoredWorldGoesOnToTheSameBits) {
   }
 }
 
+// What is joined stays of one way of being solved.
+TEST(LinkJoint, AChangeOfMotionIsRefusedWhereTheJointWouldBe) {
+  for (const bool continuous : {false, true}) {
+    World world;
+    BodyDesc desc;
+    desc.continuous = continuous;
+    const BodyId moves = must(world.create_body(desc));
+    desc.motion = Motion::kinematic;
+    desc.continuous = !continuous;
+    const BodyId led = must(world.create_body(desc));
+    join(world, led, moves, Weld{}, SE3{});
+    const Expected<void> changed = world.set_motion(led, Motion::dynamic);
+    ASSERT_FALSE(changed);
+    EXPECT_EQ(changed.error().code, Errc::unsupported);
+    desc.continuous = continuous;
+    const BodyId like = must(world.create_body(desc));
+    join(world, like, moves, Weld{}, SE3{});
+    must(world.set_motion(like, Motion::dynamic));
+    run(world, 0.05);
+    EXPECT_LT(norm(world.pose(moves).position()), 1e-3);  // led holds it
+  }
+}
+
 TEST(LinkJoint, AnArticulationTakesItsJointsWithIt) {
   Gripper g;
   run(g.world, 0.1);

@@ -123,8 +123,9 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
     if (motion != Motion::dynamic && other.motion != Motion::dynamic) {
       return refuse("set_motion: a joint would be left without a dynamic body; destroy it first");
     }
-    if (motion == Motion::dynamic && body->wants_continuous) {  // joined while it was not
-      return refuse(Errc::unsupported, "set_motion: a continuous body cannot be joined");
+    if (motion == Motion::dynamic && other.motion == Motion::dynamic &&
+        !can_be_joined(body->wants_continuous, other)) {
+      return refuse(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
     }
   }
   std::optional<Inertia> inertia;  // none: what the body has

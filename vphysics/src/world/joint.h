@@ -99,6 +99,14 @@ struct BodyJoint {
 
 using Joints = Slots<BodyJoint, JointId>;
 
+// Of two dynamic bodies of which the one, no link, is continuous or not.
+inline bool can_be_joined(bool continuous, const Body& other) {
+  return other.is_link || other.continuous == continuous;
+}
+inline constexpr const char* kNotJoined =
+    "a continuous body cannot be joined to a dynamic one that is not; create both with or both "
+    "without continuous";
+
 // Into the lists of its bodies.
 void link_joint(Bodies& bodies, Joints& joints, std::uint32_t joint);
 // Whether a joint keeps the colliders of two bodies from meeting.

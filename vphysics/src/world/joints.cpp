@@ -48,16 +48,10 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   if (!a) return stale("create_joint", "body a");
   if (!b) return stale("create_joint", "body b");
   if (a == b) return refuse("create_joint: a body cannot be joined to itself; name two bodies");
-  const auto is_stepped = [](const Body& body) {
-    return joins_sub_steps(body) && body.motion == Motion::dynamic;
-  };
-  if ((a->continuous && is_stepped(*b)) || (b->continuous && is_stepped(*a))) {
-    return refuse(Errc::unsupported,
-                  "create_joint: a continuous body cannot be joined to a dynamic one that is not; "
-                  "create both with or both without continuous");
-  }
   if (a->motion != Motion::dynamic && b->motion != Motion::dynamic)
     return refuse("create_joint: one of the two bodies must be dynamic");
+  if (a->motion == b->motion && !a->is_link && !can_be_joined(a->continuous, *b))
+    return refuse(Errc::unsupported, std::string("create_joint: ") + kNotJoined);
   if (auto problem = problem_with(desc)) return refuse("create_joint: " + *problem);
 
   const std::uint32_t index = impl_->joints.take();
