@@ -335,7 +335,7 @@ bool set_bounce_targets(const StepContext& s) {
 // Returns whether there is anything to be corrected.
 bool correct_joint(const StepContext& s, const JointRow& row) {
   if (row.pair == kNoPair || row.mass == 0.0) return false;
-  const JointPair& pair = s.pairs[row.pair];
+  JointPair& pair = s.pairs[row.pair];
   if (pair.error == 0.0) return false;
   double moved = 0.0;
   for (const PairEnd* end : {&pair.a, &pair.b}) {
@@ -343,7 +343,15 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
     moved += dot(end->linear, body.shift) + dot(end->angular, body.turn) +
              along(end->side, 0, end->side.shift);
   }
-  const double change = -(pair.error + moved) * row.mass;
+  // At a bound it moves nothing; where it pushes one way only, nor the other way.
+  if ((row.upper > 0.0 && row.impulse >= row.upper) ||
+      (row.lower < 0.0 && row.impulse <= row.lower))
+    return false;
+  double next = pair.push - (pair.error + moved) / pair.answer;
+  if (row.lower >= 0.0) next = std::max(0.0, next);
+  if (row.upper <= 0.0) next = std::min(0.0, next);
+  const double change = next - pair.push;
+  pair.push = next;
   for (const PairEnd* end : {&pair.a, &pair.b}) {
     push(end->side, 0, change, end->side.shift);
     if (!end->moves) continue;
@@ -449,7 +457,7 @@ void relax_sub_step(const StepContext& s) {
     if (row.pair == kNoPair || !s.pairs[row.pair].relaxes) continue;
     const JointPair& pair = s.pairs[row.pair];
     row.target = pair.relaxed_target;
-    row.softness -= pair.loss * row.inverse_mass;
+    row.softness = pair.floor;
     if (row.mass > 0.0) row.mass = 1.0 / (row.inverse_mass + row.softness);
   }
   iterate(s);

@@ -24,12 +24,16 @@ struct PairEnd {
 // What a row of a joint between two bodies has more than one of a tree's own joint.
 struct JointPair {
   PairEnd a, b;
-  // Of an instant: the error that is taken out by moving the bodies.
-  double error = 0.0;
+  // Of an instant: the error that is taken out by moving the bodies, and how fast it grows of itself
+  // on the way.
+  double error = 0.0, curve = 0.0;
   // Of a sub-step: what holds hard has nothing that gives way once everything has moved.
   bool relaxes = false;
   double relaxed_target = 0.0;
   double loss = 0.0;  // softness, as a share of what a unit impulse does
+  // Prepared: softness without it; what a unit impulse of the position correction counts.
+  double floor = 0.0, answer = 0.0;
+  double push = 0.0;  // of the position correction so far
   // A drive: impulse = -h (stiffness * drive_error + damping * (u - drive_speed)), in its bounds.
   bool drives = false;
   double stiffness = 0.0, damping = 0.0, drive_error = 0.0, drive_speed = 0.0;

@@ -87,13 +87,17 @@ double response_of(const StepContext& s, const JointPair& pair) {
 
 // What answers less [1/kg or 1/(kg m^2)] than this cannot be held by an impulse.
 constexpr double kNoAnswer = 1e-12;
-// A row gives way by this share of what its joint answers most: where a tree is stretched, so that
-// its end cannot go on, joints that pull it would else throw its links about. The square of the
-// angle [rad] to which it must bend to answer.
-constexpr double kLeastSoftness = 1e-4;
+// A row answers, with what it gives way by, at least this share of what its ends answer in any
+// direction, and where an error is taken out by moving them, kLeastMoved of it: where a tree is
+// stretched, so that its end cannot go on, joints that pull it would else throw its links about.
+// The square of the angle [rad] to which it must bend to answer as much. In sub-steps velocities
+// are relaxed, and a heavy load on such a tree needs more.
+constexpr double kLeastAnswer = 1e-2, kLeastInSubSteps = 1e-4, kLeastMoved = 1e-3;
 // A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
 // that it neither loses nor gains energy; a stiffer one ever more implicitly.
 constexpr double kExplicit = 0.25;
+// What changes a drive's impulse by a smaller share is none.
+constexpr double kNoGain = 1e-30;
 
 // At a speed u after the step the impulse is push - gain u.
 void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
@@ -101,7 +105,7 @@ void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
   const double implicit = stiff > kExplicit ? 1.0 - kExplicit / stiff : 0.0;
   const double gain = h * pair.damping + implicit * h * h * pair.stiffness;
   const double push = h * (pair.damping * pair.drive_speed - pair.stiffness * pair.drive_error);
-  if (gain > 0.0) {
+  if (gain * row.inverse_mass > kNoGain) {
     row.target = push / gain;
     row.softness = 1.0 / gain;
   } else {
@@ -114,12 +118,39 @@ bool is_about_an_axis(const JointPair& pair) {
   return pair.a.linear == Vec3{} && pair.b.linear == Vec3{};
 }
 
-// Rows of one joint, which follow one another. largest: what a unit impulse gives one of them that
-// is like it, a force or a moment.
-void prepare(const StepContext& s, const JointPair& pair, double largest, JointRow& row) {
-  row.softness = pair.loss * row.inverse_mass + kLeastSoftness * largest;
+// The most that a unit impulse at the row's point, or a unit moment, gives that point of the link,
+// times the square of what the row counts it.
+double largest_answer(const StepContext& s, const PairEnd& end) {
+  if (end.side.depth == 0) return 0.0;
+  const SolverBody& body = s.bodies[end.body];
+  const detail::ImpulseFactor& factor =
+      *s.articulations[static_cast<std::size_t>(body.articulation)].factor;
+  const double force = dot(end.linear, end.linear);
+  const bool turns = force == 0.0;
+  // Where a force has the row's moment.
+  const Vec3 at = turns ? Vec3{} : body.x + (1.0 / force) * cross(end.linear, end.angular);
+  double* const y = s.rows.data() + (s.rows.size() - end.side.depth);  // behind all rows
+  double most = 0.0;
+  for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    turns ? factor.moment_row(body.link, d, y) : factor.force_row(body.link, at, d, y);
+    double answer = 0.0;
+    for (std::uint32_t k = 0; k < end.side.depth; ++k) answer += y[k] * y[k];
+    most = std::max(most, answer);
+  }
+  return (turns ? dot(end.angular, end.angular) : force) * most;
+}
+
+// Rows of one joint, which follow one another. largest: what one of them that is like it answers,
+// or could, a force or a moment.
+void prepare(const StepContext& s, JointPair& pair, double largest, JointRow& row) {
+  const double least = s.push_rate > 0.0 ? kLeastInSubSteps : kLeastAnswer;
+  pair.floor = std::max(0.0, least * largest - row.inverse_mass);
+  pair.answer = std::max(row.inverse_mass, kLeastMoved * largest);
+  row.softness = pair.loss * row.inverse_mass + pair.floor;
   if (pair.drives) prepare_drive(s, pair, row);
   const bool answers = row.inverse_mass > kNoAnswer;
+  // What hardly answers cannot follow either.
+  if (answers) row.target -= pair.curve * row.inverse_mass / (row.inverse_mass + pair.floor);
   row.mass = answers ? 1.0 / (row.inverse_mass + row.softness) : 0.0;
   if (!answers) row.impulse = row.lower = row.upper = 0.0;
 }
@@ -129,10 +160,11 @@ void prepare_joint(const StepContext& s, std::span<JointRow> rows) {
     const JointPair& pair = s.pairs[row.pair];
     row.inverse_mass = response_of(s, pair);
     double& most = largest[is_about_an_axis(pair) ? 1 : 0];
-    most = std::max(most, row.inverse_mass);
+    most =
+        std::max({most, row.inverse_mass, largest_answer(s, pair.a) + largest_answer(s, pair.b)});
   }
   for (JointRow& row : rows) {
-    const JointPair& pair = s.pairs[row.pair];
+    JointPair& pair = s.pairs[row.pair];
     prepare(s, pair, largest[is_about_an_axis(pair) ? 1 : 0], row);
   }
 }
@@ -144,7 +176,12 @@ void prepare_link_rows(const StepContext& s) {
   for (ContactConstraint& c : s.contacts) {
     size += attach(s, c, c.a, c.side_a) + attach(s, c, c.b, c.side_b);
   }
-  for (JointPair& pair : s.pairs) size += attach(s, pair.a) + attach(s, pair.b);
+  std::size_t deepest = 0;
+  for (JointPair& pair : s.pairs) {
+    size += attach(s, pair.a) + attach(s, pair.b);
+    deepest = std::max<std::size_t>({deepest, pair.a.side.depth, pair.b.side.depth});
+  }
+  size += deepest;  // scratch
   if (s.rows.size() < size) s.rows.resize(size);
   double* y = s.rows.data();
   for (ContactConstraint& c : s.contacts) {

@@ -486,6 +486,24 @@ void Articulation::advance(double h) {
   refresh();  // in full, as restore() does: to the same bits
 }
 
+// Poses alone, until look_back().
+void Articulation::look_ahead(double h) {
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
+  moved_q_ = q;
+  if (constant_) {
+    for (std::size_t i = 0; i < v.size(); ++i) q[i] += rate_[i];
+    place_on_lines();
+    return;
+  }
+  integrate<double>(model_, moved_q_, rate_, q);
+  forward_kinematics<double>(model_, data_, q, v);
+}
+void Articulation::look_back() {
+  q = moved_q_;
+  if (constant_) return place_on_lines();
+  forward_kinematics<double>(model_, data_, q, v);
+}
+
 // The root turns at the rate that it will have halfway, where its momentum is what it is now.
 void Articulation::advance_floating(double h) {
   if (factored_ == Factored::no) update_factor();

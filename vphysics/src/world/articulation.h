@@ -94,6 +94,18 @@ class Articulation {
   bool integrate_forces(double dt, bool& changed);
   // q after h seconds at the velocities v.
   void advance(double h);
+  // f(link, T_world_link) of all links, as they would be after h at the velocities v.
+  template <class F>
+  void for_poses_after(double h, const F& f) {
+    look_ahead(h);
+    for (int link = 0; link < static_cast<int>(bodies.size()); ++link) f(link, T_world_link(link));
+    look_back();
+  }
+  // The centre of mass, in the link's frame; its origin if it has no mass.
+  Vec3 centre_of(int link) const {
+    const Inertia& inertia = model_.link(link).inertia;
+    return inertia.mass() > 0.0 ? inertia.centre_of_mass() : Vec3{};
+  }
 
   // What the solver does for an articulation that nothing touches and of which no joint feels
   // another, at the first instant of a step: its motors, whose impulses for h are known at once.
@@ -135,6 +147,7 @@ class Articulation {
   // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step
   bool touched = false;      // by a contact of this instant, in the stage of impacts
+  bool wants_next = false;   // scratch of find_next_poses (link_joints.cpp)
   // With what the solver has done so far it will move; end_solve() may change its velocities yet.
   void mark_moving();
   void advance_sub_step(double h);
@@ -183,6 +196,8 @@ class Articulation {
   const JointReactions* reactions();
 
  private:
+  void look_ahead(double h);
+  void look_back();
   void update_factor();
   void update_twists();
   void find_lines();

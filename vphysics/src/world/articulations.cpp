@@ -49,14 +49,15 @@ void World::Impl::reserve_link_rows() {
     deepest = std::max(deepest, art.deepest());
     dofs += art.dofs.size();
   }
-  // Of each row of a joint in rows what it holds or drives, and its stop.
+  constexpr std::size_t kRowsOfCoordinate = 3;  // of a joint in rows: what drives it, and stops
   const std::size_t in_rows = static_cast<std::size_t>(std::count_if(
       joints.begin(), joints.end(), [](const BodyJoint& j) { return j.alive && j.in_rows; }));
   impacts.row_joints.reserve(in_rows);
-  impacts.joint_pairs.reserve(2 * solve::kJointRows * in_rows);
-  impacts.joint_rows.reserve(kRowsOfDof * dofs + 2 * solve::kJointRows * in_rows);
+  impacts.joint_pairs.reserve(kRowsOfCoordinate * solve::kJointRows * in_rows);
+  impacts.joint_rows.reserve(kRowsOfDof * dofs + kRowsOfCoordinate * solve::kJointRows * in_rows);
   constexpr std::size_t kRows = 3 * collide::kMaxPoints + 3;
-  const std::size_t of_joints = 2 * 2 * 2 * std::size_t{solve::kJointRows} * in_rows;
+  const std::size_t of_joints =
+      2 * 2 * kRowsOfCoordinate * std::size_t{solve::kJointRows} * in_rows + 1;
   const std::size_t size = (kContactsReady * 2 * kRows + of_joints) * deepest;
   if (impacts.link_rows.size() < size) impacts.link_rows.resize(size);
   impacts.solver_articulations.resize(articulations.size());

@@ -75,6 +75,7 @@ struct ImpactStage {
 
   // --- of a step
   std::vector<std::uint32_t> row_joints;  // that are alive (row_joints.h)
+  std::vector<SE3> next_poses;            // of each body: of links that they join
 
   // --- of the sub-steps
   std::vector<solve::ContactConstraint> link_contacts;

@@ -218,6 +218,8 @@ struct World::Impl {
   void find_bodies_joined_to_links();
   bool is_in_sub_steps(const BodyJoint& joint) const;
   void note_joined_bodies();
+  RowEnd row_end(std::uint32_t body, const RowJointStep& step) const;
+  void find_next_poses(double h);
   void add_row_joints(const RowJointStep& step);
   void take_back_row_joints(const RowJointStep& step);
   void note_open_row_joints();

@@ -1,5 +1,8 @@
 // Joints in rows (row_joints.h) within a step: where each is solved, and with what.
 #include <algorithm>
+#include <utility>
+
+#include "solve/row_vector.h"
 
 #include "world/impl.h"
 
@@ -45,18 +48,50 @@ void World::Impl::note_joined_bodies() {
   }
 }
 
+// Of links that joints in rows hold, at the velocities of now.
+void World::Impl::find_next_poses(double h) {
+  impacts.next_poses.resize(bodies.size());
+  for (const std::uint32_t i : impacts.row_joints) {
+    for (const std::uint32_t b : {joints[i].a, joints[i].b}) {
+      if (bodies[b].is_link) articulations[bodies[b].articulation].wants_next = true;
+    }
+  }
+  for (Articulation& art : articulations) {
+    if (!std::exchange(art.wants_next, false) || art.sub_stepped) continue;
+    art.for_poses_after(h, [&](int link, const SE3& T) {
+      impacts.next_poses[art.bodies[static_cast<std::size_t>(link)]] = T;
+    });
+  }
+}
+
+RowEnd World::Impl::row_end(std::uint32_t index, const RowJointStep& step) const {
+  const Body& body = bodies[index];
+  if (step.of == RowsOf::sub_step && joins_sub_steps(body)) {
+    const solve::BodyRow& row = body_rows[index + 1];
+    const BodyPlace now = place_within_step(body, row, sub_step.start_ways[index]);
+    return {now, {vector_of(row.velocity + 3), vector_of(row.velocity)}, now};
+  }
+  RowEnd end{place_of(body), {body.w, body.v}, place_of(body)};
+  if (step.of != RowsOf::first_instant || body.motion == Motion::fixed) return end;
+  if (body.is_link) {
+    end.next.T = impacts.next_poses[index];
+    end.next.centre = end.next.T.position();
+  } else {
+    const Mat3 R = turned(body.T.rotation(), step.h * body.w);
+    const Vec3 arm = transposed_times(body.T.rotation(), end.now.centre - body.T.position());
+    end.next.centre += step.h * body.v;
+    end.next.T = SE3(R, end.next.centre - R * arm);
+  }
+  return end;
+}
+
 void World::Impl::add_row_joints(const RowJointStep& step) {
   const bool of_sub_step = step.of == RowsOf::sub_step;
-  const auto place = [&](std::uint32_t i) {
-    const Body& body = bodies[i];
-    return of_sub_step && joins_sub_steps(body)
-               ? place_within_step(body, body_rows[i + 1], sub_step.start_ways[i])
-               : place_of(body);
-  };
+  if (step.of == RowsOf::first_instant) find_next_poses(step.h);
   for (const std::uint32_t i : impacts.row_joints) {
     BodyJoint& joint = joints[i];
     if (is_in_sub_steps(joint) != of_sub_step) continue;
-    add_rows(joint, i, place(joint.a), place(joint.b), step, impacts.joint_rows,
+    add_rows(joint, i, row_end(joint.a, step), row_end(joint.b, step), step, impacts.joint_rows,
              impacts.joint_pairs);
   }
 }
@@ -86,7 +121,8 @@ void World::Impl::note_open_row_joints() {
          {std::pair{joint.a, &joint.T_a_joint}, std::pair{joint.b, &joint.T_b_joint}}) {
       const Body& body = bodies[index];
       if (body.motion != Motion::dynamic) continue;
-      const Vec3 centre = body.is_link ? Vec3{} : body.centre;
+      const Vec3 centre =
+          body.is_link ? articulations[body.articulation].centre_of(body.link) : body.centre;
       const double own = std::max(body.reach, norm(T->position() - centre));
       if (own > 0.0) size = size > 0.0 ? std::min(size, own) : own;
     }

@@ -23,13 +23,15 @@ bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
 class Rows {
  public:
   Rows(BodyJoint& joint, std::uint32_t index, const RowJointStep& step, const Vec3& anchor,
-       const JointMeasure& measure, std::vector<solve::JointRow>& rows,
-       std::vector<solve::JointPair>& pairs)
+       const JointMeasure& measure, const double* speeds, const double* curves,
+       std::vector<solve::JointRow>& rows, std::vector<solve::JointPair>& pairs)
       : joint_(joint),
         index_(index),
         step_(step),
         anchor_(anchor),
         measure_(measure),
+        speeds_(speeds),
+        curves_(curves),
         rows_(rows),
         pairs_(pairs) {}
 
@@ -38,7 +40,7 @@ class Rows {
     if (i < joint_.held) return add_held(i, -kAny, kAny);
     if (row.bounded_hold) return add_bounded(i);
     add_drive(i);
-    add_stop(i);
+    add_stops(i);
   }
 
  private:
@@ -93,6 +95,9 @@ class Rows {
     if (!from.relaxes && !step_.with_memory()) return;
     const auto [row, pair] = add_row(i, false, lower, upper);
     take_out(from, residual(i), row, pair);
+    if (from.relaxes && step_.of == RowsOf::first_instant) {
+      pair.curve = std::clamp(curves_[i], -fastest(from), fastest(from));
+    }
   }
 
   // Where its bounds let it push one way only, a gap may close.
@@ -116,13 +121,16 @@ class Rows {
     pair.drive_speed = from.speed;
   }
 
-  // The nearer one.
-  void add_stop(int i) {
+  // Those within reach; twice the present rate, since an impulse may add to it.
+  void add_stops(int i) {
     const BodyJointRow& from = joint_.rows[i];
-    const double below = residual(i) - from.lower, above = from.upper - residual(i);
-    const bool at_lower = below <= above;
-    const double gap = at_lower ? below : above, side = at_lower ? 1.0 : -1.0;
-    if (!(gap < 0.5 * BodyJointRow::kNowhere)) return;
+    const double near = step_.left * (2.0 * std::fabs(speeds_[i]) + 1.0);
+    if (residual(i) - from.lower < near) add_stop(i, residual(i) - from.lower, true);
+    if (from.upper - residual(i) < near) add_stop(i, from.upper - residual(i), false);
+  }
+  void add_stop(int i, double gap, bool at_lower) {
+    const BodyJointRow& from = joint_.rows[i];
+    const double side = at_lower ? 1.0 : -1.0;
     if (gap < 0.0 && !from.relaxes && !step_.with_memory()) return;
     const auto [row, pair] = add_row(i, true, at_lower ? 0.0 : -kAny, at_lower ? kAny : 0.0);
     if (gap < 0.0) return take_out(from, side * gap, row, pair);
@@ -134,6 +142,7 @@ class Rows {
   const RowJointStep& step_;
   const Vec3& anchor_;
   const JointMeasure& measure_;
+  const double *speeds_, *curves_;  // of each row
   std::vector<solve::JointRow>& rows_;
   std::vector<solve::JointPair>& pairs_;
 };
@@ -145,16 +154,30 @@ bool is_in_rows(const Bodies& bodies, const BodyJoint& joint) {
   return is(bodies[joint.a]) || is(bodies[joint.b]);
 }
 
-void add_rows(BodyJoint& joint, std::uint32_t index, const BodyPlace& a, const BodyPlace& b,
+void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowEnd& b,
               const RowJointStep& step, std::vector<solve::JointRow>& rows,
               std::vector<solve::JointPair>& pairs) {
   if (joint.laid_out_for != step.h) lay_out(joint, step.h);
   joint.laid_out_for = step.h;
-  JointMeasure measure;
-  evaluate(joint, a, b, measure);
+  // How fast each residual grows, and what it grows more by the end of the step than at that speed,
+  // over the step.
+  JointMeasure measure, next;
+  double speeds[solve::kJointRows] = {}, curves[solve::kJointRows] = {};
+  evaluate(joint, a.now, b.now, measure);
+  if (step.of == RowsOf::first_instant) {
+    BodyJoint there = joint;  // whose turns are counted on
+    evaluate(there, a.next, b.next, next);
+  }
+  for (int i = 0; i < joint.count; ++i) {
+    const Twelve& J = measure.jacobian[i];
+    speeds[i] = dot(J.linear_a, a.velocity.v) + dot(J.angular_a, a.velocity.w) +
+                dot(J.linear_b, b.velocity.v) + dot(J.angular_b, b.velocity.w);
+    if (step.of != RowsOf::first_instant) continue;
+    curves[i] = (next.residual[i] - measure.residual[i]) / step.h - speeds[i];
+  }
   const bool user = joint.law.form == JointLaw::Form::user;
-  const Vec3 anchor = user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre;
-  Rows added(joint, index, step, anchor, measure, rows, pairs);
+  const Vec3 anchor = user ? Vec3{} : b.now.T * joint.T_b_joint.position() - b.now.centre;
+  Rows added(joint, index, step, anchor, measure, speeds, curves, rows, pairs);
   for (int i = 0; i < joint.count; ++i) added.add(i);
   if (!step.with_memory()) return;
   for (BodyJointRow& row : joint.rows) row.impulse = row.stop = 0.0;
@@ -166,12 +189,15 @@ void take_back(std::span<const solve::JointRow> rows, std::span<const solve::Joi
     if (row.pair == solve::kNoPair) continue;
     const solve::JointPair& pair = pairs[row.pair];
     BodyJoint& joint = joints[pair.joint];
-    joint.force += (row.impulse / dt) * pair.b.linear;
-    joint.torque += (row.impulse / dt) * (pair.b.angular - cross(pair.anchor, pair.b.linear));
+    const double whole = row.impulse / step.share;
+    const Vec3 force = (row.impulse / dt) * pair.b.linear;
+    const Vec3 torque = (row.impulse / dt) * (pair.b.angular - cross(pair.anchor, pair.b.linear));
+    if (!in_range(whole) || !in_range(force) || !in_range(torque)) continue;
+    joint.force += force;
+    joint.torque += torque;
     if (!step.with_memory()) continue;
     BodyJointRow& to = joint.rows[pair.row];
-    const double whole = row.impulse / step.share;
-    (pair.of_stop ? to.stop : to.impulse) = in_range(whole) ? whole : 0.0;
+    (pair.of_stop ? to.stop : to.impulse) += whole;
   }
 }
 

@@ -32,8 +32,16 @@ struct RowJointStep {
   bool with_memory() const { return of != RowsOf::impact; }
 };
 
-// The rows of one joint at the end of those there are, its ends where they are now.
-void add_rows(BodyJoint& joint, std::uint32_t index, const BodyPlace& a, const BodyPlace& b,
+// A body at one end: where it is now, how its reference point moves, and where that would take it
+// by the end of the step.
+struct RowEnd {
+  BodyPlace now;
+  Velocity velocity;
+  BodyPlace next;
+};
+
+// The rows of one joint at the end of those there are.
+void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowEnd& b,
               const RowJointStep& step, std::vector<solve::JointRow>& rows,
               std::vector<solve::JointPair>& pairs);
 // What has been solved: to be remembered, and to the joint's mean force over a step dt.
