@@ -24,8 +24,8 @@ struct PairEnd {
 // What a row of a joint between two bodies has more than one of a tree's own joint.
 struct JointPair {
   PairEnd a, b;
-  // Of an instant: the error that is taken out by moving the bodies, and how fast it grows of itself
-  // on the way.
+  // Of an instant: the error that is taken out by moving the bodies, and how fast it grows of
+  // itself on the way.
   double error = 0.0, curve = 0.0;
   // Of a sub-step: what holds hard has nothing that gives way once everything has moved.
   bool relaxes = false;

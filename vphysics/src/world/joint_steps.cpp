@@ -326,6 +326,7 @@ bool JointSteps::end(double dt) {
       if (some_are_far_ && !some_are_far_open) some_are_far_open = is_far_open(joint, block, lane);
       joint.force *= 1.0 / dt;
       joint.torque *= 1.0 / dt;
+      if (!in_range(joint.force) || !in_range(joint.torque)) joint.force = joint.torque = {};
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
         const double turned = turns_of(joint.turned[0]) + get(block.axes.twist, lane);
         if (in_range(turned)) joint.turned[0] = turned;  // else the bodies are put back
