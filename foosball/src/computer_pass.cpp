@@ -36,7 +36,9 @@ PassPlan pass_along(const TableSpec& table, const Sighting& now, const PassView&
   plan.rod = view.to_rod;
   plan.y = y;
   plan.worth = passage.cost + passage.free * meets * view.value;
-  // From a serve: one that is missed must not go on into the goal, which would be a foul.
+  // From a serve: one that is missed must not go on into the goal, which would be a foul and gives
+  // the ball away: half a goal. Of few passes is it sure that they meet their man: the share that
+  // is counted as missed is no less than two in five, with which level 3 played none in 318 serves.
   constexpr double kFoul = 0.5, kMissed = 0.4;
   if (!now.goal_counts) {
     plan.worth -= kFoul * std::max(kMissed, 1.0 - meets) * scoring(table, now, lanes, slope);

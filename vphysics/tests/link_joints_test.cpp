@@ -234,7 +234,7 @@ TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
   }
 }
 
-// A blow is felt by the whole loop at once.
+// An impact is felt by the whole loop at once.
 TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
   FourBar f(Hinge{});
   ColliderDesc rod = collider_of(Capsule{0.02, 0.5 * FourBar::kRocker}, {0.0, 0.5, 0.0});
@@ -332,6 +332,29 @@ TEST(LinkJoint, ABoundedRowLetsGo) {
     run(world, 1.0);
     EXPECT_NEAR(world.pose(body).position().z, -0.5 * (kG - 5.0 / 8.0), 0.01);
   }
+}
+
+// An impact within a step has no time for a force: over the step the row gives its bound once.
+TEST(LinkJoint, ABoundedRowGivesNoMoreInStepsWithImpacts) {
+  class Weak : public Level {
+   public:
+    PairRowLaw law(int) const override { return {0.0, 1.0, -5.0, 5.0}; }
+  };
+  World world;
+  add_ground(world, {0.5, 0.8, 0.0});
+  const BodyId anchor = add_anchor(world, SE3(Vec3{0, 0, 1}));
+  const BodyId ball = add_dynamic(
+      world, {.material = {0.5, 0.8, 0.0}, .pose = SE3(Vec3{0, 0, 1}), .continuous = true});
+  JointDesc desc;
+  desc.kind = UserConstraint{std::make_shared<Weak>()};
+  const JointId joint = must(world.create_joint(anchor, ball, desc));
+  std::uint32_t impacts = 0;
+  for (int i = 0; i < 500; ++i) {
+    must(world.step(0.01));
+    impacts += world.counters().impacts;
+    ASSERT_LE(std::fabs(world.joint_force(joint).force.z), 5.0 + 1e-9) << i;
+  }
+  EXPECT_GT(impacts, 5u);
 }
 
 // A coordinate between narrow limits, which a step would pass by far.

@@ -161,8 +161,8 @@ struct JointDesc {
 // What the joint did to b in the last step, on the average; to a the opposite.
 struct JointForce {
   Vec3 force;   // world frame [N]
-  Vec3 torque;  // about the origin of b's joint frame (of a UserConstraint: b's centre of mass),
-                // world frame [N m]
+  Vec3 torque;  // about the origin of b's joint frame (of a UserConstraint: b's centre of mass,
+                // or a link's origin), world frame [N m]
 };
 
 }  // namespace vp

@@ -337,28 +337,15 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
   if (row.pair == kNoPair || row.mass == 0.0) return false;
   JointPair& pair = s.pairs[row.pair];
   if (pair.error == 0.0) return false;
-  double moved = 0.0;
-  for (const PairEnd* end : {&pair.a, &pair.b}) {
-    const SolverBody& body = s.bodies[end->body];
-    moved += dot(end->linear, body.shift) + dot(end->angular, body.turn) +
-             along(end->side, 0, end->side.shift);
-  }
   // At a bound it moves nothing; where it pushes one way only, nor the other way.
   if ((row.upper > 0.0 && row.impulse >= row.upper) ||
       (row.lower < 0.0 && row.impulse <= row.lower))
     return false;
-  double next = pair.push - (pair.error + moved) / pair.answer;
+  double next = pair.push - (pair.error + speed_of(s, pair, kShift)) / pair.answer;
   if (row.lower >= 0.0) next = std::max(0.0, next);
   if (row.upper <= 0.0) next = std::min(0.0, next);
-  const double change = next - pair.push;
+  give(s, pair, next - pair.push, kShift);
   pair.push = next;
-  for (const PairEnd* end : {&pair.a, &pair.b}) {
-    push(end->side, 0, change, end->side.shift);
-    if (!end->moves) continue;
-    SolverBody& body = s.bodies[end->body];
-    body.shift += (body.inverse_mass * change) * end->linear;
-    body.turn += body.angular * (change * end->angular);
-  }
   return true;
 }
 

@@ -73,28 +73,41 @@ inline void apply_to_links(const ContactConstraint& c, int row, double impulse) 
 
 // --- rows of joints
 
-inline double rigid_speed(const SolverBody& body, const PairEnd& end) {
-  return dot(end.linear, body.v) + dot(end.angular, body.w);
-}
-inline double speed_of(const StepContext& s, const JointRow& row) {
-  if (row.pair == kNoPair) return row.speed + along(row.side, 0, row.side.velocity);
-  const JointPair& pair = s.pairs[row.pair];
+// What of bodies and articulations is read and changed: velocities, or the position correction.
+struct Moved {
+  Vec3 SolverBody::*linear;
+  Vec3 SolverBody::*angular;
+  double* LinkSide::*tree;
+};
+inline constexpr Moved kVelocity{&SolverBody::v, &SolverBody::w, &LinkSide::velocity};
+inline constexpr Moved kShift{&SolverBody::shift, &SolverBody::turn, &LinkSide::shift};
+
+inline double speed_of(const StepContext& s, const JointPair& pair, const Moved& moved) {
   double speed = 0.0;
   for (const PairEnd* end : {&pair.a, &pair.b}) {
-    speed += rigid_speed(s.bodies[end->body], *end) + along(end->side, 0, end->side.velocity);
+    const SolverBody& body = s.bodies[end->body];
+    speed += dot(end->linear, body.*moved.linear) + dot(end->angular, body.*moved.angular) +
+             along(end->side, 0, end->side.*moved.tree);
   }
   return speed;
 }
-inline void give(const StepContext& s, const JointRow& row, double impulse) {
-  if (row.pair == kNoPair) return push(row.side, 0, impulse, row.side.velocity);
-  const JointPair& pair = s.pairs[row.pair];
+inline void give(const StepContext& s, const JointPair& pair, double impulse, const Moved& moved) {
   for (const PairEnd* end : {&pair.a, &pair.b}) {
-    push(end->side, 0, impulse, end->side.velocity);
+    push(end->side, 0, impulse, end->side.*moved.tree);
     if (!end->moves) continue;
     SolverBody& body = s.bodies[end->body];
-    body.v += (body.inverse_mass * impulse) * end->linear;
-    body.w += body.angular * (impulse * end->angular);
+    body.*moved.linear += (body.inverse_mass * impulse) * end->linear;
+    body.*moved.angular += body.angular * (impulse * end->angular);
   }
+}
+
+inline double speed_of(const StepContext& s, const JointRow& row) {
+  if (row.pair == kNoPair) return row.speed + along(row.side, 0, row.side.velocity);
+  return speed_of(s, s.pairs[row.pair], kVelocity);
+}
+inline void give(const StepContext& s, const JointRow& row, double impulse) {
+  if (row.pair == kNoPair) return push(row.side, 0, impulse, row.side.velocity);
+  give(s, s.pairs[row.pair], impulse, kVelocity);
 }
 // Returns the change of speed.
 inline double solve_joint(const StepContext& s, JointRow& row) {

@@ -14,6 +14,7 @@
 
 #include "multibody/kinematics.h"
 #include "vphysics/multibody/configuration.h"
+#include "world/solver_limits.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -188,7 +189,7 @@ bool Articulation::stops_are_far(double h) const {
   for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];
     const double x = q[static_cast<std::size_t>(dof.coordinate)];
-    const double near = h * (2.0 * std::fabs(v[i]) + 1.0);
+    const double near = reach_of_stop(h, v[i]);
     if (dof.lower - x > -near || dof.upper - x < near) return false;
   }
   return true;
@@ -312,156 +313,6 @@ se3 Articulation::twist_in_data(int link, const Vec3& p) const {
   if (node == kWorld) return {};
   const se3 V = detail::velocity_of(data_.work(), node);
   return {V.w, V.v + cross(V.w, p - detail::origin_of(data_.work(), node))};
-}
-
-// change_ = (M + dt D)^-1 dt (f - h(q, at) - D v)
-void Articulation::find_change(double dt, std::span<const double> at) {
-  if (has_user_joints_) {
-    inverse_dynamics<double>(model_, data_, q, at, zero_, {.gravity = gravity_}, force_);
-    for (std::size_t i = 0; i < v.size(); ++i) force_[i] -= damping_[i] * at[i];
-  } else {
-    factor_.twists(at);
-    factor_.bias(gravity_, force_);
-  }
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    change_[i] = dt * (pushed_[i] - force_[i] - damping_[i] * v[i]);
-  }
-  factor_.solve(change_);
-}
-
-void Articulation::clear_loads() {
-  if (!loaded_) return;
-  loaded_ = false;
-  std::fill(loads_.begin(), loads_.end(), dse3{});
-  std::fill(joint_loads_.begin(), joint_loads_.end(), 0.0);
-  std::fill(pushed_.begin(), pushed_.end(), 0.0);
-}
-
-// All of the user's, along the joints.
-void Articulation::find_pushed() {
-  pushed_ = joint_loads_;
-  for (std::size_t l = 0; l < loads_.size(); ++l) {
-    if (loads_[l] == dse3{}) continue;
-    const int link = static_cast<int>(l);
-    factor_.add_load(link, T_world_link(link).position(), loads_[l], pushed_);
-  }
-}
-
-// What they add to the momentum of trees whose roots are free: those on links, and those of the
-// root's own joint, which are in its frame.
-void Articulation::add_loads_of_trees(double dt) {
-  const auto add = [&](WholeTree& tree, const Vec3& at, const dse3& load) {
-    tree.linear += dt * load.f;
-    tree.angular += dt * (load.m + cross(at - tree.centre, load.f));
-  };
-  for (std::size_t l = 0; l < loads_.size(); ++l) {
-    if (floating_of_[l] < 0) continue;
-    const SE3 T = T_world_link(static_cast<int>(l));
-    add(whole_[static_cast<std::size_t>(floating_of_[l])], T.position(), loads_[l]);
-  }
-  for (std::size_t i = 0; i < floating_.size(); ++i) {
-    const int root = floating_[i].root();
-    const Mat3 R = detail::pose_of(data_.work(), root).rotation();
-    const double* f = joint_loads_.data() + model_.tree().nodes[static_cast<std::size_t>(root)].v;
-    const WholeTree& tree = whole_[i];
-    add(whole_[i], tree.root, {R * Vec3{f[0], f[1], f[2]}, R * Vec3{f[3], f[4], f[5]}});
-  }
-}
-
-bool Articulation::add_constant_forces(double dt) {
-  bool falls = false;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    v[i] += dt * fall_[i];
-    falls = falls || fall_[i] != 0.0;
-  }
-  if (loaded_) {
-    std::fill(velocity_.begin(), velocity_.end(), 0.0);
-    for (std::size_t l = 0; l < loads_.size(); ++l) add_impulse(static_cast<int>(l), dt);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      if (joint_loads_[i] != 0.0) add_joint_impulse(static_cast<std::uint32_t>(i), dt);
-    }
-    factor_.to_velocities(velocity_);
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] += velocity_[i];
-    falls = true;
-  }
-  if (falls) update_twists();
-  return falls;
-}
-
-// Of a link's load for dt, to velocity_ (impulse_factor.h).
-void Articulation::add_impulse(int link, double dt) {
-  const dse3& load = loads_[static_cast<std::size_t>(link)];
-  if (load == dse3{}) return;
-  const auto add = [&] {
-    std::uint32_t d = factor_.first(link);
-    for (std::uint32_t k = 0; k < factor_.depth(link); ++k, d = factor_.next()[d]) {
-      velocity_[d] += rate_[k];
-    }
-  };
-  factor_.force_row(link, T_world_link(link).position(), dt * load.f, rate_.data());
-  add();
-  factor_.moment_row(link, dt * load.m, rate_.data());
-  add();
-}
-void Articulation::add_joint_impulse(std::uint32_t dof, double dt) {
-  const detail::ImpulseFactor::JointRow row = factor_.joint_row(dof);
-  std::uint32_t d = dof;
-  for (std::uint32_t k = 0; k < factor_.depth_of_dof(dof); ++k, d = factor_.next()[d]) {
-    velocity_[d] += dt * joint_loads_[dof] * row.y[k];
-  }
-}
-
-bool Articulation::integrate_forces(double dt, bool& changed) {
-  for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
-  const bool fine = add_forces(dt, changed);
-  for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
-  if (sub_stepped) reactions_.act(dt);  // else at the start
-  if (damped_) add_damping_efforts(v);
-  return fine;
-}
-
-// Of damping that is in the factor, with what has come to the velocities.
-void Articulation::add_damping_efforts(std::span<const double> gained) {
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    reactions_.add_effort(i, -factored_time_ * damping_[i] * gained[i]);
-  }
-}
-
-void Articulation::take_back_forces(double share) {
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const double added = share * forced_[i];
-    if (added * v[i] > 0.0)
-      v[i] -= std::copysign(std::min(std::fabs(added), std::fabs(v[i])), v[i]);
-  }
-  refresh();
-}
-
-bool Articulation::add_forces(double dt, bool& changed) {
-  changed = true;
-  if (constant_) {
-    changed = add_constant_forces(dt);
-    return true;
-  }
-  const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
-  factored_ = Factored::for_the_step;
-  factored_time_ = dt;
-  if (!floating_.empty()) factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
-  if (loaded_) find_pushed();
-  find_change(dt, v);
-  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
-  find_change(dt, rate_);
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
-  if (!floating_.empty()) factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i) {
-    whole_[i].linear += (dt * whole_[i].mass) * gravity_;
-  }
-  if (loaded_) add_loads_of_trees(dt);
-  for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, floating_[i].whole(data_, factor_), whole_[i], v);
-  }
-  update_twists();
-  return fine;
 }
 
 void Articulation::advance(double h) {

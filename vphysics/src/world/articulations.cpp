@@ -127,8 +127,7 @@ class JointRows {
     if (dof_.locked) add(kFrictionRow, 0.0, -kAny, kAny);
     if (dof_.coordinate < 0) return;
     const double below = dof_.lower - q_, above = dof_.upper - q_;
-    // Rows only for stops within reach; twice the present rate, since an impulse may add to it.
-    const double near = h * (2.0 * std::fabs(speed_) + 1.0);
+    const double near = reach_of_stop(h, speed_);
     if (below > -near) add(kLowerRow, below / (below > 0.0 ? dt : h), 0.0, kAny);
     if (above < near) add(kUpperRow, above / (above < 0.0 ? dt : h), -kAny, 0.0);
   }

@@ -7,6 +7,13 @@ namespace vp {
 using detail::Node;
 using detail::NodeKind;
 
+bool floats(const Model& model, int node) {
+  if (node == kWorld) return false;
+  const Node<double>& root = model.tree().nodes[static_cast<std::size_t>(node)];
+  return root.parent == kWorld && root.kind == NodeKind::free && root.armature == 0.0 &&
+         root.damping == 0.0;
+}
+
 std::vector<FloatingTree> FloatingTree::of(const Model& model) {
   const auto& nodes = model.tree().nodes;
   std::vector<FloatingTree> found;
@@ -15,7 +22,7 @@ std::vector<FloatingTree> FloatingTree::of(const Model& model) {
     const Node<double>& node = nodes[i];
     if (node.parent != kWorld) {
       tree_of[i] = tree_of[static_cast<std::size_t>(node.parent)];
-    } else if (node.kind == NodeKind::free && node.armature == 0.0 && node.damping == 0.0) {
+    } else if (floats(model, static_cast<int>(i))) {
       tree_of[i] = static_cast<int>(found.size());
       found.emplace_back().root_ = static_cast<int>(i);
     }

@@ -24,9 +24,12 @@ struct WholeTree {
   Vec3 root;             // the root's origin, world frame
 };
 
+// Whether a node of a model is the root of one: its freedom has neither damping nor armature.
+bool floats(const Model& model, int node);
+
 class FloatingTree {
  public:
-  // Those of a model whose root's freedom has neither damping nor armature.
+  // Those of a model.
   static std::vector<FloatingTree> of(const Model& model);
 
   // Of the configuration and velocities that forward_kinematics() was given last.

@@ -85,13 +85,6 @@ struct BodyJoint {
   double laid_out_for = 0.0;  // the sub-step of the rows; 0: they must be laid out
   Vec3 force, torque;         // of the last step
 
-  // What carried a load for a step is the guess for one so many times as long.
-  void rescale(double ratio) {
-    for (BodyJointRow& row : rows) {
-      row.impulse *= ratio;
-      row.stop *= ratio;
-    }
-  }
   bool holds_point() const {
     return law.form == JointLaw::Form::axes && held >= 3 && rows[2].slot == 2;
   }

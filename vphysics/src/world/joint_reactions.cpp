@@ -18,7 +18,9 @@
 
 #include <algorithm>
 
+#include "multibody/tree.h"
 #include "vphysics/assert.h"
+#include "world/floating_tree.h"
 #include "world/impl.h"
 
 namespace vp {
@@ -138,12 +140,6 @@ JointForce JointReactions::of_floating_root(const Model& model, int link) const 
   return {T.rotate({f[3], f[4], f[5]}), T.rotate({f[0], f[1], f[2]})};
 }
 
-// As a floating tree does: its momentum is what acts on it.
-static bool floats(const LinkSpec& link) {
-  return link.parent == kWorld && std::holds_alternative<FreeJoint>(link.joint) &&
-         link.armature == 0.0 && link.damping == 0.0;
-}
-
 void JointReactions::find(const Model& model, const Step& step) {
   found_ = true;
   if (!work_) work_ = std::make_unique<Work>(model);
@@ -160,10 +156,10 @@ void JointReactions::find(const Model& model, const Step& step) {
     Sum& sum = work.sums[l];
     add_self(model, link, about, sum);
     const LinkSpec& spec = model.link(link);
-    work.reactions[l] = floats(spec)
-                            ? of_floating_root(model, link)
-                            : reaction(sum, work.poses[0][l].T.position() - about,
-                                       work.poses[1][l].T.position() - about, step.gravity);
+    const bool is_root = spec.parent == kWorld && floats(model, model.tree().places[l].node);
+    work.reactions[l] = is_root ? of_floating_root(model, link)
+                                : reaction(sum, work.poses[0][l].T.position() - about,
+                                           work.poses[1][l].T.position() - about, step.gravity);
     if (spec.parent == kWorld) continue;
     Sum& parent = work.sums[static_cast<std::size_t>(spec.parent)];
     parent.mass += sum.mass;

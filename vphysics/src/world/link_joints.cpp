@@ -50,6 +50,7 @@ void World::Impl::note_joined_bodies() {
 
 // Of links that joints in rows hold, at the velocities of now.
 void World::Impl::find_next_poses(double h) {
+  if (impacts.row_joints.empty()) return;
   impacts.next_poses.resize(bodies.size());
   for (const std::uint32_t i : impacts.row_joints) {
     for (const std::uint32_t b : {joints[i].a, joints[i].b}) {

@@ -105,8 +105,13 @@ class Rows {
     const BodyJointRow& from = joint_.rows[i];
     const double C = residual(i);
     const bool open = (from.least >= 0.0 && C > 0.0) || (from.most <= 0.0 && C < 0.0);
-    if (!open) return add_held(i, from.least, from.most);
-    const auto [row, pair] = add_row(i, false, from.least, from.most);
+    // A bounded force has no time to act in an impact.
+    const auto bound = [&](double x) {
+      return step_.with_memory() || std::fabs(x) >= BodyJointRow::kNowhere ? x : 0.0;
+    };
+    const double least = bound(from.least), most = bound(from.most);
+    if (!open) return add_held(i, least, most);
+    const auto [row, pair] = add_row(i, false, least, most);
     row.target = pair.relaxed_target = -C / step_.left;
   }
 
@@ -121,10 +126,9 @@ class Rows {
     pair.drive_speed = from.speed;
   }
 
-  // Those within reach; twice the present rate, since an impulse may add to it.
   void add_stops(int i) {
     const BodyJointRow& from = joint_.rows[i];
-    const double near = step_.left * (2.0 * std::fabs(speeds_[i]) + 1.0);
+    const double near = reach_of_stop(step_.left, speeds_[i]);
     if (residual(i) - from.lower < near) add_stop(i, residual(i) - from.lower, true);
     if (from.upper - residual(i) < near) add_stop(i, from.upper - residual(i), false);
   }
@@ -165,8 +169,9 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
   double speeds[solve::kJointRows] = {}, curves[solve::kJointRows] = {};
   evaluate(joint, a.now, b.now, measure);
   if (step.of == RowsOf::first_instant) {
-    BodyJoint there = joint;  // whose turns are counted on
-    evaluate(there, a.next, b.next, next);
+    const double turned[2] = {joint.turned[0], joint.turned[1]};
+    evaluate(joint, a.next, b.next, next);
+    std::copy_n(turned, 2, joint.turned);
   }
   for (int i = 0; i < joint.count; ++i) {
     const Twelve& J = measure.jacobian[i];

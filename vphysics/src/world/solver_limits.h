@@ -1,6 +1,8 @@
 // How fast contacts and joints take out their errors, and in how many sub-steps.
 #pragma once
 
+#include <cmath>
+
 #include "vphysics/world.h"
 
 namespace vp {
@@ -21,6 +23,12 @@ inline constexpr double kFastestJoint = 3.0;
 // by more than this [rad], are a position error.
 inline constexpr double kOpen = 0.5;
 inline constexpr double kTurnedOff = 0.2;
+
+// Stops of joints get rows, in steps h, if they are nearer than this: twice as far as the present
+// rate leads, since an impulse may add to it, and than a metre or a radian a second more.
+inline double reach_of_stop(double h, double speed) {
+  return h * (2.0 * std::fabs(speed) + 1.0);
+}
 
 int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt);
 

@@ -103,6 +103,7 @@ void World::Impl::rescale_impacts(double dt) {
   const double before = std::exchange(impacts.step, dt);
   if (before == 0.0 || before == dt) return;
   const double scale = dt / before;
+  const auto scaled = [scale](double x) { return in_range(scale * x) ? scale * x : 0.0; };
   for (PairRecord& record : impacts.records) {
     record.rolling *= scale;
     for (PairPoint& point : record.points) {
@@ -116,12 +117,15 @@ void World::Impl::rescale_impacts(double dt) {
     if (!in_range(record.rolling)) record.rolling = {};
   }
   for (BodyJoint& joint : joints) {
-    if (joint.alive && joint.in_rows) joint.rescale(scale);
+    if (!joint.alive || !joint.in_rows) continue;
+    for (BodyJointRow& row : joint.rows) {
+      row.impulse = scaled(row.impulse);
+      row.stop = scaled(row.stop);
+    }
   }
   for (Articulation& art : articulations) {
     for (JointDof& dof : art.dofs) {
-      for (double& impulse : dof.impulses)
-        impulse = in_range(scale * impulse) ? scale * impulse : 0;
+      for (double& impulse : dof.impulses) impulse = scaled(impulse);
     }
   }
 }

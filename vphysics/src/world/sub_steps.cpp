@@ -39,7 +39,11 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
     }
   }
   for (BodyJoint& joint : joints) {
-    if (!joint.in_rows) joint.rescale(ratio);
+    if (joint.in_rows) continue;
+    for (BodyJointRow& row : joint.rows) {
+      row.impulse *= ratio;
+      row.stop *= ratio;
+    }
   }
 }
 
