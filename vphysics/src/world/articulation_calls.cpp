@@ -95,7 +95,7 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
     links.reserve(static_cast<std::size_t>(desc.model.links()));
     for (int l = 0; l < desc.model.links(); ++l) links.push_back(desc.model.link(l));
     if (desc.links_collide) {
-      impl_->log({calls::CreateArticulationWith{std::move(links), true}});
+      impl_->log({calls::CreateArticulationWithOptions{std::move(links), true}});
     } else {
       impl_->log({calls::CreateArticulation{std::move(links)}});
     }

@@ -128,7 +128,7 @@ struct DestroyArticulation {
   ArticulationId articulation;
 };
 // With options that are not the usual ones.
-struct CreateArticulationWith {
+struct CreateArticulationWithOptions {
   std::vector<LinkSpec> links;
   bool links_collide = false;
 };
@@ -144,7 +144,7 @@ struct RecordedCall {
       calls::SetMassFromColliders, calls::ApplyForce, calls::ApplyTorque, calls::ApplyJointForce,
       calls::SetMotion, calls::SetInertia, calls::SetDamping, calls::SetGravityScale,
       calls::SetAllowSleep, calls::SetMaterial, calls::SetFilter, calls::SetSurfaceVelocity,
-      calls::RemoveCollider, calls::DestroyArticulation, calls::CreateArticulationWith>;
+      calls::RemoveCollider, calls::DestroyArticulation, calls::CreateArticulationWithOptions>;
   What what;
 };
 

@@ -395,7 +395,7 @@ struct Fields {
   static void of(Io& io, Field<Io, calls::SetSurfaceVelocity> c) { io(c.collider, c.velocity); }
   static void of(Io& io, Field<Io, calls::RemoveCollider> c) { io(c.collider); }
   static void of(Io& io, Field<Io, calls::DestroyArticulation> c) { io(c.articulation); }
-  static void of(Io& io, Field<Io, calls::CreateArticulationWith> c) {
+  static void of(Io& io, Field<Io, calls::CreateArticulationWithOptions> c) {
     io(c.links, c.links_collide);
   }
 };

@@ -42,7 +42,7 @@ class Doer {
   Done operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
   Done operator()(const calls::AddCollider& c) { return only(world_.add_collider(c.body, c.desc)); }
   Done operator()(const calls::CreateArticulation& c) { return create(c.links, false); }
-  Done operator()(const calls::CreateArticulationWith& c) {
+  Done operator()(const calls::CreateArticulationWithOptions& c) {
     return create(c.links, c.links_collide);
   }
   Done operator()(const calls::CreateJoint& c) {

@@ -3,8 +3,9 @@
 //
 // One of which an end is a link or continuous is solved where its contacts would be: in the
 // sub-steps, where a link moves with a body that has them, else at each instant of the stage of
-// impacts. What holds hard is there held exactly by velocities, and its error taken out by moving
-// the bodies; in sub-steps it is held as in lanes.
+// impacts. What holds hard is there held exactly by velocities, along the chord of where the step
+// leads, so that what swings loses nothing; what error is left is taken out by moving the bodies.
+// In sub-steps it is held as in lanes.
 #pragma once
 
 #include <cstdint>
