@@ -95,14 +95,14 @@ constexpr double kNoAnswer = 1e-12;
 constexpr double kLeastAnswer = 1e-2, kLeastInSubSteps = 1e-4, kLeastMoved = 1e-3;
 // A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
 // that it neither loses nor gains energy; a stiffer one ever more implicitly.
-constexpr double kExplicit = 0.25;
+constexpr double kExplicitDrive = 0.25;
 // What changes a drive's impulse by a smaller share is none.
 constexpr double kNoGain = 1e-30;
 
 // At a speed u after the step the impulse is push - gain u.
 void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
   const double h = s.step, stiff = h * h * pair.stiffness * row.inverse_mass;
-  const double implicit = stiff > kExplicit ? 1.0 - kExplicit / stiff : 0.0;
+  const double implicit = stiff > kExplicitDrive ? 1.0 - kExplicitDrive / stiff : 0.0;
   const double gain = h * pair.damping + implicit * h * h * pair.stiffness;
   const double push = h * (pair.damping * pair.drive_speed - pair.stiffness * pair.drive_error);
   if (gain * row.inverse_mass > kNoGain) {

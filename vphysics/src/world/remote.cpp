@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFewMovers = 8;
 // How far a remote articulation may slide before it is looked at anew [m]; and how far a body must
 // be from that for it to become remote, so that none changes to and fro.
-constexpr double kSlide = 0.03, kClear = 0.01;
+constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 
 }  // namespace
 
@@ -71,7 +71,8 @@ bool World::Impl::is_near_mover(const collide::Bounds& box) const {
 void World::Impl::meet_remote(double h) {
   for (Articulation& art : articulations) {
     if (!art.remote) continue;
-    if (art.slides_since_remote(h) + desc.contact_slop < kSlide && !is_near_mover(art.remote_box))
+    if (art.slides_since_remote(h) + desc.contact_slop < kRemoteSlide &&
+        !is_near_mover(art.remote_box))
       continue;
     follow(art);
     for (const std::uint32_t b : art.bodies) {
@@ -92,7 +93,7 @@ void World::Impl::make_remote() {
       box = merged(box, bounds_at_pose(bodies[b], colliders));
       line = art.line_of(bodies[b].link);
     }
-    const Vec3 along = kSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};
+    const Vec3 along = kRemoteSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};
     box = collide::grown({box.lower - along, box.upper + along}, desc.contact_slop);
     if (is_near_mover(collide::grown(box, kClear))) continue;
     art.set_remote(box);

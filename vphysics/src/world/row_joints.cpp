@@ -13,18 +13,18 @@ namespace {
 constexpr double kCorrected = 0.5;
 // G of what holds hard in sub-steps, as a share of K: rows that contradict one another carry no
 // more than what its inverse makes of the speed at which errors are taken out.
-constexpr double kLoss = 0.005;
-constexpr double kAny = 1e30;
+constexpr double kRowLoss = 0.005;
+constexpr double kUnbounded = 1e30;
 
 bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
   return joint.law.form == JointLaw::Form::axes && row.slot >= solve::kSwingX;
 }
 
-class Rows {
+class RowsOfJoint {
  public:
-  Rows(BodyJoint& joint, std::uint32_t index, const RowJointStep& step, const Vec3& anchor,
-       const JointMeasure& measure, const double* speeds, const double* curves,
-       std::vector<solve::JointRow>& rows, std::vector<solve::JointPair>& pairs)
+  RowsOfJoint(BodyJoint& joint, std::uint32_t index, const RowJointStep& step, const Vec3& anchor,
+              const JointMeasure& measure, const double* speeds, const double* curves,
+              std::vector<solve::JointRow>& rows, std::vector<solve::JointPair>& pairs)
       : joint_(joint),
         index_(index),
         step_(step),
@@ -37,7 +37,7 @@ class Rows {
 
   void add(int i) {
     const BodyJointRow& row = joint_.rows[i];
-    if (i < joint_.held) return add_held(i, -kAny, kAny);
+    if (i < joint_.held) return add_held(i, -kUnbounded, kUnbounded);
     if (row.bounded_hold) return add_bounded(i);
     add_drive(i);
     add_stops(i);
@@ -86,7 +86,7 @@ class Rows {
       return;
     }
     row.target = -std::clamp(from.rate * error, -most, most);
-    pair.loss = from.relaxes ? kLoss : from.loss;
+    pair.loss = from.relaxes ? kRowLoss : from.loss;
     pair.relaxes = from.relaxes;
   }
 
@@ -136,7 +136,8 @@ class Rows {
     const BodyJointRow& from = joint_.rows[i];
     const double side = at_lower ? 1.0 : -1.0;
     if (gap < 0.0 && !from.relaxes && !step_.with_memory()) return;
-    const auto [row, pair] = add_row(i, true, at_lower ? 0.0 : -kAny, at_lower ? kAny : 0.0);
+    const auto [row, pair] =
+        add_row(i, true, at_lower ? 0.0 : -kUnbounded, at_lower ? kUnbounded : 0.0);
     if (gap < 0.0) return take_out(from, side * gap, row, pair);
     row.target = pair.relaxed_target = -side * gap / step_.left;
   }
@@ -182,7 +183,7 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
   }
   const bool user = joint.law.form == JointLaw::Form::user;
   const Vec3 anchor = user ? Vec3{} : b.now.T * joint.T_b_joint.position() - b.now.centre;
-  Rows added(joint, index, step, anchor, measure, speeds, curves, rows, pairs);
+  RowsOfJoint added(joint, index, step, anchor, measure, speeds, curves, rows, pairs);
   for (int i = 0; i < joint.count; ++i) added.add(i);
   if (!step.with_memory()) return;
   for (BodyJointRow& row : joint.rows) row.impulse = row.stop = 0.0;
