@@ -130,8 +130,8 @@ Clash clash(Random& random, double restitution, double friction) {
     (distance(middle) > 1e-9 ? low : high) = middle;  // a fall over the gap is an approach
   }
   for (double& x : v) x = random.uniform(-1, 1);
-  v[7] = 2.0;
-  v[8] = 3.0;
+  v[6] = 2.0;
+  v[7] = 3.0;
   must(world.set_joint_states(tree.id, q, v));
   Clash out;
   out.momentum_before = momentum_of(world, tree.id);
